@@ -7,8 +7,8 @@ import pytest
 
 from snowshed import SnowshedNote
 from snowshed.base.notes import recorded, tell
+from snowshed.cli.common_options import quiet_option
 from snowshed.cli.main import main
-from snowshed.cli.quiet import quiet_option
 
 
 @click.command()

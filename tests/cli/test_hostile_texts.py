@@ -85,7 +85,7 @@ def test_every_signal_that_ends_a_run_leaves_a_checkpoint(tmp_path, number):
     while not (out / "checkpoint.bin").exists() and run.poll() is None:
         time.sleep(0.01)
     run.send_signal(number)
-    assert "interrupted; go on with: " in run.communicate()[1] and run.returncode == 130
+    assert "interrupted; resume with: " in run.communicate()[1] and run.returncode == 130
     assert json.loads((out / "run.json").read_text())["status"] == "interrupted"
 
 

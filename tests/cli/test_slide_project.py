@@ -33,7 +33,7 @@ def interrupted(project, out, number, *options):
     run.send_signal(number)
     said = run.communicate()[1]
     assert run.returncode == 130
-    (hint,) = re.findall(r"interrupted; go on with: (.*)", said)
+    (hint,) = re.findall(r"interrupted; resume with: (.*)", said)
     program, *again = shlex.split(hint)
     assert (program, again[0], again[-1]) == ("snowshed", "slide", "--resume")
     assert {*map(str, options), str(project), str(out)} <= {*again}
@@ -69,7 +69,7 @@ def test_an_interrupt_while_pictures_are_drawn_keeps_the_next_slide_from_running
 
     monkeypatch.setattr(slides, "_draw", interrupt)
     assert slide(project, tmp_path / "out", "-q") == 130
-    assert "interrupted; go on with: " in capsys.readouterr().err
+    assert "interrupted; resume with: " in capsys.readouterr().err
     assert not list((tmp_path / "out").glob("b_*"))
     assert (tmp_path / "out/slide.html").is_file()
 
@@ -107,7 +107,7 @@ def test_outputs_that_cannot_be_written_are_no_fault_of_the_input(tmp_path, caps
     monkeypatch.setattr("snowshed.results.avaframe.write_avaframe_outputs", fail)
     assert slide(project, tmp_path / "out", "-q") == 3
     assert (
-        "the slide has ended, its outputs are not written: no rasterio" in capsys.readouterr().err
+        "the slide has ended, but its outputs could not be written: no rasterio" in capsys.readouterr().err
     )
 
 

@@ -87,7 +87,7 @@ def test_a_rise_over_a_summer_is_not_counted(tmp_path):
 def test_a_station_without_snow_is_read_and_its_winter_counts(tmp_path):
     record = daily_depths(tmp_path, [0.3] * 182)
     assert told(record, "it never snows in this file")
-    assert record.winters().words == "1 of 1 winter"
+    assert record.winters().counted_text == "1 of 1 winter"
 
 
 def test_the_depth_of_weekdays_tells_of_the_weekend(tmp_path):

@@ -27,7 +27,7 @@ def names(found):
 def test_winters_that_were_observed_count(tmp_path):
     found = winters(tmp_path, ALL)
     assert names(found) == ["2000/01", "2001/02", "2002/03", "2003/04", "2004/05"]
-    assert found.left_out_words == "" and found.words == "5 of 5 winters"
+    assert found.excluded_text == "" and found.counted_text == "5 of 5 winters"
 
 
 def test_snow_observed_in_two_of_five_winters_is_two_winters(tmp_path):
@@ -43,10 +43,10 @@ def test_snow_observed_in_two_of_five_winters_is_two_winters(tmp_path):
         for day, row in ALL
     ]
     found = winters(tmp_path, rows)
-    assert found.words == "2 of 5 winters"
-    assert found.left_out_words == "2002/03 to 2004/05 (0 %)"
+    assert found.counted_text == "2 of 5 winters"
+    assert found.excluded_text == "2002/03 to 2004/05 (0 %)"
     by_gauge = read_record(tmp_path / "station.csv", "gauge").winters()
-    assert by_gauge.words == "5 of 5 winters"
+    assert by_gauge.counted_text == "5 of 5 winters"
 
 
 def test_summers_at_the_ends_are_no_snowless_winters(tmp_path):
@@ -55,7 +55,7 @@ def test_summers_at_the_ends_are_no_snowless_winters(tmp_path):
     found, same = winters(tmp_path, longer), winters(tmp_path, ALL)
     assert names(found) == names(same)
     assert [w.snowfall for w in found.counted] == [w.snowfall for w in same.counted]
-    assert found.left_out_words == "1999/00 (0 %), 2005/06 (0 %)"
+    assert found.excluded_text == "1999/00 (0 %), 2005/06 (0 %)"
 
 
 def test_a_winter_without_snow_that_was_observed_counts(tmp_path):
@@ -64,7 +64,7 @@ def test_a_winter_without_snow_that_was_observed_counts(tmp_path):
         for day, row in ALL
     ]
     found = winters(tmp_path, rows)
-    assert found.words == "5 of 5 winters"
+    assert found.counted_text == "5 of 5 winters"
     assert found.winters[2].snowfall == 0.0
 
 
@@ -80,7 +80,7 @@ def test_a_winter_without_snow_that_was_observed_counts(tmp_path):
 )
 def test_incomplete_winters_are_left_out_by_name(tmp_path, missing, left_out):
     found = winters(tmp_path, [(day, row) for day, row in ALL if not missing(day)])
-    assert found.left_out_words == left_out
+    assert found.excluded_text == left_out
 
 
 def test_a_calendar_year_is_no_two_winters(tmp_path):
@@ -143,12 +143,12 @@ def test_tables_with_days_left_out_are_cut_as_stations_are(tmp_path):
         *daily(date(2015, 11, 1), date(2016, 4, 30)),
     ]
     found = read_record(table(tmp_path, two)).winters()
-    assert found.words == "2 of 6 winters"
-    assert found.left_out_words == "2011/12 to 2014/15 (no rows)"
+    assert found.counted_text == "2 of 6 winters"
+    assert found.excluded_text == "2011/12 to 2014/15 (no rows)"
     holes = daily(date(2010, 11, 1), date(2011, 4, 30), lambda day: day.weekday() > 4)
-    assert read_record(table(tmp_path, holes)).winters().words == "1 of 1 winter"
+    assert read_record(table(tmp_path, holes)).winters().counted_text == "1 of 1 winter"
     month = daily(date(2010, 11, 1), date(2011, 4, 30), lambda day: day.month == 1)
-    assert read_record(table(tmp_path, month)).winters().words == "0 of 1 winter"
+    assert read_record(table(tmp_path, month)).winters().counted_text == "0 of 1 winter"
 
 
 def test_a_list_of_snowfalls_tells_all_of_them(tmp_path):
@@ -211,7 +211,7 @@ def test_long_records_cost_no_loop_over_their_gaps(tmp_path):
     rows = [*daily(date(1900, 1, 1), date(1913, 6, 30)), *daily(date(1960, 7, 1), date(1974, 1, 1))]
     found = read_record(table(tmp_path, rows)).winters()
     assert len(found.winters) == 75 and len(found.counted) == 26
-    assert "1913/14 to 1959/60 (no rows)" in found.left_out_words
+    assert "1913/14 to 1959/60 (no rows)" in found.excluded_text
 
 
 def test_the_season_command_tells_where_the_snow_comes_from(tmp_path, capsys):

@@ -10,7 +10,7 @@ from study_helpers import outcome, tiny_study
 
 from snowshed import Scene
 from snowshed.base.progress import Progress
-from snowshed.cli.display.study import announcement
+from snowshed.cli.compute_study import announcement
 from snowshed.cli.main import main
 from snowshed.study.store import Store
 

@@ -34,8 +34,8 @@ def _tell_of_slow_kernels(ready: ResolvedScene) -> None:
 
 
 def _run_events(ready: ResolvedScene, folder: Path, resume: bool, quiet: bool) -> None:
-    from snowshed.cli import console
     from snowshed.cli.progress import progress_bar
+    from snowshed.cli.run_output import print_events
     from snowshed.running.events import run_events
 
     if not quiet:
@@ -43,7 +43,7 @@ def _run_events(ready: ResolvedScene, folder: Path, resume: bool, quiet: bool) -
     with progress_bar(quiet=quiet) as progress:
         table = run_events(ready, folder, resume=resume, progress=progress)
     if not quiet:
-        console.print_events(table, folder)
+        print_events(table, folder)
 
 
 def _tell_of_long_run(ready: ResolvedScene) -> None:
@@ -60,8 +60,8 @@ def _tell_of_long_run(ready: ResolvedScene) -> None:
 
 
 def _run_slide(ready: ResolvedScene, folder: Path, resume: bool, quiet: bool) -> None:
-    from snowshed.cli.display.slide import print_slide
     from snowshed.cli.progress import progress_bar
+    from snowshed.cli.run_output import print_slide
     from snowshed.running.slides import run_slide
 
     with progress_bar(quiet=quiet) as progress:
@@ -71,8 +71,8 @@ def _run_slide(ready: ResolvedScene, folder: Path, resume: bool, quiet: bool) ->
 
 
 def _run_grains(ready: ResolvedScene, folder: Path, resume: bool, quiet: bool) -> None:
-    from snowshed.cli.display.grains import print_grains
     from snowshed.cli.progress import progress_bar
+    from snowshed.cli.run_output import print_grains
     from snowshed.running.grains import run_grains
 
     with progress_bar(quiet=quiet) as progress:

@@ -125,8 +125,8 @@ class Contact:
     cause: str
 
     @property
-    def words(self) -> str:
-        """The cause in words."""
+    def text(self) -> str:
+        """The contact as a clause, such as "the stack reaches the lower edge"."""
         return dict(CAUSES)[self.cause]
 
 

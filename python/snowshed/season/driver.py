@@ -131,42 +131,84 @@ def run_season(
     0
     """
     settings = settings or SeasonSettings()
-    record = read_record(season, snow_from, temperature)
-    winters = record.winters(coverage)
-    ready = resolve_scene(scene)
-    data: dict[str, Any] = ready.data
-    if "panel" not in data:
-        raise InputError("/panel: missing; a season needs a panel for the snow to gather on")
-    days = accumulate(record.rows, settings, data["panel"]["tilt"], data["gravity"])
+    plan = plan_season(
+        season, scene, settings=settings, coverage=coverage, snow_from=snow_from,
+        temperature=temperature,
+    )  # fmt: skip
     folder = SeasonFolder(out_dir)
     if not resume:
         check_empty(folder.folder)
-    slides = season_scene(ready, days, settings) if any(day.event for day in days) else None
-    if slides is not None:
+    if plan.slides is not None:
         run_events(
-            slides,
+            plan.slides,
             folder.run.folder,
             resume=resume and folder.run.scene.is_file(),
-            ageing=stack_ageing(days, settings),
+            ageing=stack_ageing(plan.days, settings),
             progress=progress,
             pictures=pictures,
         )
     folder.folder.mkdir(parents=True, exist_ok=True)
-    result = _result(slides or ready, days, settings, folder, record, winters)
-    _write(result, slides or ready, settings, folder, pictures=pictures)
+    result = _result(plan, settings, folder)
+    _write(result, plan.scene, settings, folder, pictures=pictures)
     return result
 
 
-def _result(
-    scene: ResolvedScene,
-    days: Sequence[Day],
+@dataclass(frozen=True)
+class SeasonPlan:
+    """A season before its simulation.
+
+    Attributes
+    ----------
+    record, winters
+        The weather, and the quality of its winters.
+    days
+        The snow on the panel, row after row.
+    panel
+        The scene of the panel.
+    slides
+        The scene whose events are the releases; None without a release.
+    """
+
+    record: Record
+    winters: WinterList
+    days: Sequence[Day]
+    panel: ResolvedScene
+    slides: Optional[ResolvedScene]
+
+    @property
+    def scene(self) -> ResolvedScene:
+        """The scene of the slide-offs, or that of the panel without a release."""
+        return self.slides or self.panel
+
+
+def plan_season(
+    season: Season,
+    scene: SceneLike,
+    *,
     settings: SeasonSettings,
-    folder: SeasonFolder,
-    record: Record,
-    winters: WinterList,
-) -> SeasonResult:
+    coverage: float = COVERAGE,
+    snow_from: str = AUTO,
+    temperature: Optional[PathLike] = None,
+) -> SeasonPlan:
+    """Return the releases of a season and the scene of its slide-offs, without simulating them.
+
+    Parameters and errors are those of `run_season`.
+    """
+    record = read_record(season, snow_from, temperature)
+    winters = record.winters(coverage)
+    panel = resolve_scene(scene)
+    data: dict[str, Any] = panel.data
+    if "panel" not in data:
+        raise InputError("/panel: missing; a season needs a panel for the snow to gather on")
+    days = accumulate(record.rows, settings, data["panel"]["tilt"], data["gravity"])
+    slides = season_scene(panel, days, settings) if any(day.event for day in days) else None
+    return SeasonPlan(record, winters, days, panel, slides)
+
+
+def _result(plan: SeasonPlan, settings: SeasonSettings, folder: SeasonFolder) -> SeasonResult:
     import pandas as pd
 
+    scene, days = plan.scene, plan.days
     events = _table_or_empty(folder.run.events)
     outlines = _table_or_empty(folder.run.outlines)
     table = season_table(scene.data, days, settings, events, outlines)
@@ -181,10 +223,10 @@ def _result(
         burial_event=first_reached(simulated["clearance_m"].tolist(), dx),
         crest_event=first_reached(simulated["crest_clearance_m"].tolist(), dx),
         staying_event=staying,
-        winters=winters,
+        winters=plan.winters,
         notes=[
-            *record.notes,
-            *winters.shortfalls,
+            *plan.record.notes,
+            *plan.winters.shortfalls,
             *assumptions(table, days, settings),
             *notes(dx, days, settings, events, staying),
         ],
@@ -248,7 +290,7 @@ def verdict(result: SeasonResult) -> str:
     contact = result.contact
     if contact is not None:
         after = "before any slide-off" if contact.event is None else f"event {contact.event}"
-        return f"{contact.words}, {contact.date[:10]} ({after})"
+        return f"{contact.text}, {contact.date[:10]} ({after})"
     if result.simulated:
         return f"nothing reaches the panel within {result.simulated} slide-offs"
     return "nothing slid"

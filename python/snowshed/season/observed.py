@@ -138,7 +138,7 @@ def _check_columns(
     columns: Mapping[Source, Column], only: Optional[Source], form: str, source: str
 ) -> None:
     if only is not None and np.isnan(columns[only].snow).all():
-        raise InputError(f"{source}: no {only.words} in any row of this {form} file")
+        raise InputError(f"{source}: no {only.label} in any row of this {form} file")
     if all(np.isnan(column.snow).all() for column in columns.values()):
         raise InputError(
             f"{source}: neither new snow, precipitation nor snow depth in any row of this {form} "
@@ -185,7 +185,7 @@ def _take(snow: _Snow, n: int, choice: Choice, columns: Mapping[Source, Column])
         if not np.isnan(fall):
             snow.fall[n], snow.source[n] = fall, Source.FILLED
             part = columns[source].filled[n]
-            snow.reason[n] = f"from {'a part of ' if part else ''}the {source.words}"
+            snow.reason[n] = f"from {'a part of ' if part else ''}the {source.label}"
             return
 
 
@@ -193,7 +193,7 @@ def _share_out(snow: _Snow, total: Total) -> None:
     """Take what other columns know of some of its days out of a rise over several days."""
     own, known = [], 0.0
     for n in total.days:
-        if snow.source[n] is Source.DEPTH or snow.reason[n].endswith(Source.DEPTH.words):
+        if snow.source[n] is Source.DEPTH or snow.reason[n].endswith(Source.DEPTH.label):
             own.append(n)
             snow.reason[n] = f"part of a rise of {total.rise:.2f} m over {len(total.days)} days"
         else:
@@ -267,15 +267,15 @@ def _contradictions(snow: _Snow, calendar: Calendar) -> Iterator[str]:
         named = "; ".join(
             f"{calendar.name(year)}: "
             + ", ".join(
-                f"{source.words} {total:.3g} m" for source, total in snow.choices[year].sums.items()
+                f"{source.label} {total:.3g} m" for source, total in snow.choices[year].sums.items()
             )
             for year in years[:NAMED]
         )
         more = f"; and {len(years) - NAMED} more winters" if len(years) > NAMED else ""
         yield (
             f"columns contradict each other by more than a factor of {CONTRADICTION:g} ({named}"
-            f"{more}); the {used.words} is used, not the "
-            f"{' or the '.join(sorted(one.words for one in wrong))}{_why(used, wrong)}"
+            f"{more}); the {used.label} is used, not the "
+            f"{' or the '.join(sorted(one.label for one in wrong))}{_why(used, wrong)}"
         )
 
 

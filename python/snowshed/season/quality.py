@@ -73,7 +73,7 @@ class WinterQuality:
     def source_words(self) -> str:
         """Where its snow comes from, the most frequent source first."""
         observing = [
-            source.words
+            source.label
             for source, _ in Counter(self.sources).most_common()
             if source.observed and self.sources[source]
         ]
@@ -110,7 +110,7 @@ def qualities_of(
     --------
     >>> from snowshed.season.generator import EXAMPLE_CLIMATE
     >>> winters, season = qualities_of(EXAMPLE_CLIMATE.winters(2, seed=1), Calendar())
-    >>> [(winter.name, winter.observed, winter.counts) for winter in winters], season.words
+    >>> [(winter.name, winter.observed, winter.counts) for winter in winters], season.text
     ([('2001/02', 165, True), ('2002/03', 165, True)], 'from 7 November to 20 April')
     """
     check_coverage(coverage)

@@ -13,7 +13,7 @@ MOST_ROWS = 24  # on a console
 
 def title(winters: WinterList) -> str:
     """Return the title of the table."""
-    return f"Where the snow comes from (snow season {winters.season.words})"
+    return f"Where the snow comes from (snow season {winters.season.text})"
 
 
 def quality_rows(winters: WinterList) -> list[tuple[str, ...]]:

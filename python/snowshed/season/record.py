@@ -57,7 +57,7 @@ class Record:
         >>> from snowshed.season.generator import EXAMPLE_CLIMATE
         >>> rows = EXAMPLE_CLIMATE.winters(3, seed=1)
         >>> winters = Record(rows[:500]).winters()
-        >>> winters.words, winters.left_out_words
+        >>> winters.counted_text, winters.excluded_text
         ('2 of 3 winters', '2003/04 (79 %)')
         """
         found, season = qualities_of(self.rows, self.calendar, coverage, self.sums)
@@ -88,12 +88,12 @@ class WinterList:
         return [winter for winter in self.winters if winter.counts]
 
     @property
-    def words(self) -> str:
+    def counted_text(self) -> str:
         """How many of them count, such as "2 of 20 winters"."""
-        return f"{len(self.counted)} of {_number(len(self.winters))}"
+        return f"{len(self.counted)} of {winters_text(len(self.winters))}"
 
     @property
-    def left_out_words(self) -> str:
+    def excluded_text(self) -> str:
         """The winters that do not count, by name, with the share of their days; may be empty."""
         return spans([(winter.name, _shortfall(winter)) for winter in self.winters])
 
@@ -101,10 +101,10 @@ class WinterList:
     def notes(self) -> list[str]:
         """What to know of the winters that count, and of those that do not."""
         told = []
-        if self.left_out_words:
+        if self.excluded_text:
             told.append(
                 f"left out are the winters whose snow was observed on less than "
-                f"{percent(self.coverage)} of the days {self.season.words}: {self.left_out_words}"
+                f"{percent(self.coverage)} of the days {self.season.text}: {self.excluded_text}"
             )
         if any(winter.listed for winter in self.winters):
             told.append(
@@ -117,7 +117,7 @@ class WinterList:
         """What to know of the winters of a station whose snow was observed too seldom."""
         return [
             f"the snow of {winter.name} was observed on {winter.observed} of {winter.season} days "
-            f"{self.season.words} ({percent(winter.share)}); what fell on the others is not known"
+            f"{self.season.text} ({percent(winter.share)}); what fell on the others is not known"
             for winter in self.winters
             if winter.rows and not winter.counts and Source.GIVEN not in winter.sources
         ]
@@ -130,16 +130,17 @@ class WinterList:
                 "days_of_snow_season": winter.season,
                 "observed_days": winter.observed,
                 "new_snow_m": round(winter.snowfall, 4),
-                "days_by_source": {one.words: days for one, days in winter.sources.items()},
+                "days_by_source": {one.label: days for one, days in winter.sources.items()},
                 "filled_snow_m": round(winter.filled_snow, 4),
-                "sums_m": {one.words: round(total, 4) for one, total in winter.sums.items()},
+                "sums_m": {one.label: round(total, 4) for one, total in winter.sums.items()},
                 "counts": winter.counts,
             }
             for winter in self.winters
         ]
 
 
-def _number(winters: int) -> str:
+def winters_text(winters: int) -> str:
+    """Return a number of winters, such as "1 winter"."""
     return "1 winter" if winters == 1 else f"{winters} winters"
 
 

@@ -10,7 +10,7 @@ class Source(Enum):
 
     Examples
     --------
-    >>> Source.DEPTH.words, Source.DEPTH.observed, Source.FILLED.observed
+    >>> Source.DEPTH.label, Source.DEPTH.observed, Source.FILLED.observed
     ('snow depth', True, False)
     """
 
@@ -20,11 +20,11 @@ class Source(Enum):
     GAUGE = "precipitation"  # the water of a gauge, turned into snow by the temperature
     MODEL = "typical year"  # precipitation and temperature of a year that never was
     FILLED = "filled"  # by a rule, from a less trusted column or over a gap
-    MISSING = "missing"  # nobody knows; no snow is laid on that day
+    MISSING = "missing"  # unknown; no snow is laid on that day
 
     @property
-    def words(self) -> str:
-        """The source in the field's words."""
+    def label(self) -> str:
+        """The name of the source in tables."""
         return self.value
 
     @property

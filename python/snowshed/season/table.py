@@ -64,7 +64,7 @@ def _panel_columns(day: Day) -> dict[str, Any]:
         "date": weather.date.date().isoformat() if midnight else weather.date.isoformat(),
         "released": "yes" if day.released else "no",
         "snowfall_m": weather.snowfall,
-        "snow_source": weather.source.words,
+        "snow_source": weather.source.label,
         "density_kg_m3": math.nan if day.density is None else day.density,
         "temperature_c": weather.temperature,
         "panel_snow_m": day.thickness,

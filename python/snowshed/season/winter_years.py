@@ -74,7 +74,7 @@ class SnowSeason:
     Examples
     --------
     >>> season = SnowSeason(Calendar(), (11, 5), (4, 20))
-    >>> season.words, [str(day) for day in season.span(2023)]
+    >>> season.text, [str(day) for day in season.span(2023)]
     ('from 5 November to 20 April', ['2023-11-05', '2024-04-21'])
     """
 
@@ -83,7 +83,7 @@ class SnowSeason:
     last: tuple[int, int]
 
     @property
-    def words(self) -> str:
+    def text(self) -> str:
         """Such as "from 5 November to 20 April"."""
         ends = (f"{day} {month_name[month]}" for month, day in (self.first, self.last))
         return "from {} to {}".format(*ends)
@@ -131,7 +131,7 @@ def snow_season_of(rows: Sequence[Weather], calendar: Calendar) -> SnowSeason:
     Examples
     --------
     >>> from snowshed.season.generator import EXAMPLE_CLIMATE
-    >>> snow_season_of(EXAMPLE_CLIMATE.winters(30, seed=1), Calendar()).words
+    >>> snow_season_of(EXAMPLE_CLIMATE.winters(30, seed=1), Calendar()).text
     'from 4 November to 27 April'
     """
     first, last = SOUTHERN_CORE if calendar.south else NORTHERN_CORE

@@ -91,7 +91,7 @@ def test_without_a_library_nothing_is_computed(
 
 
 def test_what_it_prints(evaluated, capsys):
-    from snowshed.cli.display.calibration import print_calibration
+    from snowshed.cli.commands.calibrate import print_calibration
 
     stacks = read_simulated(evaluated / "store")
     measurements = read_measurements(evaluated / "stacks.csv")
@@ -104,7 +104,7 @@ def test_what_it_prints(evaluated, capsys):
 
 
 def test_runs_that_are_not_computed_are_told(evaluated, tmp_path, capsys):
-    from snowshed.cli.display.calibration import print_calibration
+    from snowshed.cli.commands.calibrate import print_calibration
 
     grid = calibration_study(read_measurements(evaluated / "stacks.csv"))
     fill(tmp_path / "store", grid, pending=40)

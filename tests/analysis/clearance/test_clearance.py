@@ -112,7 +112,7 @@ def test_the_page_and_the_summary(answer, tmp_path):
     found, _ = answer
     write_report([found], KNOWN, tmp_path)
     page = (tmp_path / "clearance.html").read_text()
-    assert "must be" in page and "What is assumed" in page and "Gumbel" in page
+    assert "must be" in page and "Assumptions" in page and "Gumbel" in page
     assert "http" not in page.replace("http://www.w3.org", "")
     summary = json.loads((tmp_path / "clearance.json").read_text())
     assert [level["probability"] for level in summary["panels"][0]["levels"]] == [0.5, 0.9, 0.98]

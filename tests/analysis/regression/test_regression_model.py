@@ -31,7 +31,7 @@ from snowshed.analysis.regression.spread import (
     unseen_panels,
 )
 from snowshed.base.pool.threads import one_thread
-from snowshed.cli.display.regression import print_prediction
+from snowshed.cli.commands.predict import print_prediction
 from snowshed.snow.stack.quantities import MEASURES
 
 NOISE = 0.003

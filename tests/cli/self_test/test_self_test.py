@@ -71,9 +71,9 @@ def test_what_cannot_be_measured_fails_and_says_why(capsys, monkeypatch):
 
 
 def test_former_options_say_where_they_went(capsys):
-    assert main(["verify", "--full", "--case", "incline", "-o", "my out"]) == 2
+    assert main(["self-test", "--full", "--case", "incline", "-o", "my out"]) == 2
     said = capsys.readouterr().err
-    assert said.startswith("error: verify checks this installation and takes no options; ")
+    assert said.startswith("error: self-test takes no options; the validation, a larger suite")
     assert said.endswith("run `python -m validation --full --case incline -o 'my out'` there\n")
 
 

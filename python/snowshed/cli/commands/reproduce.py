@@ -10,19 +10,19 @@ import click
 
 from snowshed.cli.deferred import Deferred
 
-#: Folder of the source, if the package is used in place.
+#: Folder of the source, if the package is imported from there.
 SOURCE = Path(__file__).parents[4]
 COMMON = "reproductions.common.command"
 #: The packages in the source, their former names, and their lines in the list of commands.
 PUBLICATIONS = (
     ("frischholz2023", "thesis", "Chapters 3 to 5 of the thesis on snow that slides off panels."),
-    ("hagenmuller2015", "hagenmuller", "Discrete elements of snow, and its compression."),
-    ("saito2012", "saito", "Avalanches by the moving particle method."),
+    ("hagenmuller2015", "hagenmuller", "Claims of a paper on discrete elements about the compression of snow."),
+    ("saito2012", "saito", "Claims of a paper on the moving particle method about avalanches."),
 )
 
 
 class FromSource(Deferred):
-    """A command that a package of the source declares, where the source is at hand.
+    """A command that a package of the source declares, if the source is available.
 
     Parameters
     ----------
@@ -40,12 +40,12 @@ class FromSource(Deferred):
         self._package = package
 
     def load(self) -> click.Command:
-        """Return the command itself.
+        """Import and return the command.
 
         Raises
         ------
         click.UsageError
-            If the source is not at hand.
+            If the source is not available.
         """
         if (SOURCE / "reproductions" / "__init__.py").is_file() and str(SOURCE) not in sys.path:
             sys.path.append(str(SOURCE))

@@ -1,4 +1,4 @@
-"""Checks: something measured, and the largest error that is allowed."""
+"""Checks: a measured error and its tolerance."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ class Check:
     Attributes
     ----------
     title
-        What is checked.
-    bar
-        The largest error allowed; 0 demands the same bits.
+        Name of the check.
+    tolerance
+        The largest allowed error; 0 demands the same bits.
     measure
         Solve the problem and return the error, relative to the answer.
     """
 
     title: str
-    bar: float
+    tolerance: float
     measure: Callable[[], float]
 
 
@@ -39,9 +39,9 @@ class Result:
     check
         The check.
     error
-        As `Check.measure` returned it; NaN if it could not be measured.
+        The result of `Check.measure`; NaN if it could not be measured.
     failure
-        Why it could not be measured; empty if it was.
+        Reason why the error could not be measured, if so.
     """
 
     check: Check
@@ -50,8 +50,8 @@ class Result:
 
     @property
     def holds(self) -> bool:
-        """True if the error is within the bar."""
-        return abs(self.error) <= self.check.bar
+        """True if the error is within the tolerance."""
+        return abs(self.error) <= self.check.tolerance
 
 
 def run_checks(checks: Sequence[Check], progress: Optional[Reporter] = None) -> list[Result]:
@@ -60,13 +60,13 @@ def run_checks(checks: Sequence[Check], progress: Optional[Reporter] = None) -> 
     Parameters
     ----------
     checks
-        What to run.
+        The checks.
     progress
         Called before each check.
 
     Examples
     --------
-    >>> half = Check("half of one", bar=0.1, measure=lambda: 0.5)
+    >>> half = Check("half of one", tolerance=0.1, measure=lambda: 0.5)
     >>> [(result.error, result.holds) for result in run_checks([half])]
     [(0.5, False)]
     """

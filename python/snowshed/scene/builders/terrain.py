@@ -51,40 +51,42 @@ def on_terrain(
 ) -> Scene:
     """Return a scene whose ground is terrain.
 
-    The plane ground is taken away, and an obstacle "terrain" takes its place. It is shifted so that
-    the terrain right below the lower edge of the panel (or at x = 0, without one) is at z = 0:
-    the panel's height is that above the terrain there. The stack's height is measured from the
-    terrain below it.
+    An obstacle "terrain" replaces the plane ground. Its elevation is shifted: the terrain below the
+    lower edge of the panel (or at x = 0, without a panel) is at z = 0, so that the panel's height
+    is that above the terrain there. The stack's height is measured from the terrain below it.
 
     Parameters
     ----------
     scene
-        Anything; it stays as it is.
+        Any scene; it stays as it is.
     raster
         Terrain, or its file, which `snowshed.scene.builders.terrain_checks.read_terrain` reads.
     file
-        Where to write the grid of distances (.npy); the scene names it by its absolute path.
+        File to write the grid of distances to (.npy); the scene names it by its absolute path.
     origin
-        East and north, m, of the scene's x = y = 0 on the map.
+        East and north of the scene's x = y = 0 on the map, m.
     azimuth
-        Where +x, the slide direction, points: degrees from north, clockwise.
-    x, y
-        What part of the scene gets terrain, m; y in 3D only. Beyond it there is no ground.
+        Slide direction (+x) on the map, degrees from north, clockwise.
+    x
+        Extent of the terrain along the slide direction, m; beyond it there is no ground.
+    y
+        Extent of the terrain across the slide direction, m; in 3D only.
     spacing
-        Between samples of the grid, m; two grid cells of the scene are a good start, unless the
-        raster is coarser.
-    condition, friction
-        Of the terrain.
+        Distance between samples of the terrain, m; start with two grid cells of the scene, or the
+        spacing of a coarser raster.
+    condition
+        Contact condition of the terrain.
+    friction
+        Coulomb coefficient of the terrain.
     band
-        Which band of a GeoTIFF, from 1; needed where it has several.
+        Band of a GeoTIFF, from 1; needed if it has several.
     max_slope
-        Steepest cliff beside elevations of 0 that is believed [degrees].
+        Steepest plausible cliff beside elevations of 0, degrees.
 
     Raises
     ------
     InputError
-        If the raster is none in metres, does not cover the part asked for, or the grid would be too
-        large.
+        If the raster is not in metres or does not cover the extent, or the grid is too large.
 
     Examples
     --------
@@ -102,8 +104,8 @@ def on_terrain(
     terrain = _checked(raster, band, max_slope)
     flat = scene.dimension == 2
     xs, ys = _axis("x", x, spacing), np.zeros(1) if flat else _axis("y", y, spacing)
-    place = panel_edge(scene.to_data()).x if scene.panel is not None else 0.0
-    level = float(_heights(terrain, origin, azimuth, np.array([place]), np.zeros(1))[0, 0])
+    edge_x = panel_edge(scene.to_data()).x if scene.panel is not None else 0.0
+    level = float(_heights(terrain, origin, azimuth, np.array([edge_x]), np.zeros(1))[0, 0])
     heights = _heights(terrain, origin, azimuth, xs, ys) - level
     samples, bottom = signed_distances(heights, xs, ys, spacing)
     with replacing(file) as beside, beside.open("wb") as stream:
@@ -133,16 +135,16 @@ def signed_distances(
     Parameters
     ----------
     heights : (nx, ny)
-        Of the terrain, m, at `xs` and `ys`; one y means terrain that is the same all along y.
+        Elevations of the terrain at `xs` and `ys`, m; with one y, terrain is the same along y.
     xs, ys
-        m, evenly `spacing` apart.
+        Coordinates of the samples, `spacing` apart, m.
     spacing
-        Between samples, along z too, m.
+        Distance between samples, also along z, m.
 
     Returns
     -------
     (nx, ny, nz), float
-        Distances, m, as a shape of the type "grid" takes them.
+        Distances for a shape of the type "grid", and the z of the lowest samples, m.
     """
     bottom = float(heights.min()) - DEEP * spacing
     count = math.ceil((float(heights.max()) - bottom) / spacing) + HIGH + 1
@@ -170,7 +172,7 @@ def _axis(name: str, span: Sequence[float], spacing: float) -> Floats:
 
 
 def _heights(terrain: Raster, origin: Span, azimuth: float, xs: Floats, ys: Floats) -> Floats:
-    """Return the raster's heights (nx, ny) at places of the scene."""
+    """Return the raster's heights (nx, ny) at positions of the scene."""
     sin, cos = math.sin(math.radians(azimuth)), math.cos(math.radians(azimuth))
     x, y = np.meshgrid(xs, ys, indexing="ij")
     return terrain.height_at(origin[0] + x * sin - y * cos, origin[1] + x * cos + y * sin)

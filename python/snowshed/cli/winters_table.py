@@ -1,4 +1,4 @@
-"""How well the snow of winters is known, as commands print it."""
+"""The table of winters that commands print: days with observed snow, sources, gaps."""
 
 from __future__ import annotations
 
@@ -8,25 +8,25 @@ from snowshed.season.record import WinterList
 
 
 def print_quality(console: PlainConsole, winters: WinterList, *, judged: bool = True) -> None:
-    """Print a row for each winter: days on which its snow was observed, source, what was filled.
+    """Print a row for each winter: days with observed snow, source, filled days.
 
     Parameters
     ----------
     console
-        Where to.
+        The console to print to.
     winters
-        Of the file.
+        The winters of the file.
     judged
-        Whether to say which of them count.
+        Whether to print which winters count.
     """
     rows, left_out = shortened(quality_rows(winters))
     columns = range(len(HEAD) if judged else len(HEAD) - 1)
-    used = [place for place in columns if any(row[place] for row in rows)]
+    used = [column for column in columns if any(row[column] for row in rows)]
     table = plain_table(title(winters))
-    for place in used:
-        table.add_column(HEAD[place], justify="left" if ALIGN[place] == "l" else "right")
+    for column in used:
+        table.add_column(HEAD[column], justify="left" if ALIGN[column] == "l" else "right")
     for row in rows:
-        table.add_row(*(row[place] for place in used))
+        table.add_row(*(row[column] for column in used))
     console.print(table)
     if left_out:
         console.print(f"{left_out} more winters are in the page and in clearance.json")
