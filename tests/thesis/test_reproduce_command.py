@@ -24,7 +24,7 @@ from snowshed.cli.commands import reproduce as source
 from snowshed.cli.main import main
 from snowshed.study import Study
 
-DOCS = ROOT / "docs" / "reproduce.md"
+DOCS = ROOT / "docs" / "trust" / "reproduce.md"
 MODULES = [module.name for module in pkgutil.walk_packages(thesis.__path__, "thesis.")]
 
 
