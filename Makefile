@@ -123,7 +123,7 @@ test-py: build $(VENV)/.dev-tools
 test-slow: build $(VENV)/.dev-tools
 	$(BIN)/python -m pytest -m slow
 
-# --- robustness, see docs/robustness.md ----------------------------------------------------
+# --- robustness, see docs/trust/robustness.md ----------------------------------------------------
 
 # Each sanitizer has its own tree; the second argument are tests that are left out. LongSlab takes
 # minutes and runs only code that shorter tests run, too. ThreadSanitizer's threads are those of the

@@ -3,7 +3,7 @@
 Usage: python benchmarks/record.py path/to/snowshed_bench
 
 Writes benchmarks/results/DATE.json (machine, date, every case) and prints the tables that
-docs/performance.md shows. Nothing else should run on the machine meanwhile.
+docs/trust/performance.md shows. Nothing else should run on the machine meanwhile.
 """
 
 from __future__ import annotations

@@ -6,7 +6,7 @@ import shlex
 
 import click
 import pytest
-from paths import ROOT
+from paths import DOCS, ROOT
 from validation.framework.command import validate
 
 from snowshed import Scene
@@ -14,7 +14,7 @@ from snowshed.cli.commands.reproduce import reproduce
 from snowshed.cli.deferred import Deferred
 from snowshed.cli.main import cli
 
-PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+PAGES = [ROOT / "README.md", *sorted(DOCS.rglob("*.md"))]
 #: Programs that the documentation starts, and the command behind each.
 PROGRAMS = {
     "snowshed": cli,
@@ -24,11 +24,11 @@ PROGRAMS = {
 }
 #: Pages that list all options of a command.
 PAGE_OF = {
-    "sensitivity": "sensitivity.md",
-    "calibrate": "calibration.md",
-    "geometry": "regression.md",
-    "regress": "regression.md",
-    "predict": "regression.md",
+    "sensitivity": "guides/sensitivity.md",
+    "calibrate": "guides/calibration.md",
+    "geometry": "guides/regression.md",
+    "regress": "guides/regression.md",
+    "predict": "guides/regression.md",
 }
 # So that an example takes a second.
 SHORTER = {
@@ -79,13 +79,13 @@ def test_documented_commands_and_their_options_exist(program, words):
 
 @pytest.mark.parametrize("name", sorted(cli.commands))
 def test_every_command_is_in_the_user_guide(name):
-    guide = (ROOT / "docs" / "user-guide.md").read_text(encoding="utf-8")
+    guide = (DOCS / "guides" / "user-guide.md").read_text(encoding="utf-8")
     assert re.search(rf"(snowshed |`){name}\b", guide)
 
 
 @pytest.mark.parametrize(("name", "page"), list(PAGE_OF.items()))
 def test_every_option_is_on_the_page_of_its_command(name, page):
-    text = (ROOT / "docs" / page).read_text(encoding="utf-8")
+    text = (DOCS / page).read_text(encoding="utf-8")
     command, _ = command_of("snowshed", [name])
     options = [one.opts[-1] for one in command.params if one.param_type_name == "option"]
     assert [option for option in options if not re.search(rf"`{option}[ `]", text)] == []
@@ -107,7 +107,12 @@ def test_make_targets_exist():
 
 SCRIPTS = [
     pytest.param(page, script, id=f"{page}-{number}")
-    for page in ("README.md", "docs/user-guide.md", "docs/season.md", "docs/lua.md")
+    for page in (
+        "README.md",
+        "docs/guides/user-guide.md",
+        "docs/guides/season.md",
+        "docs/guides/lua.md",
+    )
     for number, script in enumerate(blocks(page, "python"))
 ]
 
@@ -116,9 +121,9 @@ SCRIPTS = [
 def test_scripts_run(page, script, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("OMP_NUM_THREADS", "1")
-    if page == "docs/season.md":
+    if page == "docs/guides/season.md":
         (tmp_path / "winter.csv").write_text(blocks(page, "text")[0], encoding="utf-8")
-    if page == "docs/lua.md":
+    if page == "docs/guides/lua.md":
         init, update, *_ = blocks(page, "lua")
         (tmp_path / "init.lua").write_text(init + "events { max_time = 0.1 }\n", encoding="utf-8")
         (tmp_path / "update.lua").write_text(update, encoding="utf-8")
@@ -127,7 +132,7 @@ def test_scripts_run(page, script, tmp_path, monkeypatch):
     exec(script, {})
 
 
-@pytest.mark.parametrize("page", ["docs/user-guide.md"])
+@pytest.mark.parametrize("page", ["docs/guides/user-guide.md"])
 def test_scenes_are_valid(page):
     for text in blocks(page, "json"):
         assert Scene.from_data(json.loads(text)).resolve().data["title"]

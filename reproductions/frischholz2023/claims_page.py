@@ -1,4 +1,4 @@
-"""The page ``docs/thesis-claims.md``: every claim of the thesis with our verdict.
+"""The page ``docs/trust/thesis-claims.md``: every claim of the thesis with our verdict.
 
 Its numbers come from the folder ``data``, which holds the claims of the last ``--middle``;
 ``python -m reproductions.frischholz2023.claims_page`` writes it anew. What likely makes a claim
@@ -28,7 +28,7 @@ from snowshed.io.atomic import write_text
 from snowshed.study.store import Store
 
 DATA = Path(__file__).with_name("data")
-DOCS = Path(__file__).parents[2] / "docs"
+DOCS = Path(__file__).parents[2] / "docs" / "trust"
 PAGE, REPORT = DOCS / "thesis-claims.md", DOCS / "reports" / "thesis-middle.html"
 REPORT_FILE = "thesis.html"  # of `--middle`
 CLAIMS_FILE, COMPUTED_FILE = "claims.csv", "claims-computed.json"
@@ -107,7 +107,7 @@ def keep(folder: Path, data: Path = DATA, report: Path = REPORT) -> None:
 @click.command()
 @click.argument("folder", required=False, type=click.Path(path_type=Path))
 def main(folder: Optional[Path]) -> None:
-    """Write docs/thesis-claims.md, after taking the results in FOLDER, if one is given."""
+    """Write docs/trust/thesis-claims.md, after taking the results in FOLDER, if one is given."""
     if folder is not None:
         keep(folder)
     write_text(PAGE, page())

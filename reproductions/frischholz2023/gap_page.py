@@ -1,4 +1,4 @@
-"""The page ``docs/thesis-gap.md``: how far our stacks are from the thesis's, and why.
+"""The page ``docs/trust/thesis-gap.md``: how far our stacks are from the thesis's, and why.
 
 Every number on it comes from the files in the folder ``data``, which hold results of longer runs;
 ``python -m reproductions.frischholz2023.gap_page`` writes it anew.
@@ -54,7 +54,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 DATA = Path(__file__).with_name("data")
-PAGE = Path(__file__).parents[2] / "docs" / "thesis-gap.md"
+PAGE = Path(__file__).parents[2] / "docs" / "trust" / "thesis-gap.md"
 DEVIATIONS_FILE, SCATTER_FILE, ERRORS_FILE = "deviations.csv", "scatter.csv", FILE.name
 #: What is kept of the folders of regressions, as `snowshed regress` writes them.
 KEPT = ("scores.csv", "ratio/errors.csv", "ratio/quartiles.csv")
@@ -93,7 +93,8 @@ def _scatter_part(stacks: pd.DataFrame) -> list[str]:
     ours, theirs = (scatter(stacks, name, "length") for name in (DEFAULT_TRIMMING, other))
     return [
         "## The two readings of A.4.2",
-        f"[Two readings](theory.md#two-readings-of-a42) of the same stacks: {panels} panels up to "
+        "[Two readings](../methods/mpm.md#two-readings-of-a42) of the same stacks: "
+        f"{panels} panels up to "
         f"{stacks['panel.length'].max():g} m long, {seeds} seedings each, cells of {cells}. The "
         "columns are the deviation between seedings as a part of the mean (root mean square over "
         "panels and events), and the quartiles of H/L of the rows.",
@@ -204,8 +205,9 @@ def _regression_part(data: Path) -> list[str]:
     shares = [f"{percent(_share(one), 2)} by `{name}`" for name, one in of_one_seed.items()]
     return [
         "## Tables 5.3.1 and 5.3.2",
-        "The rows that come with snowshed ([their settings](regression.md#the-rows-that-come-with-"
-        f"snowshed)), by both readings of A.4.2, regressed in {times}. The thesis's table "
+        "The rows that come with snowshed "
+        "([their settings](../guides/regression.md#the-rows-that-come-with-snowshed)), "
+        f"by both readings of A.4.2, regressed in {times}. The thesis's table "
         "holds quartiles of predictions, and its rows are single stacks: our predictions from rows "
         "of one seed are their like.",
         markdown_table(quartiles_grid(found)),
@@ -262,7 +264,7 @@ def keep(
     help="New regressions: a folder of those that `regressed_rows` names.",
 )
 def main(deviations: Optional[Path], seeds: Optional[Path], regressions: Optional[Path]) -> None:
-    """Write docs/thesis-gap.md from the folder data, after taking new results into it."""
+    """Write docs/trust/thesis-gap.md from the folder data, after taking new results into it."""
     keep(DATA, deviations, seeds, regressions)
     write_text(PAGE, page())
 

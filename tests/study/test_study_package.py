@@ -9,7 +9,7 @@ import snowshed.study
 from snowshed.study import Study
 from snowshed.study.database import TABLES
 
-DOCS = (ROOT / "docs" / "studies.md").read_text()
+DOCS = (ROOT / "docs" / "guides" / "studies.md").read_text()
 
 
 def test_every_public_name_is_there():

@@ -1,4 +1,4 @@
-// A film of particles: what its header and its frames hold, in whole numbers. docs/view.md
+// A film of particles: what its header and its frames hold, in whole numbers. docs/guides/view.md
 // describes the file.
 #pragma once
 

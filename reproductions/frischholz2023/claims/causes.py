@@ -1,7 +1,7 @@
 """What likely makes claims of the thesis fail here, by the claim's text.
 
-Only ``docs/thesis-claims.md`` shows them. A cause says what was tried; where nothing was, it says
-so.
+Only ``docs/trust/thesis-claims.md`` shows them. A cause says what was tried; where nothing was, it
+says so.
 """
 
 from __future__ import annotations

@@ -20,7 +20,7 @@ from snowshed.cli.commands import reproduce as source
 from snowshed.cli.main import main
 from snowshed.study import Study
 
-DOCS = ROOT / "docs" / "reproduce.md"
+DOCS = ROOT / "docs" / "trust" / "reproduce.md"
 
 
 def run(*arguments):

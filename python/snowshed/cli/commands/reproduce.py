@@ -16,7 +16,11 @@ COMMON = "reproductions.common.command"
 #: The packages in the source, their former names, and their lines in the list of commands.
 PUBLICATIONS = (
     ("frischholz2023", "thesis", "Chapters 3 to 5 of the thesis on snow that slides off panels."),
-    ("hagenmuller2015", "hagenmuller", "Claims of a paper on discrete elements about the compression of snow."),
+    (
+        "hagenmuller2015",
+        "hagenmuller",
+        "Claims of a paper on discrete elements about the compression of snow.",
+    ),
     ("saito2012", "saito", "Claims of a paper on the moving particle method about avalanches."),
 )
 
