@@ -106,9 +106,8 @@ def test_outputs_that_cannot_be_written_are_no_fault_of_the_input(tmp_path, caps
     project = write_project(tmp_path / "project", "tEnd = 0.05\n")
     monkeypatch.setattr("snowshed.results.avaframe.write_avaframe_outputs", fail)
     assert slide(project, tmp_path / "out", "-q") == 3
-    assert (
-        "the slide has ended, but its outputs could not be written: no rasterio" in capsys.readouterr().err
-    )
+    said = capsys.readouterr().err
+    assert "the slide has ended, but its outputs could not be written: no rasterio" in said
 
 
 def test_links_are_refused_before_anything_is_written(tmp_path, capsys):

@@ -51,8 +51,8 @@ class Outcome:
     error
         Reason why the run is not done.
     particles
-        Those after each completed event, packed (see `snowshed.results.event_particles`), by events;
-        empty unless the task asked for them.
+        Those after each completed event, packed (see `snowshed.results.event_particles`), by
+        events; empty unless the task asked for them.
     notes
         What readers of the results should know, as run.json has it.
     """
