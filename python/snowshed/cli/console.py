@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Optional
 
@@ -13,6 +14,7 @@ from snowshed.io.json_file import read_object
 from snowshed.methods.registry import settings_of
 from snowshed.plot.caption import contact_text, mean_damping_rate
 from snowshed.results.dimension_ratio import RULE_OF_THUMB
+from snowshed.results.reader import Results
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -33,15 +35,15 @@ EVENT_TABLE = {
 }
 
 
-def print_events(table: pd.DataFrame, folder: Path) -> None:
+def print_events(results: Results) -> None:
     """Print the measures of the stack after each event."""
+    table, folder = results.events, results.folder
     shown = plain_table("Stack after each event", EVENT_TABLE, padding=0)
     for row in table.to_dict("records"):
         shown.add_row(*(form.format(row[name]) for name, form in EVENT_TABLE.values()))
     wide_console(120).print(shown)
-    scene = read_object(folder / "scene.json")
     console = PlainConsole()
-    console.print(contacts_and_damping(scene, mean_damping_rate(table)))
+    console.print(contacts_and_damping(results.scene.data, mean_damping_rate(table)))
     residual = energy_residual(folder)
     if residual is not None:
         console.print(f"energy balance: residual {residual:.2g} of the largest energy")
@@ -58,7 +60,7 @@ def energy_residual(folder: Path) -> Optional[float]:
     return None if residual is None else float(residual)
 
 
-def contacts_and_damping(scene: dict[str, Any], damping_rate: Optional[float]) -> str:
+def contacts_and_damping(scene: Mapping[str, Any], damping_rate: Optional[float]) -> str:
     """Return the conditions of panel and ground, and the damping of a run, in a line.
 
     Examples

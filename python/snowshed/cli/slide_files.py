@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -121,8 +120,8 @@ def refuse_changed_areas(
     stored = folder / "scene.json"
     if not stored.is_file():
         return  # there is nothing to resume, which resuming says
-    then: dict[str, Any] = json.loads(ResolvedScene.load(stored).json)["terrain"]
-    now: dict[str, Any] = json.loads(ready.json)["terrain"]
+    then = ResolvedScene.load(stored).data["terrain"]
+    now = ready.data["terrain"]
     for part, file in files.items():
         if file is not None and then.get(part) != now.get(part):
             raise InputError(

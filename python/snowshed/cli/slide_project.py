@@ -83,7 +83,7 @@ def _check_others(
     """Refuse what a later simulation cannot run with before the first has its results."""
     for simulation, scene in zip(simulations, ready):
         with _of_the_ini(simulation):
-            _core.Simulation(scene.json, scene.base_dir)
+            _core.Simulation(scene.core, scene.base_dir)
 
 
 @contextmanager
@@ -131,7 +131,7 @@ def _write_outputs(
 def write_particles(ready: ResolvedScene, folder: Path, steps: Sequence[int]) -> None:
     """Write the particles after some steps to tables in a results folder."""
     from snowshed.io.csv_table import write_csv
-    from snowshed.running.slides import particles_at
+    from snowshed.running.slide_states import particles_at
 
     for step, table in particles_at(ready, steps).items():
         name = "particles_initial" if step == 0 else f"particles_step{step:05d}"

@@ -31,7 +31,7 @@ def plan(scene: Path, accuracy: Optional[float]) -> None:
     ready = ResolvedScene.load(scene)
     if accuracy is not None:
         ready = _accurate(Scene.load(scene), accuracy).resolve()
-    console.print_plan(_core.plan(ready.json, ready.base_dir))
+    console.print_plan(_core.plan(ready.core, ready.base_dir))
     _tell_of_beginning(ready)
 
 

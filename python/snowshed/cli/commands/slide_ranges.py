@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -150,7 +149,7 @@ def run_project_ranges(
 
 
 def _study(scene: Scene, options: RangeOptions) -> Study:
-    terrain = json.loads(scene.resolve().json)["terrain"]
+    terrain = scene.resolve().data["terrain"]
     columns: dict[str, Sequence[object]] = {}
     sample = {} if options.sample is None else options.sample.columns
     if THICKNESS in sample and terrain.get("thickness_file"):

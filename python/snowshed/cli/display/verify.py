@@ -15,7 +15,7 @@ from snowshed.scene.scene import Scene
 def print_facts() -> None:
     """Print the version, the processor, the kernels and the number of threads."""
     scene = Scene.preset("lab-50").update({"dimension": 2, "numerics.dx": 0.02}).resolve()
-    plan = _core.plan(scene.json, scene.base_dir)
+    plan = _core.plan(scene.core, scene.base_dir)
     threads = f"{plan['threads']} threads at most"
     say(f"snowshed {_core.version}, {plan['kernels']} kernels, {threads}, {cpu_name()}")
 
