@@ -21,7 +21,7 @@ from keeping import keep_cases
 from tables import print_tables
 
 from snowshed.base.machine import cpu_name
-from snowshed.running.events import run_events
+from snowshed.running.run import run_events
 from snowshed.scene.scene import Scene
 
 Case = dict[str, Any]

@@ -29,7 +29,7 @@ def test_every_requirement_has_its_module_here():
 
 
 def test_running_a_scene_does_not_import_what_reads_images_of_snow():
-    modules = modules_after("import snowshed.cli.commands.run, snowshed.running.events")
+    modules = modules_after("import snowshed.cli.commands.run, snowshed.running.run")
     assert not [m for m in modules if m.startswith(("scipy.ndimage", "skimage", "rasterio"))]
 
 

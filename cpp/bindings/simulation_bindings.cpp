@@ -4,6 +4,7 @@
 
 #include "array_copies.hpp"
 #include "bindings.hpp"
+#include "scene_argument.hpp"
 #include "simulation_class.hpp"
 #include "snowshed/core/errors.hpp"
 #include "snowshed/geometry/cliffs.hpp"
@@ -14,7 +15,6 @@
 #include "snowshed/run/run_record.hpp"
 #include "snowshed/run/simulation.hpp"
 #include "snowshed/scene/assemble.hpp"
-#include "snowshed/scene/scene_json.hpp"
 
 namespace py = pybind11;
 
@@ -98,6 +98,7 @@ py::dict slide_maps(const Simulation& sim) {
   d["west"] = t.west();
   d["south"] = t.south();
   d["cell"] = t.cell();
+  d["density"] = std::get<SlideSettings>(sim.scene().numerics).density;
   return d;
 }
 
@@ -270,12 +271,12 @@ void bind_files(SimulationClass& c) {
       "path"_a);
   (*c).def_static(
       "load_into",
-      [](const std::string& json, const std::filesystem::path& base_dir,
+      [](const py::object& scene, const std::filesystem::path& base_dir,
          const std::filesystem::path& path) {
         return std::make_unique<SimulationHandle>(
-            Simulation::load_into(parse_scene(json), base_dir, path));
+            Simulation::load_into(scene_of(scene), base_dir, path));
       },
-      "scene_json"_a, "base_dir"_a, "path"_a);
+      "scene"_a, "base_dir"_a, "path"_a);
   c.reads(
       "save", [](const Simulation& s, const std::filesystem::path& path) { s.save(path); },
       "path"_a);
@@ -369,11 +370,11 @@ void bind_simulation(py::module_& m) {
   m.def("impossible_cliff", &cliff, "heights"_a, "west"_a, "south"_a, "cell"_a, "max_slope"_a,
         "Tells of neighbouring nodes that differ in height as no ground does; empty without any.");
   SimulationClass c(m);
-  (*c).def(py::init([](const std::string& json, const std::filesystem::path& base_dir) {
+  (*c).def(py::init([](const py::object& scene, const std::filesystem::path& base_dir) {
              return std::make_unique<SimulationHandle>(
-                 std::make_shared<Simulation>(parse_scene(json), base_dir));
+                 std::make_shared<Simulation>(scene_of(scene), base_dir));
            }),
-           "scene_json"_a, "base_dir"_a = ".");
+           "scene"_a, "base_dir"_a = ".");
   bind_run(c);
   bind_files(c);
   bind_fields(c);

@@ -39,7 +39,7 @@ if _TYPE_CHECKING:
     from snowshed.results.dimension_ratio import dimension_ratio
     from snowshed.results.folder import read_events
     from snowshed.results.reader import Results
-    from snowshed.running.events import run_events
+    from snowshed.running.run import run, run_events
     from snowshed.running.simulation import Simulation
     from snowshed.scene.components import (
         Area,
@@ -102,6 +102,7 @@ __all__ = [
     "measure_stack",
     "pv",
     "read_events",
+    "run",
     "run_events",
 ]
 
@@ -145,7 +146,8 @@ _MODULES = {
     "level": "snowshed.snow.stack.measure",
     "measure_stack": "snowshed.snow.stack.measure",
     "read_events": "snowshed.results.folder",
-    "run_events": "snowshed.running.events",
+    "run": "snowshed.running.run",
+    "run_events": "snowshed.running.run",
 }
 #: Modules by a shorter name.
 _MODULE_NAMES = {"pv": "snowshed.analysis.photovoltaics"}

@@ -229,7 +229,7 @@ def test_ctrl_c_says_how_to_go_on(tmp_path, capsys, monkeypatch):
     def pressed(*_):
         signal.raise_signal(signal.SIGINT)
 
-    monkeypatch.setattr("snowshed.running.events._Recorder.event_begun", pressed)
+    monkeypatch.setattr("snowshed.running.run._Observer.event_begun", pressed)
     out = tmp_path / "out"
     assert main(["panel", *TINY, "-q", "-o", str(out)]) == 130
     message = capsys.readouterr().err

@@ -18,7 +18,7 @@ from voxel_files import VOXELS, save_metaimage, save_slices
 from snowshed import Scene, _core, run_events
 from snowshed.io.raster.raster import write_ascii_grid
 from snowshed.methods.slide.peak_maps import PeakMaps
-from snowshed.running.grains import run_grains
+from snowshed.running.run import run
 from snowshed.scene.builders.grains import grains_scene
 from snowshed.scene.loading import LoadingStage
 
@@ -281,7 +281,7 @@ def sample(folder: Path) -> Path:
 
 def curve(folder: Path) -> Path:
     loading = [LoadingStage(kind="compress", speed=0.1, strain=0.001)]
-    run_grains(grains_scene(write_labels(folder), 1e-4, loading), folder / "out", pictures=False)
+    run(grains_scene(write_labels(folder), 1e-4, loading), folder / "out", pictures=False)
     return folder / "out" / "curve.csv"
 
 

@@ -39,9 +39,9 @@ from snowshed.io.voxels.open_voxels import open_voxels
 from snowshed.io.vtk.pvd import read_series
 from snowshed.io.vtk.vtp import read_particles
 from snowshed.methods.grains.curve import LoadingCurve
+from snowshed.methods.grains.run import GrainsRun
 from snowshed.methods.grains.sample_folder import find_sample
 from snowshed.methods.slide.peak_maps import PeakMaps
-from snowshed.running.method_runs import runs_of
 
 REFUSED = (InputError, SimulationError, OSError)
 
@@ -80,7 +80,7 @@ def _as_labels(file: Path) -> None:
 
 def _as_scene(file: Path) -> None:
     Scene.load(file)
-    simulation = _core.Simulation(_core.load_scene(str(file)), str(file.parent))
+    simulation = _core.Simulation(_core.ParsedScene.load(str(file)), str(file.parent))
     if simulation.scene and simulation.event_count:
         _core.update_version(file.read_text(errors="replace"))
 
@@ -252,7 +252,7 @@ def _as_curve(file: Path) -> str:
 
 
 def _as_summary(file: Path) -> str:
-    (row,) = runs_of({"method": "grains"}).rows(file.parent)
+    (row,) = GrainsRun.rows(file.parent)
     return json.dumps(row)
 
 

@@ -10,8 +10,7 @@ from conftest import tiny_scene
 from snowshed import InputError, Results, run_events
 from snowshed.analysis.tomography.example import example_grains
 from snowshed.io.film import Film
-from snowshed.running.grains import run_grains
-from snowshed.running.slides import run_slide
+from snowshed.running.run import run
 from snowshed.scene.builders import example_slide
 
 HALF_MILLIMETRE = 5e-4
@@ -183,11 +182,11 @@ def test_slides_and_grains_are_filmed_too(tmp_path):
     for name in ("s", "g"):
         (tmp_path / name).mkdir()
     slide = example_slide(tmp_path / "s").update({"events.max_time": 2.0})
-    run_slide(slide, tmp_path / "slide", pictures=False, rasters=False)
+    run(slide, tmp_path / "slide", pictures=False, compact=True)
     film = Film(tmp_path / "slide" / "film.bin")
     assert len(film.frames) > 3 and "thickness" in {one.name for one in film.quantities}
     grains = example_grains(tmp_path / "g").set("loading.0.strain", 0.001)
-    run_grains(grains, tmp_path / "grains", pictures=False)
+    run(grains, tmp_path / "grains", pictures=False)
     film = Film(tmp_path / "grains" / "film.bin")
     (first, *_) = film
     assert (first.radii > 0).all() and film.quantum < 0.05 * np.median(first.radii)

@@ -19,12 +19,11 @@ from snowshed.base.notes import recorded
 from snowshed.io.film import Film
 from snowshed.io.vtk.vtp import read_particles
 from snowshed.methods.grains.curve import LoadingCurve
+from snowshed.methods.grains.run import GrainsRun
 from snowshed.results.film_dataset import film_dataset
 from snowshed.results.video import write_video
 from snowshed.results.view import write_view
-from snowshed.running.grains import run_grains
-from snowshed.running.method_runs import runs_of
-from snowshed.running.slides import run_slide
+from snowshed.running.run import run
 from snowshed.scene.builders import example_slide
 from snowshed.scene.builders.grains import grains_scene
 from snowshed.scene.loading import LoadingStage
@@ -43,7 +42,7 @@ def loaded(tmp_path_factory) -> Path:
     folder = tmp_path_factory.mktemp("loaded")
     loading = [LoadingStage(kind="compress", speed=0.1, strain=0.002)]
     scene = grains_scene(write_labels(folder), 1e-4, loading).set("numerics.threads", 1)
-    run_grains(scene.set("output.energy", True), folder / "out", pictures=False)
+    run(scene.set("output.energy", True), folder / "out", pictures=False)
     return folder / "out"
 
 
@@ -169,18 +168,18 @@ def test_a_changed_curve_is_neither_read_nor_gone_on_with(loaded, tmp_path):
 def test_python_writes_a_changed_curve_anew(loaded, tmp_path):
     folder = Path(shutil.copytree(loaded, tmp_path / "out"))
     (folder / "curve.csv").write_text("time_s,stage\n1,1\n")
-    run_grains(ResolvedScene.load(folder / "scene.json"), folder, resume=True, pictures=False)
+    run(ResolvedScene.load(folder / "scene.json"), folder, resume=True, pictures=False)
     assert (folder / "curve.csv").read_bytes() == (loaded / "curve.csv").read_bytes()
     LoadingCurve.read(folder / "curve.csv")
 
 
 def test_figures_of_runs_are_checked(loaded, tmp_path):
     folder = Path(shutil.copytree(loaded, tmp_path / "out"))
-    assert runs_of({"method": "grains"}).rows(folder)
+    assert GrainsRun.rows(folder)
     text = (folder / "grains.json").read_text()
     (folder / "grains.json").write_text(text.replace("0", "1", 1))
     with pytest.raises(InputError, match=r"grains\.json: damaged"):
-        runs_of({"method": "grains"}).rows(folder)
+        GrainsRun.rows(folder)
 
 
 def test_run_json_says_its_own_checksum(folder):
@@ -228,7 +227,6 @@ def scenes(folder: Path) -> dict[str, object]:
 @pytest.mark.parametrize("method", ["mpm", "mps", "grains", "slide"])
 def test_another_number_of_threads_goes_on_to_the_same_bits(method, python, tmp_path, monkeypatch):
     scene = scenes(tmp_path)[method]
-    run = {"grains": run_grains, "slide": run_slide}.get(method, run_events)
     one, two = tmp_path / "one", tmp_path / "two"
     scene.set("numerics.threads", 1)
     run(scene, one, pictures=False)

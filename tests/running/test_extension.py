@@ -63,7 +63,7 @@ def test_the_old_snow_keeps_its_state(tmp_path, energy):
                  "preconsolidation_pressure", "volumetric_plastic_strain", "event"):  # fmt: skip
         assert np.array_equal(before.field_by_id(name), after.field_by_id(name)), name
     assert len(before.snows) == 1 and len(after.snows) == 2
-    other = scene.data
+    other = scene.copied_data()
     other["snow"]["density"] = 150.0
     with pytest.raises(InputError, match="does not name its snows first"):
         _core.Simulation.load_into(json.dumps(other), ".", file)
@@ -116,7 +116,7 @@ def test_what_cannot_be_extended_is_refused_and_nothing_is_written(finished, tmp
 def test_a_thickness_is_of_one_layer(finished):
     scene = Results(finished).scene
     layers = [{"thickness": 0.01}, {"thickness": 0.02}, {"thickness": 0.01, "event": 2}]
-    data = scene.data
+    data = scene.copied_data()
     data["slab"] = {"layers": layers}
     several = resolve_scene(data)
     with pytest.raises(InputError, match="/slab/layers: several"):

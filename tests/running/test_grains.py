@@ -14,7 +14,7 @@ from snowshed.base.interrupt import Interrupted
 from snowshed.base.notes import recorded
 from snowshed.io.vtk.vtp import read_particles
 from snowshed.methods.grains.curve import LoadingCurve, carried_stress
-from snowshed.running.grains import run_grains
+from snowshed.running.run import run
 from snowshed.running.sequence import open_sequence
 from snowshed.scene.builders import grains_scene
 
@@ -33,23 +33,23 @@ def scene(tmp_path):
 def test_what_is_synthetic_is_called_so(scene, tmp_path):
     """By the folder of the sample or by the title; an image of one's own is not called so."""
     short = scene.set("loading.0.strain", 1e-5)
-    assert run_grains(short, tmp_path / "own", pictures=False).synthetic is None
+    assert run(short, tmp_path / "own", pictures=False).summary.synthetic is None
     facts = {"voxel_size_m": VOXEL, "synthetic": True, "source": "synthetic: by hand"}
     (tmp_path / "microstructure.json").write_text(json.dumps(facts))
-    run_grains(short, tmp_path / "made", pictures=False)
+    run(short, tmp_path / "made", pictures=False)
     stored = json.loads((tmp_path / "made/grains.json").read_text())
     assert stored["synthetic"] == "synthetic: by hand"
     (tmp_path / "microstructure.json").unlink()
     titled = short.set("title", "synthetic: elsewhere")
-    assert run_grains(titled, tmp_path / "titled", pictures=False).synthetic is not None
+    assert run(titled, tmp_path / "titled", pictures=False).summary.synthetic is not None
 
 
 def test_figures_and_curve_tell_the_same(scene, tmp_path):
-    summary = run_grains(scene, tmp_path / "out", pictures=False)
+    summary = run(scene, tmp_path / "out", pictures=False).summary
     curve = LoadingCurve.read(tmp_path / "out/curve.csv")
     stored = json.loads((tmp_path / "out/grains.json").read_text())
     assert stored["ended"] == summary.ended == "rest"
-    assert (summary.grains, summary.bonds) == (3, 2 * 16)
+    assert (summary.final_particles, summary.bonds) == (3, 2 * 16)
     assert summary.spheres == 3 * (4**3 - 2**3)  # inner voxels are left out
     assert summary.density_kg_m3 == pytest.approx(917.0)
     assert curve["axial_strain"][0] == pytest.approx(0.0, abs=1e-12)
@@ -62,7 +62,7 @@ def test_the_modulus_of_a_column_is_that_of_its_springs(scene, tmp_path):
     """Between grains and at the plates lie 16 springs of E r each, four such layers in series."""
     scene.update({"loading.0.strain": 2e-4, "loading.0.speed": 0.002})
     scene.update({"numerics.density_scaling": 1.0, "numerics.damping": 0.5})
-    summary = run_grains(scene, tmp_path / "out", pictures=False)
+    summary = run(scene, tmp_path / "out", pictures=False).summary
     radius, modulus = VOXEL / 2, 1e9
     stiffness = 16 * modulus * radius / 4
     expected = stiffness * (24 * radius) / (8 * radius) ** 2
@@ -75,22 +75,22 @@ def test_a_column_is_as_strong_as_its_bonds(scene, tmp_path):
     scene.update({"loading.0.kind": "stretch", "loading.0.strain": 1e-3, "loading.0.speed": 0.005})
     scene.update({"numerics.density_scaling": 1.0, "numerics.damping": 0.5})
     scene.update({"numerics.bonded_plates": True, "numerics.tensile_strength": 8e5})
-    summary = run_grains(scene, tmp_path / "out", pictures=False)
+    summary = run(scene, tmp_path / "out", pictures=False).summary
     assert summary.strength_pa == pytest.approx(8e5, rel=0.03)
     assert summary.bonds == 4 * 16  # with those to the plates
     assert summary.broken_in_tension > 0 and summary.broken_in_tension % 16 == 0
 
 
 def test_an_interrupted_test_goes_on_to_the_same_files(scene, tmp_path):
-    run_grains(scene, tmp_path / "whole", pictures=False)
+    run(scene, tmp_path / "whole", pictures=False)
 
     def stop(progress):
         if progress.time > 0.0:
             raise KeyboardInterrupt
 
     with pytest.raises((Interrupted, KeyboardInterrupt)):
-        run_grains(scene, tmp_path / "two", progress=stop, pictures=False)
-    run_grains(scene, tmp_path / "two", resume=True, pictures=False)
+        run(scene, tmp_path / "two", progress=stop, pictures=False)
+    run(scene, tmp_path / "two", resume=True, pictures=False)
     for name in ("curve.csv", "grains.json", "contacts.csv"):
         whole, two = ((tmp_path / folder / name).read_bytes() for folder in ("whole", "two"))
         assert whole == two
@@ -98,10 +98,10 @@ def test_an_interrupted_test_goes_on_to_the_same_files(scene, tmp_path):
 
 def test_a_test_that_was_killed_before_it_began_makes_the_same_film(scene, tmp_path):
     """The film's resolution is that of the grains, which are not there before the first event."""
-    run_grains(scene, tmp_path / "whole", pictures=False)
+    run(scene, tmp_path / "whole", pictures=False)
     with open_sequence(scene.resolve(), tmp_path / "two", resume=False):
         pass
-    run_grains(scene, tmp_path / "two", resume=True, pictures=False)
+    run(scene, tmp_path / "two", resume=True, pictures=False)
     whole, two = ((tmp_path / folder / "film.bin").read_bytes() for folder in ("whole", "two"))
     assert whole == two
 
@@ -109,14 +109,14 @@ def test_a_test_that_was_killed_before_it_began_makes_the_same_film(scene, tmp_p
 def test_threads_do_not_change_the_curve(scene, tmp_path):
     for threads in (1, 2):
         scene.set("numerics.threads", threads)
-        run_grains(scene, tmp_path / str(threads), pictures=False)
+        run(scene, tmp_path / str(threads), pictures=False)
     one, two = ((tmp_path / f"{n}/curve.csv").read_bytes() for n in (1, 2))
     assert one == two
 
 
 def test_the_energy_balance_is_written(scene, tmp_path):
-    run_grains(scene.set("output.energy", True), tmp_path / "out", pictures=False)
-    run_grains(scene, tmp_path / "out", pictures=False, resume=True)  # adds no second row
+    run(scene.set("output.energy", True), tmp_path / "out", pictures=False)
+    run(scene, tmp_path / "out", pictures=False, resume=True)  # adds no second row
     (row,) = list(csv.DictReader((tmp_path / "out/energy.csv").open()))
     curve = LoadingCurve.read(tmp_path / "out/curve.csv")
     assert set(curve.energies) == set(row) - {"event"}
@@ -129,7 +129,7 @@ def test_the_energy_balance_is_written(scene, tmp_path):
 
 def test_snapshots_hold_the_spheres_of_the_grains(scene, tmp_path):
     scene.set("output.snapshot_interval", 1e-5)
-    summary = run_grains(scene, tmp_path / "out", pictures=False)
+    summary = run(scene, tmp_path / "out", pictures=False).summary
     files = sorted((tmp_path / "out/snapshots").glob("*.vtp"))
     assert len(files) > 3
     found = read_particles(files[0])
@@ -144,11 +144,11 @@ def test_the_strength_is_that_of_a_finely_sampled_run(scene, tmp_path):
     snow = sphere_snow((16, 16, 16), VOXEL, diameter=5e-4, density=300, seed=1)
     write_labels(tmp_path, snow.labels)
     scene.set("loading.0.strain", 0.04)
-    coarse = run_grains(scene, tmp_path / "coarse", pictures=False)
+    coarse = run(scene, tmp_path / "coarse", pictures=False).summary
     curve = LoadingCurve.read(tmp_path / "coarse/curve.csv")
     parts = 50
     stage = {**scene.resolve().data["loading"][0], "strain": 0.04 / parts}
-    run_grains(scene.set("loading", [stage] * parts), tmp_path / "fine", pictures=False)
+    run(scene.set("loading", [stage] * parts), tmp_path / "fine", pictures=False)
     rows = LoadingCurve.read(tmp_path / "fine/curve.csv")
     assert len(rows) > 10 * len(curve)
     finest = carried_stress(rows, "compress").max()
@@ -161,7 +161,7 @@ def test_plates_that_never_touch_the_snow_leave_nulls(scene, tmp_path):
     labels = column_of_grains()
     labels[:2] = labels[-2:] = 0
     write_labels(tmp_path, labels)
-    summary = run_grains(scene, tmp_path / "out")
+    summary = run(scene, tmp_path / "out").summary
     stored = json.loads((tmp_path / "out/grains.json").read_text())
     assert stored["strength_pa"] is stored["tangent_modulus_pa"] is summary.strength_pa is None
     assert "the plates never touched the snow" in " ".join(stored["notes"])
@@ -173,34 +173,34 @@ def test_labels_in_several_places_are_told_and_stored(scene, tmp_path):
     write_labels(tmp_path, labels)
     short = scene.set("loading.0.strain", 1e-5)
     with recorded() as told:
-        summary = run_grains(short, tmp_path / "out", pictures=False)
+        summary = run(short, tmp_path / "out", pictures=False).summary
     assert told == list(summary.sample_notes)
     assert "1 of 2 labels lie in several places, 3 pieces in all" in told[0]
     assert json.loads((tmp_path / "out/grains.json").read_text())["sample_notes"] == told
-    split = run_grains(short.set("sample.split_labels", True), tmp_path / "split", pictures=False)
-    assert (summary.grains, split.grains) == (2, 3)
+    split = run(short.set("sample.split_labels", True), tmp_path / "split", pictures=False).summary
+    assert (summary.final_particles, split.final_particles) == (2, 3)
 
 
 def test_a_scene_of_an_earlier_version_is_resumed(scene, tmp_path):
     """It does not have the key of split labels."""
     short = scene.set("loading.0.strain", 1e-5)
-    run_grains(short, tmp_path / "out", pictures=False)
+    run(short, tmp_path / "out", pictures=False)
     data = json.loads((tmp_path / "out/scene.json").read_text())
     del data["sample"]["split_labels"]
     (tmp_path / "out/scene.json").write_text(json.dumps(data))
-    run_grains(tmp_path / "out/scene.json", tmp_path / "out", resume=True, pictures=False)
+    run(tmp_path / "out/scene.json", tmp_path / "out", resume=True, pictures=False)
 
 
 def test_the_example_draws_its_pictures(tmp_path):
     scene = example_grains(tmp_path).set("loading.0.strain", 1e-3)
-    run_grains(scene, tmp_path / "out")
+    run(scene, tmp_path / "out")
     for name in ("grains.png", "forces.png"):
         assert (tmp_path / "out" / name).stat().st_size > 10_000
 
 
 def test_progress_begins_at_once_and_names_the_stage(scene, tmp_path):
     told = []
-    run_grains(scene, tmp_path / "out", progress=told.append, pictures=False)
+    run(scene, tmp_path / "out", progress=told.append, pictures=False)
     assert told[0].fraction == 0.0 and told[-1].fraction == 1.0
     assert told[0].doing.startswith("stage 1 of 1, compress: 0.0%")
 

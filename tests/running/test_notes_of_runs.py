@@ -13,9 +13,8 @@ from snowshed import InputError, Scene, Simulation, SnowshedNote, run_events
 from snowshed.base.notes import recorded
 from snowshed.cli.main import main
 from snowshed.io.raster.raster import write_ascii_grid
-from snowshed.running.grains import run_grains
+from snowshed.running.run import run
 from snowshed.running.scene_notes import notes_after, notes_before, notes_of_beginning
-from snowshed.running.slides import run_slide
 
 
 def ball_in_ground(**values: object) -> Scene:
@@ -141,7 +140,7 @@ def test_a_release_beside_the_terrain_or_over_a_hole_is_refused(tmp_path, place)
     terrain = {"file": str(tmp_path / "dem.asc"), "release": release}
     scene = Scene.from_data({**data, "terrain": terrain})
     with pytest.raises(InputError, match=r"/terrain/release/0: (reaches beyond|the terrain has a)"):
-        run_slide(scene, tmp_path / "run", pictures=False)
+        run(scene, tmp_path / "run", pictures=False)
 
 
 def test_grains_begin_between_their_plates_and_below_the_cone(tmp_path):
@@ -165,5 +164,5 @@ def test_grains_begin_between_their_plates_and_below_the_cone(tmp_path):
     row = {name: values[0] for name, values in simulation._core.grains_curve().items()}
     assert row["cone_force_n"] == pytest.approx(0.0, abs=1e-9)
     with recorded() as said:
-        run_grains(scene, tmp_path / "run", pictures=False)
+        run(scene, tmp_path / "run", pictures=False)
     assert said == notes_of(tmp_path / "run") == []

@@ -14,7 +14,8 @@ from snowshed import InputError
 from snowshed.base.interrupt import Interrupted
 from snowshed.io.raster.raster import Raster, read_raster, write_ascii_grid
 from snowshed.plot import slide_page
-from snowshed.running.slides import particles_at, run_slide
+from snowshed.running.run import run
+from snowshed.running.slide_states import particles_at
 from snowshed.scene import Area, Events, Scene, Terrain
 from snowshed.scene.builders import example_slide
 
@@ -35,7 +36,7 @@ def slope(tmp_path) -> Scene:
 
 
 def test_figures_and_maps_tell_the_same(slope, tmp_path):
-    summary = run_slide(slope, tmp_path / "out", pictures=False)
+    summary = run(slope, tmp_path / "out", pictures=False).summary
     sloping = 24.0 * 24.0 / math.cos(math.radians(38.0))
     assert summary.released_kg == pytest.approx(sloping * 0.5 * 300.0, rel=1e-9)
     speed = read_raster(tmp_path / "out/peaks/pfv.asc")
@@ -52,15 +53,15 @@ def test_figures_and_maps_tell_the_same(slope, tmp_path):
 
 
 def test_an_interrupted_slide_goes_on_to_the_same_maps(slope, tmp_path):
-    run_slide(slope, tmp_path / "whole", pictures=False)
+    run(slope, tmp_path / "whole", pictures=False)
 
     def stop(progress):
         if progress.time > 0.2:
             raise KeyboardInterrupt
 
     with pytest.raises((Interrupted, KeyboardInterrupt)):
-        run_slide(slope, tmp_path / "two", progress=stop, pictures=False)
-    run_slide(slope, tmp_path / "two", resume=True, pictures=False)
+        run(slope, tmp_path / "two", progress=stop, pictures=False)
+    run(slope, tmp_path / "two", resume=True, pictures=False)
     for name in ("peaks/pfv.asc", "peaks/pft.asc", "flow/FT.asc"):
         whole, two = ((tmp_path / folder / name).read_bytes() for folder in ("whole", "two"))
         assert whole == two
@@ -77,7 +78,7 @@ def test_particles_after_some_steps(slope):
 
 
 def test_the_energy_balance_is_written_and_closes(slope, tmp_path):
-    run_slide(slope.set("output.energy", True), tmp_path / "out", pictures=False)
+    run(slope.set("output.energy", True), tmp_path / "out", pictures=False)
     (row,) = list(csv.DictReader((tmp_path / "out/energy.csv").open()))
     energy = {name: float(value) for name, value in row.items() if name != "event"}
     drop = energy["added_j"] - energy["potential_j"] - energy["left_terrain_j"]
@@ -90,7 +91,7 @@ def test_the_energy_balance_is_written_and_closes(slope, tmp_path):
 
 def test_the_example_draws_its_map(tmp_path):
     scene = example_slide(tmp_path).set("events.max_time", 1.0)
-    run_slide(scene, tmp_path / "out")
+    run(scene, tmp_path / "out")
     assert (tmp_path / "out/slide.png").stat().st_size > 10_000
 
 
@@ -121,7 +122,7 @@ def test_bad_slides_are_named(slope, path, value, message):
 def test_a_release_beyond_the_terrain_leaves_nothing_behind(slope, tmp_path):
     slope.terrain.release[0].outline = [(0, 0), (9, 0), (9, 9)]
     with pytest.raises(InputError, match="/terrain/release/0: reaches beyond the terrain"):
-        run_slide(slope, tmp_path / "out")
+        run(slope, tmp_path / "out")
     assert not (tmp_path / "out").exists()
 
 
@@ -132,7 +133,7 @@ def test_snapshots_hold_thickness_speed_and_bonds_as_lines(slope, tmp_path):
     from snowshed.running.slide_states import slide_states
 
     slope.update({"numerics.max_strain": 0.02, "output.snapshot_interval": 0.5})
-    run_slide(slope, tmp_path / "out", pictures=False)
+    run(slope, tmp_path / "out", pictures=False)
     files = sorted((tmp_path / "out/snapshots").glob("*.vtp"))
     assert len(files) == 5  # at 0, 0.5, ..., 2 s
     (state,) = slide_states(slope, [1.0])
@@ -151,8 +152,8 @@ def test_snapshots_hold_thickness_speed_and_bonds_as_lines(slope, tmp_path):
 
 KILLED_RUN = """
 import sys
-from snowshed.running.slides import run_slide
-run_slide(sys.argv[1], sys.argv[2])
+from snowshed.running.run import run
+run(sys.argv[1], sys.argv[2])
 """
 
 
@@ -161,7 +162,7 @@ def test_the_page_of_a_killed_slide_is_whole_when_it_is_resumed(tmp_path, monkey
     (tmp_path / "scene.json").write_text(scene.resolve().json)
     drawn = []
     monkeypatch.setattr(slide_page, "_film", lambda *args: drawn.append(args[-1]))
-    run_slide(tmp_path / "scene.json", tmp_path / "straight")
+    run(tmp_path / "scene.json", tmp_path / "straight")
 
     out = tmp_path / "killed"
     command = [sys.executable, "-c", KILLED_RUN, tmp_path / "scene.json", out]
@@ -170,7 +171,7 @@ def test_the_page_of_a_killed_slide_is_whole_when_it_is_resumed(tmp_path, monkey
             assert process.poll() is None
             time.sleep(0.01)
         process.kill()
-    run_slide(tmp_path / "scene.json", out, resume=True)
+    run(tmp_path / "scene.json", out, resume=True)
 
     straight, resumed = drawn
     assert [frame.time for frame in resumed] == [frame.time for frame in straight]
@@ -180,6 +181,6 @@ def test_the_page_of_a_killed_slide_is_whole_when_it_is_resumed(tmp_path, monkey
 
 
 def test_a_slide_without_film_has_a_page_without_it(slope, tmp_path):
-    run_slide(slope.set("output.film", False), tmp_path / "out")
+    run(slope.set("output.film", False), tmp_path / "out")
     page = (tmp_path / "out/slide.html").read_text()
     assert "Peak values" in page and "Over time" not in page

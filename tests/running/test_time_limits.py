@@ -8,8 +8,7 @@ from grain_files import write_labels
 from processes import snowshed_run
 
 from snowshed import InputError, Simulation, run_events
-from snowshed.running.grains import run_grains
-from snowshed.running.slides import run_slide
+from snowshed.running.run import run
 from snowshed.scene.builders import example_slide
 from snowshed.scene.builders.grains import grains_scene
 from snowshed.scene.loading import LoadingStage
@@ -28,7 +27,6 @@ def scene_of(method, folder):
     return tiny_scene(**{"events.count": 1})
 
 
-RUNS = {"slide": run_slide, "grains": run_grains}
 STEPS = {
     "mpm": ["courant_factor"],
     "slide": ["time_step"],
@@ -43,7 +41,7 @@ def test_a_step_that_gets_nowhere_is_refused_before_the_run(method, name, tmp_pa
     for value in TINY:
         scene.set(f"numerics.{name}", value)
         with pytest.raises(InputError, match=rf"^/numerics/{name}: .*(1e12 are allowed|fallen to)"):
-            RUNS.get(method, run_events)(scene, tmp_path / "out", pictures=False)
+            run(scene, tmp_path / "out", pictures=False)
         scene.resolve().save(tmp_path / "scene.json")
         done = snowshed_run(tmp_path / "scene.json", "-o", tmp_path / "out", "-q")
         assert done.returncode == 2 and f"/numerics/{name}" in done.stderr
@@ -55,14 +53,14 @@ def test_a_step_that_gets_nowhere_is_refused_before_the_run(method, name, tmp_pa
 def test_records_without_end_are_refused(method, interval, tmp_path):
     scene = scene_of(method, tmp_path).set(f"output.{interval}", 1e-300)
     with pytest.raises(InputError, match=rf"^/output/{interval}: .*at most 1e6 are allowed"):
-        RUNS.get(method, run_events)(scene, tmp_path / "out", pictures=False)
+        run(scene, tmp_path / "out", pictures=False)
 
 
 @pytest.mark.parametrize("method", ["mpm", "mps", "slide"])
 def test_an_event_ends_at_its_time_limit_to_a_step(method, tmp_path):
     limit = {"mpm": 0.0501, "mps": 0.1234, "slide": 0.9}[method]
     scene = scene_of(method, tmp_path).update({"events.max_time": limit, "events.rest_time": limit})
-    RUNS.get(method, run_events)(scene, tmp_path / "out", pictures=False)
+    run(scene, tmp_path / "out", pictures=False)
     (event,) = json.loads((tmp_path / "out" / "run.json").read_text())["finished_events"]
     assert event["ended"] == "time_limit"
     simulation = Simulation(scene)
@@ -79,7 +77,7 @@ def test_steps_that_divide_the_time_limit_reach_it_exactly(tmp_path):
     """Ten steps of 0.1 s make 0.99999 s in floating point: no eleventh follows."""
     scene = scene_of("slide", tmp_path).update({"events.max_time": 1.0, "numerics.time_step": 0.1})
     scene.update({"numerics.bonds": False})
-    run_slide(scene, tmp_path / "out", pictures=False)
+    run(scene, tmp_path / "out", pictures=False)
     (event,) = json.loads((tmp_path / "out" / "run.json").read_text())["finished_events"]
     assert event["steps"] == 10
 

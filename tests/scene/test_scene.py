@@ -52,7 +52,7 @@ def test_fields_are_the_properties_of_the_cores_schema():
 @pytest.mark.parametrize("method", METHODS)
 def test_settings_are_those_of_the_cores_schema(method):
     inner = properties(SCHEMA, schema_of_method(method)["properties"]["numerics"])
-    assert set(METHODS[method].keys()) == set(inner)
+    assert set(METHODS[method].settings.keys()) == set(inner)
 
 
 def test_the_last_value_wins(tiny):

@@ -7,24 +7,24 @@ record it. The command line prints it as "note: …". What is stored with result
 
 from __future__ import annotations
 
+import sys
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
+from types import FrameType
 
 
 class SnowshedNote(UserWarning):
     """Something that the reader of a result should know; nothing is wrong with the program."""
 
 
-def tell(text: str, stacklevel: int = 2) -> None:
-    """Say a note.
+def tell(text: str) -> None:
+    """Say a note; the warning names the line outside the package that led to it.
 
     Parameters
     ----------
     text
         A sentence without its full stop.
-    stacklevel
-        As of `warnings.warn`, seen from the caller.
 
     Examples
     --------
@@ -33,7 +33,23 @@ def tell(text: str, stacklevel: int = 2) -> None:
     >>> notes
     ['the raster has feet; they were turned into metres']
     """
-    warnings.warn(text, SnowshedNote, stacklevel + 1)
+    warnings.warn(text, SnowshedNote, caller_level())
+
+
+def caller_level() -> int:
+    """Return the `stacklevel` at which the caller of this function warns its user.
+
+    It is that of the first frame outside the package, or of the outermost one.
+    """
+    level, frame = 1, sys._getframe(1)
+    package = __name__.partition(".")[0]
+    while frame.f_back is not None and _package_of(frame) == package:
+        level, frame = level + 1, frame.f_back
+    return level
+
+
+def _package_of(frame: FrameType) -> str:
+    return str(frame.f_globals.get("__name__", "")).partition(".")[0]
 
 
 @contextmanager

@@ -18,7 +18,7 @@ def print_cost(scene: ResolvedScene) -> None:
     """Print the features, memory and run time of a scene, and the notes of its run."""
     table = Table(show_header=False, box=None)
     table.add_column(style="bold")
-    for name, value in cost_rows(_core.plan(scene.json, scene.base_dir)).items():
+    for name, value in cost_rows(_core.plan(scene.core, scene.base_dir)).items():
         table.add_row(name, value)
     PlainConsole().print(table)
     tell_notes(scene)

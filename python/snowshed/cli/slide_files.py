@@ -120,8 +120,8 @@ def refuse_changed_areas(
     stored = folder / "scene.json"
     if not stored.is_file():
         return  # resuming reports that there is nothing to resume
-    earlier: dict[str, Any] = ResolvedScene.load(stored).data
-    current: dict[str, Any] = scene.data
+    earlier = ResolvedScene.load(stored).data
+    current = scene.data
     for key, file in files.items():
         if file is not None and earlier["terrain"].get(key) != current["terrain"].get(key):
             raise InputError(

@@ -112,7 +112,7 @@ def _check_others(
     """Refuse errors of later simulations before the first one runs."""
     for simulation, scene in zip(simulations, scenes):
         with _of_the_ini(simulation):
-            _core.Simulation(scene.json, scene.base_dir)
+            _core.Simulation(scene.core, scene.base_dir)
 
 
 @contextmanager
@@ -160,7 +160,7 @@ def _write_outputs(
 def write_particles(scene: ResolvedScene, folder: Path, steps: Sequence[int]) -> None:
     """Write tables of the particles after given steps into a results folder."""
     from snowshed.io.csv_table import write_csv
-    from snowshed.running.slides import particles_at
+    from snowshed.running.slide_states import particles_at
 
     for step, table in particles_at(scene, steps).items():
         name = "particles_initial" if step == 0 else f"particles_step{step:05d}"

@@ -122,7 +122,7 @@ def headline(figures: Mapping[str, Any]) -> str:
 
     Examples
     --------
-    >>> headline({"run_out_m": 106.0, "drop_m": 75.2, "duration_s": 44.2, "peak_speed_m_s": 3.49,
+    >>> headline({"run_out_m": 106.0, "drop_m": 75.2, "sim_time_s": 44.2, "peak_speed_m_s": 3.49,
     ...           "peak_pressure_kpa": 3.65, "peak_thickness_m": 1.2, "reached_m2": 6900.0,
     ...           "ended": "rest"})[:54]
     'The snow came 106 m from the middle of the release and'
@@ -131,7 +131,7 @@ def headline(figures: Mapping[str, Any]) -> str:
     speed = figures["peak_speed_m_s"]
     return (
         f"The snow came {figures['run_out_m']:.0f} m from the middle of the release and "
-        f"{figures['drop_m']:.0f} m down {ended} after {figures['duration_s']:.0f} s; at most it "
+        f"{figures['drop_m']:.0f} m down {ended} after {figures['sim_time_s']:.0f} s; at most it "
         f"was {speed:.1f} m/s fast ({3.6 * speed:.0f} km/h), {figures['peak_thickness_m']:.1f} m "
         f"thick, and pressed with {figures['peak_pressure_kpa']:.1f} kPa."
     )
@@ -143,7 +143,7 @@ def _facts(figures: Mapping[str, Any]) -> list[tuple[str, str]]:
     return [
         ("run-out", f"{figures['run_out_m']:.1f} m from the middle of the release"),
         ("drop", f"{figures['drop_m']:.1f} m"),
-        ("duration", f"{figures['duration_s']:.1f} s, until {figures['ended'].replace('_', ' ')}"),
+        ("duration", f"{figures['sim_time_s']:.1f} s, until {figures['ended'].replace('_', ' ')}"),
         ("peak speed", f"{figures['peak_speed_m_s']:.2f} m/s"),
         ("peak pressure", f"{figures['peak_pressure_kpa']:.2f} kPa"),
         ("peak thickness", f"{figures['peak_thickness_m']:.2f} m"),

@@ -18,6 +18,7 @@ from snowshed.io.raster.raster import Raster
 from snowshed.methods.registry import resolution_of
 from snowshed.plot.surface_nets import surface_of
 from snowshed.scene.builders.slope import BOARD_CELLS
+from snowshed.scene.resolved import ResolvedScene
 
 ROUND = 24  # sides of what is round
 SAMPLES = 48  # of a solid that is sampled, along its longest side
@@ -251,7 +252,7 @@ def _sampled(
     shape: Mapping[str, Any], scene: Mapping[str, Any], base_dir: Path, near: Box
 ) -> Solid:
     """Return the surface of any shape where the snow may come, from samples of its distance."""
-    alone = _core.Simulation(_only(shape, scene), str(base_dir))
+    alone = _core.Simulation(_only(shape, scene).core, str(base_dir))
     spacing = float(near.size.max()) / SAMPLES
     flat = scene["dimension"] == 2
     axes = [
@@ -270,15 +271,13 @@ def _sampled(
     return Solid(shape["type"], "solid", corners, triangles)
 
 
-def _only(shape: Mapping[str, Any], scene: Mapping[str, Any]) -> str:
-    """Return the JSON of a scene with a shape and hardly any snow."""
-    import json
-
+def _only(shape: Mapping[str, Any], scene: Mapping[str, Any]) -> ResolvedScene:
+    """Return a scene with a shape and hardly any snow."""
     dimension = scene["dimension"]
     drop = {"type": "sphere", "center": [0.0] * dimension, "radius": 0.05}
     bare = {"snowshed": scene["snowshed"], "dimension": dimension, "numerics": {"dx": 0.05}}
     bare |= {"obstacles": [{"shape": dict(shape)}], "bodies": [{"shape": drop}]}
-    return str(_core.parse_scene(json.dumps(bare)))
+    return ResolvedScene.from_data(bare)
 
 
 def _box(name: str, kind: str, centre: Floats, edges: Any) -> Solid:

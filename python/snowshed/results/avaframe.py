@@ -25,7 +25,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import chain, product
 from pathlib import Path
-from typing import Any
 
 import snowshed._core as _core
 from snowshed.base.arrays import Floats
@@ -90,9 +89,9 @@ def write_avaframe_outputs(folder: Path, simulation: AvaFrameSimulation, results
     """
     ready = simulation.scene.resolve()
     name = _name(simulation, ready)
-    summary = SlideSummary(**json.loads((results / "slide.json").read_text(encoding="utf-8")))
-    time_step = float(_data(ready)["numerics"]["time_step"])
-    last = round(summary.duration_s / time_step)
+    summary = SlideSummary.read(results)
+    time_step = float(ready.data["numerics"]["time_step"])
+    last = round(summary.sim_time_s / time_step)
     ending = ".tif" if simulation.terrain.suffix.lower() in GEOTIFF else ".asc"
     peaks = [folder / "Outputs" / module / "peakFiles" for module in MODULES]
     for each in peaks:
@@ -129,7 +128,7 @@ def _earlier_maps(
 
     They are made as they are asked for: a terrain's maps at thousands of times fit into no memory.
     """
-    time_step = float(_data(ready)["numerics"]["time_step"])
+    time_step = float(ready.data["numerics"]["time_step"])
     steps = {_step_at(time, time_step): time for time in simulation.project.saved_times}
     crs = _crs(ready)
     for step, maps in maps_at(ready, [step for step in steps if step <= last]):
@@ -141,7 +140,7 @@ def maps_at(ready: ResolvedScene, steps: Sequence[int]) -> Iterator[tuple[int, S
     """Return the maps of a slide after some numbers of steps, one after another."""
     if not steps:
         return
-    simulation = _core.Simulation(ready.json, ready.base_dir)
+    simulation = _core.Simulation(ready.core, ready.base_dir)
     simulation.begin_event()
     done = 0
     for step in sorted(steps):
@@ -153,7 +152,7 @@ def maps_at(ready: ResolvedScene, steps: Sequence[int]) -> Iterator[tuple[int, S
 
 
 def _name(simulation: AvaFrameSimulation, ready: ResolvedScene) -> str:
-    content = {**_data(ready), "title": ""}
+    content = {**ready.copied_data(), "title": ""}
     content["terrain"]["file"] = ""
     text = json.dumps(content, sort_keys=True) + simulation.release
     identity = hashlib.shake_256(text.encode()).hexdigest(5)
@@ -166,13 +165,8 @@ def _step_at(time: float, time_step: float) -> int:
     return math.ceil((time - 1e-8) / time_step)
 
 
-def _data(ready: ResolvedScene) -> dict[str, Any]:
-    found: dict[str, Any] = json.loads(ready.json)
-    return found
-
-
 def _crs(ready: ResolvedScene) -> str:
-    return str(_data(ready)["terrain"].get("crs", ""))
+    return str(ready.data["terrain"].get("crs", ""))
 
 
 def _fields(ready: ResolvedScene, maps: SlideMaps) -> dict[str, Floats]:
@@ -188,7 +182,7 @@ def _fields(ready: ResolvedScene, maps: SlideMaps) -> dict[str, Floats]:
 
 def _pressure(ready: ResolvedScene, speed: Floats) -> Floats:
     """Return the dynamic pressure, Pa: AvaFrame has its peak in kPa, but not this."""
-    pressure: Floats = float(_data(ready)["numerics"]["density"]) * speed**2
+    pressure: Floats = float(ready.data["numerics"]["density"]) * speed**2
     return pressure
 
 
@@ -196,7 +190,7 @@ def _configuration(
     simulation: AvaFrameSimulation, ready: ResolvedScene
 ) -> dict[str, dict[str, str]]:
     """Return the settings by section and key, as AvaFrame writes them."""
-    data = _data(ready)
+    data = ready.data
     numerics, terrain = data["numerics"], data["terrain"]
     project = simulation.project
     voellmy = numerics["friction_law"] == "voellmy"
@@ -258,7 +252,7 @@ def _write_configuration(
     row = {"": name.split("_com5", maxsplit=1)[0].rsplit("_", 1)[1]}
     for keys in sections.values():
         row.update(keys)
-    row.update({"simName": name, "nPart": str(summary.particles), "nIter": str(steps)})
+    row.update({"simName": name, "nPart": str(summary.final_particles), "nIter": str(steps)})
     row.update(dict.fromkeys(TIMINGS, ""))
     for table in ("allConfigurations.csv", "latestSims.csv"):
         _add_row(folder / table, row)
@@ -288,7 +282,7 @@ def _mass_text(summary: SlideSummary) -> str:
     on_terrain = summary.released_kg + summary.entrained_kg - summary.left_terrain_kg
     for time, now, entrained, released in (
         (0.0, summary.released_kg, 0.0, summary.released_kg),
-        (summary.duration_s, on_terrain, summary.entrained_kg, 0.0),
+        (summary.sim_time_s, on_terrain, summary.entrained_kg, 0.0),
     ):
         lines.append(
             f"{time:.2f},    {now:.6f},    {entrained:.6f},   {0.0:.6f},    {0.0:.6f},    "

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from snowshed._core import InputError
 from snowshed.results.folder import read_events
@@ -86,5 +86,5 @@ def _dimension(folder: PathLike) -> int:
     scene = Path(folder) / "scene.json"
     if not scene.is_file():
         raise InputError(f"{folder}: no results; it holds no scene.json")
-    data: dict[str, Any] = ResolvedScene.load(scene).data
+    data = ResolvedScene.load(scene).data
     return int(data["dimension"])

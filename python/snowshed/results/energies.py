@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Union
 
 import snowshed._core as _core
 from snowshed.io.csv_table import write_csv
@@ -20,8 +21,13 @@ def write_energy_history(simulation: _core.Simulation, folder: PathLike) -> None
     write_csv(table, Path(folder) / HISTORY, float_format="%.9g")
 
 
-def draw_energies(folder: PathLike) -> Path:
+def draw_energies(folder: Union[PathLike, Results]) -> Path:
     """Draw the energies of a results folder over time as its energy.png, and return the path.
+
+    Parameters
+    ----------
+    folder
+        The folder, or what reads it.
 
     Raises
     ------
@@ -42,7 +48,7 @@ def draw_energies(folder: PathLike) -> Path:
     from snowshed.plot.energy_figure import energy_figure
     from snowshed.plot.figure_style import save
 
-    results = Results(folder)
-    picture = Path(folder) / PICTURE
+    results = folder if isinstance(folder, Results) else Results(folder)
+    picture = results.folder / PICTURE
     save(energy_figure(results.energy_history, results.scene.data), picture)
     return picture

@@ -142,7 +142,7 @@ def read_event_particles(folder: PathLike) -> Iterator[tuple[int, EventParticles
     """
     results = RunFolder(folder)
     scene = ResolvedScene.load(results.scene)
-    simulation = _core.Simulation(scene.json, scene.base_dir)
+    simulation = _core.Simulation(scene.core, scene.base_dir)
     for facts in results.read_run().get("finished_events", ()):
         event, laid = facts.get("event"), facts.get("laid_height_m")
         if event is None or laid is None:
@@ -159,6 +159,22 @@ def read_event_particles(folder: PathLike) -> Iterator[tuple[int, EventParticles
                 simulation.dimension,
                 simulation.resolution,
                 simulation.ground_tilt_deg,
-                surroundings(simulation, positions),
+                surroundings(simulation, scene.data, positions),
             ),
         )
+
+
+def last_stack(folder: PathLike) -> StackMeasure:
+    """Return the measure of the stack after the last event of a results folder.
+
+    It is computed from the stored particles, in single precision.
+
+    Raises
+    ------
+    InputError
+        If no event has ended, or the folder is damaged.
+    """
+    events = list(read_event_particles(folder))
+    if not events:
+        raise InputError(f"{folder}: no event has ended; there is no stack to measure")
+    return events[-1][1].measure()

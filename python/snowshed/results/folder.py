@@ -99,6 +99,7 @@ EVENT_COLUMNS = (
 )
 #: Checksums of tables, by name: of the rows through an event, by its number.
 Checksums = Mapping[str, Mapping[str, str]]
+ENERGY = "energy.csv"
 #: Columns that hold words.
 WORDS = ("ended", "trimming")
 
@@ -151,7 +152,7 @@ class RunFolder:
         self.outlines = Table(self.folder / "outline.csv", ("event", "x", "z"))
         self.conversions = Table(self.folder / "conversions.csv", CONVERSION_COLUMNS)
         self.ageings = Table(self.folder / "ageing.csv", AGEING_COLUMNS)
-        self.energies = Table(self.folder / "energy.csv")
+        self.energies = Table(self.folder / ENERGY)
 
     def write_ageing(self, ageing: Mapping[str, Any]) -> None:
         """Write down what time does to the stack between the events."""

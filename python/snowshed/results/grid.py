@@ -13,7 +13,7 @@ from snowshed.base.arrays import Floats
 from snowshed.base.extras import require
 from snowshed.io.vtk.vti import write_image
 from snowshed.io.vtk.vtp import read_particles
-from snowshed.methods.registry import DEFAULT, NAME_KEY
+from snowshed.methods.registry import method_of
 from snowshed.results.particle_grid import GridFields, particles_to_grid
 from snowshed.scene.scene import PathLike
 
@@ -48,9 +48,9 @@ def scene_grid(
     InputError
         If the scene's method has no grid, there are no particles, or memory does not suffice.
     """
-    method = scene.get(NAME_KEY) or DEFAULT
-    if method != "mpm":
-        raise InputError(f'/method: "{method}"; only the material point method has a grid')
+    method = method_of(scene)
+    if not method.has_grid:
+        raise InputError(f'/method: "{method.name}" has no grid')
     settings = scene["numerics"]
     return particles_to_grid(
         positions, velocities, masses, dx=settings["dx"], dimension=scene["dimension"],

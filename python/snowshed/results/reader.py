@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Optional
+from typing import TYPE_CHECKING, Any, Optional
 
 import numpy as np
 
@@ -20,23 +20,28 @@ from snowshed.io.json_file import read_object
 from snowshed.io.run_files import check_run_file, read_record
 from snowshed.io.vtk.pvd import read_series
 from snowshed.io.vtk.vtp import read_particles
+from snowshed.methods.registry import method_of
 from snowshed.results.film import run_film
 from snowshed.results.film_dataset import film_dataset
-from snowshed.results.folder import read_events
+from snowshed.results.folder import ENERGY, read_events
 from snowshed.results.grid import grid_dataset, stored_grid
 from snowshed.results.particle_dataset import particle_dataset
 from snowshed.scene.scene import PathLike, ResolvedScene
+from snowshed.snow.stack.measure import StackMeasure
 
 if TYPE_CHECKING:
     import pandas as pd
     import xarray
 
-
 HISTORY = "energy_history.csv"
 
 
 class Results:
-    """The results folder of a run, as ``snowshed run`` and `run_events` write it.
+    """The results folder of a run, as `snowshed.run` and ``snowshed run`` write it.
+
+    All methods have particles, a film and, if asked for, energies. What a method has besides is
+    read by the attributes `events` and `stack`, or `summary`, `maps`, `curve` and `forces`; those
+    that the method of the scene does not have raise InputError, which names those that it has.
 
     Files are read when they are asked for. Every table has a dict of units by column in
     ``attrs["units"]``, every variable of a Dataset its ``units`` and ``long_name`` in `attrs`. The
@@ -69,6 +74,13 @@ class Results:
         self.folder = Path(folder)
         if not (self.folder / "scene.json").is_file():
             raise InputError(f"{folder}: no results; it holds no scene.json")
+
+    @classmethod
+    def of_run(cls, folder: PathLike, scene: ResolvedScene) -> Results:
+        """Return the results of a run that this process has made, whose scene it knows."""
+        results = cls(folder)
+        vars(results)["scene"] = scene
+        return results
 
     @cached_property
     def scene(self) -> ResolvedScene:
@@ -106,7 +118,7 @@ class Results:
 
         Needs xarray (extra ``study``).
         """
-        table = self._numbers("energy.csv", ("event",), "a run with output.energy = true")
+        table = self._numbers(ENERGY, ("event",), "a run with output.energy = true")
         library = require("xarray", "study", "a Dataset of energies")
         dataset: xarray.Dataset = library.Dataset.from_dataframe(table.set_index("event"))
         for name in dataset.data_vars:
@@ -186,6 +198,42 @@ class Results:
             yield particle_dataset(values, int(values["event"].max(initial=0)), time)
 
     @property
+    def stack(self) -> StackMeasure:
+        """The measure of the stack after the last event, from the stored particles."""
+        stack: StackMeasure = self.result("stack")
+        return stack
+
+    @property
+    def summary(self) -> Any:
+        """The figures of a slide or a loading test: its method's `Summary`."""
+        return self.result("summary")
+
+    @property
+    def maps(self) -> xarray.Dataset:
+        """The maps of a slide at the nodes of its grid: largest values over time, and at the end.
+
+        Needs xarray (extra ``study``).
+        """
+        maps: xarray.Dataset = self.result("maps")
+        return maps
+
+    @property
+    def curve(self) -> pd.DataFrame:
+        """The curve of a loading test: strains, stresses, bonds and contacts over time."""
+        curve: pd.DataFrame = self.result("curve")
+        return curve
+
+    @property
+    def forces(self) -> pd.DataFrame:
+        """The contacts between grains at the end of a loading test, with their forces, N."""
+        forces: pd.DataFrame = self.result("forces")
+        return forces
+
+    def result(self, name: str) -> Any:
+        """Return what the scene's method leaves under a name, such as "maps"."""
+        return method_of(self.scene.data).read(name, self.folder)
+
+    @property
     def film(self) -> Film:
         """The recorded film of the run, read frame by frame (film.bin)."""
         path = self.folder / FILM
@@ -194,7 +242,7 @@ class Results:
         return run_film(path, read_record(self.folder))
 
     def film_dataset(self, every: int = 1) -> xarray.Dataset:
-        """Return the film, or each so-manieth frame of it, as a Dataset.
+        """Return the film, or every `every`-th frame of it, as a Dataset.
 
         Dimensions ``frame``, ``particle`` and ``component``; ``time`` counts through all events.
         A position is exact to half a millimetre, and finer where the scene is small.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Optional
@@ -70,7 +70,9 @@ def export_folder(
     return written
 
 
-def _write(file: Path, output: Path, scene: dict[str, Any], width: Optional[float]) -> WrittenVdb:
+def _write(
+    file: Path, output: Path, scene: Mapping[str, Any], width: Optional[float]
+) -> WrittenVdb:
     particles = read_particles(file)
     if "mass" not in particles:
         raise InputError(f"{file}: its particles have no mass; run the scene again")

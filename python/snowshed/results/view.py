@@ -11,6 +11,7 @@ import numpy as np
 from snowshed._core import InputError
 from snowshed.io.film import FILM, Film
 from snowshed.io.run_files import read_record
+from snowshed.methods.registry import method_of
 from snowshed.plot.caption import scene_caption
 from snowshed.plot.film_page import MeasureLine, ViewContent, write_view_page
 from snowshed.plot.film_summary import summarise_film
@@ -27,12 +28,6 @@ if TYPE_CHECKING:
     import pandas as pd
 
 PAGE = "view.html"
-TITLES = {
-    "mpm": "Snow in motion",
-    "slide": "Snow slide",
-    "grains": "Grains of snow under load",
-    "mps": "Flowing snow",
-}
 
 
 def write_view(results: PathLike, page: Optional[PathLike] = None) -> Path:
@@ -83,14 +78,14 @@ def shown_results(folder: PathLike) -> Results:
 def view_content(results: Results, film: Film) -> ViewContent:
     """Return what a page shows besides the film of a results folder."""
     scene = results.scene
-    data: dict[str, Any] = scene.data
+    data = scene.data
     bounds = summarise_film(film).bounds
     terrain = slide_terrain(scene) if data.get("terrain") else None
     solids, focus = scene_solids(data, Path(scene.base_dir), bounds, terrain)
     table = _events(results)
     lines = [] if table is None else _measures(data, table, results.folder, float(bounds.low[1]))
     return ViewContent(
-        title=data.get("title") or TITLES.get(data.get("method", "mpm"), "Snow in motion"),
+        title=data.get("title") or method_of(data).title,
         sentence=_sentence(data, table, film),
         facts=_facts(scene, results.folder),
         solids=solids,
@@ -126,7 +121,7 @@ def _sentence(data: Mapping[str, Any], table: Optional[pd.DataFrame], film: Film
 
 
 def _facts(scene: ResolvedScene, folder: Path) -> list[tuple[str, str]]:
-    data: dict[str, Any] = scene.data
+    data = scene.data
     facts = []
     if not data.get("terrain") and not data.get("sample"):
         names = ("scene", "snow", "method")

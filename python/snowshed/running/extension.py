@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import shutil
 from collections.abc import Mapping
@@ -14,9 +13,10 @@ from snowshed._core import InputError
 from snowshed.base.progress import Reporter
 from snowshed.io.atomic import replacing_folder
 from snowshed.io.json_file import read_object
+from snowshed.methods.registry import method_of
 from snowshed.results.folder import RunFolder, check_empty
 from snowshed.running.ageing import Ageing
-from snowshed.running.events import run_events
+from snowshed.running.run import run_events
 from snowshed.scene.components import Snow
 from snowshed.scene.scene import PathLike, ResolvedScene
 
@@ -135,9 +135,10 @@ def extended_scene(
     >>> [(layer["event"], layer["thickness"]) for layer in layers]
     [(1, 0.02), (2, 0.02), (3, 0.03)]
     """
-    data: dict[str, Any] = scene.data
-    if data.get("terrain") or data.get("sample"):
-        raise InputError(f'/method: "{data["method"]}" has one event; no other can follow')
+    data = scene.copied_data()
+    method = method_of(data)
+    if "stack" not in method.results:
+        raise InputError(f'/method: "{method.name}" has one event; no other can follow')
     if isinstance(events, bool) or not isinstance(events, int) or events < 1:
         raise InputError(f"events: {events!r}; a whole number from 1 is needed")
     done = data["events"]["count"]
@@ -153,7 +154,7 @@ def extended_scene(
     if data.get("slab"):
         _change_slab(data["slab"], done, done + events, changes)
     data["events"]["count"] = done + events
-    return ResolvedScene.parse(json.dumps(data), scene.base_dir)
+    return ResolvedScene.from_data(data, scene.base_dir)
 
 
 def _change_slab(slab: dict[str, Any], done: int, last: int, changes: Mapping[str, Any]) -> None:
@@ -187,7 +188,7 @@ def _change_slab(slab: dict[str, Any], done: int, last: int, changes: Mapping[st
 def _prepare(earlier: RunFolder, scene: ResolvedScene, out_dir: Path) -> None:
     """Make the new folder, whole or not at all, as if its run had come as far as the earlier."""
     simulation = _core.Simulation.load_into(
-        scene.json, scene.base_dir, os.fspath(earlier.checkpoint)
+        scene.core, scene.base_dir, os.fspath(earlier.checkpoint)
     )
     with replacing_folder(out_dir) as beside:
         for name in CONTINUED:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Optional
 
 import snowshed._core as _core
-from snowshed.methods.registry import DEFAULT, NAME_KEY, resolution_of
+from snowshed.methods.registry import method_of, resolution_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -16,8 +16,6 @@ if TYPE_CHECKING:
 FEW = 2.0  # cells; a thinner slab is coarse
 ALL_STAYS = 0.98  # of the snow
 MOST_SEEDED = 100_000  # particles; these take two seconds
-#: How the methods that make stacks call the length that they resolve: setting, and its word.
-RESOLUTIONS = {"mpm": ("dx", "cells"), "mps": ("spacing", "spacings")}
 #: What snow can land on besides a panel.
 FLOORS = ("ground", "obstacles", "domain")
 
@@ -37,8 +35,8 @@ def notes_before(scene: Mapping[str, Any]) -> list[str]:
     >>> notes_before(coarse.resolve().data)
     ['the slab is 20 mm thick, less than two cells of 100 mm: its stack is coarse; try dx = 0.01 m']
     """
-    method = scene.get(NAME_KEY) or DEFAULT
-    if method not in RESOLUTIONS:
+    method = method_of(scene)
+    if "stack" not in method.results:
         return []
     found = []
     if not any(scene.get(part) for part in FLOORS):
@@ -46,13 +44,13 @@ def notes_before(scene: Mapping[str, Any]) -> list[str]:
             "the scene has no ground, no domain and no obstacles: snow falls for as long as "
             "events.max_time; add ground"
         )
-    setting, word = RESOLUTIONS[method]
     size = resolution_of(scene)
     thickness = _slab_thickness(scene)
     if thickness is not None and thickness < FEW * size:
         found.append(
-            f"the slab is {1000 * thickness:.3g} mm thick, less than two {word} of "
-            f"{1000 * size:.3g} mm: its stack is coarse; try {setting} = {thickness / FEW:.2g} m"
+            f"the slab is {1000 * thickness:.3g} mm thick, less than two "
+            f"{method.settings.ELEMENTS} of {1000 * size:.3g} mm: its stack is coarse; try "
+            f"{method.settings.RESOLUTION} = {thickness / FEW:.2g} m"
         )
     return found
 
@@ -77,7 +75,7 @@ def notes_of_beginning(scene: ResolvedScene) -> list[str]:
     []
     """
     found = notes_before(scene.data)
-    simulation = _core.Simulation(scene.json, scene.base_dir)
+    simulation = _core.Simulation(scene.core, scene.base_dir)
     if simulation.expected_particles > MOST_SEEDED:
         found.append(
             f"with more than {MOST_SEEDED} particles, whether snow lies in obstacles or in other "

@@ -6,7 +6,6 @@ run.json, so that every caller sees the same.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -19,7 +18,6 @@ from snowshed.io.run_files import file_mark
 from snowshed.running.scene_notes import notes_before
 from snowshed.scene.scene import PathLike, ResolvedScene
 
-USER = 4  # the caller of a run, seen from where its notes are said
 REPORT_INTERVAL = 0.5  # s of wall time between progress reports
 
 
@@ -32,7 +30,7 @@ def open_sequence(scene: ResolvedScene, folder: PathLike, *, resume: bool) -> _c
         If the scene is wrong, the folder is not empty, or there is nothing to resume.
     """
     open_folder = _core.EventSequence.resume if resume else _core.EventSequence.create
-    return open_folder(scene.json, scene.base_dir, utf8_path(folder))
+    return open_folder(scene.core, scene.base_dir, utf8_path(folder))
 
 
 def seal_files(sequence: _core.EventSequence, folder: PathLike, *names: str) -> None:
@@ -41,10 +39,10 @@ def seal_files(sequence: _core.EventSequence, folder: PathLike, *names: str) -> 
     sequence.files = {**sequence.files, **marks}
 
 
-def say_note(sequence: _core.EventSequence, note: str, stacklevel: int = USER) -> None:
+def say_note(sequence: _core.EventSequence, note: str) -> None:
     """Say a note on a run and keep it for run.json, which has it once."""
     sequence.add_note(note)
-    tell(note, stacklevel)
+    tell(note)
 
 
 @contextmanager
@@ -53,20 +51,13 @@ def telling(core: _core.Simulation) -> Iterator[None]:
     said = len(core.notes)
     yield
     for note in core.notes[said:]:
-        tell(note, USER)
-
-
-class NotePasser:
-    """The part of an observer that passes on what the core notes, which run.json has already."""
-
-    def noted(self, note: str) -> None:
-        """Say a note."""
-        tell(note, USER)
+        tell(note)
 
 
 def run_sequence(
     sequence: _core.EventSequence,
     observer: _core.EventObserver,
+    scene: ResolvedScene,
     folder: PathLike,
 ) -> None:
     """Run the events that are left; a failure is written down in the folder.
@@ -81,7 +72,7 @@ def run_sequence(
     Interrupted
         If the observer asked for a stop; a checkpoint holds the state to resume from.
     """
-    for note in notes_before(json.loads(sequence.simulation.scene)):
+    for note in notes_before(scene.data):
         say_note(sequence, note)
     try:
         finished = sequence.run(observer, REPORT_INTERVAL)

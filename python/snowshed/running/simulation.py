@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import json
 import os
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Literal, Union, cast
+from typing import TYPE_CHECKING, Literal, Union, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,6 +18,7 @@ from snowshed.results.grid import grid_dataset, scene_grid
 from snowshed.results.particle_dataset import DATASET, particle_dataset
 from snowshed.running.sequence import telling
 from snowshed.scene.components import Snow
+from snowshed.scene.resolved import snows_of
 from snowshed.scene.scene import PathLike, ResolvedScene, SceneLike, resolve_scene
 from snowshed.snow.stack.measure import StackMeasure
 from snowshed.snow.stack.particles import measure_particles
@@ -71,8 +71,8 @@ class Simulation:
     """
 
     def __init__(self, scene: SceneLike) -> None:
-        ready = resolve_scene(scene)
-        self._core = _core.Simulation(ready.json, ready.base_dir)
+        self._scene = resolve_scene(scene)
+        self._core = _core.Simulation(self._scene.core, self._scene.base_dir)
 
     @classmethod
     def load(cls, path: PathLike) -> Simulation:
@@ -87,6 +87,7 @@ class Simulation:
         """
         loaded = cls.__new__(cls)
         loaded._core = _core.Simulation.load(os.fspath(path))
+        loaded._scene = ResolvedScene(loaded._core.scene)
         return loaded
 
     def save(self, path: PathLike) -> None:
@@ -178,7 +179,7 @@ class Simulation:
         return "reached"
 
     def _run_until(self, condition: Callable[[Simulation], bool], every: int) -> Ended:
-        longest = float(self._data["events"]["max_time"])
+        longest = float(self.scene.data["events"]["max_time"])
         while not condition(self):
             if self.time >= longest:
                 return "time_limit"
@@ -261,7 +262,7 @@ class Simulation:
 
     def _seeded_mass(self, snow: Snow) -> float:
         voxel = self._core.resolution**self.dimension
-        per_voxel = self._data.get("seeding", {}).get("particles_per_voxel", 1.0)
+        per_voxel = self.scene.data.get("seeding", {}).get("particles_per_voxel", 1.0)
         return float(cast(float, snow.density) * voxel / per_voxel)
 
     # --- reading ---------------------------------------------------------------------------
@@ -360,7 +361,8 @@ class Simulation:
             installed.
         """
         affine = cast(Floats, self._read("affine", "id")) if "affine" in self.fields else None
-        fields = scene_grid(self._data, self.positions(), self.velocities(), self.masses(), affine)
+        arrays = self.positions(), self.velocities(), self.masses(), affine
+        fields = scene_grid(self.scene.data, *arrays)
         return grid_dataset(fields, self.event, self.time)
 
     def measure(self) -> StackMeasure:
@@ -368,9 +370,9 @@ class Simulation:
 
         See `snowshed.snow.stack.particles` for what the ground is, and `measure_stack`.
         """
-        return measure_particles(
-            self._core, self.positions(), self.masses(), self.densities(), self.on_panel()
-        )
+        core = self._core
+        arrays = core.positions(), core.masses(), core.densities(), core.on_panel()
+        return measure_particles(core, self.scene.data, *arrays)
 
     def energy(self) -> dict[str, float]:
         """Return the energy balance, J (per metre of width in 2D): what is stored, lost and added.
@@ -380,7 +382,7 @@ class Simulation:
         InputError
             If the scene does not keep it (``output.energy``).
         """
-        if not self._data["output"]["energy"]:
+        if not self.scene.data["output"]["energy"]:
             raise InputError("/output/energy: false; the energy balance is kept only where true")
         return {name[: -len("_j")]: value for name, value in self._core.energy().items()}
 
@@ -389,17 +391,12 @@ class Simulation:
     @property
     def scene(self) -> ResolvedScene:
         """The complete scene."""
-        return ResolvedScene(self._core.scene)
-
-    @property
-    def _data(self) -> dict[str, Any]:
-        data: dict[str, Any] = self.scene.data
-        return data
+        return self._scene
 
     @property
     def snows(self) -> list[Snow]:
         """The scene's different snows, by `material_ids`."""
-        return [Snow.from_data(json.loads(snow)) for snow in self._core.snows]
+        return [Snow.from_data(snow) for snow in snows_of(self._core)]
 
     @property
     def event(self) -> int:

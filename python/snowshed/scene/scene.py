@@ -22,12 +22,8 @@ from snowshed.base.paths import PathLike
 from snowshed.base.record import DEEPEST, Record, check_instead, check_once
 from snowshed.io.input_file import read_input
 from snowshed.io.json_text import loads
-from snowshed.methods.grains.settings import GrainsSettings
-from snowshed.methods.mpm.settings import MpmSettings
-from snowshed.methods.mps.settings import MpsSettings
-from snowshed.methods.registry import DEFAULT, NAME_KEY, SETTINGS_KEY, MethodName, settings_class
+from snowshed.methods.registry import DEFAULT, NAME_KEY, SETTINGS_KEY, method_named
 from snowshed.methods.settings import MethodSettings
-from snowshed.methods.slide.settings import SlideSettings
 from snowshed.scene.components import (
     Body,
     Domain,
@@ -151,8 +147,8 @@ class Scene(Record):
     bodies: Optional[List[Body]] = None
     domain: Optional[Domain] = None
     seeding: Seeding = NOT_GIVEN
-    method: Optional[MethodName] = None
-    numerics: Union[MpmSettings, SlideSettings, GrainsSettings, MpsSettings] = NOT_GIVEN
+    method: Optional[str] = None
+    numerics: MethodSettings = NOT_GIVEN
     events: Events = NOT_GIVEN
     output: Output = NOT_GIVEN
 
@@ -218,7 +214,7 @@ class Scene(Record):
             If a scene has no such key, or its field does not take the value.
         """
         if key == SETTINGS_KEY and isinstance(value, Mapping):
-            value = settings_class(self.method).from_data(value, f"{path}/{key}")
+            value = method_named(self.method).settings.from_data(value, f"{path}/{key}")
         super().assign(key, value, path)
 
     def _keep(self, name: str, value: object, where: str) -> None:
@@ -233,11 +229,11 @@ class Scene(Record):
             if isinstance(held, MethodSettings) and held.to_data():
                 self._require_settings(held, value, where)
             else:
-                object.__setattr__(self, SETTINGS_KEY, settings_class(value)())
+                object.__setattr__(self, SETTINGS_KEY, method_named(value).settings())
         super()._keep(name, value, where)
 
     def _require_settings(self, settings: object, method: Optional[str], where: str) -> None:
-        kind = settings_class(method)
+        kind = method_named(method).settings
         if isinstance(settings, MethodSettings) and not isinstance(settings, kind):
             raise InputError(
                 f"{where}: the method {method or DEFAULT!r} takes {kind.__name__}, and these are "
@@ -374,7 +370,7 @@ class Scene(Record):
     def record_type(self, key: str) -> Optional[type[Record]]:
         """Return the class of records under a key; that of the settings depends on the method."""
         if key == SETTINGS_KEY:
-            return settings_class(self.method)
+            return method_named(self.method).settings
         return super().record_type(key)
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from typing import Any
 
@@ -23,8 +22,8 @@ def slide_terrain(scene: SceneLike) -> Raster:
         If the terrain cannot be read.
     """
     ready = resolve_scene(scene)
-    found = _core.Simulation(ready.json, ready.base_dir).slide_maps()
-    crs = str(json.loads(ready.json)["terrain"]["crs"])
+    found = _core.Simulation(ready.core, ready.base_dir).slide_maps()
+    crs = str(ready.data["terrain"]["crs"])
     return Raster(found["terrain"], found["west"], found["south"], found["cell"], crs=crs)
 
 

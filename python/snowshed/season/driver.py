@@ -14,7 +14,7 @@ from snowshed.io.csv_table import Table, read_csv, write_csv
 from snowshed.methods.registry import resolution_of
 from snowshed.results.folder import check_empty
 from snowshed.results.season_folder import SeasonFolder
-from snowshed.running.events import run_events
+from snowshed.running.run import run_events
 from snowshed.scene.scene import PathLike, ResolvedScene, SceneLike, resolve_scene
 from snowshed.season.accumulation import Day, accumulate, stack_ageing
 from snowshed.season.clearance import Contact, first_contact, first_reached, panel_ends
@@ -197,7 +197,7 @@ def plan_season(
     record = read_record(season, snow_from, temperature)
     winters = record.winters(coverage)
     panel = resolve_scene(scene)
-    data: dict[str, Any] = panel.data
+    data = panel.data
     if "panel" not in data:
         raise InputError("/panel: missing; a season needs a panel for the snow to gather on")
     days = accumulate(record.rows, settings, data["panel"]["tilt"], data["gravity"])

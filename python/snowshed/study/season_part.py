@@ -92,7 +92,7 @@ class SeasonPart:
         InputError
             If the scene has no panel, or no snow is released.
         """
-        data: dict[str, Any] = scene.data
+        data = scene.data
         if "panel" not in data:
             raise InputError("/panel: missing; a season needs a panel for the snow to gather on")
         days = accumulate(self.rows, self.settings, data["panel"]["tilt"], data["gravity"])

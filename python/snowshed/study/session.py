@@ -175,9 +175,9 @@ def _compute(
 def _tell_of_runs(notes: Counter[str]) -> None:
     """Say the notes on runs, those on most runs first."""
     for note, runs in notes.most_common(MOST_NOTES):
-        tell(f"{runs} {'run' if runs == 1 else 'runs'}: {note}", stacklevel=3)
+        tell(f"{runs} {'run' if runs == 1 else 'runs'}: {note}")
     if len(notes) > MOST_NOTES:
-        tell(f"{len(notes) - MOST_NOTES} further notes on runs", stacklevel=3)
+        tell(f"{len(notes) - MOST_NOTES} further notes on runs")
 
 
 def _check_version(store: Store, pending: Sequence[StoredRun]) -> None:

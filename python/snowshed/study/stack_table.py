@@ -5,7 +5,6 @@ Every analysis reads its stacks here. The columns are those of `snowshed.study.r
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -20,6 +19,7 @@ from snowshed.base.messages import shortened
 from snowshed.io.csv_table import read_csv
 from snowshed.results.folder import read_events
 from snowshed.scene.accuracy_settings import ACCURACY, FORMER_NAMES
+from snowshed.scene.resolved import scene_data
 from snowshed.scene.scene import PathLike, ResolvedScene
 from snowshed.snow.stack.quantities import Measure, measure_named
 from snowshed.snow.stack.trimming import TRIMMINGS
@@ -111,7 +111,7 @@ class StackTable:
             name = store.named(study)
             axes = store.axes(name)
             runs = store.runs(name)
-        scenes = {run.hash: json.loads(run.scene) for run in runs}
+        scenes = {run.hash: scene_data(run.scene) for run in runs}
         pending = sum(run.status == "pending" for run in runs)
         return cls(read_table(folder, name), axes, _points(axes, scenes), pending, name)
 
@@ -155,7 +155,7 @@ class StackTable:
         from snowshed.study.table import scene_columns
 
         run = Run.of(ResolvedScene.load(folder / "scene.json"))
-        scene = json.loads(run.scene)
+        scene = scene_data(run.scene)
         axes = [f"panel.{name}" for name in scene.get("panel", {})]
         facts = {"hash": run.hash, **scene_columns(scene, axes)}
         return cls.of(read_events(folder).assign(**facts), folder.name)

@@ -42,7 +42,7 @@ def test_from_synthetic_snow_to_a_loading_test(tmp_path):
     assert grains("compress", tmp_path / "sample", "-o", tmp_path / "out", *words) == 0
     scene = json.loads((tmp_path / "out/scene.json").read_text())
     assert scene["title"].startswith("synthetic: Gaussian random field")
-    assert json.loads((tmp_path / "out/grains.json").read_text())["grains"] == labels.max()
+    assert json.loads((tmp_path / "out/grains.json").read_text())["final_particles"] == labels.max()
 
 
 def test_a_pack_knows_its_grains(tmp_path):

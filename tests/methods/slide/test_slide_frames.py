@@ -7,7 +7,7 @@ from snowshed import InputError
 from snowshed.io.film import Film
 from snowshed.methods.slide.frames import Frame, slide_frames
 from snowshed.methods.slide.maps import slide_maps
-from snowshed.running.slides import run_slide
+from snowshed.running.run import run
 from snowshed.scene import Scene
 from snowshed.scene.builders import example_slide
 from snowshed.scene.terrain_grid import slide_terrain
@@ -27,7 +27,7 @@ def test_a_frame_gives_back_what_it_saw():
 def slide(tmp_path_factory) -> tuple[Scene, Film]:
     folder = tmp_path_factory.mktemp("slide")
     scene = example_slide(folder).set("events.max_time", 3.0)
-    run_slide(scene, folder / "out", pictures=False)
+    run(scene, folder / "out", pictures=False)
     return scene, Film(folder / "out/film.bin")
 
 

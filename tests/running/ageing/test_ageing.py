@@ -43,7 +43,7 @@ def test_a_block_settles_as_a_column_of_thin_layers():
     for interval in WEEK:
         column.settle(SETTLING_LAWS["vionnet-2012"], *interval)
     mass, before = simulation.masses().sum(), simulation.positions()
-    row = Ageing({2: WEEK}, settling="vionnet-2012").apply(simulation, 2)
+    row = Ageing({2: WEEK}, settling="vionnet-2012").apply(simulation, 2, 9.81)
     inner = middle(simulation)
     drops = (before - simulation.positions())[inner, 2]
     layers = 1 / 200 - column.masses / column.densities
@@ -80,7 +80,7 @@ def test_broken_snow_regains_strength_with_a_power_of_time(name):
     for hours, expected in [(1.0, (1 / 24) ** exponent), (24.0, 1.0), (240.0, 1.0)]:
         simulation = block_of_snow(0.3)
         broken(simulation, 0.2)
-        row = Ageing({2: [Interval(3600 * hours, -5.0)]}, sintering=name).apply(simulation, 2)
+        row = Ageing({2: [Interval(3600 * hours, -5.0)]}, sintering=name).apply(simulation, 2, 9.81)
         assert strength(simulation) == pytest.approx(expected, rel=1e-4)
         assert (row["intact_before"], row["crest_sank_m"]) == (0.0, 0.0)
         assert row["intact"] == pytest.approx(expected, rel=1e-4)

@@ -163,7 +163,7 @@ def scene_of(
         }
     )
     strength = values.get("strength", 1.0)
-    data: dict[str, Any] = scene.resolve().data
+    data = scene.resolve().data
     snow = data["snow"]
     if "preconsolidation_pressure" in snow:
         scene.set("snow.preconsolidation_pressure", strength * snow["preconsolidation_pressure"])

@@ -178,7 +178,7 @@ def sensitivity_variants(
     voxel = base[0].voxel_size
     title = "synthetic snow" if any(one.source for one in samples) else ""
     scene = grains_scene(files[0], voxel, [stage], settings=settings, title=title)
-    full: Any = scene.resolve().data
+    full = scene.resolve().data
 
     variants = [Variant(BASE, BASE, files, voxel)]
     for varied, names, factors in SETTINGS:

@@ -40,6 +40,7 @@ from snowshed.plot.figure_style import save
 from snowshed.plot.hazard_figure import part_shown, probability_figure
 from snowshed.plot.hazard_page import HazardPage
 from snowshed.plot.html_page import Grid
+from snowshed.scene.resolved import scene_data
 from snowshed.scene.scene import PathLike
 from snowshed.scene.terrain_grid import release_outlines
 from snowshed.study.formats import export
@@ -79,7 +80,7 @@ def write_hazard(
         _write(place / "percentiles" / f"{QUANTITIES[quantity][1]}_p{percentile}.asc", maps, values)
     table = read_table(store, study)
     with Store.open(store) as opened:
-        scene = json.loads(opened.runs(study)[0].scene)
+        scene = scene_data(opened.runs(study)[0].scene)
         axes = opened.axes(study)
     facts = {
         **hazard_facts(maps),

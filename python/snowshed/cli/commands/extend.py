@@ -38,16 +38,15 @@ def extend(
     from snowshed.base.interrupt import Interrupted
     from snowshed.cli.progress import progress_bar
     from snowshed.cli.run_output import print_events
+    from snowshed.results.reader import Results
     from snowshed.running.extension import extend_run
     from snowshed.scene.components import Snow
 
     other = None if snow is None else Snow.named(snow)
     try:
         with progress_bar(quiet=quiet) as progress:
-            table = extend_run(
-                results, folder, events, snow=other, thickness=thickness, progress=progress
-            )
+            extend_run(results, folder, events, snow=other, thickness=thickness, progress=progress)
     except Interrupted as interrupted:
         raise Stopped(str(interrupted)) from None
     if not quiet:
-        print_events(table, folder)
+        print_events(Results(folder))

@@ -53,7 +53,7 @@ def print_facts() -> None:
     from snowshed.scene.scene import Scene
 
     scene = Scene.preset("lab-50").update({"dimension": 2, "numerics.dx": 0.02}).resolve()
-    plan = _core.plan(scene.json, scene.base_dir)
+    plan = _core.plan(scene.core, scene.base_dir)
     threads = f"{plan['threads']} threads at most"
     say(f"snowshed {_core.version}, {plan['kernels']} kernels, {threads}, {cpu_name()}")
 

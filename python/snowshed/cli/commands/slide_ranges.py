@@ -150,8 +150,7 @@ def run_project_ranges(
 
 
 def _study(scene: Scene, options: RangeOptions) -> Study:
-    data: dict[str, Any] = scene.resolve().data
-    terrain = data["terrain"]
+    terrain = scene.resolve().data["terrain"]
     columns: dict[str, Sequence[object]] = {}
     sample = {} if options.sample is None else options.sample.columns
     if THICKNESS in sample and terrain.get("thickness_file"):

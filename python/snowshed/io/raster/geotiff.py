@@ -176,7 +176,7 @@ def _checked_band(source: Any, path: Path, band: Optional[int]) -> int:
     if np.dtype(source.dtypes[chosen - 1]).kind not in "iuf":
         raise InputError(f"{path}: holds {source.dtypes[chosen - 1]} values, which are no heights")
     if len(bands) > 1:
-        tell(f"{path.name}: band {chosen} of {len(bands)} is read ({_named(source, [chosen])})", 4)
+        tell(f"{path.name}: band {chosen} of {len(bands)} is read ({_named(source, [chosen])})")
     return chosen
 
 
@@ -226,7 +226,7 @@ def _tell_of_sidecar(
     if changed:
         shown = [f"{name} {getattr(facts, name)}" for name in changed if name != "system"]
         shown += ["coordinate system"] if "system" in changed else []
-        tell(f"{path.name}.aux.xml, beside the raster, gives its {quoted(', '.join(shown))}", 4)
+        tell(f"{path.name}.aux.xml, beside the raster, gives its {quoted(', '.join(shown))}")
 
 
 def _missing(source: Any, band: int) -> Booleans:
@@ -263,10 +263,10 @@ def _in_metres(values: Any, facts: BandFacts, factor: float, path: Path) -> Floa
         heights *= scale
         heights += offset
         tell(f"{path.name}: its numbers were multiplied by {scale:.10g}"
-             + (f", and {offset:.10g} added" if offset else ""), 4)  # fmt: skip
+             + (f", and {offset:.10g} added" if offset else ""))  # fmt: skip
     if factor != 1.0:
         heights *= factor
-        tell(f"{path.name}: its values were turned into metres; one unit is {factor:.10g} m", 4)
+        tell(f"{path.name}: its values were turned into metres; one unit is {factor:.10g} m")
     return heights
 
 

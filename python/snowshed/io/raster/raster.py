@@ -134,14 +134,14 @@ def _read_ascii(path: Path) -> Raster:
     heights, west, south, cell, missing, commas = read_ascii_grid(str(path))
     refuse_other_facts(path, heights)
     if missing:
-        tell(f"{path.name}: {missing} values of -9999 are missing ones; the header says none", 3)
+        tell(f"{path.name}: {missing} values of -9999 are missing ones; the header says none")
     if commas:
-        tell(f"{path.name}: {commas} numbers have a decimal comma", 3)
+        tell(f"{path.name}: {commas} numbers have a decimal comma")
     raster = Raster(heights, west, south, cell, str(path), read_prj(path), plain=True)
     system, per_height = split_words(raster.crs, str(path))
     if per_height in (None, 1.0):
         return replace(raster, crs=system)
-    tell(f"{path.name}: its values were turned into metres; one unit is {per_height:.10g} m", 3)
+    tell(f"{path.name}: its values were turned into metres; one unit is {per_height:.10g} m")
     return replace(raster, crs=system, heights=heights * per_height, plain=False)
 
 

@@ -143,3 +143,4 @@ class MpsSettings(MethodSettings):
     threads: Optional[int] = None
 
     RESOLUTION: ClassVar[str] = "spacing"
+    ELEMENTS: ClassVar[str] = "spacings"

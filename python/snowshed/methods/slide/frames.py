@@ -72,12 +72,12 @@ def slide_frames(film: Film, ground: Raster, most: int = MOST_FRAMES) -> list[Fr
     Examples
     --------
     >>> from tempfile import TemporaryDirectory
-    >>> from snowshed.running.slides import run_slide
+    >>> import snowshed
     >>> from snowshed.scene.terrain_grid import slide_terrain
     >>> from snowshed.scene.builders import example_slide
     >>> with TemporaryDirectory() as folder:
     ...     scene = example_slide(folder).set("events.max_time", 0.5)
-    ...     _ = run_slide(scene, folder + "/out", pictures=False)
+    ...     _ = snowshed.run(scene, folder + "/out", pictures=False)
     ...     frames = slide_frames(Film(folder + "/out/film.bin"), slide_terrain(scene))
     >>> frames[0].time, round(float(np.median(frames[0].thickness)), 1)
     (0.0, 0.5)

@@ -14,6 +14,7 @@ from snowshed.base.damage import DAMAGED
 from snowshed.io.array_archive import open_archive
 
 Singles = NDArray[np.float32]
+PACKED = "peaks.npz"  # in the results folder of a compact run
 
 
 @dataclass(frozen=True)

@@ -20,8 +20,8 @@ from snowshed._core import InputError
 from snowshed.base.arrays import Booleans, Floats
 from snowshed.base.json_values import JsonObject
 from snowshed.base.messages import shortened
-from snowshed.methods.registry import resolution_of
 from snowshed.running.ageing.columns import SnowColumns
+from snowshed.scene.resolved import snows_of
 from snowshed.snow.relations.relation import choose
 from snowshed.snow.relations.settling import SETTLING_LAWS, settled_densities
 from snowshed.snow.relations.sintering import SINTERING_LAWS
@@ -124,15 +124,18 @@ class Ageing:
         """Return the time before an event, h."""
         return sum(interval.seconds for interval in self.pauses.get(event, ())) / 3600.0
 
-    def apply(self, simulation: _core.Simulation, event: int) -> Optional[dict[str, float]]:
+    def apply(
+        self, simulation: _core.Simulation, event: int, gravity: float
+    ) -> Optional[dict[str, float]]:
         """Let the time before an event pass; return its row of ageing.csv, None if there is none.
 
-        Snow that lies on the panel does not age: the next slab is laid on it at once.
+        Snow that lies on the panel does not age: the next slab is laid on it at once. The gravity
+        of the scene, m/s2, makes the stack settle.
         """
         seconds = 3600.0 * self.hours(event)
         if not seconds or not (self.settling or self.sintering):
             return None
-        snow = _Snow(simulation)
+        snow = _Snow(simulation, gravity)
         strains = self._strains(snow, event)
         drops = np.zeros(len(snow.masses))
         drops[snow.stack] = snow.columns.drops(strains)
@@ -206,9 +209,8 @@ def _intervals(found: object, where: str) -> list[Interval]:
 class _Snow:
     """The snow of a simulation between two events, with its hardening law (1.1.42)."""
 
-    def __init__(self, simulation: _core.Simulation) -> None:
-        scene = json.loads(simulation.scene)
-        self.gravity = float(scene["gravity"])
+    def __init__(self, simulation: _core.Simulation, gravity: float) -> None:
+        self.gravity = gravity
         self.masses = simulation.masses()
         self.plastic_strains = simulation.plastic_strains()
         self.positions, densities = simulation.positions(), simulation.densities()
@@ -218,9 +220,9 @@ class _Snow:
             self.masses[self.stack],
             densities[self.stack],
             simulation.dimension,
-            resolution_of(scene),
+            simulation.resolution,
         )
-        snows = [json.loads(snow) for snow in simulation.snows]
+        snows = snows_of(simulation)
         self._kinds = simulation.material_ids()
         self._laws = [_law(snow) for snow in snows]
         self._p0 = np.array([snow["preconsolidation_pressure"] for snow in snows])[self._kinds]

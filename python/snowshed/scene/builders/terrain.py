@@ -225,4 +225,4 @@ def _distances(mesh: Mesh, points: Floats, spacing: float) -> Floats:
             numerics=MpmSettings(dx=spacing, threads=1),
         )
         ready = scene.resolve()
-        return Simulation(ready.json, ready.base_dir).obstacle_distance(points)
+        return Simulation(ready.core, ready.base_dir).obstacle_distance(points)

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import json
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Optional
+from typing import Any, Optional
 
 import numpy as np
 
@@ -35,7 +35,9 @@ class Surroundings:
     ground: Optional[Floats] = None
 
 
-def surroundings(simulation: _core.Simulation, positions: Floats) -> Surroundings:
+def surroundings(
+    simulation: _core.Simulation, scene: Mapping[str, Any], positions: Floats
+) -> Surroundings:
     """Return what lies around particles.
 
     Obstacles of a scene with a plane ground are structures. Without one, obstacles are the ground,
@@ -43,12 +45,11 @@ def surroundings(simulation: _core.Simulation, positions: Floats) -> Surrounding
 
     Parameters
     ----------
-    simulation
-        With the scene.
+    simulation, scene
+        A simulation of the complete scene, and the scene's data.
     positions : (n, 3)
         m.
     """
-    scene = json.loads(simulation.scene)
     if len(positions) == 0:
         return Surroundings()
     gap = _board_distance(simulation, positions)
@@ -63,6 +64,7 @@ def surroundings(simulation: _core.Simulation, positions: Floats) -> Surrounding
 
 def measure_particles(
     simulation: _core.Simulation,
+    scene: Mapping[str, Any],
     positions: Floats,
     masses: Floats,
     densities: Floats,
@@ -73,14 +75,14 @@ def measure_particles(
 
     Parameters
     ----------
-    simulation
-        With the scene.
+    simulation, scene
+        A simulation of the complete scene, and the scene's data.
     positions, masses, densities, on_panel : (n, 3) or (n,)
         m, kg, kg/m3, and whether each lies on the panel.
     trimming
         As for `measure_stack`.
     """
-    around = surroundings(simulation, positions)
+    around = surroundings(simulation, scene, positions)
     return measure_stack(
         positions,
         masses,
