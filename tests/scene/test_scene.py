@@ -132,15 +132,6 @@ def test_the_former_name_of_the_courant_factor_is_read(tmp_path, tiny):
     assert tiny.set("numerics.step_factor", 0.4).numerics.courant_factor == 0.4
 
 
-def test_former_names_warn_and_give_what_they_stood_for():
-    import snowshed
-
-    with pytest.warns(DeprecationWarning, match="InitialisedScene is now ResolvedScene"):
-        assert snowshed.InitialisedScene is ResolvedScene
-    with pytest.warns(DeprecationWarning, match="Numerics is now MpmSettings"):
-        assert snowshed.scene.Numerics is snowshed.MpmSettings
-
-
 def test_errors_of_the_core_name_the_path(tiny):
     with pytest.raises(InputError, match=r"^/snow/poissons_ratio: 0\.5"):
         tiny.set("snow.poissons_ratio", 0.5).resolve()

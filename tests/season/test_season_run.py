@@ -11,7 +11,7 @@ from processes import modules_after
 
 from snowshed import InputError, Scene, _core
 from snowshed.cli.main import main
-from snowshed.scene.builders.panel_edge import panel_edge
+from snowshed.scene.panel_edge import panel_edge
 from snowshed.season import SeasonSettings, accumulate, read_season, run_season
 from snowshed.season.clearance import (
     Contact,

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Optional
 
 from snowshed._core import InputError
+from snowshed.scene.builders.terrain_copy import terrain_copy
 from snowshed.scene.scene import ResolvedScene, Scene
 
 INPUTS = "give --terrain and --release, or --avaframe, or --example"
@@ -91,26 +91,6 @@ class SlideFiles:
             thickness_band=self.thickness_band,
             **limits,
         )
-
-
-def terrain_copy(folder: Path) -> Path:
-    """Return the file of the terrain's copy, beside the results folder."""
-    return folder.with_name(f"{folder.name}-terrain.asc")
-
-
-@contextmanager
-def removing_copies(folder: Path) -> Iterator[None]:
-    """Remove new copies of files beside a results folder if no run begins there."""
-    copy = terrain_copy(folder)
-    copies = [copy, copy.with_name(f"{copy.stem}-thickness.asc")]
-    new = [file for file in copies if not file.exists()]
-    try:
-        yield
-    except BaseException:
-        if not folder.exists():
-            for file in new:
-                file.unlink(missing_ok=True)
-        raise
 
 
 def refuse_changed_areas(

@@ -14,8 +14,9 @@ from snowshed.cli.dry_run import print_cost
 from snowshed.cli.exit_codes import Failed, Stopped
 from snowshed.cli.run_scene import run_scene
 from snowshed.cli.same_command import same_command
-from snowshed.cli.slide_files import refuse_changed_areas, removing_copies, terrain_copy
+from snowshed.cli.slide_files import refuse_changed_areas
 from snowshed.cli.terminal import say
+from snowshed.scene.builders.terrain_copy import removing_copies, terrain_copy
 from snowshed.scene.scene import ResolvedScene
 
 if TYPE_CHECKING:

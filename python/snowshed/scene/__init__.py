@@ -9,9 +9,6 @@ Examples
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-from snowshed.base.renamed import renamed
 from snowshed.methods.grains.settings import GrainsSettings
 from snowshed.methods.mpm.settings import MpmSettings
 from snowshed.methods.mps.settings import MpsSettings
@@ -66,6 +63,3 @@ __all__ = [
     "Snow",
     "Terrain",
 ]
-
-if not TYPE_CHECKING:
-    __getattr__ = renamed(__name__, {"InitialisedScene": ResolvedScene, "Numerics": MpmSettings})

@@ -40,6 +40,7 @@ from snowshed.scene.components import (
 from snowshed.scene.loading import Cone, LoadingStage, Sample
 from snowshed.scene.output import Output
 from snowshed.scene.resolved import ResolvedScene
+from snowshed.scene.scene_html import scene_html
 from snowshed.scene.scene_paths import locate
 from snowshed.scene.scene_repr import scene_repr
 
@@ -288,6 +289,14 @@ class Scene(Record):
     def __repr__(self) -> str:
         """Return the values that differ from the defaults, as calls that make them."""
         return scene_repr(self, ALWAYS)
+
+    def _repr_html_(self) -> str:
+        """Return a drawing and the text for notebooks; an incomplete scene has no drawing."""
+        try:
+            data: Mapping[str, Any] = self.resolve().data
+        except (InputError, OSError):
+            data = {}
+        return scene_html(data, repr(self))
 
     def set(self, path: str, value: object) -> Scene:
         """Set the value at a dotted path such as ``"snow.density"`` or ``"obstacles.0.friction"``.

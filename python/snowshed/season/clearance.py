@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Optional
 import numpy as np
 
 from snowshed.base.arrays import Floats
-from snowshed.scene.builders.panel_edge import panel_edge
+from snowshed.scene.panel_edge import panel_edge
 from snowshed.snow.stack.measure import level
 
 if TYPE_CHECKING:

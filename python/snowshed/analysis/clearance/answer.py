@@ -76,6 +76,20 @@ class Answer:
         """The heights that stay clear in 50, 90 and 98 % of winters."""
         return levels_of(self.required, self._winter_numbers)
 
+    def at(self, probability: float) -> Level:
+        """Return the height that stays clear with a probability of 0.5, 0.9 or 0.98 in a winter.
+
+        Raises
+        ------
+        InputError
+            If the probability is another.
+        """
+        levels = {level.probability: level for level in self.levels}
+        if probability not in levels:
+            allowed = ", ".join(f"{value:g}" for value in levels)
+            raise InputError(f"probability: {probability:g}; allowed: {allowed}")
+        return levels[probability]
+
     @property
     def shares(self) -> list[Share]:
         """The causes of the variance of the required height, the largest first."""

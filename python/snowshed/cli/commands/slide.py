@@ -21,13 +21,9 @@ from snowshed.cli.common_options import PATH, given_values, run_options
 from snowshed.cli.dry_run import print_cost
 from snowshed.cli.run_scene import run_scene
 from snowshed.cli.settings_options import settings_options
-from snowshed.cli.slide_files import (
-    INPUTS,
-    SlideFiles,
-    refuse_changed_areas,
-    removing_copies,
-)
+from snowshed.cli.slide_files import INPUTS, SlideFiles, refuse_changed_areas
 from snowshed.cli.slide_project import print_project_cost, run_project, write_particles
+from snowshed.scene.builders.terrain_copy import removing_copies
 from snowshed.scene.scene import ResolvedScene
 
 

@@ -13,9 +13,9 @@ from snowshed._core import InputError
 from snowshed.base.messages import suggestion
 from snowshed.cli.compute_study import compute_study, print_study_cost
 from snowshed.cli.exit_codes import Failed, Stopped
-from snowshed.cli.slide_files import removing_copies, terrain_copy
 from snowshed.cli.terminal import PlainConsole, say
 from snowshed.methods.slide.settings import SlideSettings
+from snowshed.scene.builders.terrain_copy import removing_copies, terrain_copy
 from snowshed.scene.scene import Scene
 from snowshed.scene.schema import scene_parameters
 from snowshed.study.definition import Study

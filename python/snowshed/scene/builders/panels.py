@@ -8,7 +8,6 @@ from typing import Optional
 
 from snowshed._core import InputError
 from snowshed.methods.mpm.settings import MpmSettings
-from snowshed.scene.builders.panel_edge import panel_edge
 from snowshed.scene.builders.slope import (
     BOARD_CELLS,
     Slope,
@@ -17,6 +16,7 @@ from snowshed.scene.builders.slope import (
     upright_box,
 )
 from snowshed.scene.components import Body, Ground, Obstacle, Panel, Slab
+from snowshed.scene.panel_edge import panel_edge
 from snowshed.scene.scene import Scene
 from snowshed.scene.shape import Shape
 

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from typing import Optional
 
 from snowshed._core import InputError
-from snowshed.scene.builders.panel_edge import panel_edge
 from snowshed.scene.builders.panels import separate_part, single_panel, snow_layer
 from snowshed.scene.builders.slope import (
     BOARD_CELLS,
@@ -16,6 +15,7 @@ from snowshed.scene.builders.slope import (
     upright_box,
 )
 from snowshed.scene.components import Obstacle
+from snowshed.scene.panel_edge import panel_edge
 from snowshed.scene.scene import Scene
 from snowshed.scene.shape import Shape
 

@@ -21,10 +21,10 @@ from snowshed.base.paths import PathLike
 from snowshed.io.atomic import replacing
 from snowshed.io.raster.raster import Raster
 from snowshed.methods.mpm.settings import MpmSettings
-from snowshed.scene.builders.panel_edge import panel_edge
 from snowshed.scene.builders.slope import check_positive
 from snowshed.scene.builders.terrain_checks import MAX_SLOPE, check_terrain, read_terrain
 from snowshed.scene.components import Body, Condition, Obstacle
+from snowshed.scene.panel_edge import panel_edge
 from snowshed.scene.scene import Scene
 from snowshed.scene.shape import Shape
 
