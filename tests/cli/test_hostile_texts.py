@@ -12,7 +12,7 @@ import pandas as pd
 import pytest
 from conftest import tiny_scene
 
-from snowshed.base.printable import HARMFUL, printable
+from snowshed.base.messages import HARMFUL, printable
 from snowshed.cli.main import main
 from snowshed.cli.start import main as start
 from snowshed.cli.terminal import PlainConsole, plain_table

@@ -17,7 +17,7 @@ from voxel_files import VOXELS, save_metaimage, save_slices
 
 from snowshed import Scene, _core, run_events
 from snowshed.io.raster.raster import write_ascii_grid
-from snowshed.methods.slide.peak_maps import PeakMaps
+from snowshed.methods.slide.maps import PeakMaps
 from snowshed.running.run import run
 from snowshed.scene.builders.grains import grains_scene
 from snowshed.scene.loading import LoadingStage

@@ -41,7 +41,7 @@ from snowshed.io.vtk.vtp import read_particles
 from snowshed.methods.grains.curve import LoadingCurve
 from snowshed.methods.grains.run import GrainsRun
 from snowshed.methods.grains.sample_folder import find_sample
-from snowshed.methods.slide.peak_maps import PeakMaps
+from snowshed.methods.slide.maps import PeakMaps
 
 REFUSED = (InputError, SimulationError, OSError)
 

@@ -13,7 +13,7 @@ from plot.browser import check_page, open_page
 from plot.firefox import open_in_firefox
 
 from snowshed import InputError, Results
-from snowshed.base.printable import HARMFUL
+from snowshed.base.messages import HARMFUL
 from snowshed.io.film import Film
 from snowshed.plot.film_page import VIEWER, MeasureLine, ViewContent, write_view_page
 from snowshed.plot.film_summary import summarise_film

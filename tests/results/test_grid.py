@@ -8,7 +8,7 @@ from conftest import tiny_scene
 
 from snowshed import Body, InputError, Results, Scene, Shape, Simulation
 from snowshed.cli.main import main
-from snowshed.results.particle_grid import particles_to_grid
+from snowshed.results.grid import particles_to_grid
 
 pytest.importorskip("xarray")
 BASES = ("quadratic", "cubic")

@@ -20,7 +20,7 @@ from snowshed.io.film import Film
 from snowshed.io.vtk.vtp import read_particles
 from snowshed.methods.grains.curve import LoadingCurve
 from snowshed.methods.grains.run import GrainsRun
-from snowshed.results.film_dataset import film_dataset
+from snowshed.results.film import film_dataset
 from snowshed.results.video import write_video
 from snowshed.results.view import write_view
 from snowshed.running.run import run

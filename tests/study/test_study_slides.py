@@ -8,7 +8,7 @@ import pytest
 from snowshed import InputError
 from snowshed.analysis.hazard.maps import hazard_maps, wilson_interval
 from snowshed.io.raster.raster import read_raster
-from snowshed.methods.slide.peak_maps import PeakMaps
+from snowshed.methods.slide.maps import PeakMaps
 from snowshed.running.run import run
 from snowshed.scene.builders import example_slide
 from snowshed.study import Study, read_table

@@ -1,7 +1,9 @@
-"""Numbers, parts and durations as people read them."""
+"""Numbers, parts and durations as people read and write them."""
 
 from __future__ import annotations
 
+import math
+import re
 from math import inf, isnan
 from typing import Optional
 
@@ -18,6 +20,8 @@ UNITS_OF_TIME = (
     (172800, 3600, "h", 1),
     (inf, 86400, "days", 1),
 )
+NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+LONGEST_NUMBER = 400  # characters
 
 
 def exact(value: float) -> str:
@@ -114,3 +118,20 @@ def about(seconds: float) -> str:
         (unit, name, digits) for limit, unit, name, digits in UNITS_OF_TIME if seconds < limit
     )
     return f"about {seconds / unit:.{digits}f} {name}"
+
+
+def number_in(text: str) -> float:
+    """Return the number that a text is; NaN where it is none, or none that is finite.
+
+    Other than ``float`` it takes no digits of other scripts, no underscores and no words.
+
+    Examples
+    --------
+    >>> number_in("-1.5e3"), number_in(" 2 "), number_in("1_000"), number_in("1e999")
+    (-1500.0, 2.0, nan, nan)
+    """
+    text = text.strip(" \t")
+    if len(text) > LONGEST_NUMBER or not NUMBER.fullmatch(text):
+        return math.nan
+    value = float(text)
+    return value if math.isfinite(value) else math.nan

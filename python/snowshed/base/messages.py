@@ -1,11 +1,22 @@
-"""Text from files in error messages, which stay one line to read whatever a file holds."""
+"""Texts from files and callers in messages, on terminals and in tables, where they do no harm.
+
+They may be long, and hold what a terminal takes for commands, what turns the direction of writing,
+or what a spreadsheet computes.
+"""
 
 from __future__ import annotations
 
 import difflib
+import re
 from collections.abc import Iterable
 
 LONGEST = 60  # characters
+#: Control characters (but tab and end of line), line separators, marks and overrides of the
+#: direction, and what stands for bytes of names that are no UTF-8.
+HARMFUL = re.compile(
+    "[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff]"
+)
+FORMULA = ("=", "+", "-", "@", "\t", "\r")  # what a cell begins with that spreadsheets compute
 
 
 def shortened(text: str, longest: int = LONGEST) -> str:
@@ -43,3 +54,36 @@ def suggestion(given: str, words: Iterable[str]) -> str:
     by_lower = {word.lower(): word for word in words}
     near = difflib.get_close_matches(given.lower(), by_lower, n=1)
     return f"; did you mean {by_lower[near[0]]}?" if near else ""
+
+
+def printable(text: object) -> str:
+    r"""Return a text as a terminal or a page may show it; what would do harm becomes "?".
+
+    Examples
+    --------
+    >>> printable("\x1b[31mred.stl")
+    '?[31mred.stl'
+    """
+    return HARMFUL.sub("?", str(text))
+
+
+def csv_cell(value: object) -> object:
+    """Return a cell as a spreadsheet may open it; a text that it would compute is quoted.
+
+    Examples
+    --------
+    >>> csv_cell("=HYPERLINK(A1)"), csv_cell(-1.5), csv_cell("rest"), csv_cell("-1.5")
+    ("'=HYPERLINK(A1)", -1.5, 'rest', '-1.5')
+    """
+    if not isinstance(value, str):
+        return value
+    shown = printable(value)
+    return f"'{shown}" if shown.startswith(FORMULA) and not _is_number(shown) else shown
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True

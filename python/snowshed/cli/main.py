@@ -22,9 +22,8 @@ from typing import Optional, TextIO, Union
 import click
 
 import snowshed._core as _core
-from snowshed.base.messages import shortened
+from snowshed.base.messages import printable, shortened
 from snowshed.base.notes import SnowshedNote
-from snowshed.base.printable import printable
 from snowshed.cli.deferred import Deferred
 from snowshed.cli.exit_codes import BAD_INPUT, COULD_NOT_FINISH, INTERRUPTED, PIPE_CLOSED
 from snowshed.cli.memory_shortage import memory_message

@@ -14,7 +14,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from snowshed.base.printable import printable
+from snowshed.base.messages import printable
 
 
 class PlainConsole(Console):

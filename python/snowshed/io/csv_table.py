@@ -17,11 +17,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from snowshed._core import InputError
+from snowshed.base.formatting import number_in
 from snowshed.base.limits import COLUMNS, LINE, MB, ROWS, TABLE, TEXT, WRITTEN_ROWS
-from snowshed.base.messages import quoted
-from snowshed.base.number_text import number_in
+from snowshed.base.messages import csv_cell, quoted
 from snowshed.base.paths import PathLike
-from snowshed.base.printable import csv_cell
 from snowshed.io.atomic import write_text
 from snowshed.io.input_file import read_input
 from snowshed.io.packed import unpacked

@@ -12,9 +12,8 @@ from numpy.typing import NDArray
 
 import snowshed._core as _core
 from snowshed.base.arrays import Floats, Integers
-from snowshed.base.messages import shortened
+from snowshed.base.messages import printable, shortened
 from snowshed.base.paths import PathLike
-from snowshed.base.printable import printable
 
 #: Name of the film in a results folder.
 FILM = "film.bin"

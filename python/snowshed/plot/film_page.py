@@ -11,7 +11,7 @@ from typing import Any, Optional
 
 import numpy as np
 
-from snowshed.base.printable import printable
+from snowshed.base.messages import printable
 from snowshed.io.atomic import write_text
 from snowshed.io.film import Film
 from snowshed.plot.film_picture import still_picture, view_lift

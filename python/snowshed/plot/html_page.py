@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from snowshed._core import InputError
-from snowshed.base.printable import printable
+from snowshed.base.messages import printable
 from snowshed.io.atomic import replacing
 
 if TYPE_CHECKING:

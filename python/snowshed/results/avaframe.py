@@ -28,7 +28,7 @@ from pathlib import Path
 
 import snowshed._core as _core
 from snowshed.base.arrays import Floats
-from snowshed.base.printable import csv_cell, printable
+from snowshed.base.messages import csv_cell, printable
 from snowshed.io.atomic import write_text
 from snowshed.io.raster.output import write_raster
 from snowshed.io.raster.raster import GEOTIFF, Raster, read_raster

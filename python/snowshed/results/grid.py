@@ -1,10 +1,16 @@
-"""The grid of the material point method at a moment, as an xarray Dataset and for ParaView."""
+"""The grid of a run at a moment: computed from the particles, as a Dataset and for ParaView.
+
+The solver keeps no grid between steps that others could read. This is the same transfer from
+particles to grid, by the same B-splines at the same nodes (docs/theory.md), outside of the steps.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import itertools
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Optional
+from typing import TYPE_CHECKING, Any, Literal, Optional
 
 import numpy as np
 
@@ -14,7 +20,6 @@ from snowshed.base.extras import require
 from snowshed.io.vtk.vti import write_image
 from snowshed.io.vtk.vtp import read_particles
 from snowshed.methods.registry import method_of
-from snowshed.results.particle_grid import GridFields, particles_to_grid
 from snowshed.scene.scene import PathLike
 
 if TYPE_CHECKING:
@@ -25,6 +30,11 @@ MEANINGS = {
     "velocity": ("m/s", "Velocity at a node; zero where there is no mass"),
     "density": ("kg/m3", "Mass at a node over the volume of a cell"),
 }
+Basis = Literal["quadratic", "cubic"]
+#: Nodes that a particle reaches along an axis, and where the lowest of them lies, in cells.
+SUPPORT = {"quadratic": 3, "cubic": 4}
+OFFSET = {"quadratic": 0.5, "cubic": 1.0}
+MOST_NODES = 400_000_000
 
 
 def scene_grid(
@@ -41,7 +51,7 @@ def scene_grid(
     scene
         Complete scene data.
     positions, velocities, masses, affine
-        See `snowshed.results.particle_grid.particles_to_grid`.
+        See `snowshed.results.grid.particles_to_grid`.
 
     Raises
     ------
@@ -117,3 +127,112 @@ def write_grid(grid: GridFields, file: PathLike) -> None:
         values = {name: array[:, None] for name, array in values.items()}
         values["velocity"] = np.insert(values["velocity"], 1, 0.0, axis=-1)
     write_image(file, origin.tolist(), grid.dx, values)
+
+
+@dataclass(frozen=True)
+class GridFields:
+    """Mass, velocity and density at the nodes of a regular grid.
+
+    Attributes
+    ----------
+    origin : (d,)
+        The first node, m; d is 2 (x, z) or 3.
+    dx
+        Distance of the nodes, m.
+    mass : (nx, ny, nz) or (nx, nz)
+        kg; in 2D per metre of width.
+    velocity : (nx, ny, nz, d) or (nx, nz, d)
+        m/s; zero where there is no mass.
+    density
+        Mass over the volume of a cell, kg/m3. Beside walls and at surfaces a node's share of space
+        is not full of snow.
+    """
+
+    origin: Floats
+    dx: float
+    mass: Floats
+    velocity: Floats
+    density: Floats
+
+
+def particles_to_grid(
+    positions: Floats,
+    velocities: Floats,
+    masses: Floats,
+    *,
+    dx: float,
+    dimension: int,
+    basis: Basis = "quadratic",
+    affine: Optional[Floats] = None,
+) -> GridFields:
+    """Return what particles give to the nodes of the grid.
+
+    Parameters
+    ----------
+    positions, velocities : (n, 3)
+        m, m/s; in 2D the plane is (x, z).
+    masses : (n,)
+        kg.
+    dx
+        Size of the grid's cells, m.
+    dimension
+        2 or 3.
+    basis
+        Of the B-splines.
+    affine : (n, 3, 3) or (n, 9), optional
+        The matrices C of APIC, 1/s.
+
+    Raises
+    ------
+    InputError
+        If there are no particles, or the grid around them does not fit into memory.
+
+    Examples
+    --------
+    >>> grid = particles_to_grid(np.array([[0.3, 0, 0.5]]), np.array([[1.0, 0, 0]]), np.ones(1),
+    ...                          dx=0.1, dimension=2)
+    >>> grid.mass.shape, float(grid.mass.sum().round(12)), grid.velocity[1, 1].round(12).tolist()
+    ((3, 3), 1.0, [1.0, 0.0])
+    """
+    if not len(positions):
+        raise InputError("particles: there are none, and hence no grid")
+    axes = [0, 2] if dimension == 2 else [0, 1, 2]
+    places, speeds = positions[:, axes] / dx, velocities[:, axes]
+    lowest = np.floor(places - OFFSET[basis]).astype(np.int64)
+    first = lowest.min(axis=0)
+    shape = tuple((lowest.max(axis=0) - first + SUPPORT[basis]).tolist())
+    if np.prod(shape, dtype=float) > MOST_NODES:
+        raise InputError(
+            f"grid: {' x '.join(map(str, shape))} nodes around all particles do not fit into memory"
+        )
+    weights = _weights(places - OFFSET[basis] - lowest, basis)
+    matrices = None if affine is None else affine.reshape(-1, 3, 3)[:, axes][:, :, axes]
+    mass, momentum = np.zeros(shape), np.zeros((*shape, dimension))
+    for steps in itertools.product(range(SUPPORT[basis]), repeat=dimension):
+        share = masses * np.prod([weights[k][:, axis] for axis, k in enumerate(steps)], axis=0)
+        nodes = lowest + np.array(steps)
+        flat = np.ravel_multi_index(tuple((nodes - first).T), shape)
+        mass += np.bincount(flat, share, mass.size).reshape(shape)
+        given = speeds
+        if matrices is not None:
+            given = speeds + np.einsum("nij,nj->ni", matrices, (nodes - places) * dx)
+        for axis in range(dimension):
+            part = np.bincount(flat, share * given[:, axis], mass.size)
+            momentum[..., axis] += part.reshape(shape)
+    velocity = np.divide(
+        momentum, mass[..., None], out=np.zeros_like(momentum), where=mass[..., None] > 0
+    )
+    return GridFields(first * dx, dx, mass, velocity, mass / dx**dimension)
+
+
+def _weights(fraction: Floats, basis: Basis) -> Sequence[Floats]:
+    """Return the weights of the nodes along each axis (thesis 1.2.17-1.2.22)."""
+    f, r = fraction, 1.0 - fraction
+    if basis == "quadratic":
+        return (0.5 * r**2, 0.75 - (f - 0.5) ** 2, 0.5 * f**2)
+    return (
+        r**3 / 6.0,
+        2.0 / 3.0 - f**2 + 0.5 * f**3,
+        2.0 / 3.0 - r**2 + 0.5 * r**3,
+        f**3 / 6.0,
+    )

@@ -21,8 +21,7 @@ from snowshed.io.run_files import check_run_file, read_record
 from snowshed.io.vtk.pvd import read_series
 from snowshed.io.vtk.vtp import read_particles
 from snowshed.methods.registry import method_of
-from snowshed.results.film import run_film
-from snowshed.results.film_dataset import film_dataset
+from snowshed.results.film import film_dataset, run_film
 from snowshed.results.folder import ENERGY, read_events
 from snowshed.results.grid import grid_dataset, stored_grid
 from snowshed.results.particle_dataset import particle_dataset

@@ -11,8 +11,16 @@ from numpy.typing import ArrayLike
 
 import snowshed._core as _core
 from snowshed._core import InputError, SimulationError
-from snowshed.base.array_arguments import finite, points, positive, whole_number
-from snowshed.base.arrays import Booleans, Floats, Integers, Numbers
+from snowshed.base.arrays import (
+    Booleans,
+    Floats,
+    Integers,
+    Numbers,
+    finite,
+    points,
+    positive,
+    whole_number,
+)
 from snowshed.results.fields import Fields
 from snowshed.results.grid import grid_dataset, scene_grid
 from snowshed.results.particle_dataset import DATASET, particle_dataset
@@ -103,8 +111,6 @@ class Simulation:
         """
         self._core.save(os.fspath(path))
 
-    # --- running ---------------------------------------------------------------------------
-
     def begin_event(self) -> None:
         """Lay the snow of the next event; what should be known of it is a `SnowshedNote`.
 
@@ -186,8 +192,6 @@ class Simulation:
             self.step(every)
         return "reached"
 
-    # --- changing the snow -----------------------------------------------------------------
-
     def add_snow(
         self,
         positions: ArrayLike,
@@ -264,8 +268,6 @@ class Simulation:
         voxel = self._core.resolution**self.dimension
         per_voxel = self.scene.data.get("seeding", {}).get("particles_per_voxel", 1.0)
         return float(cast(float, snow.density) * voxel / per_voxel)
-
-    # --- reading ---------------------------------------------------------------------------
 
     @property
     def fields(self) -> Fields:
@@ -385,8 +387,6 @@ class Simulation:
         if not self.scene.data["output"]["energy"]:
             raise InputError("/output/energy: false; the energy balance is kept only where true")
         return {name[: -len("_j")]: value for name, value in self._core.energy().items()}
-
-    # --- where it stands -------------------------------------------------------------------
 
     @property
     def scene(self) -> ResolvedScene:

@@ -16,9 +16,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Optional, Union
 
 from snowshed._core import InputError
+from snowshed.base.formatting import number_in
 from snowshed.base.messages import quoted
 from snowshed.base.notes import tell
-from snowshed.base.number_text import number_in
 from snowshed.io.csv_table import Row, frame_as_text, read_text_table
 from snowshed.io.weather import Station, read_station, read_stations
 from snowshed.scene.scene import PathLike

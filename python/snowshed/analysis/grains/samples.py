@@ -12,8 +12,7 @@ import snowshed._core as _core
 from snowshed._core import InputError
 from snowshed.analysis.tomography.downscaling import downscaled
 from snowshed.analysis.tomography.ice_image import IceImage
-from snowshed.base.array_arguments import positive
-from snowshed.base.arrays import AnyIntegers, Labels
+from snowshed.base.arrays import AnyIntegers, Labels, positive
 from snowshed.base.notes import tell
 from snowshed.base.paths import PathLike
 from snowshed.io.atomic import replacing

@@ -12,7 +12,7 @@ import numpy as np
 from snowshed._core import InputError
 from snowshed.base.arrays import Floats
 from snowshed.io.raster.raster import Raster
-from snowshed.methods.slide.peak_maps import PeakMaps
+from snowshed.methods.slide.maps import PeakMaps
 from snowshed.scene.scene import PathLike, ResolvedScene
 from snowshed.scene.terrain_grid import slide_terrain
 from snowshed.study.store import Store

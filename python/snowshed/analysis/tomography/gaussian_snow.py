@@ -21,8 +21,7 @@ from snowshed.analysis.tomography.crofton import surface_density
 from snowshed.analysis.tomography.ice_image import ICE_DENSITY, IceImage
 from snowshed.analysis.tomography.parts import largest_part
 from snowshed.analysis.tomography.request import asked_fraction, check_shape, one_of
-from snowshed.base.array_arguments import positive
-from snowshed.base.arrays import Booleans, SingleFloats
+from snowshed.base.arrays import Booleans, SingleFloats, positive
 
 SHELL_WIDTH = 0.15  # standard deviation of the wave numbers over their mean
 #: How near the asked numbers the search ends, and after how many fields or cuts at the latest.

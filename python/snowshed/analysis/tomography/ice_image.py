@@ -8,8 +8,7 @@ from typing import Optional
 import numpy as np
 
 from snowshed._core import InputError
-from snowshed.base.array_arguments import positive
-from snowshed.base.arrays import Booleans, Labels
+from snowshed.base.arrays import Booleans, Labels, positive
 
 ICE_DENSITY = 917.0  # kg/m3
 

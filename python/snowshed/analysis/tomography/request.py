@@ -7,7 +7,7 @@ from typing import Optional
 
 from snowshed._core import InputError
 from snowshed.analysis.tomography.ice_image import ICE_DENSITY
-from snowshed.base.array_arguments import positive
+from snowshed.base.arrays import positive
 
 MOST_VOXELS = 1 << 30
 

@@ -14,8 +14,7 @@ from snowshed.analysis.tomography.curvature import curvature_basins
 from snowshed.analysis.tomography.ice_image import IceImage, check_phases
 from snowshed.analysis.tomography.region_merging import merge_contiguous, merge_shallow
 from snowshed.analysis.tomography.watershed import Basins, distance_basins, voxel_counts
-from snowshed.base.array_arguments import finite, positive
-from snowshed.base.arrays import Labels
+from snowshed.base.arrays import Labels, finite, positive
 
 SegmentationMethod = Literal["watershed", "curvature"]
 

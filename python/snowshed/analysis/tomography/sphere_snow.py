@@ -14,8 +14,7 @@ import numpy as np
 from snowshed._core import InputError
 from snowshed.analysis.tomography.ice_image import IceImage
 from snowshed.analysis.tomography.request import asked_fraction, check_shape
-from snowshed.base.array_arguments import finite, positive
-from snowshed.base.arrays import Booleans, Floats, Labels, SingleFloats
+from snowshed.base.arrays import Booleans, Floats, Labels, SingleFloats, finite, positive
 
 #: The pack is full when this many spheres in a row found no place.
 MOST_FAILURES = 20_000

@@ -14,7 +14,7 @@ from snowshed.analysis.tomography.downscaling import downscaled
 from snowshed.analysis.tomography.found_threshold import found_threshold
 from snowshed.analysis.tomography.ice_image import IceImage, check_phases
 from snowshed.analysis.tomography.parts import largest_part
-from snowshed.base.array_arguments import finite, positive
+from snowshed.base.arrays import finite, positive
 from snowshed.base.notes import tell
 from snowshed.io.voxels.voxel_file import VoxelFile
 

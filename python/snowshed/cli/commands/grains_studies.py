@@ -169,7 +169,7 @@ def material(
       snowshed panel --preset lab-50 --dim 2 --snow material/snow-318.json -o stack
     """  # noqa: D301 - click wants the control character
     from snowshed.analysis.grains.material.run import MaterialFolder, by_density
-    from snowshed.base.array_arguments import positive
+    from snowshed.base.arrays import positive
     from snowshed.cli.compute_study import compute_study, print_study_cost
 
     if modulus is not None:

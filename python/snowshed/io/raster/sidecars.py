@@ -9,9 +9,9 @@ from typing import Optional
 
 from snowshed._core import InputError
 from snowshed.base.arrays import Floats
+from snowshed.base.formatting import number_in
 from snowshed.base.limits import SIDECAR
 from snowshed.base.messages import quoted
-from snowshed.base.number_text import number_in
 from snowshed.io.input_file import read_regular
 from snowshed.io.raster.vertical_units import metres_of
 

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from typing import Any, Optional
 
 from snowshed._core import InputError
+from snowshed.base.formatting import number_in
 from snowshed.base.messages import quoted
 from snowshed.base.notes import tell
-from snowshed.base.number_text import number_in
 
 #: Names of the field; AvaFrame's first.
 NAMES = ("thickness", "d0")

@@ -10,8 +10,8 @@ from datetime import datetime, timedelta
 from typing import Any, NamedTuple, Optional
 
 from snowshed._core import InputError
+from snowshed.base.formatting import number_in
 from snowshed.base.messages import quoted
-from snowshed.base.number_text import number_in
 from snowshed.io.weather.amounts import Total, without_overlap
 from snowshed.io.weather.observation import DAY, Observation, Quantity
 

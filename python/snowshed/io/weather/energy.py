@@ -12,8 +12,8 @@ from datetime import datetime, timedelta
 from typing import Any, NamedTuple, Optional
 
 from snowshed._core import InputError
+from snowshed.base.formatting import number_in
 from snowshed.base.messages import quoted
-from snowshed.base.number_text import number_in
 from snowshed.io.weather.amounts import Total, usual_step, without_overlap
 from snowshed.io.weather.observation import (
     Observation,

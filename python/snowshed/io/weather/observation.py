@@ -12,8 +12,8 @@ from functools import lru_cache
 from typing import Any, Optional
 
 from snowshed._core import InputError
+from snowshed.base.formatting import number_in
 from snowshed.base.messages import quoted
-from snowshed.base.number_text import number_in
 
 ZERO_CELSIUS = 273.15  # K
 DAY = 24.0  # hours

@@ -15,8 +15,8 @@ from datetime import datetime, timedelta
 from typing import Optional
 
 from snowshed._core import InputError
+from snowshed.base.formatting import number_in
 from snowshed.base.messages import quoted
-from snowshed.base.number_text import number_in
 from snowshed.io.weather.columns import Cells, Column, Reading, observations
 from snowshed.io.weather.observation import (
     DAY,

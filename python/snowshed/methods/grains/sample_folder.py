@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Optional
 
-from snowshed.base.array_arguments import positive
+from snowshed.base.arrays import positive
 from snowshed.base.paths import PathLike
 from snowshed.io.json_file import read_object
 

@@ -30,8 +30,7 @@ from snowshed.io.atomic import replacing
 from snowshed.io.film import FILM, Film
 from snowshed.io.raster.output import write_raster
 from snowshed.methods.slide.frames import Frame, slide_frames
-from snowshed.methods.slide.maps import RASTERS, SlideMaps, slide_maps
-from snowshed.methods.slide.peak_maps import PACKED, PeakMaps
+from snowshed.methods.slide.maps import PACKED, RASTERS, PeakMaps, SlideMaps, slide_maps
 from snowshed.methods.slide.summary import SlideSummary
 from snowshed.methods.slide.validity import (
     ReleaseArea,

@@ -15,9 +15,8 @@ from pathlib import Path
 
 from snowshed._core import InputError
 from snowshed.base.limits import GB, PROJECT_BYTES, PROJECT_DEPTH, PROJECT_FILES
-from snowshed.base.messages import quoted
+from snowshed.base.messages import printable, quoted
 from snowshed.base.notes import tell
-from snowshed.base.printable import printable
 from snowshed.io.atomic import replacing
 
 #: Endings of files that projects are made of: rasters, polygons and lines, settings, tables.

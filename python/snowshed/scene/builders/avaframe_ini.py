@@ -14,8 +14,7 @@ from typing import Any, Optional
 
 from snowshed._core import InputError
 from snowshed.base.limits import INI, SAVED_TIMES
-from snowshed.base.messages import quoted, shortened, suggestion
-from snowshed.base.printable import printable
+from snowshed.base.messages import printable, quoted, shortened, suggestion
 from snowshed.io.input_file import read_input
 from snowshed.scene.builders.avaframe_keys import (
     FIXED,

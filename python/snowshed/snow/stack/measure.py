@@ -26,8 +26,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from snowshed._core import InputError
-from snowshed.base.array_arguments import column, finite, flags, points, positive
-from snowshed.base.arrays import Booleans, Floats
+from snowshed.base.arrays import Booleans, Floats, column, finite, flags, points, positive
 from snowshed.snow.stack.connected_components import largest_body
 from snowshed.snow.stack.support import supports
 from snowshed.snow.stack.surface import outline_particles, surface_particles
