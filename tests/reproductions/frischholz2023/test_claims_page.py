@@ -27,7 +27,7 @@ def data(tmp_path):
 
 
 def test_the_page_is_what_the_results_say():
-    """After new results, or a change of its words: python -m reproductions.frischholz2023.claims_page."""
+    """It is written anew by python -m reproductions.frischholz2023.claims_page."""
     assert claims_page.PAGE.read_text(encoding="utf-8") == claims_page.page()
 
 

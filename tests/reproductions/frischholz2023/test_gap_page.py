@@ -20,7 +20,7 @@ def data(tmp_path):
 
 
 def test_the_page_is_what_the_results_say():
-    """After new results, or a change of its words: python -m reproductions.frischholz2023.gap_page."""
+    """It is written anew by python -m reproductions.frischholz2023.gap_page."""
     assert gap_page.PAGE.read_text(encoding="utf-8") == gap_page.page()
 
 

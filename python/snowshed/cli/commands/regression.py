@@ -10,7 +10,7 @@ import click
 from click.core import ParameterSource
 
 from snowshed._core import InputError
-from snowshed.analysis.deviations import ALL, DEVIATIONS
+from snowshed.analysis.regression.deviations import ALL, DEVIATIONS
 from snowshed.analysis.regression.geometry import FRICTION
 from snowshed.cli.commands.designed_study import measure_help
 from snowshed.cli.exit_codes import Stopped
@@ -53,7 +53,7 @@ PATH = click.Path(path_type=Path)
     "deviations",
     multiple=True,
     type=click.Choice([*DEVIATIONS, ALL]),
-    help="Do as the thesis does in this; may be repeated, and all is the preset `thesis`. Goes "
+    help="Use the thesis's choice for this setting. Repeatable; `all` for every setting. Goes "
     "before --between and --dx.",
 )
 @click.option("--trial", is_flag=True, help="A few panels on a coarse grid, which take seconds.")
