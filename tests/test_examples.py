@@ -12,8 +12,8 @@ from snowshed.cli.main import main
 
 EXAMPLES = ROOT / "examples"
 ARGUMENTS = {
-    "custom_obstacles.py": ["out", "0.05"],
-    "dimension_ratio.py": ["out", "0.02", "1"],
+    "custom_obstacles.py": ["out", "0.08"],
+    "dimension_ratio.py": ["out", "0.03", "1"],
     "image_to_stack.py": ["out", "20", "2", "0.04"],
     "in_memory.py": ["out", "0.02"],
     "panel_2d.py": ["out", "0.02"],

@@ -17,6 +17,8 @@ import click
 from reproductions.common.hypothesis_tests import SIGMAS
 from reproductions.common.markdown import markdown_table
 from reproductions.frischholz2023.claims.regression import Regressed
+from reproductions.frischholz2023.deviations import DEVIATIONS
+from reproductions.frischholz2023.printed import THESIS_QUARTILES
 from reproductions.frischholz2023.scatter import read_scatter, scatter
 from reproductions.frischholz2023.sections import deviations as deviations_section
 from reproductions.frischholz2023.sections.regression import (
@@ -36,14 +38,10 @@ from reproductions.frischholz2023.variants import (
     read_variants_file,
 )
 from snowshed._core import InputError
-from snowshed.analysis.deviations import DEVIATIONS
 from snowshed.analysis.regression.dataset import geometry_table
+from snowshed.analysis.regression.published import published
 from snowshed.analysis.regression.rows import StackRows, read_rows
-from snowshed.analysis.regression.summary import (
-    QUARTILES,
-    THESIS_QUARTILES,
-    thesis_relative_error,
-)
+from snowshed.analysis.regression.summary import QUARTILES
 from snowshed.base.formatting import percent
 from snowshed.io.atomic import write_text
 from snowshed.io.csv_table import write_csv
@@ -215,7 +213,7 @@ def _regression_part(data: Path) -> list[str]:
         markdown_table(rows_grid(geometry_table())),
         markdown_table(errors_grid(found)),
         f"The RBF kernel's error is {' and '.join(shares)} of its median prediction; the thesis's "
-        f"is {percent(thesis_relative_error('rbf'), 2)}. Means of several seeds have "
+        f"is {percent(published().relative_error('rbf'), 2)}. Means of several seeds have "
         "smaller errors because they scatter less, which says nothing of the model.",
     ]
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from snowshed.analysis.calibration.parameter_ranges import COHESION, PRESSURE, SLOPE
+from snowshed.analysis.regression.published import published
 from snowshed.plot.labels import label
 
 
@@ -147,3 +149,8 @@ CALIBRATED_SCORES: Mapping[str, float] = {
     "rescaled_rmse": 0.237,
 }
 CALIBRATED_RANKS = "8 for the height, 26 for the length"
+#: Table 4.3.1: the calibrated triplet.
+CALIBRATED: Mapping[str, float] = {SLOPE: 0.5, PRESSURE: 7e3, COHESION: 0.2}
+#: Section 5.3: the rows; Tables 5.3.1 and 5.3.2.
+THESIS_ROWS = published().rows
+THESIS_QUARTILES, THESIS_ERRORS = published().quartiles, published().errors

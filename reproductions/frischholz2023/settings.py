@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from snowshed.analysis.calibration.parameter_ranges import COHESION, GRID, PRESSURE, SLOPE
 from snowshed.analysis.regression.folds import CrossValidation
 from snowshed.scene.components import Condition
-from snowshed.scene.thesis_tables import CALIBRATION, COHESION, PRESSURE, SLOPE
 
 #: Of the panel where there is one value: the least static coefficient that the thesis measured.
 MEASURED_FRICTION = 0.6
@@ -81,9 +81,9 @@ FULL = Settings(
     fixation_seeds=2,
     grid_seeds=2,
     grid_events=5,
-    slopes=CALIBRATION[SLOPE],
-    pressures=CALIBRATION[PRESSURE],
-    cohesions=CALIBRATION[COHESION],
+    slopes=GRID[SLOPE],
+    pressures=GRID[PRESSURE],
+    cohesions=GRID[COHESION],
     steps=2000,
     simulates_panels=True,
     deviation_dx=(0.015, 0.01),

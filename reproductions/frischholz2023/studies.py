@@ -2,29 +2,28 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
+from itertools import product
 from typing import Any
 
+from reproductions.frischholz2023.deviations import DEVIATIONS
 from reproductions.frischholz2023.settings import MEASURED_FRICTION, Settings
 from snowshed import Scene
 from snowshed.analysis.calibration.design import calibration_study
 from snowshed.analysis.calibration.measurements import Measurement
-from snowshed.analysis.deviations import ALL, DEVIATIONS
+from snowshed.analysis.calibration.parameter_ranges import COHESION, PRESSURE, SLOPE
 from snowshed.analysis.regression.dataset import MODEL_BETWEEN
-from snowshed.analysis.regression.geometry import DAMPING_RATE, FRICTION, geometry_study
+from snowshed.analysis.regression.deviations import ALL
+from snowshed.analysis.regression.geometry import (
+    DAMPING_RATE,
+    FRICTION,
+    GRIDS,
+    geometry_study,
+)
 from snowshed.analysis.sensitivity.designs import sensitivity_study
 from snowshed.scene.components import Snow
-from snowshed.scene.thesis_tables import (
-    COHESION,
-    LABORATORY_EVENTS,
-    LABORATORY_TILTS,
-    PRESSURE,
-    SLOPE,
-)
 from snowshed.study import Factor, Study
 from snowshed.study.factors import SEED
-from snowshed.study.table import value_at
 
 LAB_2D, LAB_3D, RELEASE = "lab-2d", "lab-3d", "lab-30-degrees"
 INDEX, FIXATION = "sensitivity-s", "sensitivity-fixation"
@@ -50,9 +49,10 @@ VARIATIONS: Mapping[str, Mapping[str, float]] = {
 PANEL = ("panel.tilt", "panel.height", "panel.length")
 #: Seed of the synthetic truth: one that no run of the grid has.
 TRUTH_SEED = 101
-LAB_TILTS = LABORATORY_TILTS
+#: Tilts of the laboratory's panel from which snow slid in chapters 2 and 4, degrees.
+LAB_TILTS = (40.0, 50.0)
 RELEASE_TILT = 30.0
-LAB_EVENTS = LABORATORY_EVENTS
+LAB_EVENTS = 5
 
 
 def lab(settings: Settings) -> list[Study]:
@@ -176,9 +176,7 @@ def sampled_panels(settings: Settings) -> dict[str, list[Any]]:
 
     Which they are is a matter of their geometry alone.
     """
-    study = geometry_study(MODEL_BETWEEN)
-    scenes = [json.loads(run.scene) for run in study.runs()]
-    panels = sorted(tuple(value_at(scene, path) for path in PANEL) for scene in scenes)
+    panels = sorted(panel for grid in GRIDS for panel in product(*grid))
     few = [one for one in panels if one[2] <= settings.deviation_longest]
     chosen = few[min(settings.deviation_panels, len(few)) // 2 :: settings.deviation_panels]
     return {path: list(values) for path, values in zip(PANEL, zip(*chosen))}

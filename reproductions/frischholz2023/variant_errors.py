@@ -9,7 +9,7 @@ from __future__ import annotations
 import sys
 import tempfile
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Optional
 
 import click
 
@@ -40,7 +40,9 @@ COLUMNS = ("variant", "trimming", "model", "rows", *QUARTILES, *ERRORS)
 SCHEME = CrossValidation(rounds=1, folds=7, inner_folds=4)
 
 
-def variant_errors(stacks: pd.DataFrame, scheme: CrossValidation = SCHEME) -> pd.DataFrame:
+def variant_errors(
+    stacks: pd.DataFrame, scheme: CrossValidation = SCHEME, *, jobs: Optional[int] = None
+) -> pd.DataFrame:
     """Return the regressions of H/L of each variant, by each reading of A.4.2.
 
     Parameters
@@ -49,6 +51,8 @@ def variant_errors(stacks: pd.DataFrame, scheme: CrossValidation = SCHEME) -> pd
         From `reproductions.frischholz2023.variants.read_variants`.
     scheme
         The folds; the same for all.
+    jobs
+        Processes at once; None: as many as there are cores.
 
     Returns
     -------
@@ -60,20 +64,24 @@ def variant_errors(stacks: pd.DataFrame, scheme: CrossValidation = SCHEME) -> pd
     import pandas as pd
 
     tables = [
-        _of_one(of_variant, trimming, scheme).assign(variant=name, trimming=trimming)
+        _of_one(of_variant, trimming, scheme, jobs).assign(variant=name, trimming=trimming)
         for name, of_variant in with_runs_of_its_own(stacks)
         for trimming in TRIMMINGS
     ]
     return pd.concat(tables, ignore_index=True)[list(COLUMNS)]
 
 
-def _of_one(stacks: pd.DataFrame, trimming: str, scheme: CrossValidation) -> pd.DataFrame:
+def _of_one(
+    stacks: pd.DataFrame, trimming: str, scheme: CrossValidation, jobs: Optional[int]
+) -> pd.DataFrame:
     height, length = (
         measured_as(stacks, trimming, one).to_numpy(float) for one in ("height", "length")
     )
     rows = rows_of(stacks[list(INPUTS)].to_numpy(float), height, length).of_one_seed()
     with tempfile.TemporaryDirectory() as folder:
-        regress(rows, folder, targets=[TARGET], models=KINDS, scheme=scheme)
+        regress(
+            rows, folder, targets=[TARGET], models=KINDS, scheme=scheme, jobs=jobs, figures=False
+        )
         found = read_regressed(Path(folder), len(rows), len(stacks[list(PANEL)].drop_duplicates()))
     table = found.quartiles.loc[list(KINDS), list(QUARTILES)]
     return table.join(found.errors[list(ERRORS)]).assign(rows=len(rows)).reset_index()

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Optional
 import numpy as np
 
 from reproductions.common.hypothesis_tests import Estimate, widening
+from reproductions.frischholz2023.deviations import DEVIATIONS, deviating_trimming
 from reproductions.frischholz2023.studies import DEFAULTS, PANEL, VARIANTS, VARIATIONS, study_of
 from snowshed._core import InputError
-from snowshed.analysis.deviations import DEVIATIONS, deviating_trimming
 from snowshed.io.csv_table import read_csv
 from snowshed.snow.stack.quantities import MEASURES
 from snowshed.snow.stack.trimming import DEFAULT_TRIMMING, TRIMMINGS

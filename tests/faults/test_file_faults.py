@@ -191,14 +191,25 @@ def check(program, sample=None):
         shutil.rmtree(left)
 
 
+@pytest.fixture(scope="module")
+def forks(faults, tmp_path_factory):
+    """One process for the commands of all tests: what one of them imports, the others have."""
+    with Forks(tmp_path_factory.mktemp("forks"), faults) as process:
+        yield process
+
+
+def started(name, forks):
+    """Return what starts a program: one that is compiled has a process of its own."""
+    return in_a_process if name == "snowshed-run" else forks.run
+
+
 @pytest.mark.parametrize("name", PROGRAMS)
-def test_a_command_goes_on_after_some_operations(name, inputs, faults, tmp_path):
-    check(Program(name, inputs, faults, tmp_path, in_a_process), SAMPLES.get(name, 2))
+def test_a_command_goes_on_after_some_operations(name, inputs, faults, forks, tmp_path):
+    program = Program(name, inputs, faults, tmp_path, started(name, forks))
+    check(program, SAMPLES.get(name, 2))
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", PROGRAMS)
-def test_a_command_goes_on_after_every_operation(name, inputs, faults, tmp_path):
-    with Forks(tmp_path, faults) as forks:
-        compiled = name == "snowshed-run"
-        check(Program(name, inputs, faults, tmp_path, in_a_process if compiled else forks.run))
+def test_a_command_goes_on_after_every_operation(name, inputs, faults, forks, tmp_path):
+    check(Program(name, inputs, faults, tmp_path, started(name, forks)))

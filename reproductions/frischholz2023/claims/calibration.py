@@ -12,9 +12,9 @@ from reproductions.common.hypothesis_tests import (
     Claim,
     Finding,
 )
+from reproductions.frischholz2023.printed import CALIBRATED
 from snowshed.base.formatting import percent
 from snowshed.plot.labels import settings
-from snowshed.scene.thesis_tables import CALIBRATED
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

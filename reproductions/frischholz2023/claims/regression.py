@@ -20,13 +20,8 @@ from reproductions.common.hypothesis_tests import (
     positive,
     widening,
 )
-from snowshed.analysis.regression.summary import (
-    LINEAR_WORSE,
-    QUARTILES_OFF,
-    THESIS_ERRORS,
-    THESIS_QUARTILES,
-    THESIS_ROWS,
-)
+from reproductions.frischholz2023.printed import THESIS_ERRORS, THESIS_QUARTILES, THESIS_ROWS
+from snowshed.analysis.regression.published import LINEAR_WORSE, QUARTILES_OFF
 from snowshed.base.arrays import Floats
 from snowshed.base.formatting import percent
 

@@ -10,6 +10,7 @@ from reproductions.common.hypothesis_tests import judge
 from reproductions.common.section import Content
 from reproductions.frischholz2023 import printed
 from reproductions.frischholz2023.claims.calibration import CALIBRATION, Recovery
+from reproductions.frischholz2023.printed import CALIBRATED
 from reproductions.frischholz2023.stages import ThesisComputation
 from reproductions.frischholz2023.studies import GRID, TRUTH, TRUTH_SEED
 from reproductions.frischholz2023.tables import PANEL_FRICTION, SAVED_DPI, settings_grid
@@ -21,7 +22,6 @@ from snowshed.analysis.calibration.report import Calibration, calibrate, write
 from snowshed.base.formatting import number, percent
 from snowshed.plot.html_page import Grid, Picture
 from snowshed.plot.labels import label
-from snowshed.scene.thesis_tables import CALIBRATED
 from snowshed.study.table import read_table
 
 if TYPE_CHECKING:

@@ -9,6 +9,8 @@ import numpy as np
 
 from reproductions.common.hypothesis_tests import SIGMAS, Estimate
 from reproductions.common.section import Content
+from reproductions.frischholz2023.deviations import DEVIATIONS
+from reproductions.frischholz2023.printed import THESIS_QUARTILES, THESIS_ROWS
 from reproductions.frischholz2023.stages import ThesisComputation
 from reproductions.frischholz2023.studies import DEFAULTS, PANEL, THESIS, VARIANTS, VARIATIONS
 from reproductions.frischholz2023.variants import (
@@ -19,9 +21,9 @@ from reproductions.frischholz2023.variants import (
     read_variants,
     with_runs_of_its_own,
 )
-from snowshed.analysis.deviations import DEVIATIONS, FRAME_RATE
+from snowshed.analysis.regression.deviations import FRAME_RATE
 from snowshed.analysis.regression.geometry import DAMPING_RATE
-from snowshed.analysis.regression.summary import QUARTILES, THESIS_QUARTILES, THESIS_ROWS
+from snowshed.analysis.regression.summary import QUARTILES
 from snowshed.base.formatting import NOTHING, percent
 from snowshed.io.csv_table import write_csv
 from snowshed.plot.html_page import Grid

@@ -19,11 +19,11 @@ from reproductions.frischholz2023.tables import (
     widenings,
 )
 from snowshed.analysis.sensitivity.noise import seeding_noise
+from snowshed.analysis.sensitivity.parameter_ranges import PAIRS
 from snowshed.analysis.sensitivity.report import evaluate
 from snowshed.analysis.sensitivity.stored import read_stored
 from snowshed.plot.html_page import Grid, Picture
 from snowshed.plot.labels import label
-from snowshed.scene.thesis_tables import PAIRS
 
 if TYPE_CHECKING:
     import pandas as pd

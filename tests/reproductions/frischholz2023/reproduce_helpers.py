@@ -1,10 +1,12 @@
 """Stacks as closed formulas in place of simulations, in the stores of a reproduction."""
 
 import json
+from contextlib import contextmanager
 from dataclasses import replace
 
 import numpy as np
 import pandas as pd
+import pytest
 from reproductions.common.report import write_report
 from reproductions.frischholz2023.publication import REPRODUCTION
 from reproductions.frischholz2023.settings import QUICK
@@ -32,6 +34,20 @@ TINY = replace(
 TINY_WITH_PANELS = replace(TINY, simulates_panels=True)
 
 
+@contextmanager
+def few_fits(*, figures=False):
+    """Within, regressions choose among few hyper-parameters, and may draw no figures."""
+    from snowshed.analysis.regression import grid_kinds, pipeline
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(grid_kinds, "EPSILON", (1e-2, 1e-1))
+        patch.setattr(grid_kinds, "C", (1.0, 1e2))
+        patch.setattr(grid_kinds, "GAMMA", (1e-2, 1e-1))
+        if not figures:
+            patch.setattr(pipeline._Output, "_draw", lambda *_: None)
+        yield
+
+
 def report(found):
     """Write the report of a computation, as of the quick size."""
     return write_report(REPRODUCTION, REPRODUCTION.size("quick"), found.folder.path, found)
@@ -54,12 +70,10 @@ def stack(scene, event):
 
 def fill(found, stages=None, *, fail_one=False):
     """Put such stacks into the store, for some stages or all; the last run may have failed."""
-    for name, stage in found.study_stages.items():
-        if stages is not None and name not in stages:
-            continue
-        stage.state()  # enters the studies
+    chosen = [found.study_stages[name] for name in stages or found.study_stages]
+    studies = [study for stage in chosen for study in stage._registered()]
     with Store.open(found.folder.runs) as store:
-        runs = {run.hash: run for study in store.studies() for run in store.runs(study)}
+        runs = {run.hash: run for study in studies for run in store.runs(study)}
         pending = [run for run in runs.values() if run.status == "pending"]
         for run in pending:
             if fail_one and run is pending[-1]:

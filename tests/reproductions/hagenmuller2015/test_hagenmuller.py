@@ -117,7 +117,7 @@ def test_the_variants_have_the_names_that_claims_use(tmp_path):
 
 
 def test_the_page_of_all_stages_can_be_read_by_everyone(tmp_path):
-    found = GrainsComputation(tmp_path, Samples(90, 3))
+    found = GrainsComputation(tmp_path, Samples(40, 1))
     sizes = {"final_particles": 90, "spheres": 900, "density_kg_m3": 250.0}
     found.tests = Tests([table.assign(**sizes) for table in made_up().tables])
     write_report(REPRODUCTION, REPRODUCTION.size("quick"), tmp_path, found)

@@ -8,6 +8,7 @@ from plot.browser import check_page
 from reproductions.common.hypothesis_tests import CONFIRMED, CONTRADICTED, UNDECIDED, judge
 from reproductions.common.report import write_report
 from reproductions.saito2012 import cases as made
+from reproductions.saito2012 import sections
 from reproductions.saito2012.cases import FULL, QUICK
 from reproductions.saito2012.claims import CLAIMS, Courses
 from reproductions.saito2012.measures import Course
@@ -140,7 +141,9 @@ def test_the_command_writes_a_report(tmp_path, capsys):
     assert main(["reproduce", "saito", "-o", str(folder), "--full", "--report-only"]) == 2
 
 
-def test_the_page_of_all_cases_can_be_read_by_everyone(tmp_path):
+def test_the_page_of_all_cases_can_be_read_by_everyone(tmp_path, monkeypatch):
+    monkeypatch.setattr(sections, "WOODEN_TIMES", (1.0, 4.0))
+    monkeypatch.setattr(sections, "SLOPE_TIMES", (20.0,))
     found = AvalancheComputation(tmp_path, QUICK)
     found.courses = as_claimed()
     write_report(REPRODUCTION, REPRODUCTION.size("quick"), tmp_path, found)

@@ -6,20 +6,28 @@ from collections.abc import Mapping, Sequence
 from math import ceil, inf
 
 from snowshed._core import InputError
-from snowshed.analysis.deviations import DEVIATIONS, deviating_settings, deviations_named
+from snowshed.analysis.regression.deviations import (
+    DEVIATIONS,
+    deviating_settings,
+    deviations_named,
+)
 from snowshed.scene.accuracy_settings import ACCURACY
 from snowshed.scene.components import Snow
 from snowshed.scene.scene import Scene
-from snowshed.scene.thesis_tables import (
-    PANEL_HEIGHTS,
-    PANEL_LENGTHS,
-    STEEP_HEIGHTS,
-    STEEP_LENGTHS,
-    STEEP_TILTS,
-)
 from snowshed.study.definition import Study
 from snowshed.study.factors import SEED, Factor, axis
 
+#: Heights and lengths of the panels at 40 degrees, m, and those of steeper ones.
+FLAT_HEIGHTS = (1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0)
+FLAT_LENGTHS = (0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 6.0, 8.0, 10.0)
+STEEP_HEIGHTS = (2.0, 3.0, 4.0)
+STEEP_LENGTHS = (0.5, 1.5, 2.0, 4.0, 8.0)
+FLAT_TILT, STEEP_TILTS = 40.0, (50.0, 60.0, 70.0)  # degrees
+#: Tilts, heights and lengths whose combinations are the panels.
+GRIDS = (
+    ((FLAT_TILT,), FLAT_HEIGHTS, FLAT_LENGTHS),
+    (STEEP_TILTS, STEEP_HEIGHTS, STEEP_LENGTHS),
+)
 #: How snow goes from one event to the next; each is a study of its own.
 BETWEEN = ("carry", "reseed")
 #: The panel's friction, which the thesis does not print. Of 0.3 to 0.8, which were tried on some of
@@ -32,7 +40,6 @@ DAMPING_RATE = 190.0
 #: short panels scatter most, and long panels take longest. What one more stack takes from the
 #: scatter of the rows for its time asks for about as many.
 SHARES: Mapping[float, int] = {1.0: 1, 2.0: 3, 4.0: 6, inf: 16}
-FLAT_TILT = 40.0  # degrees, of the panels with all heights and lengths
 DESCRIPTION = "The geometry data set: 122 panels, 5 events each, 610 rows (Tables 5.1.1 and 5.2.1)."
 
 
@@ -64,8 +71,8 @@ def geometry_study(
         particles. Longer panels take more time and scatter less: those up to 2 m have a third as
         many, up to 4 m a sixth, the others a sixteenth, rounded up.
     deviations
-        Names of `snowshed.analysis.deviations` to undo, or "all": what the thesis does instead.
-        They go before `between` and `dx`; the trial has none.
+        Names of `snowshed.analysis.regression.deviations`, or "all": settings of the published
+        study. They go before `between` and `dx`; the trial has none.
     trial
         A few panels on a coarse grid, which take seconds, to try the way from study to prediction;
         its numbers mean nothing.
@@ -84,7 +91,7 @@ def geometry_study(
     scene = Scene.preset("geometry").update({"snow": Snow.preset("calibrated").to_data()})
     if trial:
         return _trial(scene, between, friction, seeds)
-    changes = deviating_settings(5, deviations)
+    changes = deviating_settings(deviations)
     between = str(changes.pop("events.between", between))
     scene.update(
         {
@@ -100,18 +107,14 @@ def geometry_study(
     shown = {"panel.friction": friction, "events.between": between}
     shown.update({path: one for path, one in changes.items() if path not in ACCURACY.values()})
     common = [axis(path, [value]) for path, value in shown.items()]  # which the table shows
-    grids = (
-        ((FLAT_TILT,), PANEL_HEIGHTS, PANEL_LENGTHS),
-        (STEEP_TILTS, STEEP_HEIGHTS, STEEP_LENGTHS),
-    )
     parts = [
         [*common, *_panels(tilts, heights, some), axis(SEED, _seeds(seeds, share))]
-        for tilts, heights, lengths in grids
+        for tilts, heights, lengths in GRIDS
         for share in SHARES.values()
         if (some := [one for one in lengths if _share(one) == share])
     ]
     undone = deviations_named(deviations)
-    others = [one.name for one in undone if one.simulated and one.name != between]
+    others = [name for name in undone if DEVIATIONS[name] and name != between]
     name = ["thesis"] if len(undone) == len(DEVIATIONS) else [between, *others]
     return Study(scene, parts, "-".join(["geometry", *name]), description=DESCRIPTION)
 

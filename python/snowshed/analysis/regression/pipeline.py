@@ -15,6 +15,7 @@ from snowshed.analysis.regression.folds import CrossValidation
 from snowshed.analysis.regression.kinds import Kind, kinds_named
 from snowshed.analysis.regression.model_file import STORED_KINDS, Member, StackModel, save_model
 from snowshed.analysis.regression.nested import Results, cross_validate
+from snowshed.analysis.regression.published import compare_with_published, published
 from snowshed.analysis.regression.rows import INPUTS, TARGETS, StackRows
 from snowshed.analysis.regression.spread import stack_spread, unseen_panels
 from snowshed.base.arrays import Floats
@@ -45,7 +46,7 @@ class TargetReport:
     expression
         The linear model as a formula; empty if there is none.
     checks
-        For the ratio, in words, whether the thesis's claims hold.
+        For the ratio, in words, whether the results agree with published ones.
     """
 
     target: str
@@ -65,6 +66,7 @@ def regress(
     jobs: Optional[int] = None,
     title: str = "",
     measure: str = "stack",
+    figures: bool = True,
     progress: Optional[Reporter] = None,
 ) -> list[TargetReport]:
     """Regress stacks on panels, and write models, tables and figures.
@@ -85,6 +87,8 @@ def regress(
         Processes; None: as many as there are cores.
     title, measure
         What the data are, and what of the stack was measured; kept in the model file.
+    figures
+        Whether figures are drawn.
     progress
         Called after each outer fold.
 
@@ -117,15 +121,23 @@ def regress(
         progress=progress,
     )
     with one_thread():
-        return _Output(rows, Path(folder), kinds, results).write(chosen, title, measure)
+        output = _Output(rows, Path(folder), kinds, results, figures=figures)
+        return output.write(chosen, title, measure)
 
 
 class _Output:
     """Turns the folds' results into files."""
 
     def __init__(
-        self, rows: StackRows, folder: Path, kinds: Mapping[str, Kind], results: Results
+        self,
+        rows: StackRows,
+        folder: Path,
+        kinds: Mapping[str, Kind],
+        results: Results,
+        *,
+        figures: bool,
     ) -> None:
+        self._figures = figures
         self._rows, self._folder, self._kinds, self._results = rows, folder, kinds, results
         self._titles = {name: kind.title for name, kind in kinds.items()}
 
@@ -179,7 +191,7 @@ class _Output:
         quartiles = summary.quartile_table(elected, values, target)
         comparable = (
             target == "ratio"
-            and len(values) == summary.THESIS_ROWS
+            and len(values) == published().rows
             and tuple(self._rows.names) == INPUTS
         )
         errors = summary.error_table(elected, self._rows, target, unseen)
@@ -188,7 +200,7 @@ class _Output:
             quartiles,
             errors,
             summary.linear_expression(linear, self._rows, target) if linear else "",
-            tuple(summary.thesis_checks(quartiles, errors)) if comparable else (),
+            tuple(compare_with_published(quartiles, errors)) if comparable else (),
         )
         write_csv(report.quartiles.reset_index(), folder / "quartiles.csv", float_format="%.6g")
         write_csv(report.errors.reset_index(), folder / "errors.csv", float_format="%.6g")
@@ -197,7 +209,8 @@ class _Output:
         if report.expression:
             write_text(folder / "linear.txt", report.expression + "\n")
         of_target = {kind: member for (name, kind), member in members.items() if name == target}
-        self._draw(report, elected, of_target)
+        if self._figures:
+            self._draw(report, elected, of_target)
         return report
 
     def _draw(

@@ -9,9 +9,9 @@ import numpy as np
 
 from snowshed._core import InputError
 from snowshed.analysis.sensitivity.noise import noise_of
+from snowshed.analysis.sensitivity.parameter_ranges import GROUPS
 from snowshed.analysis.sensitivity.stored import TARGETS, StoredRuns
 from snowshed.base.arrays import Floats
-from snowshed.scene.thesis_tables import GROUPS
 
 if TYPE_CHECKING:
     import pandas as pd

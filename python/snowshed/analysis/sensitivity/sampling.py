@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 
 from snowshed._core import InputError
+from snowshed.analysis.sensitivity.parameter_ranges import HARDENING, VALUES
 from snowshed.base.arrays import Floats
 from snowshed.base.extras import require
-from snowshed.scene.thesis_tables import HARDENING, SENSITIVITY
 from snowshed.study.factors import SEED, Span
 
 EXTRA = "sensitivity"
@@ -23,7 +23,7 @@ RANDOM = 1  # seed of the samples: the same sample whenever it is asked for
 #: Ranges of Table 3.2.1; the hardening factor spans a decade, and so is sampled by its logarithm.
 SPANS: Mapping[str, Span] = {
     path: Span(min(values), max(values), "log" if path == HARDENING else "linear")
-    for path, values in SENSITIVITY.items()
+    for path, values in VALUES.items()
 }
 
 Columns = dict[str, list[float]]

@@ -9,8 +9,8 @@ import numpy as np
 
 from snowshed._core import InputError
 from snowshed.analysis.sensitivity.noise import noise_of
+from snowshed.analysis.sensitivity.parameter_ranges import PAIRS
 from snowshed.analysis.sensitivity.stored import TARGETS, StoredRuns
-from snowshed.scene.thesis_tables import PAIRS
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -9,7 +9,7 @@ from typing import Optional
 import click
 from click.core import ParameterSource
 
-from snowshed.analysis.deviations import ALL, DEVIATIONS
+from snowshed.analysis.regression.deviations import ALL, DEVIATIONS
 from snowshed.analysis.regression.geometry import FRICTION
 from snowshed.cli.common_options import PATH, quiet_notes_option
 from snowshed.cli.terminal import write_out

@@ -1,26 +1,25 @@
 """Where our settings deviate from the letter of the thesis, each with its reason.
 
 All deviations undone are the preset ``thesis``; each can be undone alone. What the thesis leaves
-open, as the panel's friction, is none: the docs say what is taken there.
+open, as the panel's friction, is none: the docs say what is taken there. The settings are those of
+`snowshed.analysis.regression.deviations`, which `snowshed geometry --deviation` offers.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Optional
 
 from snowshed._core import InputError
+from snowshed.analysis.regression.deviations import ALL, FRAME_RATE, deviations_named
+from snowshed.analysis.regression.deviations import deviating_settings as panel_settings
 from snowshed.snow.stack.trimming import DEFAULT_TRIMMING
 
 #: Frames of an event by the thesis's chapters: Tables 3.2.1, 4.1.1, 5.1.1.
 FRAMES: Mapping[int, int] = {3: 50, 4: 60, 5: 100}
-#: Frames in a second. The thesis does not print it; this is Houdini's usual rate.
-FRAME_RATE = 24.0
 #: Size of the thesis's grid cells, m.
 THESIS_DX = 0.01
-#: Stands for all deviations together.
-ALL = "all"
 
 
 @dataclass(frozen=True)
@@ -33,8 +32,6 @@ class Deviation:
         By which it is asked for.
     thesis, here, reason
         What the thesis does, what is done here unless asked otherwise, and why; sentences.
-    change
-        From the thesis's chapter to what it sets in a scene, by dotted paths.
     trimming
         The reading of A.4.2 that it measures stacks by, if it is about that.
     """
@@ -43,17 +40,12 @@ class Deviation:
     thesis: str
     here: str
     reason: str
-    change: Callable[[int], Mapping[str, object]]
     trimming: Optional[str] = None
 
     @property
     def simulated(self) -> bool:
         """False if it changes the measuring alone, so that it needs no run of its own."""
         return self.trimming is None
-
-
-def _cut(chapter: int) -> dict[str, object]:
-    return {"events.max_time": FRAMES[chapter] / FRAME_RATE}
 
 
 DEVIATIONS: Mapping[str, Deviation] = {
@@ -65,7 +57,6 @@ DEVIATIONS: Mapping[str, Deviation] = {
             "Snow may leave the panel's face.",
             "With SLIP to the letter snow leaves the plane of the panel over its edge only, and a "
             "slab that tips over the edge is held down behind it.",
-            lambda chapter: {"panel.condition": "slip"},
         ),
         Deviation(
             "damping",
@@ -73,21 +64,18 @@ DEVIATIONS: Mapping[str, Deviation] = {
             "Panels of chapter 5 are damped at a rate, that of this share with the thesis's cells.",
             "A share in each step makes the damping depend on the step, and so on the cells: a "
             "shorter step damps more.",
-            lambda chapter: {"numerics.transfer": "flip", "numerics.flip_ratio": 0.99},
         ),
         Deviation(
             "reseed",
             "Between events the stack is turned into a solid and seeded anew.",
             "The particles stay as they are.",
             "Seeding anew makes broken bonds whole, forgets compaction, and moves the stack.",
-            lambda chapter: {"events.between": "reseed"},
         ),
         Deviation(
             "grid",
             "Cells of 1 cm.",
             "Cells of 1.5 cm for the panels of chapter 5, 1 cm elsewhere.",
             "Cells of 1 cm take 3.4 times as long; the time went into more seedings.",
-            lambda chapter: {"numerics.dx": THESIS_DX},
         ),
         Deviation(
             "frames",
@@ -96,7 +84,6 @@ DEVIATIONS: Mapping[str, Deviation] = {
             "An event is over when the snow rests.",
             "A long slab on a rough panel slides longer than that, and snow that still moves is no "
             "stack yet.",
-            _cut,
         ),
         Deviation(
             "trimming",
@@ -106,31 +93,10 @@ DEVIATIONS: Mapping[str, Deviation] = {
             "it is the principle of the 3D rule.",
             "Where snow has rolled far off, steps at equal pace take the 3 % from the dense end; "
             "the length of a stack then scatters more from seeding to seeding.",
-            lambda chapter: {},
-            "equal_pace",
+            trimming="equal_pace",
         ),
     )
 }
-
-
-def deviations_named(names: Sequence[str]) -> list[Deviation]:
-    """Return deviations in their order; "all" stands for every one.
-
-    Raises
-    ------
-    InputError
-        If there is none of a name.
-
-    Examples
-    --------
-    >>> [one.name for one in deviations_named(["frames", "slip"])]
-    ['slip', 'frames']
-    """
-    for name in names:
-        if name not in DEVIATIONS and name != ALL:
-            allowed = ", ".join([*DEVIATIONS, ALL])
-            raise InputError(f"deviation: {name!r} is unknown; allowed: {allowed}")
-    return [one for one in DEVIATIONS.values() if one.name in names or ALL in names]
 
 
 def deviating_settings(chapter: int, names: Sequence[str] = (ALL,)) -> dict[str, object]:
@@ -160,12 +126,13 @@ def deviating_settings(chapter: int, names: Sequence[str] = (ALL,)) -> dict[str,
     """
     if chapter not in FRAMES:
         raise InputError(f"chapter: {chapter!r}; allowed: {', '.join(map(str, FRAMES))}")
-    settings: dict[str, object] = {}
-    for one in deviations_named(names):
-        settings.update(one.change(chapter))
+    settings = panel_settings(names)
+    if "events.max_time" in settings:
+        settings["events.max_time"] = FRAMES[chapter] / FRAME_RATE
     return settings
 
 
 def deviating_trimming(names: Sequence[str] = (ALL,)) -> str:
     """Return the reading of A.4.2 by which stacks are measured with some deviations."""
-    return next((one.trimming for one in deviations_named(names) if one.trimming), DEFAULT_TRIMMING)
+    named = (DEVIATIONS[name].trimming for name in deviations_named(names))
+    return next((trimming for trimming in named if trimming), DEFAULT_TRIMMING)

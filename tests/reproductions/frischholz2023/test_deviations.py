@@ -3,15 +3,16 @@
 import json
 
 import pytest
-
-from snowshed import InputError, Scene
-from snowshed.analysis.deviations import (
+from reproductions.frischholz2023.deviations import (
     DEVIATIONS,
     deviating_settings,
     deviating_trimming,
-    deviations_named,
 )
+
+from snowshed import InputError, Scene
+from snowshed.analysis.regression import deviations as package
 from snowshed.analysis.regression import geometry_study
+from snowshed.analysis.regression.deviations import deviations_named
 from snowshed.snow.stack.trimming import DEFAULT_TRIMMING, TRIMMINGS
 from snowshed.study.table import value_at
 
@@ -35,6 +36,11 @@ def test_the_preset_is_what_the_thesis_prints():
 def test_events_are_cut_at_the_frames_of_each_chapter(chapter, seconds):
     settings = deviating_settings(chapter, ["frames"])
     assert settings == {"events.max_time": pytest.approx(seconds, abs=1e-4)}
+
+
+def test_the_package_offers_the_same_deviations_with_the_settings_of_panels():
+    assert list(package.DEVIATIONS) == list(DEVIATIONS)
+    assert package.deviating_settings() == deviating_settings(5)
 
 
 @pytest.mark.parametrize("name", DEVIATIONS)
