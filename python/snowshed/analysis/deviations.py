@@ -1,7 +1,7 @@
-"""Where our settings deviate from the letter of the thesis, each with its reason.
+"""Deviations of the default settings from the thesis, each with its reason.
 
-All deviations undone are the preset ``thesis``; each can be undone alone. What the thesis leaves
-open, as the panel's friction, is none: the docs say what is taken there.
+The preset ``thesis`` undoes all deviations; each can be undone alone. Choices that the thesis
+leaves open, such as the panel's friction, are no deviations: the docs list them.
 """
 
 from __future__ import annotations
@@ -25,16 +25,16 @@ ALL = "all"
 
 @dataclass(frozen=True)
 class Deviation:
-    """One thing that the thesis does in another way.
+    """A deviation from the thesis.
 
     Attributes
     ----------
     name
-        By which it is asked for.
+        Name of the deviation in options.
     thesis, here, reason
-        What the thesis does, what is done here unless asked otherwise, and why; sentences.
+        Practice of the thesis, default here, and reason; sentences.
     change
-        From the thesis's chapter to what it sets in a scene, by dotted paths.
+        Scene values by dotted paths, for each chapter of the thesis.
     trimming
         The reading of A.4.2 that it measures stacks by, if it is about that.
     """
@@ -48,7 +48,7 @@ class Deviation:
 
     @property
     def simulated(self) -> bool:
-        """False if it changes the measuring alone, so that it needs no run of its own."""
+        """Whether the deviation changes the simulation, and not only the measuring."""
         return self.trimming is None
 
 
@@ -119,7 +119,7 @@ def deviations_named(names: Sequence[str]) -> list[Deviation]:
     Raises
     ------
     InputError
-        If there is none of a name.
+        If a name is unknown.
 
     Examples
     --------
@@ -139,9 +139,9 @@ def deviating_settings(chapter: int, names: Sequence[str] = (ALL,)) -> dict[str,
     Parameters
     ----------
     chapter
-        Of the thesis: 3, 4 (with the laboratory of chapter 2) or 5.
+        Chapter of the thesis: 3, 4 (with the laboratory of chapter 2) or 5.
     names
-        Of the deviations.
+        Names of the deviations.
 
     Returns
     -------
@@ -167,5 +167,5 @@ def deviating_settings(chapter: int, names: Sequence[str] = (ALL,)) -> dict[str,
 
 
 def deviating_trimming(names: Sequence[str] = (ALL,)) -> str:
-    """Return the reading of A.4.2 by which stacks are measured with some deviations."""
+    """Return the trimming rule (A.4.2) for stacks with the given deviations undone."""
     return next((one.trimming for one in deviations_named(names) if one.trimming), DEFAULT_TRIMMING)

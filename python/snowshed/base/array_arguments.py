@@ -19,13 +19,13 @@ def points(name: str, given: ArrayLike, dimension: int, count: Optional[int] = N
     Parameters
     ----------
     name
-        Of the argument, for messages.
+        Name of the argument in messages.
     given : (n, 3), or (n, 2) in 2D
         Anything NumPy makes an array of. Two columns are x and z; y is then zero.
     dimension
         2 or 3.
     count
-        How many rows there must be; None: any number.
+        Required number of rows. [default: any]
 
     Returns
     -------
@@ -162,7 +162,7 @@ def _wrong_shape(name: str, array: NDArray[Any], allowed: str) -> InputError:
 
 
 def whole_number(name: str, given: int, *, lowest: int) -> int:
-    """Return an argument that is to be a whole number, not below `lowest`; InputError if it is not.
+    """Return an argument that must be an integer, at least `lowest`; raises InputError.
 
     Examples
     --------

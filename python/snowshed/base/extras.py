@@ -14,11 +14,11 @@ def require(module: str, extra: str, purpose: str) -> Any:
     Parameters
     ----------
     module
-        What to import.
+        Name of the module to import.
     extra
         The extra of snowshed that brings it.
     purpose
-        What needs it, for the message.
+        Purpose of the import, for the message.
 
     Raises
     ------

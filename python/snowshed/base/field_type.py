@@ -14,7 +14,7 @@ from typing import Literal, Union
 from snowshed._core import InputError
 from snowshed.base.messages import shortened, suggestion
 
-#: What `convert` returns for a value of another type.
+#: Result of `convert` for a value of another type.
 MISMATCH = object()
 
 
@@ -27,11 +27,11 @@ def convert(value: object, hint: object, where: str) -> object:
     Parameters
     ----------
     value
-        What is to be kept.
+        The value to store.
     hint
         The field's annotation, evaluated.
     where
-        What to call the field in messages.
+        Name of the field in messages.
 
     Raises
     ------
@@ -167,7 +167,7 @@ _WORDS: Mapping[object, str] = {
 
 
 def _expected(alternatives: Sequence[object], value: object) -> str:
-    """Return the end of the message that `value` is of none of the types."""
+    """Return the end of the message for a value of a wrong type."""
     choices = [name for kind in alternatives for name in _choices(kind)]
     if choices:
         near = suggestion(value, choices) if isinstance(value, str) else ""

@@ -5,11 +5,11 @@ from __future__ import annotations
 from math import inf, isnan
 from typing import Optional
 
-#: What stands where there is no number.
+#: Text for a missing number.
 NOTHING = "\N{EN DASH}"
 TIMES = "\N{MULTIPLICATION SIGN}"
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-#: Parts below this are shown as they are, not in percent.
+#: Smaller shares are written as plain numbers, not in percent.
 SMALL = 1e-5
 #: Up to how many seconds an estimate is told in which unit, of how many seconds, to what digit.
 UNITS_OF_TIME = (
@@ -53,7 +53,7 @@ def number(value: Optional[float], digits: int = 3) -> str:
 
 
 def percent(value: Optional[float], digits: int = 3) -> str:
-    """Return a part as a percentage; very small ones as they are.
+    """Return a share in percent; very small ones as plain numbers.
 
     Examples
     --------

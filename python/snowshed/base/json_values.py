@@ -4,6 +4,6 @@ from __future__ import annotations
 
 from typing import Dict, List, Union
 
-#: What `json.loads` returns.
+#: A result of `json.loads`.
 JsonValue = Union[None, bool, int, float, str, List["JsonValue"], Dict[str, "JsonValue"]]
 JsonObject = Dict[str, JsonValue]

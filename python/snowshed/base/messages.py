@@ -1,4 +1,4 @@
-"""Text from files in error messages, which stay one line to read whatever a file holds."""
+"""Text from files in error messages, shortened to a readable line."""
 
 from __future__ import annotations
 

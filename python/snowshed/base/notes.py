@@ -1,4 +1,4 @@
-"""What a reader assumed, filled, left out or changed, said where the answer stands.
+"""Notes: what a reader assumed, filled, left out or changed.
 
 A note is a Python warning of its own class, so that scripts can filter it, turn it into an error or
 record it. The command line prints it as "note: …". What is stored with results is recorded by
@@ -24,7 +24,7 @@ def tell(text: str, stacklevel: int = 2) -> None:
     text
         A sentence without its full stop.
     stacklevel
-        As of `warnings.warn`, seen from the caller.
+        As for `warnings.warn`, seen from the caller.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Numbers in files that people write: what stands there must be a number, and nothing else."""
+"""Numbers in text files: a cell must be a number, and nothing else."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ LONGEST = 400  # characters
 
 
 def number_in(text: str) -> float:
-    """Return the number that a text is; NaN where it is none, or none that is finite.
+    """Return the number in a text; NaN if the text is not a finite number.
 
     Other than ``float`` it takes no digits of other scripts, no underscores and no words.
 

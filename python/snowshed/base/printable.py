@@ -1,7 +1,7 @@
 """Texts from files and callers in a form that does no harm where it is shown.
 
-They may hold what a terminal takes for commands, what turns the direction of writing, or what a
-spreadsheet computes.
+Texts may hold commands to a terminal, marks that change the writing direction, or formulas of a
+spreadsheet.
 """
 
 from __future__ import annotations

@@ -123,7 +123,7 @@ def choose(
     path = resolution_path(data)
     name = path.rpartition(".")[2]
     share = float(stack.settings[name]) / _slab_thickness(Scene.preset(PRESET).resolve().data)
-    # What a recorded run does not name had its default, and so must have it here.
+    # A recorded run used the defaults of unnamed settings, so they must be defaults here, too.
     values = {where: stack.settings.get(key) for key, where in ACCURACY.items()}
     size = float(f"{share * thickness:.3g}")
     values[path] = size
@@ -244,7 +244,7 @@ def _distance(value: Value, mine: Value) -> float:
 
 
 def _reasons(stack: RecordedStack, wanted: float, data: Mapping[str, Any], name: str) -> list[str]:
-    """Return the rest of the first sentence, which tells the setting `name`, and what follows."""
+    """Return the end of the first sentence, after the setting `name`, and the further sentences."""
     from snowshed.analysis.accuracy.setting_labels import settings
 
     scheme = {k: v for k, v in stack.settings.items() if k in ACCURACY and k != name}

@@ -37,8 +37,8 @@ def progress_bar(
 ) -> Iterator[Optional[Reporter]]:
     """Yield a function that shows a `Progress` as a bar; the bar ends with the block.
 
-    The bar appears with the first report, so that earlier errors stand alone. It shows the time
-    that is left as the work reports it, or else as it follows from the speed so far.
+    The bar appears with the first report, so that earlier errors stand alone. It shows the
+    remaining time from the report, or from the speed so far.
 
     Parameters
     ----------

@@ -39,7 +39,7 @@ SHORT_NAMES = {
     "obstacles": "obstacle",
     "bodies": "body",
 }
-#: What ``--help`` shows.
+#: Options in ``--help``; ``--help-all`` shows the others, too.
 BASIC = (
     "dimension", "panel.height", "panel.length", "panel.width", "panel.tilt", "panel.friction",
     "panel.condition", "slab.thickness", "slab.layers", "ground.tilt", "snow.density",
@@ -109,7 +109,7 @@ def scene_options(command: Command) -> Command:
 
 
 def _completed(names: Sequence[str], *, files: bool = False) -> Callable[..., Any]:
-    """Return what a shell offers for an option: names, and files where none of them fits."""
+    """Return the completion of an option: names, or files if no name fits."""
 
     def offered(_: click.Context, __: click.Parameter, begun: str) -> list[CompletionItem]:
         fitting = [CompletionItem(name) for name in names if name.startswith(begun)]

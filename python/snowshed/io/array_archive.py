@@ -17,12 +17,12 @@ LARGEST = 1 << 30  # bytes
 def open_archive(content: bytes, largest: int = LARGEST) -> Iterator[Any]:
     """Yield the arrays of an archive.
 
-    A small archive can hold arrays that fill the memory, so what they take is looked up before.
+    A small archive can hold arrays that fill the memory, so their sizes are checked first.
 
     Parameters
     ----------
     content
-        Of the file.
+        Content of the file.
     largest
         Bytes that the file may have, and that its arrays may take.
 

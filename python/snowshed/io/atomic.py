@@ -15,11 +15,11 @@ from typing import Union
 
 from snowshed._core import InputError
 
-#: How files begin that are still being written, or that a killed process left.
+#: Prefix of files that are being written, or that a killed process left.
 LEFTOVER = re.compile(r"\.partial-[0-9a-f]{16}-")
 #: Errors of file systems that flush nothing.
 CANNOT_FLUSH = (errno.EINVAL, errno.ENOTSUP, errno.EROFS)
-#: How a file is opened that may be a link, which is refused, or a pipe that nobody writes to.
+#: Flags to open a file that may be a link (refused) or a pipe without a writer.
 WITHOUT_WAITING = os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK
 
 
@@ -27,8 +27,7 @@ WITHOUT_WAITING = os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK
 def replacing(path: Union[str, os.PathLike[str]]) -> Iterator[Path]:
     """Yield a path to write to, in the same folder; it takes the place of `path` on success.
 
-    Of a link, the file that it names is replaced. What killed processes left of such a file is
-    removed.
+    If the file is a link, its target is replaced. Leftovers of killed processes are removed.
 
     Raises
     ------
@@ -46,7 +45,7 @@ def replacing(path: Union[str, os.PathLike[str]]) -> Iterator[Path]:
     """
     path = Path(path)
     if path.exists() and not path.is_file():
-        raise InputError(f"{path}: not a file; what is written would destroy it")
+        raise InputError(f"{path}: not a file; writing would destroy it")
     path = Path(os.path.realpath(path))
     if path.is_symlink():
         raise OSError(errno.ELOOP, os.strerror(errno.ELOOP), str(path))
@@ -70,7 +69,7 @@ def replacing(path: Union[str, os.PathLike[str]]) -> Iterator[Path]:
 def replacing_folder(path: Union[str, os.PathLike[str]]) -> Iterator[Path]:
     """Yield a new folder beside `path`; it takes the place of `path`, if empty, on success.
 
-    What killed processes left of such a folder is removed.
+    Leftovers of killed processes are removed.
 
     Examples
     --------
@@ -160,7 +159,7 @@ def remove_leftovers(folder: Path) -> None:
 def _partial(path: Path) -> str:
     """Return a name for what becomes `path`.
 
-    Nobody can guess it, so nobody can plant a link there. The core removes files of such names from
+    The name is random, so that nobody can plant a link there. The core removes such files from
     results folders.
     """
     return f".partial-{secrets.token_hex(8)}-{_end_of(path.name)}"

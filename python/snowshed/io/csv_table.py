@@ -142,7 +142,7 @@ class Row:
     Attributes
     ----------
     table, place
-        Where it stands, for messages: in which table, and in which line or row of it.
+        Position for messages: the table, and the line or row.
     number
         Its line, or else its row, from 1.
     cells
@@ -169,7 +169,7 @@ class TextTable:
     columns
         Names.
     rows
-        What is below.
+        The rows below the head.
     """
 
     columns: Sequence[str]
@@ -186,7 +186,7 @@ def read_text_table(
     path
         The file, packed with gzip or xz or not.
     hint
-        What to do about a file that is empty, for the message.
+        Advice for an empty file, for the message.
     check_columns
         Called with the names and where they stand before any row is read; raises InputError if
         they do not serve.
@@ -194,7 +194,7 @@ def read_text_table(
     Raises
     ------
     InputError
-        As for `read_csv`, naming the line.
+        As for `read_csv`; the message names the line.
     OSError
         If it cannot be read.
     """
@@ -216,7 +216,7 @@ def csv_text(table: pd.DataFrame, **options: Any) -> str:
     table
         Any table.
     **options
-        As of `pandas.DataFrame.to_csv`.
+        As for `pandas.DataFrame.to_csv`.
 
     Examples
     --------
@@ -252,11 +252,11 @@ def frame_as_text(table: pd.DataFrame, name: str, *, index: str) -> TextTable:
     Parameters
     ----------
     table
-        Any DataFrame; what is missing becomes an empty text, numbers keep their value.
+        Any DataFrame; a missing value becomes an empty text, numbers keep their value.
     name
-        What messages call it.
+        Name of the table in messages.
     index
-        The column that the index stands for, if the table has none of that name.
+        The column for the index, if the table has no column of this name.
     """
     if index not in table:
         table = table.rename_axis(index).reset_index()
@@ -328,7 +328,7 @@ def _decoded(path: Path, largest: int) -> str:
 def _records(
     path: Path | str, text: str, comment: str = "", most: int = ROWS
 ) -> Iterator[tuple[int, list[str]]]:
-    """Yield the first line and the cells of each record, which has as many as there are names."""
+    """Yield the first line and the cells of each record, all of the same length."""
     pulled: list[int] = []
     reader = csv.reader(_numbered(path, text, comment, pulled), strict=True)
     names: list[str] = []

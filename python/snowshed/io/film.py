@@ -49,7 +49,7 @@ def _shown(text: str) -> str:
 
 
 class FrameFacts(NamedTuple):
-    """What is known of a frame before it is decoded: time (s), event and particles."""
+    """Facts about a frame before it is decoded: time (s), event and particles."""
 
     time: float
     event: int
@@ -65,17 +65,17 @@ class FilmFrame:
     time
         s, through all events.
     event
-        Whose event this is, from 1.
+        Number of the event, from 1.
     ids : (n,)
-        Of the particles, rising.
+        Ids of the particles, rising.
     events, materials : (n,)
-        Which event and which of the scene's snows each particle is of.
+        Event of each particle, and its index among the scene's snows.
     radii : (n,)
         m; empty where the method has none.
     positions : (n, 3)
         m; y is 0 in 2D.
     codes : (n, q)
-        Of the film's quantities.
+        Codes of the film's quantities.
     """
 
     time: float
@@ -133,9 +133,9 @@ class Film:
 
     @property
     def notes(self) -> list[str]:
-        """What should be known of the film as a record of the run."""
+        """Notes on the limits of the film as a record of the run."""
         if not self.whole:
-            return ["the film ends within a frame: its run still goes on, or was killed"]
+            return ["the film ends within a frame: its run is still active, or was killed"]
         if self.version == 1:
             return [
                 "the film is of version 1, which knows the checksum of each frame, but not whether "
@@ -144,7 +144,7 @@ class Film:
         return [] if self.closed else ["the film is not complete: its run has not come to its end"]
 
     def checksum(self, frames: int) -> str:
-        """Return the checksum of the first so many frames, as run.json holds it."""
+        """Return the checksum of the first frames, as run.json holds it."""
         return _core.FilmReader(self.path).checksum(frames)
 
     def __iter__(self) -> Iterator[FilmFrame]:

@@ -1,4 +1,4 @@
-"""Reading files that somebody else may have written, of whatever size."""
+"""Reading files from untrusted sources, of any size."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def first_bytes(path: Path, count: int) -> bytes:
 
 
 def open_regular(path: Path) -> BinaryIO:
-    """Return an open file that is no device and no pipe, for which nobody waits.
+    """Return an open file that is neither a device nor a pipe, without waiting.
 
     Raises
     ------
@@ -117,7 +117,7 @@ def _memory() -> int:
 def read_input(path: Path, largest: int = TEXT) -> bytes:
     """Return the content of a file; devices without end are read no farther than `largest` bytes.
 
-    A pipe is read as long as its writer goes on, but nothing waits for a writer that is silent.
+    A pipe is read until its writer closes it; a silent writer is not waited for.
 
     Raises
     ------
@@ -138,7 +138,7 @@ def read_input(path: Path, largest: int = TEXT) -> bytes:
         if not stat.S_ISREG(status.st_mode):
             content = _awaited(file.fileno(), path, largest)
         elif status.st_size <= largest:
-            content = file.read(largest + 1) or b""  # None of what has nothing to say yet
+            content = file.read(largest + 1) or b""  # None before the first byte
         if status.st_size > largest or len(content) > largest:
             limit = f"{largest} bytes" if largest % MB else f"{largest // MB} MB"
             raise InputError(f"{path}: longer than {limit}")
@@ -146,7 +146,7 @@ def read_input(path: Path, largest: int = TEXT) -> bytes:
 
 
 def _awaited(descriptor: int, path: Path, largest: int) -> bytes:
-    """Return what a pipe or a device holds, at most `largest` + 1 bytes."""
+    """Return the content of a pipe or a device, at most `largest` + 1 bytes."""
     content, end = bytearray(), time.monotonic() + PIPE
     while len(content) <= largest:
         wait = min(end - time.monotonic(), PIPE_SILENCE)

@@ -14,10 +14,10 @@ from snowshed.base.messages import shortened
 from snowshed.io.input_file import read_input
 from snowshed.io.json_text import loads
 
-#: How the last value of an object begins that says its checksum, as the core writes it.
+#: Beginning of an object's last value, its checksum, as the core writes it.
 SEAL = b',\n  "checksum": "'
 
-#: What the values of a JSON object may have to be, in words.
+#: Names of the required types of JSON values.
 KINDS = {dict: "an object", list: "a list", str: "a text", float: "a finite number"}
 
 
@@ -67,7 +67,7 @@ def check_values(found: Any, kinds: Mapping[str, type], where: str) -> None:
     kinds
         For every key one of `KINDS`.
     where
-        Where the data is, for the message.
+        Position of the data, for the message.
 
     Examples
     --------

@@ -53,7 +53,7 @@ def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 def _repeated(text: str) -> Iterator[tuple[str, int]]:
     """Yield path and line of the keys that are there for the second time, in a sound text."""
     names: list[Union[str, int]] = []  # from the root to where the text is
-    seen: list[set[str]] = []  # keys of the objects around, and none of the lists
+    seen: list[set[str]] = []  # keys of the enclosing objects, and indices of the lists
     before = ""
     for token in _TOKEN.finditer(text):
         sign = token.group()

@@ -1,8 +1,8 @@
-"""Files of a results folder, checked by what its run.json says of them.
+"""Files of a results folder, checked against the checksums in its run.json.
 
-A table has a checksum of its rows through an event. Of any other file, run.json has the length and
-the checksum of what the run wrote; one that grows may have become longer while the run goes on.
-Folders of the version before have no such checksums.
+A table has a checksum of its rows through an event. For any other file, run.json holds the length
+and the checksum of the written part, because a growing file may be longer meanwhile. Folders of the
+version before have no such checksums.
 """
 
 from __future__ import annotations
@@ -17,12 +17,12 @@ from snowshed.io.input_file import read_regular
 from snowshed.io.json_file import read_object
 
 RECORD = "run.json"
-#: Files that `snowshed-run` does not keep up where it goes on with a run.
+#: Files that `snowshed-run` does not update when it resumes a run.
 OF_PYTHON = ("curve.csv", "energy_history.csv", "grains.json", "slide.json")
 
 
 def read_record(folder: Path) -> dict[str, Any]:
-    """Return what run.json of a results folder says; nothing where there is none.
+    """Return the content of run.json in a results folder; empty without the file.
 
     Raises
     ------

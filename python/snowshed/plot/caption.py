@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 #: Parameters of the snow that are named.
 ELASTIC = ("youngs_modulus", "poissons_ratio")
 PLASTIC = ("critical_state_slope", "preconsolidation_pressure", "cohesion", "hardening_factor")
-#: What becomes of the stack between events.
+#: Treatment of the stack between events.
 BETWEEN = {"carry": "the stack stays", "reseed": "the stack is seeded anew"}
 MOST_LAYERS = 4  # whose thicknesses are named one by one
 

@@ -60,7 +60,7 @@ def design_figure(found: Sequence[tuple[float, float, float, Band]], probability
     found
         Slope length, m, tilt, degrees, required height, m, and its lower and upper bound.
     probability
-        Of staying clear in a winter.
+        Share of winters in which the edge stays clear.
     """
     with rc_context(STYLE):
         figure = blank(6.4, 3.6)
@@ -86,7 +86,7 @@ def causes_figure(shares: Mapping[str, float]) -> Figure:
     Parameters
     ----------
     shares
-        Parts from 0 to 1 by cause in words.
+        Shares from 0 to 1 by the label of the cause.
     """
     with rc_context(STYLE):
         figure = blank(6.4, 0.9 + 0.34 * len(shares))
@@ -102,5 +102,5 @@ def causes_figure(shares: Mapping[str, float]) -> Figure:
         axes.set_xlim(0.0, 1.15 * max(parts))
         axes.grid(False)
         axes.spines["left"].set_color(FAINT)
-        axes.set_title("What the required height varies with, % of its variance")
+        axes.set_title("Causes of the variance of the required height, %")
         return figure

@@ -1,4 +1,4 @@
-"""The energy of a run over time: what the snow holds, and where the rest went."""
+"""The energy of a run over time: the snow's own, and its losses."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 HELD, OF_HEIGHT = ("kinetic_j", "elastic_j", "bonds_j"), ("gravitational_j", "potential_j")
 #: The other columns that are no loss.
 SUMS = ("added_j", "residual_j")
-SMALL = 1e-3  # of the largest: what is smaller is not drawn
+SMALL = 1e-3  # smaller shares of the largest energy are not drawn
 SCALES = ((1e9, "GJ"), (1e6, "MJ"), (1e3, "kJ"), (1.0, "J"), (1e-3, "mJ"), (1e-6, "µJ"))
 WIDTH, HEIGHT = 9.0, 6.4  # inches
 MOST_MARKED = 40  # events whose ends are marked

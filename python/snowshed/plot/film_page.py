@@ -25,7 +25,7 @@ SCRIPTS = ("film.js", "camera.js", "draw.js", "overlay.js", "controls.js", "view
 
 @dataclass(frozen=True)
 class MeasureLine:
-    """A length that is drawn: its ends (m), after which event, and what it says."""
+    """A dimension in the picture: its ends (m), its event, and its label."""
 
     event: int
     start: Sequence[float]
@@ -35,24 +35,24 @@ class MeasureLine:
 
 @dataclass(frozen=True)
 class ViewContent:
-    """What a page shows besides its film.
+    """The content of a page besides its film.
 
     Attributes
     ----------
     title, sentence
-        What this is; what came of it.
+        Title of the page, and its result in a sentence.
     facts
         Names and values.
     notes
-        What should be known.
+        Notes for readers.
     solids, focus
-        What snow collides with, and a box that should be seen.
+        Solids of the scene, and a box that must be in view.
     measures
         Lengths that are drawn.
     table
         The measures of all events.
     events
-        How many there are in all.
+        Number of events.
     """
 
     title: str
@@ -74,9 +74,9 @@ def write_view_page(file: Path, film: Film, content: ViewContent) -> None:
     file
         The HTML file; it appears whole or not at all.
     film
-        What moves.
+        The film.
     content
-        What stands around it.
+        The surroundings of the film.
     """
     summary = summarise_film(film)
     page = template("snowshed.plot", "view.html.j2")

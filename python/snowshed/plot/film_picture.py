@@ -30,7 +30,7 @@ def view_lift(solids: Sequence[Solid]) -> float:
 
 @dataclass(frozen=True)
 class Projection:
-    """A view from far away: what is right, up and toward the viewer (rows)."""
+    """A distant view: the directions right, up and toward the viewer (rows)."""
 
     axes: Floats
 
@@ -45,7 +45,7 @@ class Projection:
         return cls(np.array([right, np.cross(back, right), back]))
 
     def __call__(self, points: Floats) -> Floats:
-        """Return points (n, 3) as they are seen: right, up and toward the viewer."""
+        """Return points (n, 3) in the view: right, up and toward the viewer."""
         seen: Floats = points @ self.axes.T
         return seen
 
@@ -64,11 +64,11 @@ class FilmPainter:
     Parameters
     ----------
     film, summary
-        What moves, and what is known of it.
+        The film and its summary.
     solids, focus
-        What stands around it, and a box that should be seen.
+        Solids of the scene, and a box that must be in view.
     width
-        Of the picture, inches.
+        Width of the picture, inches.
     """
 
     def __init__(
@@ -125,7 +125,7 @@ class FilmPainter:
         colours = colouring.of(frame, self.film)[order]
         depth = seen[order, 2]
         span = float(np.ptp(depth)) if len(depth) else 0.0
-        if span > 0 and self.film.dimension == 3:  # what is farther away is darker
+        if span > 0 and self.film.dimension == 3:  # more distant particles are darker
             colours = colours * (0.78 + 0.22 * ((depth - depth.min()) / span)[:, None])
         self._draw_balls(seen[order, :2], colours)
         return self.figure

@@ -1,4 +1,4 @@
-"""What a page or a video needs to know of a film before it shows it."""
+"""Facts about a film that a page or a video needs first."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from snowshed.plot.solids import Box
 COLOURS = "viridis"  # perceptually uniform, and safe for colour-blind eyes
 #: Parts of it that stand out from a light and from a dark ground.
 ON_LIGHT, ON_DARK = (0.0, 0.88), (0.25, 1.0)
-SHOWN_SHARES = (0.005, 0.995)  # of all values: what the scale of colours spans
+SHOWN_SHARES = (0.005, 0.995)  # share of all values within the scale of colours
 MOST_LABELS = 10  # of events; of more, a scale is shown
 SPACING_SAMPLE = 4000  # particles whose nearest neighbours are looked for
 BALL = 0.72  # radius over the distance of neighbours, so that snow looks closed
@@ -27,16 +27,16 @@ SHIFT = 1 << 15  # codes lie between -711 and 711, and are counted with this shi
 
 @dataclass(frozen=True)
 class Colouring:
-    """A way to colour the particles.
+    """A colouring of the particles.
 
     Attributes
     ----------
     name, title
-        Of a quantity, "event" or "material"; what the legend says.
+        Name of a quantity, "event" or "material"; and the title of its legend.
     low, high
         Values with the first and the last colour.
     labels
-        Of whole numbers; None of quantities.
+        Labels of whole numbers; None for quantities.
     """
 
     name: str
@@ -47,7 +47,7 @@ class Colouring:
 
     @property
     def option(self) -> str:
-        """What a list to choose from says."""
+        """Text in a list of choices."""
         if self.labels is not None or self.name == "event":
             return {"event": "event", "material": "snow"}[self.name]
         return self.title.partition(",")[0].lower()
@@ -74,14 +74,14 @@ class Colouring:
 
 @dataclass(frozen=True)
 class FilmSummary:
-    """What all frames of a film have in common.
+    """Common properties of all frames of a film.
 
     Attributes
     ----------
     bounds
-        Of all positions at all times.
+        Bounds of all positions at all times.
     radius
-        Of a particle's ball, m.
+        Radius of a particle, m.
     colourings
         Those that tell particles apart, the one to begin with first.
     last
@@ -95,7 +95,7 @@ class FilmSummary:
 
 
 def summarise_film(film: Film) -> FilmSummary:
-    """Return what all frames of a film have in common.
+    """Return the common properties of all frames of a film.
 
     Raises
     ------

@@ -54,11 +54,11 @@ def probability_figure(
     outlines
         Corners of the release areas, in map coordinates, m.
     part
-        What to show (`part_shown`).
+        The part to show (`part_shown`).
     label
-        Of what it is the probability, in words.
+        Description of the event whose probability is shown.
     area
-        Of the figure's map, square inches.
+        Area of the figure's map, square inches.
     """
     from matplotlib import rc_context
 

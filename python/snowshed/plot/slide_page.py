@@ -1,4 +1,4 @@
-"""The page of a slide: what it came to, maps, the slide over time, and what it was made with."""
+"""The page of a slide: summary, maps, the slide over time, and its settings."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class Film:
     frames
         PNG, in base64, with the times, s.
     width, ratio
-        Of the picture: CSS pixels, and width over height.
+        Width of the picture in CSS pixels, and its ratio of width to height.
     largest
         Thickness that has the last colour, m.
     colours
@@ -92,7 +92,7 @@ def write_slide_page(
     areas
         The release areas.
     figures
-        What the slide came to, as ``slide.json`` has it.
+        The summary of the slide, as in ``slide.json``.
     frames
         The snow over time.
     """
@@ -175,7 +175,7 @@ def _mass_table(figures: Mapping[str, Any]) -> Grid:
     left = figures["left_terrain_kg"]
     rows = [
         ("released", released),
-        ("taken up on the way", entrained),
+        ("entrained", entrained),
         ("left the terrain", 0.0 - left),
         ("on the terrain at the end", released + entrained - left),
     ]
@@ -256,7 +256,7 @@ def _largest(frames: Sequence[Frame]) -> float:
 
 
 def _overlay(thickness: Any, largest: float) -> str:
-    """Return the snow as a PNG of one pixel a cell, clear where there is none."""
+    """Return the snow as a PNG with one pixel per cell, transparent without snow."""
     share = 0.15 + 0.85 * np.clip(thickness / largest, 0.0, 1.0)
     pixels = np.asarray(mpl.colormaps[COLOURS](share, bytes=True))
     pixels[..., 3] = np.where(thickness > LEAST_SHOWN, 225, 0)
@@ -289,7 +289,7 @@ def multiples_figure(
     frames
         The snow over time; `count` of them are shown.
     count
-        How many.
+        Number of colours.
     """
     chosen = _moving(frames, count)
     rows, columns, part = _window(maps, outlines)
@@ -319,7 +319,8 @@ def multiples_figure(
 def _moving(frames: Sequence[Frame], count: int) -> list[Frame]:
     """Return frames from the first to the last, closer together where the snow moves most.
 
-    Their times follow the way of the snow's middle, since a slide creeps for long at its end.
+    The times follow the path of the snow's centre, because a slide creeps for a long time at its
+    end.
     """
     middles = np.array([_middle(one) for one in frames])
     way = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(middles, axis=0).T))])

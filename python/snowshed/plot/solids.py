@@ -19,7 +19,7 @@ from snowshed.methods.registry import resolution_of
 from snowshed.plot.surface_nets import surface_of
 from snowshed.scene.builders.slope import BOARD_CELLS
 
-ROUND = 24  # sides of what is round
+ROUND = 24  # number of sides of round shapes
 SAMPLES = 48  # of a solid that is sampled, along its longest side
 TERRAIN_NODES = 220  # along a side, at most
 MOST_TRIANGLES = 200_000  # of one mesh; larger ones are sampled
@@ -58,15 +58,15 @@ class Solid:
     Attributes
     ----------
     name
-        What it is.
+        Name of the solid.
     kind
         "ground", "panel" or "solid": how it is painted.
     corners : (n, 3)
         m, where it is before it moves.
     triangles : (m, 3)
-        Which corners each has.
+        Corners of each triangle.
     motion
-        As in a scene; None if it stays.
+        Motion, as in a scene; None for a fixed solid.
     grid
         Distance of lines drawn on it, m; 0: none.
     """
@@ -95,14 +95,14 @@ class Solid:
 def scene_solids(
     scene: Mapping[str, Any], base_dir: Path, snow: Box, terrain: Optional[Raster]
 ) -> tuple[list[Solid], Box]:
-    """Return the solids of a scene around its snow, and a box that holds all but the ground.
+    """Return the solids of a scene around its snow, and a box around all except the ground.
 
     Parameters
     ----------
     scene
         Complete data, as in scene.json.
     base_dir
-        Where relative names of files start.
+        Folder of relative file names.
     snow
         A box that holds the snow at all times.
     terrain
@@ -206,7 +206,7 @@ def _obstacles(scene: Mapping[str, Any], base_dir: Path, snow: Box) -> Iterator[
 def _parts(
     shape: Mapping[str, Any], scene: Mapping[str, Any], base_dir: Path, near: Box
 ) -> Iterator[Solid]:
-    """Yield the triangles of a shape; what has no simple form is sampled."""
+    """Yield the triangles of a shape; complex shapes are sampled."""
     kind = shape["type"]
     vector = {
         k: _in_space(shape[k]) for k in ("center", "size", "normal", "from", "to") if k in shape

@@ -156,7 +156,7 @@ def _draw_particles(axes: Axes, simulation: _core.Simulation, stack: Booleans) -
 
 
 def _spacing(scene: dict[str, Any]) -> float:
-    """Return the mean distance of particles as they are seeded, m."""
+    """Return the mean distance of particles after seeding, m."""
     count: float = scene.get("seeding", {}).get("particles_per_voxel", 1.0)
     return float(resolution_of(scene) / count ** (1 / scene["dimension"]))
 
@@ -198,7 +198,7 @@ def _draw_ground(axes: Axes, tilt: float) -> None:
 
 
 def _draw_obstacles(axes: Axes, simulation: _core.Simulation) -> None:
-    """Draw what the scene's obstacles are in the plane y = 0."""
+    """Draw the section of the scene's obstacles at y = 0."""
     x = np.linspace(*axes.get_xlim(), 600)
     z = np.linspace(*axes.get_ylim(), 400)
     points = np.stack(np.meshgrid(x, 0.0, z, indexing="ij"), axis=-1).reshape(-1, 3)
@@ -252,7 +252,7 @@ def _length_ends(shown: Extent) -> Floats:
 
 
 def _frame(shown: Extent) -> Floats:
-    """Return the lower ends and the top of what is shown, on levelled ground."""
+    """Return the lower ends and the top of the plot, on levelled ground."""
     top = _ground_at_crest(shown) + shown.height
     return np.vstack([_length_ends(shown), [[shown.crest, top]], _profile(shown)])
 

@@ -1,4 +1,4 @@
-"""The picture of a study: what its runs measured, over each parameter that varies."""
+"""The picture of a study: the results of its runs over each varied parameter."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
 
-#: What is drawn of each method's runs, those that there are: two at most.
+#: Quantities of each method's runs to draw: at most two that exist.
 MEASURES = {
     "height_m": "height of the stack, m",
     "length_m": "length of the stack, m",

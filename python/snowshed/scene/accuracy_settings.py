@@ -1,4 +1,4 @@
-"""Which settings of a scene decide how accurate a run is, and not what is simulated."""
+"""The settings of a scene that decide the accuracy of a run, but not its subject."""
 
 from __future__ import annotations
 

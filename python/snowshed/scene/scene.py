@@ -1,4 +1,4 @@
-"""Scenes: what is to be simulated, set value by value and then resolved by the core.
+"""Scenes: values that are set one by one, and resolved by the core.
 
 This takes the place of the thesis's Lua remote controller (A.3.1): values may be set, appended
 and overridden, the last one wins, then the scene is resolved.
@@ -54,7 +54,7 @@ ALWAYS = ("snow", "seeding", SETTINGS_KEY, "events", "output")
 NOT_GIVEN: Any = None
 
 SLIP_CHANGED = (
-    'condition "slip" lets no snow leave the surface but over its edge; '
+    '"slip" now holds snow on the surface except at its edge; '
     'what it did up to version 1 of scenes is "separate" now'
 )
 
@@ -272,14 +272,14 @@ class Scene(Record):
         Parameters
         ----------
         values
-            As of `update`: dotted paths, and nested mappings.
+            As for `update`: dotted paths, and nested mappings.
         **parts
             The same for names without a dot, such as ``panel={"tilt": 30}``.
 
         Raises
         ------
         InputError
-            As of `update`.
+            As for `update`.
 
         Examples
         --------
@@ -296,14 +296,14 @@ class Scene(Record):
     def set(self, path: str, value: object) -> Scene:
         """Set the value at a dotted path such as ``"snow.density"`` or ``"obstacles.0.friction"``.
 
-        Objects on the way that were not given are created. Returns the scene itself, which is
-        changed; `with_` returns a changed copy.
+        Missing objects along the path are created. Returns this scene, which is changed; `with_`
+        returns a changed copy.
 
         Raises
         ------
         InputError
-            If the path names nothing a scene has, or what is there takes no such value. The scene
-            is then as it was.
+            If the path does not exist, or the value is of a wrong type. The scene is then
+            unchanged.
         """
         with locate(self, path) as (record, key, where):
             record.assign(key, value, where)
@@ -321,17 +321,17 @@ class Scene(Record):
         with locate(self, path) as (record, key, where):
             held = getattr(record, record.field_of(key, where))
             if not isinstance(held, (list, tuple, type(None))):
-                raise InputError(f"{where}/{key}: nothing can be appended to what is no list")
+                raise InputError(f"{where}/{key}: is not a list; cannot append")
             record.assign(key, [*(held or []), value], where)
         return self
 
     def update(self, values: Mapping[str, object]) -> Scene:
-        """Set several values; keys are dotted paths, and nested mappings go into what they name.
+        """Set several values; keys are dotted paths, values may be nested mappings.
 
         Raises
         ------
         InputError
-            As of `set`, or if the same is given by two names. The scene is then as it was.
+            As for `set`, or if a value is given by two names. The scene is then unchanged.
         """
         copy.deepcopy(self)._update(values, {})  # fails, if it must, before anything is changed
         self._update(values, {})
@@ -360,7 +360,7 @@ class Scene(Record):
         Raises
         ------
         InputError
-            Naming the JSON path, what is wrong with it, and what is allowed.
+            Naming the JSON path, the error, and the allowed values.
         """
         self._warn_of_slip()
         return ResolvedScene.parse(json.dumps(self.to_data()), self._base_dir)
@@ -394,7 +394,7 @@ SceneLike = Union[Scene, ResolvedScene, Mapping[str, JsonValue], PathLike]
 
 
 def resolve_scene(scene: SceneLike) -> ResolvedScene:
-    """Return the complete scene of whatever stands for one.
+    """Return the complete scene of a `Scene`, JSON data, or a file.
 
     Parameters
     ----------
@@ -404,7 +404,7 @@ def resolve_scene(scene: SceneLike) -> ResolvedScene:
     Raises
     ------
     InputError
-        If the scene is wrong, or `scene` is none of these.
+        If the scene is wrong, or `scene` is of another type.
     OSError
         If the file cannot be read.
 

@@ -27,9 +27,9 @@ class Parameter:
     kind
         number, integer, boolean, string, vector (of numbers) or list (of objects).
     description, unit, default
-        As in the schema; the unit is empty and the default None where there is none.
+        As in the schema; without them, the unit is empty and the default None.
     choices
-        What an enumeration may be; None for other parameters.
+        Allowed values of an enumeration; None for other parameters.
     aliases
         Other dotted paths under which it may be given.
     accuracy
@@ -48,7 +48,7 @@ class Parameter:
 
 @functools.cache
 def scene_schema() -> JsonObject:
-    """Return the JSON Schema of a scene; it is shared, so leave it as it is."""
+    """Return the JSON Schema of a scene; it is shared, so do not change it."""
     return cast(JsonObject, json.loads(schema_text()))
 
 
@@ -82,7 +82,7 @@ def parameter_units() -> Mapping[str, str]:
 def schema_of_method(method: str) -> JsonObject:
     """Return the schema with the settings of one method, and only the parts that it takes.
 
-    It is shared, so leave it as it is.
+    The result is shared, so do not change it.
     """
     schema = scene_schema()
     parts = {

@@ -37,7 +37,7 @@ class Day:
         Number of the slide-off that follows, from 1; None if the snow stayed, or waits for that of
         later releases (`SeasonSettings.pool_below`).
     slab_load, slab_thickness
-        Of the snow of that slide-off, as `load` and `thickness`.
+        Load and thickness of the slab that slides, as `load` and `thickness`.
     """
 
     weather: Weather
@@ -105,7 +105,7 @@ def accumulate(
 def _slide_offs(days: Sequence[Day], pool_below: float) -> list[Day]:
     """Return the days with the slide-offs that the releases make.
 
-    Snow of thin releases waits until it makes a slab; what is left of it slides last.
+    Snow of thin releases waits until it makes a slab; the rest slides last.
     """
     releases = [number for number, day in enumerate(days) if day.released]
     made = list(days)

@@ -13,11 +13,11 @@ from snowshed.season.source import Source
 from snowshed.season.weather_row import MOST_SNOWFALL, Weather
 
 MOST_ROWS = 100_000  # daily data of the longest records, and hourly seasons
-#: Snowfalls of which half are deeper are not in metres.
+#: Median above which snowfalls cannot be in metres.
 TYPICAL_SNOWFALL = 0.7  # m
 DAY, YEAR = 86400.0, 366.0  # s, days
 YEARS = (1000, 9000)  # of weather, measured or made
-#: So few rows that a gap of so many days sets apart from all others have a year that is mistyped.
+#: Number of rows, and of days of a gap: so few rows so far from all others have a mistyped year.
 FEW, LONE = 3, 3 * YEAR
 NO_SNOW = "it never snows"
 HINT = "is it in cm, mm or inches?"
@@ -33,7 +33,7 @@ def check_rows(
     rows
         The weather.
     places
-        Where each row stands, for messages.
+        Position of each row, for messages.
     name
         The file.
     snowless

@@ -45,9 +45,9 @@ def clearance(
     outline : (k, 2)
         Profile of the stack on levelled ground, m, as in outline.csv.
     height
-        Of the stack, m.
+        Height of the stack, m.
     cover
-        Depth of the natural snow cover, m, on top of which the stack lies.
+        Depth of the natural snow cover below the stack, m.
 
     Examples
     --------
@@ -97,7 +97,7 @@ def _surface(outline: Floats, x: float) -> float:
     return float(np.interp(x, places, heights, left=0.0, right=0.0))
 
 
-#: What may touch the panel first, by the columns of the table that tell it.
+#: Causes of a first contact, by the columns of the table that show it.
 CAUSES = (
     ("slab", "the snow on the panel and the stack touch"),
     ("below", "the snow below the lower edge reaches it"),

@@ -1,4 +1,4 @@
-"""Which column of a station tells a winter's snow, where several do and contradict each other.
+"""Choice of a winter's column of snow, if several of a station contradict each other.
 
 New snow measured by hand goes first, then the gauge, then the depth of the cover. Two columns
 contradict each other where, on the days of a winter that both know, one has more than twice the
@@ -55,11 +55,11 @@ class Choice:
     Attributes
     ----------
     observing
-        Columns of which a day takes the first that knows it.
+        Columns in order of preference; a day uses the first with a value.
     filling
-        The column that fills what none of them knows; None: none does.
+        The column that fills the remaining days, if any.
     sums
-        What each column has on the days that all of those compared know, m.
+        Sum of each column over the days that all compared columns cover, m.
     contradicted
         Sources that were left out or put last, because another one contradicts them.
     """
@@ -76,9 +76,9 @@ class Chooser:
     Parameters
     ----------
     columns
-        By their sources.
+        Columns by their sources.
     temperature : (n,)
-        Of every day, degrees C.
+        Temperature of every day, degrees C.
     only
         The one source that observes; None: by the rules of this module.
     """

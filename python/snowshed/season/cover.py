@@ -1,4 +1,4 @@
-"""The natural snow cover on the ground during a season, on top of which the stack lies.
+"""The natural snow cover on the ground during a season, below the stack.
 
 It is as deep as the season file says, on a straight line between two readings. Before the first
 one, in gaps of more than two months, and when the readings end before the season does, it is a
@@ -78,7 +78,7 @@ def natural_cover(
 
 
 def end_of_readings(season: Sequence[Weather]) -> Optional[Weather]:
-    """Return the row of the last reading of the depth, if the season goes on with snow on it.
+    """Return the row of the last reading of the depth if snow remains on the ground.
 
     Examples
     --------

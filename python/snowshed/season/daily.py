@@ -33,15 +33,15 @@ class Days:
     dates
         The days (n).
     lines : (n,)
-        Where each is in the file; a day without a row has that of the next one.
+        Position of each day in the file; a day without a row has that of the next row.
     there : (n,)
         Whether the file has anything of the day.
     temperature, new_snow, water, depth : (n,)
         Mean, degrees C; sums, m and mm; depth of the snow cover, m: the median of its readings, so
         that neither noise nor a single wrong reading is snow.
     level : (n,)
-        The depth without the jumps that are no weather (seams, and what is faster than snow falls).
-        Only its differences mean anything.
+        The depth without jumps that are not weather (seams, and rises faster than snowfall). Only
+        its differences are meaningful.
     part_snow, part_water : (n,)
         Whether the sum is of a part of the day only.
     seams : (n,)
@@ -128,7 +128,7 @@ def _lines(dates: Sequence[date], lines: dict[date, int]) -> list[int]:
 
 
 def _sums(rows: Sequence[Observation], name: str) -> tuple[dict[date, float], set[date]]:
-    """Return the sum of an amount on each day, and the days of which it covers only a part."""
+    """Return the sum of an amount on each day, and the days that it covers only partly."""
     total: dict[date, float] = {}
     hours: dict[date, float] = {}
     for row in rows:
@@ -212,7 +212,7 @@ def _depths(
 def _is_continuous(rows: Sequence[Observation]) -> bool:
     """Return whether the depth changes several times a day, so that an hour's change is one.
 
-    Hourly files may repeat a depth that was read once a day; its change then is that of the day.
+    Hourly files may repeat a depth that is read once a day; then a change belongs to the whole day.
     """
     changes: Counter[date] = Counter()
     before: float | None = None

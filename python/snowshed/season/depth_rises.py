@@ -1,4 +1,4 @@
-"""New snow from the rises of the snow depth, and which readings of the depth are none.
+"""New snow from the rises of the snow depth, without invalid readings.
 
 A rise from one day to the next is new snow. Since snow settles at the same time, it is too little.
 A rise over some days without a reading is shared out among them. No snowfall are: a rise beyond the
@@ -23,7 +23,7 @@ LONGEST_TOTAL = 4  # days from reading to reading whose rise is still an observa
 SPIKE = 0.3  # m; from there on a change may be a spike
 TAKEN_BACK = 0.8  # of a spike, by the reading that ends it
 NO_MELT = 1.0  # degrees C; below, so much new snow does not vanish within days
-#: How long a spike, a drop-out and an impossible change may last, days.
+#: Longest duration of a spike, a drop-out and an impossible change, days.
 SPIKE_DAYS, DROPOUT_DAYS, IMPOSSIBLE_DAYS = 2, 7, 60
 
 
@@ -52,13 +52,13 @@ class DepthSnow:
     snow : (n,)
         m on each day; NaN: not known.
     filled : (n,)
-        Whether it is shared out over so many days that nobody observed it.
+        Whether a rise is spread over so many days that it counts as unobserved.
     depth : (n,)
         The depth without wrong readings, m.
     totals
         Rises over several days.
     notes
-        What was left out, and why.
+        Notes on left-out readings, with reasons.
     """
 
     snow: Floats
@@ -76,7 +76,7 @@ def snow_of_depth(days: Days, temperature: Floats) -> DepthSnow:
     days
         From `days_of_station`.
     temperature : (n,)
-        Of every day, degrees C.
+        Temperature of every day, degrees C.
     """
     ordinals = days.ordinals
     wrong = _wrong(ordinals, days.level, temperature, days.seams)
@@ -118,7 +118,7 @@ def _take_rise(days: Days, found: DepthSnow, before: int, after: int, rise: floa
         found.snow[after] = 0.0
         return
     if span > LONGEST_TOTAL and rise < LEAST_RISE:
-        return  # the snow may have fallen and settled: nobody knows
+        return  # the snow may have fallen and settled: unknown
     share = rise / span if rise >= LEAST_RISE else 0.0
     found.snow[own] = share
     if span > 1 and share:
@@ -128,7 +128,7 @@ def _take_rise(days: Days, found: DepthSnow, before: int, after: int, rise: floa
 
 
 def _tell_gaps(days: Days, found: DepthSnow) -> None:
-    """Say which rises are shared out over days that nobody observed."""
+    """Note the rises that are spread over unobserved days."""
     gaps = [total for total in found.totals if len(total.days) > LONGEST_TOTAL]
     if not gaps:
         return

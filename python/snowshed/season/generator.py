@@ -33,11 +33,11 @@ class MonthClimate:
     after_dry, after_snow
         Probability of snow on a day after one without, and after one with snow.
     shape, scale
-        Of the gamma distribution of the depth of new snow on a day with snow; the scale in m.
+        Shape and scale (m) of the gamma distribution of new snow on a day with snow.
     temperature, deviation
         Mean and standard deviation of the daily temperature, degrees C.
     snow_shift
-        How much colder days with snow are, degrees C.
+        Temperature difference between days with snow and others, degrees C.
     """
 
     after_dry: float
@@ -56,7 +56,7 @@ class Climate:
     Attributes
     ----------
     months
-        By number, 1 for January; months that are missing have no snow and are left out.
+        Climate by number of the month, 1 for January; missing months have no snow and are left out.
     persistence
         Correlation of the temperature anomalies of one day and the next.
 
@@ -118,11 +118,11 @@ class Climate:
         Parameters
         ----------
         count
-            How many; each begins in the autumn of its own year.
+            Number of winters; each begins in the autumn of its own year.
         seed
-            Of the random numbers.
+            Random seed.
         first_year
-            Of the first autumn.
+            Year of the first autumn.
         """
         random = np.random.default_rng(seed)
         rows: list[Weather] = []

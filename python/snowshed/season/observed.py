@@ -1,8 +1,8 @@
 """From the observations of a station to the days of a season: the one place that decides.
 
-What a day's new snow is, for every format, and where it comes from: `Source`. Each day takes it
-from the first of the winter's columns (`columns`) that knows it; what none of them knows is filled
-by a stated rule, or is missing. Missing is not zero: such a day says so.
+`Source` names the origin of a day's new snow, for every format. Each day uses the first of the
+winter's columns (`columns`) with a value; days without a value are filled by a stated rule, or are
+missing. Missing is not zero: such a day says so.
 """
 
 from __future__ import annotations
@@ -103,7 +103,7 @@ def _check_order(station: Station, source: str) -> None:
 def _columns(
     days: Days, warm: Floats, far: Booleans, depth: DepthSnow, notes: list[str]
 ) -> dict[Source, Column]:
-    """Return the columns of a station that tell of snow; appends notes on what was left out."""
+    """Return the columns of a station with snow; appends notes on left-out values."""
     hand = days.new_snow.copy()
     beyond = hand > RECORD_DAY
     if beyond.any():
@@ -204,7 +204,7 @@ def _share_out(snow: _Snow, total: Total) -> None:
 
 
 def _gaps(days: Days) -> list[str]:
-    """Return a note on the days of which the file has nothing."""
+    """Return a note on the days that are missing in the file."""
     ordinals = days.ordinals[days.there]
     spans = np.diff(ordinals)
     if not (spans > 1).any():

@@ -19,13 +19,13 @@ from snowshed.season.weather_row import Weather
 from snowshed.season.winter_years import Calendar, SnowSeason, snow_season_of
 
 COVERAGE = 0.9  # of the days of the snow season, on which snow must have been observed
-LONGEST_BRIDGED = 3  # days between two rows of a table, of which the later one tells
+LONGEST_BRIDGED = 3  # days between two rows of a table, covered by the later row
 LISTED = timedelta(days=1.5)  # from row to row, half of them more, in a list of snowfalls
 
 
 @dataclass(frozen=True)
 class WinterQuality:
-    """What a winter of a weather file is worth.
+    """The quality of the snow data of a winter.
 
     Attributes
     ----------
@@ -36,9 +36,9 @@ class WinterQuality:
     season
         The days that should be observed: those of the snow season.
     observed
-        How many of them are.
+        Number of days of the snow season with observed snow.
     sources
-        How many of all its days have which source.
+        Number of days by source, over the whole winter.
     filled_snow
         Depth of the snow that was filled, m.
     counts
@@ -46,7 +46,7 @@ class WinterQuality:
     listed
         Whether the file lists snowfalls, and tells nothing of other days.
     sums
-        What the columns of the file amount to, m, on days on which they can be compared.
+        Totals of the file's columns on comparable days, m.
     """
 
     name: str
@@ -71,7 +71,7 @@ class WinterQuality:
 
     @property
     def source_words(self) -> str:
-        """Where its snow comes from, the most frequent source first."""
+        """Sources of its snow, the most frequent source first."""
         observing = [
             source.label
             for source, _ in Counter(self.sources).most_common()
@@ -104,7 +104,7 @@ def qualities_of(
     coverage
         Share of the days of the snow season on which snow must have been observed.
     sums
-        What the columns of the file amount to, m, by the year in which a winter begins.
+        Totals of the file's columns, m, by the year in which a winter begins.
 
     Examples
     --------
@@ -142,7 +142,7 @@ def qualities_of(
 
 
 def is_list(rows: Sequence[Weather]) -> bool:
-    """Return whether rows are a list of snowfalls, of which most lie more than a day apart."""
+    """Return whether rows are a list of snowfalls: most lie more than a day apart."""
     if len(rows) < 2 or any(row.source is not Source.GIVEN for row in rows):
         return False
     spans = [later.date - earlier.date for earlier, later in zip(rows, rows[1:])]
@@ -163,12 +163,12 @@ def observed_days(rows: Sequence[Weather], begin: date, after: date) -> int:
 
 
 def spans(named: Sequence[tuple[str, Optional[str]]]) -> str:
-    """Return winters with what is said of each, neighbours of which the same is said together.
+    """Return winters with a text for each; neighbours with the same text are joined.
 
     Parameters
     ----------
     named
-        All winters in order: the name of each, and what is said of it; None: nothing.
+        All winters in order: the name of each, and its text, if any.
 
     Examples
     --------

@@ -34,7 +34,7 @@ def season_scene(
     days
         From `accumulate`; at least one of them has an event.
     settings
-        How strong the snow of a slab is; None: the defaults.
+        Settings of the slab's strength. [default: `SeasonSettings()`]
 
     Raises
     ------
@@ -105,7 +105,7 @@ def snow_of_density(base: Mapping[str, Any], density: float, strength: Optional[
 
 
 def _densities(released: Sequence[Day]) -> list[float]:
-    """Return rounded densities of the slabs, kg/m3, of which there are few enough for a scene."""
+    """Return densities of the slabs, kg/m3, rounded so that a scene can hold all of them."""
     for step in (1.0, 10.0):
         found = [
             max(step * round(day.slab_load / day.slab_thickness / step), step) for day in released

@@ -41,7 +41,7 @@ class _Column:
     unit: str
     required: bool = False  # the column
     filled: bool = False  # every cell of it
-    hint: str = ""  # what a number beyond the range may be
+    hint: str = ""  # likely meaning of a number beyond the range
 
 
 COLUMNS: Mapping[str, _Column] = {
@@ -80,8 +80,8 @@ def read_season(season: Season) -> list[Weather]:
     Raises
     ------
     InputError
-        Naming the file, the line (of a DataFrame the row) and the column, what is wrong there and
-        what is allowed.
+        Naming the file, the line (in a DataFrame the row) and the column, the error and the allowed
+        values.
     OSError
         If the file cannot be read.
 
@@ -102,7 +102,7 @@ def read_season(season: Season) -> list[Weather]:
 def read_weather(
     season: Season, temperature: Optional[PathLike] = None
 ) -> tuple[list[Weather], list[str]]:
-    """Return the rows of a season, as `read_season`, and notes on what was assumed in reading.
+    """Return the rows of a season, as `read_season`, and notes on assumptions made in reading.
 
     Parameters
     ----------

@@ -33,9 +33,9 @@ class Weather:
     snow_depth
         Depth of the natural snow cover, m; None: not measured.
     source
-        Where the snowfall comes from.
+        Origin of the snowfall.
     reason
-        Why it is not what the file holds for that day, in words; empty where it is.
+        Reason why the snowfall differs from the file's value of that day; empty if it does not.
     """
 
     line: int

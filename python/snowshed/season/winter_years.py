@@ -1,9 +1,8 @@
 """Winters by the calendar: where one ends and the next begins, its name, and its snow season.
 
 Years are cut in the station's summer: on 1 July in the north, on 1 January in the south. The snow
-season of a station goes from the day of the year by which a hundredth of all its snow has fallen to
-the day by which all but a hundredth has, and holds December to February (in the south June to
-August) in any case.
+season of a station spans the days of the year between the first and the last hundredth of all its
+snowfall, and always contains December to February (in the south June to August).
 """
 
 from __future__ import annotations

@@ -44,7 +44,7 @@ RESULTS = (
 )
 NUMBERS = RESULTS[: RESULTS.index("version")]
 
-#: The keys of a measurement in a file, and of what was measured by it.
+#: Keys of a measurement in a file, and of its results.
 FORM = {
     "case": str,
     "settings": dict,
@@ -68,7 +68,7 @@ class Measured:
 
 @dataclass(frozen=True)
 class Measurement:
-    """One way of solving a problem with a known answer, solved once.
+    """A solution of a problem with a known answer, by one choice of settings.
 
     Attributes
     ----------
@@ -101,7 +101,7 @@ class Measurement:
 
     @property
     def key(self) -> str:
-        """Key of what was measured: the case and its settings.
+        """Key of a measurement: the case and its settings.
 
         Examples
         --------

@@ -46,7 +46,7 @@ def load_recorded(path: Optional[Path] = None) -> list[Measurement]:
 
 
 def record(measurements: Iterable[Measurement], path: Path) -> None:
-    """Keep measurements in a file; earlier ones of the same cases give way, others stay.
+    """Store measurements in a file; earlier ones of the same cases are replaced, others stay.
 
     Failed measurements are not kept.
 

@@ -33,7 +33,7 @@ def setting(name: str, value: Optional[Value]) -> str:
 
 
 def unset(name: str) -> str:
-    """Return what stands for a setting that is not given: a scene's settings have defaults.
+    """Return the label of a missing setting: a scene's settings have defaults.
 
     Examples
     --------

@@ -1,7 +1,7 @@
 """Ways of solving a problem, and how accurate and how quick each of them is.
 
-Errors count by their size. Random seedings of the same settings are one way of solving and are
-taken together.
+Errors count by their absolute value. Random seedings of the same settings are combined to one
+solution.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from snowshed.analysis.accuracy.measurements import Settings, settings_of
 if TYPE_CHECKING:
     import pandas as pd
 
-#: Settings that make no other way of solving, only another sample of it.
+#: Settings that only select another random sample.
 SAMPLING = ("seed", "seedings")
 
 
@@ -31,7 +31,7 @@ class Row(NamedTuple):
 
 @dataclass(frozen=True)
 class Solution:
-    """One way of solving, over all its random seedings.
+    """A solution with one choice of settings, over all its random seedings.
 
     Attributes
     ----------
@@ -71,7 +71,7 @@ def solutions(rows: pd.DataFrame) -> list[Solution]:
     Parameters
     ----------
     rows
-        Of one quantity of one case.
+        Rows of one quantity of one case.
     """
     groups: dict[Hashable, list[Row]] = {}
     for row in records(rows[rows["error"].notna()]):
@@ -80,7 +80,7 @@ def solutions(rows: pd.DataFrame) -> list[Solution]:
 
 
 def key_of(settings: Settings, *, without: Collection[str] = ()) -> Hashable:
-    """Return what equal settings have in common, whatever their order.
+    """Return a key that is equal for equal settings in any order.
 
     Examples
     --------
@@ -112,7 +112,7 @@ def assured_errors(found: Sequence[Solution], order_in: Optional[str]) -> list[f
     found
         Solutions for one quantity.
     order_in
-        The setting that makes a solution finer as it falls; None: the errors stand as they are.
+        The setting that refines a solution as it falls; None: the errors are used directly.
     """
     assured = {id(one): abs(one.error) for one in found}
     for group in alike(found, order_in) if order_in else []:

@@ -37,7 +37,7 @@ class Simulated:
         One row per run and event: ``set``, ``tilt``, ``event``, ``seed``, and the measures
         ``height``, ``length``, ``head``, ``tail`` in m.
     pending
-        Number of runs that are not computed yet, without the sets of which no run is computed.
+        Number of runs that are not computed yet, except sets without any computed run.
     """
 
     parameters: Sequence[str]
@@ -49,7 +49,7 @@ class Simulated:
 def read_simulated(
     folder: PathLike, study: Optional[str] = None, measure: str = "stack"
 ) -> Simulated:
-    """Read the stacks of a study from its store, as far as they are computed.
+    """Read the stacks of the computed runs of a study from its store.
 
     Parameters
     ----------

@@ -13,7 +13,7 @@ from snowshed.scene.scene import Scene
 from snowshed.scene.thesis_tables import CALIBRATION, COHESION, PRESSURE, SLOPE
 from snowshed.study.definition import Study
 
-#: The corners of the thesis's grid, for a trial.
+#: Corners of the thesis's grid, for a trial.
 QUICK: Mapping[str, Sequence[float]] = {
     SLOPE: (min(CALIBRATION[SLOPE]), max(CALIBRATION[SLOPE])),
     PRESSURE: (min(CALIBRATION[PRESSURE]), max(CALIBRATION[PRESSURE])),

@@ -23,7 +23,7 @@ KEYS = ("tilt_deg", "event")
 ROUND = "round"
 STEEPEST = 90.0  # degrees, not allowed itself
 FARTHEST = 100.0  # m, of anything that is measured of a stack
-FAR = 3.0  # standard deviations by which length and tail - head may differ
+FAR = 3.0  # largest difference between length and tail - head, in standard deviations
 
 TEMPLATE_TILTS = (40, 50)
 TEMPLATE_EVENTS = 5
@@ -99,7 +99,7 @@ class Measurement:
 
 
 def template() -> str:
-    """Return an empty file to fill in, for the tilts and events of the thesis's calibration.
+    """Return an empty measurements file for the tilts and events of the thesis's calibration.
 
     Examples
     --------
@@ -115,12 +115,12 @@ def template() -> str:
 
 
 def read_measurements(file: PathLike) -> list[Measurement]:
-    r"""Read measured stacks from a CSV file; `template` says what is in it.
+    r"""Read measured stacks from a CSV file; `template` describes its content.
 
     Raises
     ------
     InputError
-        Naming the file, the line, the column, what is wrong and what is allowed.
+        Naming the file, the line, the column, the error and the allowed values.
     OSError
         If the file cannot be read.
 

@@ -14,7 +14,7 @@ from snowshed.base.arrays import Floats
 if TYPE_CHECKING:
     import pandas as pd
 
-#: Quantities by which the thesis ranks; head and tail are only scored.
+#: Quantities that rank the sets in the thesis; head and tail are only scored.
 RANKED = ("height", "length")
 
 

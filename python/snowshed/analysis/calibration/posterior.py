@@ -105,7 +105,7 @@ class Posterior:
         not independent; independent chains may differ a little more.
         """
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # what arviz has to say of its own next version
+            warnings.simplefilter("ignore")  # notes of arviz on its own next version
             arviz = require("arviz", EXTRA, PURPOSE)
             found = arviz.summary(self.draws, kind="diagnostics", round_to="none")
         columns: pd.DataFrame = found[[*DIAGNOSTICS]]

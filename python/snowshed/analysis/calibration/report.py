@@ -126,7 +126,7 @@ def evaluate(
     measure: str = "stack",
     quantities: Sequence[str] = RANKED,
 ) -> Calibration:
-    """Calibrate with a stored study, as far as it is computed, and write tables and figures.
+    """Calibrate with the computed runs of a stored study, and write tables and figures.
 
     Parameters
     ----------

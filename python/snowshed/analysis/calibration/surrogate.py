@@ -173,10 +173,10 @@ class Surrogate:
         Returns
         -------
         pandas.DataFrame
-            ``quantity``, ``tilt``, ``event``; ``rmse_m``; ``noise_m``: the part of it that the
-            surrogate attributes to the seeding; ``explained``: 1 - (RMSE / deviation of the
-            runs)²; ``within_two``: part of the runs within two predicted standard deviations,
-            0.95 if these are right.
+            ``quantity``, ``tilt``, ``event``; ``rmse_m``; ``noise_m``: the share of the RMSE that
+            the surrogate attributes to the seeding; ``explained``: 1 - (RMSE / deviation of the
+            runs)²; ``within_two``: share of the runs within two predicted standard deviations, 0.95
+            if these are right.
         """
         import pandas as pd
 

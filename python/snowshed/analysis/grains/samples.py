@@ -20,7 +20,7 @@ from snowshed.io.atomic import replacing
 from snowshed.io.voxels.array_files import open_npy
 from snowshed.methods.grains.sample_folder import LABELS, find_sample
 
-#: Voxels along an edge without which a sample is none.
+#: Least number of voxels of a sample along an edge.
 LEAST_VOXELS = 6
 LARGEST_LABEL = 2**31 - 1
 
@@ -32,13 +32,13 @@ class LabelledSample:
     Attributes
     ----------
     name
-        Of the sample; its file is called so.
+        Name of the sample and its file.
     labels : (nz, ny, nx)
         0 air, else a grain.
     voxel_size
         Edge of a voxel, m: the diameter of the spheres.
     source
-        How it was made, if it is synthetic and that is known; else empty.
+        Origin of a synthetic sample, if known.
     """
 
     name: str
@@ -91,13 +91,14 @@ class LabelledSample:
 
     @property
     def grains(self) -> int:
-        """How many grains there are."""
+        """Number of grains."""
         return int(np.count_nonzero(np.unique(self.labels)))
 
     def coarser(self, factor: int) -> LabelledSample:
         """Return the sample with voxels `factor` times as large, and the same ice fraction.
 
-        Where there is ice, `downscaled` decides; it belongs to the grain that has most of it there.
+        `downscaled` decides which voxels are ice; a voxel belongs to the grain with the most ice in
+        it.
 
         Examples
         --------

@@ -16,7 +16,7 @@ TESTS, TABLE, FIGURE = "tests.csv", "sensitivity.csv", "sensitivity.png"
 
 
 def evaluate_sensitivity(comparison: Comparison, runs: Path, folder: Path) -> pd.DataFrame:
-    """Evaluate variants, as far as they are computed; write the table and the figure.
+    """Evaluate the computed variants; write the table and the figure.
 
     Parameters
     ----------
@@ -30,7 +30,7 @@ def evaluate_sensitivity(comparison: Comparison, runs: Path, folder: Path) -> pd
     Returns
     -------
     pandas.DataFrame
-        As of `compare_variants`.
+        As from `compare_variants`.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Variants of a loading test, each of which differs from the base in one thing."""
+"""Variants of a loading test; each differs from the base in one parameter."""
 
 from __future__ import annotations
 
@@ -34,11 +34,11 @@ class Variant:
     name
         In words: what differs, and its value.
     varied
-        What differs: a name that several variants share.
+        Name of the varied parameter, which several variants share.
     samples
         Files of the samples, which correspond to those of the base one by one.
     voxel_size
-        Of the samples, m.
+        Voxel size of the samples, m.
     changes
         Values of the scene that differ from the base, by their dotted paths.
     """
@@ -68,11 +68,11 @@ class Comparison:
     Attributes
     ----------
     scene
-        What all have in common.
+        Common scene of all variants.
     variants
         The base first.
     name
-        Of the study.
+        Name of the study.
     """
 
     scene: Scene
@@ -120,7 +120,7 @@ class Comparison:
         return pd.DataFrame(rows, columns=list(dict.fromkeys([*KEYS, "hash", *done.columns])))
 
 
-#: Changes of the settings that are tried: what they are called, the paths, and the factors.
+#: Tried changes of the settings: label, paths, and factors.
 SETTINGS = (
     ("friction", ("friction",), (0.5, 2.5)),
     ("elastic modulus", ("elastic_modulus",), (0.1, 0.3)),
@@ -145,15 +145,15 @@ def sensitivity_variants(
     Parameters
     ----------
     samples
-        Of one snow and voxel size; each is loaded with every variant.
+        Samples of one snow and voxel size; each is loaded with every variant.
     folder
         For the samples' files.
     stage
         The test.
     settings
-        Of the base.
+        Settings of the base.
     coarser
-        By how much the base's voxels are larger than those of the samples. One more is a variant.
+        Ratio of voxel sizes of base and samples. The next larger ratio is a variant.
     finer
         Whether one less is a variant, too, which takes far longer: spheres half as large are four
         times as many, and take twice as many steps.

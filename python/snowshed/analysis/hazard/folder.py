@@ -66,7 +66,7 @@ def write_hazard(
     Parameters
     ----------
     folder
-        Where the files go.
+        Folder of the files.
     store, study, reached, pressures
         As for `hazard_maps`, which raises the same errors.
     """
@@ -134,7 +134,7 @@ def _page(maps: HazardMaps, scene: Mapping[str, Any], facts: Mapping[str, Any]) 
 
 
 def _notes(maps: HazardMaps, scene: Mapping[str, Any], table: pd.DataFrame) -> list[str]:
-    """Return where most slides leave what the method was made for, by their median figures."""
+    """Return warnings where most slides violate the method's assumptions, by their medians."""
     areas = release_areas(maps.terrain, scene["terrain"]["release"])
     medians = table.select_dtypes("number").median()
     figures = {

@@ -17,7 +17,7 @@ from snowshed.scene.scene import PathLike, ResolvedScene
 from snowshed.scene.terrain_grid import slide_terrain
 from snowshed.study.store import Store
 
-#: What is mapped, with the unit and the name that AvaFrame gives its raster.
+#: Mapped quantities, with their units and AvaFrame's names of the rasters.
 QUANTITIES: Mapping[str, tuple[str, str]] = {
     "thickness": ("m", "pft"),
     "speed": ("m/s", "pfv"),
@@ -33,7 +33,7 @@ BAND_BYTES = 100_000_000  # of the maps of all runs that are held at a time
 
 @dataclass(frozen=True)
 class Exceedance:
-    """How likely a quantity exceeds a value somewhere.
+    """Probability that a quantity exceeds a value, by position.
 
     Attributes
     ----------
@@ -57,25 +57,25 @@ class Exceedance:
 
     @property
     def label(self) -> str:
-        """What exceeds what, in words, such as "thickness above 0.1 m"."""
+        """Label of the exceedance, such as "thickness above 0.1 m"."""
         return f"{self.quantity} above {self.threshold:g} {QUANTITIES[self.quantity][0]}"
 
 
 @dataclass(frozen=True)
 class HazardMaps:
-    """What many slides on the same terrain come to, node by node, the southernmost row first.
+    """Results of many slides on the same terrain, node by node, the southernmost row first.
 
     Attributes
     ----------
     terrain
         Elevations with their place.
     runs, failed
-        How many slides the maps are of, and how many more could not be computed.
+        Number of slides in the maps, and number of failed ones.
     exceedances
-        The first is that of being reached.
+        Maps of exceedance; the first is that of being reached.
     percentiles
-        By quantity and percentile: values that this percentage of the runs stays below. Runs that
-        do not reach a node count there with 0.
+        Maps by quantity and percentile: this percentage of the runs stays below the values. Runs
+        that do not reach a node count there with 0.
     """
 
     terrain: Raster
@@ -104,7 +104,7 @@ def hazard_maps(
 ) -> HazardMaps:
     """Return the maps of a study of slides, as far as its runs are computed.
 
-    The maps of all runs are never held at once, but band by band of the terrain.
+    Maps are processed in row bands, so memory does not grow with the number of runs.
 
     Parameters
     ----------
@@ -116,7 +116,7 @@ def hazard_maps(
     pressures
         Pressures whose exceedance is mapped, kPa.
     percentiles
-        Which percentiles of peak thickness, speed and pressure to map, 0 to 100.
+        Percentiles of peak thickness, speed and pressure to map, 0 to 100.
 
     Raises
     ------

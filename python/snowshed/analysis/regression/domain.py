@@ -31,14 +31,14 @@ class Domain:
     inputs
         All rows, shape (n, k), the columns of `names`.
     names
-        What the inputs are; the event is the first.
+        Names of the inputs; the event is the first.
     """
 
     inputs: Floats
     names: Sequence[str] = INPUTS
 
     def objections(self, questions: Floats) -> list[str]:
-        """Say in words why questions lie outside the data; an empty list: all lie inside.
+        """Return the reasons why questions lie outside the data; empty if all lie inside.
 
         Parameters
         ----------
@@ -56,7 +56,7 @@ class Domain:
         questions = np.atleast_2d(questions)
         found = [text for question in questions for text in self._ranges(question)]
         if not found:
-            # Most events have the same panels, which are looked at once.
+            # Most events have the same panels, which are checked once.
             asked: dict[tuple[bytes, bytes], tuple[Floats, Floats]] = {}
             for question in questions:
                 panels = self._by_event.get(question[0], self.inputs[:0, 1:])

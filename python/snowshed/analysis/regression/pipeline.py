@@ -43,9 +43,9 @@ class TargetReport:
     quartiles, errors
         Tables 5.3.1 and 5.3.2; see `snowshed.analysis.regression.summary`.
     expression
-        The linear model as a formula; empty if there is none.
+        The linear model as a formula; otherwise empty.
     checks
-        For the ratio, in words, whether the thesis's claims hold.
+        Verdicts on the thesis's claims about the ratio, a sentence each.
     """
 
     target: str
@@ -76,15 +76,15 @@ def regress(
     folder
         Results folder: new, empty, or one whose regression was interrupted.
     targets
-        Of "ratio", "height", "length"; none: all.
+        Some of "ratio", "height", "length". [default: all]
     models
-        Of "linear", "rbf", "gaussian-process", "gradient-boosting"; none: all.
+        Some of "linear", "rbf", "gaussian-process", "gradient-boosting". [default: all]
     scheme
         Rounds and folds; None: those of section 5.2.3.
     jobs
-        Processes; None: as many as there are cores.
+        Number of processes. [default: the number of cores]
     title, measure
-        What the data are, and what of the stack was measured; kept in the model file.
+        Title of the data, and measure of the stack; kept in the model file.
     progress
         Called after each outer fold.
 
@@ -98,7 +98,7 @@ def regress(
     InputError
         If a name is unknown, there are too few rows, or the folder holds something else.
     RegressionInterrupted
-        On Ctrl-C; the same call goes on.
+        On Ctrl-C; the same call resumes.
     """
     if jobs is not None and jobs < 1:
         raise InputError(f"jobs: {jobs} is not positive")

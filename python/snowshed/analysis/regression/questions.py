@@ -36,7 +36,7 @@ class Questions:
     labels
         One for each of the p panels: the index of the table, or 0, 1, ...
     panel
-        Which panel each event belongs to, counted from 0, shape (n,).
+        Panel of each event, counted from 0, shape (n,).
     inputs
         Shape (n, k), the inputs of the model that is asked.
     """
@@ -60,9 +60,9 @@ class Questions:
             One row for each panel, with a column for each input (by its short name, or its path)
             and ``events``, in any order and no other.
         columns
-            The same as numbers, or as many as there are panels; None beside a table.
+            The same as numbers, or one value per panel; None beside a table.
         inputs
-            What the model takes; the event is the first.
+            Inputs of the model; the event is the first.
 
         Raises
         ------

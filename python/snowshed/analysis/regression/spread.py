@@ -89,13 +89,13 @@ def unseen_panels(
     Parameters
     ----------
     kind
-        Of the models.
+        Kind of the models.
     elected
         For each round, the hyper-parameters that its outer folds elected.
     rows, target
         The data.
     seed
-        Of the splits into groups of panels.
+        Random seed of the splits into groups of panels.
 
     Returns
     -------

@@ -28,9 +28,9 @@ THESIS_ERRORS: Mapping[str, tuple[float, float]] = {
     "linear": (0.015, 0.013),
 }
 QUARTILES = ("Q1", "Q2", "Q3", "Q4")
-#: What the thesis's claims mean for numbers of our own: the RBF kernel's mean absolute error at
-#: most this, the linear kernel's so many times as large, quartiles off by this part at most.
-#: They are about a data set of so many rows; of another one they mean nothing.
+#: The thesis's claims as bounds: the largest mean absolute error of the RBF kernel, the smallest
+#: ratio of the linear kernel's error to it, and the largest relative error of quartiles. They hold
+#: for a data set with this number of rows only.
 THESIS_ROWS = 610
 LARGEST_RBF_ERROR, LINEAR_WORSE, QUARTILES_OFF = 0.004, 2.5, 0.20
 
@@ -106,14 +106,14 @@ def quartiles(values: Floats) -> tuple[float, ...]:
 def error_table(
     elected: Elected, data: StackRows, target: str, unseen: Mapping[str, Floats]
 ) -> pd.DataFrame:
-    """Return Table 5.3.2 with what it does not say: errors on rows and panels not trained on.
+    """Return Table 5.3.2 with additions: errors on rows and panels that were not trained on.
 
     Parameters
     ----------
     elected, data, target
-        The folds' results by kind of model, and what they are about.
+        The folds' results by kind of model, and their task.
     unseen
-        For kinds of model the errors on panels of which they saw no event.
+        Errors on unseen panels, by kind of model.
     """
     import pandas as pd
 
@@ -156,12 +156,12 @@ def thesis_relative_error(kind: str) -> float:
 
 
 def thesis_checks(quartiles: pd.DataFrame, errors: pd.DataFrame) -> list[str]:
-    """Return in words whether the claims of section 5.3.2 hold for the ratio.
+    """Return verdicts on the claims of section 5.3.2 about the ratio.
 
     Parameters
     ----------
     quartiles, errors
-        As `quartile_table` and `error_table` return them for the ratio.
+        Tables of the ratio from `quartile_table` and `error_table`.
     """
     checks = []
     error = errors["mean_absolute_error"]

@@ -55,7 +55,7 @@ class EpsilonSVR(RegressorMixin, BaseEstimator):
     0.84
     """
 
-    #: What `path_predictions` varies.
+    #: Hyper-parameters that `path_predictions` varies.
     path_parameters = ("epsilon", "C")
 
     def __init__(

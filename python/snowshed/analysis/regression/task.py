@@ -15,7 +15,7 @@ from snowshed.analysis.regression.score import median_absolute_error
 
 @dataclass(frozen=True)
 class Task:
-    """Which fold of what; `round` and `fold` count from 0."""
+    """A fold of a task; `round` and `fold` count from 0."""
 
     target: str
     kind: str

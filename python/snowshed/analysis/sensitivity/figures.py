@@ -127,7 +127,7 @@ def _draw_lines(axes: Axes, lines: pd.DataFrame, events: Sequence[int]) -> None:
 
 
 def sobol_figure(table: pd.DataFrame) -> Figure:
-    """Draw first-order and total Sobol indices; the line is what the seeding alone explains.
+    """Draw first-order and total Sobol indices; the line is the share of the seeding.
 
     Parameters
     ----------
@@ -227,7 +227,7 @@ def _noise_look() -> dict[str, Any]:
 
 def _noise_key() -> Line2D:
     look = _noise_look()
-    return Line2D([], [], **look, label="what the seeding alone does: no effect below")
+    return Line2D([], [], **look, label="seeding alone: smaller values are no effects")
 
 
 def _unique(table: pd.DataFrame, column: str) -> list[Any]:

@@ -50,10 +50,10 @@ def fixation(stored: StoredRuns) -> pd.DataFrame:
     Returns
     -------
     pandas.DataFrame
-        ``group``, ``parameter``, ``value``, ``event``, ``target``; ``points``: over how many;
+        ``group``, ``parameter``, ``value``, ``event``, ``target``; ``points``: number of points;
         ``mean_m``, ``deviation_m``, ``lowest_m``, ``highest_m``; ``mean`` and ``deviation`` of the
         rescaled target (3.4.1, over the group and all events); ``noise``: the standard deviation of
-        the mean of one point by the seeding alone, rescaled likewise; NaN if not known.
+        the mean of one point from the seeding, also rescaled; NaN if unknown.
 
     Raises
     ------

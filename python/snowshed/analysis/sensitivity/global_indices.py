@@ -27,7 +27,7 @@ RESAMPLES = 500  # of the bootstrap
 CONFIDENCE = 0.95
 RANDOM = 1
 FEWEST = 2  # blocks
-SAME_STEP = 1e-3  # part by which steps may differ: files hold rounded numbers
+SAME_STEP = 1e-3  # relative difference of equal steps: files hold rounded numbers
 
 
 def sobol_indices(stored: StoredRuns) -> pd.DataFrame:
@@ -191,7 +191,7 @@ def _analyzed(
 
 
 def _values(stored: StoredRuns) -> Iterator[tuple[int, str, Floats]]:
-    """Yield each event's measures in the order of the points, NaN where there is none."""
+    """Yield each event's measures in the order of the points, NaN for missing ones."""
     for event in stored.events:
         rows = stored.rows[stored.rows["event"] == event].set_index("hash")
         for target in TARGETS:
@@ -245,8 +245,8 @@ def _even_steps(names: Sequence[str], points: Floats) -> tuple[Floats, Floats]:
 def _is_saltelli(changes: Booleans) -> bool:
     """Return whether A is followed by A with each input of B in turn, and by B.
 
-    From A to the first of them the first input changes, from one to the next two neighbours, and
-    from the last one to B all but the last.
+    The first input changes from A to the first point, two neighbours change from each point to the
+    next, and all inputs except the last change from the last point to B.
     """
     count = changes.shape[1]
     one = np.eye(count, dtype=bool)

@@ -37,7 +37,7 @@ def local_index(stored: StoredRuns) -> pd.DataFrame:
     Raises
     ------
     InputError
-        If no two runs differ in one parameter alone.
+        If no two runs differ in exactly one parameter.
 
     Examples
     --------

@@ -61,7 +61,7 @@ class StoredRuns:
 def read_stored(
     folder: PathLike, study: Optional[str] = None, measure: str = "stack"
 ) -> StoredRuns:
-    """Read the runs of a study, as far as they are computed.
+    """Read the computed runs of a study.
 
     Parameters
     ----------

@@ -58,7 +58,7 @@ def neighbours(
 
 
 def _overlap(step: int, count: int) -> tuple[slice, slice]:
-    """Return the voxels along an axis that have a neighbour a step away, and these neighbours."""
+    """Return the voxels along an axis with a neighbour at a distance, and these neighbours."""
     if step < 0:
         return slice(-step, count), slice(0, count + step)
     return slice(0, count - step), slice(step, count)

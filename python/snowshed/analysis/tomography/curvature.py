@@ -5,8 +5,8 @@ curvature is negative the surface is concave in a direction, as around a neck. W
 surface falls apart into convex zones, a layer of voxels thick, whose voxels have common faces. Each
 labels the ice that is nearest to it.
 
-That grains are found by curvature and contiguity is published (Hagenmuller, Chambon and Naaim
-2015). How the zones are found and extended is inferred.
+The segmentation by curvature and contiguity is published (Hagenmuller, Chambon and Naaim 2015). The
+steps that find and extend the zones are inferred.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ def curvature_basins(
     Parameters
     ----------
     ice : (nz, ny, nx)
-        Where there is ice.
+        Mask of the ice.
     smoothing
         Standard deviation of the Gaussian that smooths the image, voxels.
     neck_curvature
@@ -82,7 +82,7 @@ def principal_curvatures(
 ) -> tuple[SingleFloats, SingleFloats]:
     """Return the principal curvatures of the levels of a field, the smaller first, 1/voxel.
 
-    They are positive where what is above the level is convex. From the mean and the Gaussian
+    They are positive where the region above the level is convex. From the mean and the Gaussian
     curvature of an implicit surface: Goldman (2005, doi:10.1016/j.cagd.2005.06.005), section 4.
 
     Parameters

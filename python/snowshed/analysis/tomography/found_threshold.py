@@ -14,7 +14,7 @@ from snowshed.base.extras import require
 from snowshed.base.formatting import number
 
 BINS = 1024  # of a histogram of anything but small whole numbers
-MOST_VALUES = 1 << 16  # whole numbers of which each has a bin of its own
+MOST_VALUES = 1 << 16  # whole numbers with a bin each
 #: Labels of grains have at least so many numbers above 0, of which none has most of the ice, and
 #: this part of the neighbours in the ice have the same number. Of grey values, few have.
 LEAST_LABELS, MOST_OF_ONE, SAME_NEIGHBOURS = 8, 0.5, 0.75
@@ -28,7 +28,7 @@ def found_threshold(name: str, parts: Parts) -> tuple[float, str]:
     Parameters
     ----------
     name
-        Of the image, for messages.
+        Name of the image in messages.
     parts
         Returns the numbers of the image in parts along z, each time anew.
 
@@ -70,7 +70,7 @@ def found_threshold(name: str, parts: Parts) -> tuple[float, str]:
 
 @dataclass
 class _Histogram:
-    """How often values occur; whole numbers of a small range have a bin each."""
+    """Counts of values; whole numbers of a small range have a bin each."""
 
     lowest: Union[int, float]
     width: float  # of a bin
@@ -96,7 +96,7 @@ class _Histogram:
 
     def add(self, part: NDArray[Any]) -> None:
         if self.whole:
-            # Of 8 bytes the difference fits, of fewer it may not.
+            # Differences of 8 bytes fit, those of fewer bytes may overflow.
             wide = part if part.dtype.itemsize == 8 else part.astype(np.int64)
             places = (wide - wide.dtype.type(self.lowest)).astype(np.int64)
         else:
@@ -106,7 +106,7 @@ class _Histogram:
 
     @property
     def has_many_values(self) -> bool:
-        """Whether many values occur above 0, and none of them most of the time."""
+        """Whether many values occur above 0, and none of them dominates."""
         above = self.counts[1:] if self.whole else self.counts
         seen = int(np.count_nonzero(above))
         return seen >= LEAST_LABELS and above.max() < MOST_OF_ONE * above.sum()
@@ -120,7 +120,7 @@ class _Histogram:
 
 @dataclass
 class _Neighbours:
-    """How many voxels next to each other along y and x are ice, and have the same number."""
+    """Number of neighbouring voxels along y and x that are ice, and have the same value."""
 
     pairs: int = 0
     same: int = 0

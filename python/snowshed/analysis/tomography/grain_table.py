@@ -19,13 +19,13 @@ class GrainStatistics:
     Attributes
     ----------
     grains, contacts
-        How many.
+        Number of grains, and of contacts.
     mean_coordination
         Mean number of grains that a grain touches.
     mean_diameter_m, median_diameter_m
-        Of the spheres that have the volumes of the grains.
+        Mean and median diameter of spheres with the volumes of the grains.
     mean_contact_area_m2
-        Of all contacts.
+        Mean area of all contacts.
     bonded_surface
         Area of the contacts, counted at both sides, over the whole surface of the grains.
     """
@@ -100,7 +100,7 @@ def contact_table(found: Segmentation) -> pd.DataFrame:
 
 
 def grain_statistics(grains: pd.DataFrame, contacts: pd.DataFrame) -> GrainStatistics:
-    """Return what the tables of grains and contacts come to."""
+    """Return the summary of the tables of grains and contacts."""
     bonded = float(grains["contact_area_m2"].sum())
     return GrainStatistics(
         grains=len(grains),

@@ -13,9 +13,9 @@ from snowshed.base.arrays import Floats, Integers
 def merge_shallow(touching: Adjacency, peaks: Floats, depth: float) -> Integers:
     """Return new labels, in which maxima of the distance less deep than `depth` are no grain.
 
-    The depth of a maximum is the way down from it to the saddle towards a higher one, its dynamics.
-    Basins merged so are those that the maxima of the h-maxima transform would have (Soille 2004,
-    Morphological Image Analysis, chapter 6).
+    The depth of a maximum is its height above the saddle towards a higher one, its dynamics. The
+    merged basins are those of the maxima of the h-maxima transform (Soille 2004, Morphological
+    Image Analysis, chapter 6).
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ def merge_contiguous(
     touching
         The labels.
     voxels : (n + 1,)
-        Of each.
+        Number of voxels of each region.
     contiguity
         The largest that two grains may have.
     smallest
@@ -135,7 +135,7 @@ class _Graph:
 
 
 def _root(root: Integers, label: int) -> int:
-    """Return the label into which one was merged, and make the way there short."""
+    """Return the label into which a label was merged, and shorten the path to it."""
     while root[label] != label:
         root[label] = root[root[label]]
         label = int(root[label])

@@ -49,7 +49,7 @@ Fact = Union[str, float, int, bool, None, list[str]]
 
 @dataclass(frozen=True)
 class SampleNumbers:
-    """What is known of an image of snow.
+    """Numbers of an image of snow.
 
     Attributes
     ----------
@@ -78,9 +78,9 @@ def write_ice(folder: PathLike, image: IceImage, facts: Mapping[str, Fact]) -> S
     folder
         New or empty.
     image
-        What is written; of a sphere pack the known grains are written, too.
+        The image to write; for a sphere pack, its known grains are written, too.
     facts
-        How it was made, for ``microstructure.json``.
+        Facts about its making, for ``microstructure.json``.
 
     Raises
     ------
@@ -110,7 +110,7 @@ def write_grains(
     found
         The grains.
     facts
-        How they were found, for ``microstructure.json``.
+        Facts about their segmentation, for ``microstructure.json``.
     surface
         Whether to write ``surface.vtp``.
 
@@ -170,7 +170,7 @@ def _write_numbers(path: Path, numbers: SampleNumbers, facts: Mapping[str, Fact]
 
 
 def _rounded(value: object) -> object:
-    """Return a value as it is written: numbers with nine digits, null for what is not finite."""
+    """Return a value for JSON: numbers with nine digits, null for values that are not finite."""
     if not isinstance(value, float):
         return value
     return float(f"{value:.9g}") if math.isfinite(value) else None

@@ -22,12 +22,13 @@ SegmentationMethod = Literal["watershed", "curvature"]
 
 @dataclass(frozen=True)
 class SegmentationSettings:
-    """How grains are told apart.
+    """Settings of the segmentation into grains.
 
     Attributes
     ----------
     method : {"watershed", "curvature"}
-        What cuts the ice: the watershed of the distance from the air, or the concave surface.
+        Method that cuts the ice: the watershed of the distance from the air, or the concave
+        surface.
     depth
         A maximum of the distance is a grain only if it is this much higher than the neck towards a
         higher one, voxels (watershed).
@@ -80,7 +81,7 @@ class Segmentation:
     image
         The ice.
     settings
-        How its grains were found; None: they were known.
+        Settings of the segmentation; None for known grains.
     labels : (nz, ny, nx)
         0 air, else a grain from 1.
     touching
@@ -108,11 +109,11 @@ def segment(
     Parameters
     ----------
     image
-        The ice. It should be connected; what is not is told apart as grains of their own.
+        The ice. It should be connected; disconnected parts become separate grains.
     settings
-        How grains are told apart; None: the defaults.
+        Settings of the segmentation. [default: `SegmentationSettings()`]
     progress
-        Called with the part that is done, and what is being done.
+        Called with the finished share, and the current step.
 
     Raises
     ------
@@ -176,4 +177,4 @@ def _basins(image: IceImage, settings: SegmentationSettings) -> Basins:
 
 
 def _silent(part: float, doing: str) -> None:
-    """Tell nobody."""
+    """Report nothing."""

@@ -24,7 +24,7 @@ from snowshed.io.voxels.voxel_file import VoxelFile
 
 #: Memory, bytes: of a voxel that is read, and of one in which grains are found.
 BYTES_READ, BYTES_SEGMENTED = 2, 45
-#: What it takes on one core of a desktop computer, s per voxel.
+#: Time on one core of a desktop computer, s per voxel.
 SECONDS_PER_VOXEL = 1e-6
 READ, FOUND = 0.1, 0.85  # parts of the work
 
@@ -67,13 +67,13 @@ def segment_image(
     folder
         New or empty.
     image_settings
-        How ice is found in the image.
+        Settings that separate ice from air in the image.
     settings
-        How grains are told apart.
+        Settings of the segmentation.
     surface
         Whether to write the surface for ParaView.
     progress
-        Called as the work goes on.
+        Called during the work.
 
     Raises
     ------
@@ -109,7 +109,7 @@ def segment_image(
 
 
 def plan_text(file: VoxelFile, settings: ImageSettings) -> str:
-    """Return what finding the grains of an image takes, in words."""
+    """Return the announcement of a segmentation: its time and memory."""
     needed, seconds = segmentation_plan(file, settings)
     nz, ny, nx = cropped_shape(file, settings.crop)
     return (

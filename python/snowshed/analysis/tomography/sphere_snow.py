@@ -39,8 +39,9 @@ def sphere_snow(
     Parameters
     ----------
     shape, voxel_size, ice_fraction, density, seed
-        As of `snowshed.analysis.tomography.gaussian_snow.gaussian_snow`. No sphere is added after
-        the ice fraction is reached. Up to some 0.35 are possible, more with wider necks.
+        As for `snowshed.analysis.tomography.gaussian_snow.gaussian_snow`. No sphere is added after
+        the ice fraction is reached. Fractions up to some 0.35 are possible, and more with wider
+        necks.
     diameter
         Mean diameter of the spheres, m.
     neck_ratio

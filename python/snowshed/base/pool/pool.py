@@ -1,7 +1,7 @@
 """Local processes that compute tasks: studies, regressions, measurements and stress runs.
 
-The processes are started by a plain command instead of by `multiprocessing`, so that scripts need
-no main guard, and each has a socket of its own: if one dies, nobody else notices.
+A plain command starts the processes instead of `multiprocessing`, so that scripts need no main
+guard. Each process has its own socket: the death of one does not affect the others.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from snowshed.base.pool.messages import Died, Done, Fraction, Raised, Ready
 
 STOP_S = 60.0  # s a process has to write its checkpoint
 END_S = 5.0  # s a process has to end once its socket is closed
-LAST_WORDS = 4096  # bytes of a process's errors of which the last line is told
+LAST_WORDS = 4096  # bytes of a process's stderr whose last line is reported
 
 Task = TypeVar("Task")
 Result = TypeVar("Result")
@@ -71,11 +71,11 @@ class Ended(Generic[Task, Result]):
     task
         The task.
     result
-        What was computed; None otherwise.
+        Result of the task, if it was computed.
     error
-        What its computation raised; None otherwise.
+        Exception of the task, if it raised one.
     death
-        How its process ended, in words; empty otherwise.
+        Description of how its process ended, if it died.
     last_words
         The last line that a process that ended so wrote to stderr; may be empty.
     hung
@@ -96,18 +96,18 @@ class Ended(Generic[Task, Result]):
 class Pool(Generic[Task, Result]):
     """Up to `processes` processes that compute one task after another; a context manager.
 
-    A task runs in the main thread of its process, so that SIGTERM can ask it to stop where it can
-    go on later. Ctrl-C in a terminal does not reach the processes. They end with the pool, even
-    where the process that made it is killed.
+    A task runs in the main thread of its process, so that SIGTERM can ask it to stop at a safe
+    point. Ctrl-C in a terminal does not reach the processes. They end with the pool, even if the
+    parent process is killed.
 
     Parameters
     ----------
     processes
-        Tasks at once.
+        Number of tasks to run in parallel.
     compute
         A function of a module, or a `functools.partial` of one; it is sent to each process once.
     isolation
-        How far tasks are kept apart; by default they share their process with those before.
+        Isolation of the tasks; by default, tasks share a process with earlier ones.
 
     Examples
     --------
@@ -154,7 +154,7 @@ class Pool(Generic[Task, Result]):
             self._discard(idle)  # it died while it was idle
 
     def collect(self, timeout: float) -> list[Ended[Task, Result]]:
-        """Wait until a task ends, no longer than `timeout` in s; return what has ended."""
+        """Wait until a task ends, at most `timeout` s; return the ended tasks."""
         give_up = time.monotonic() + timeout
         while True:
             ended = self._receive(max(0.0, give_up - time.monotonic()))
@@ -162,7 +162,7 @@ class Pool(Generic[Task, Result]):
                 return ended
 
     def stop(self) -> list[Ended[Task, Result]]:
-        """Ask all tasks to stop where they can go on later; return what ended meanwhile."""
+        """Ask all tasks to stop at a safe point; return the tasks that ended meanwhile."""
         for process in self._busy():
             process.interrupt()
         ended: list[Ended[Task, Result]] = []
@@ -173,7 +173,7 @@ class Pool(Generic[Task, Result]):
         return ended
 
     def close(self) -> None:
-        """End all processes, whatever they do."""
+        """End all processes immediately."""
         for process in self._processes:
             process.connection.close()
         while self._processes:
@@ -200,7 +200,7 @@ class Pool(Generic[Task, Result]):
 
 
 class _Process(Generic[Task, Result]):
-    """One process, and what it is doing."""
+    """A process and its current task."""
 
     def __init__(self, compute: Compute[Task, Result], isolation: Isolation) -> None:
         self._limit_s = isolation.limit_s
@@ -289,7 +289,7 @@ class _Process(Generic[Task, Result]):
         self._errors.close()
 
     def _wait(self) -> int:
-        """Close the socket, kill a process that goes on nevertheless, and return its code."""
+        """Close the socket, kill a process that does not end, and return its exit code."""
         self.connection.close()
         try:
             return self._process.wait(END_S)

@@ -74,7 +74,9 @@ def _command(name: str, kind: Structure) -> click.Command:
 
     docs = parameter_docs(kind.build)
     options: list[click.Parameter] = [
-        click.Argument(["mesh"], type=PATH) if name == "file" else _option(parameter, docs.get(name, ""))
+        click.Argument(["mesh"], type=PATH)
+        if name == "file"
+        else _option(parameter, docs.get(name, ""))
         for name, parameter in inspect.signature(kind.build).parameters.items()
     ]
     summary = str(inspect.getdoc(kind.build)).splitlines()[0].replace("Return", "Write", 1)

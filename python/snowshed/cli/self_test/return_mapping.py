@@ -25,7 +25,7 @@ def calibrated() -> tuple[Constants, float]:
     return Constants(*(snow[name] for name in Constants._fields)), snow["preconsolidation_pressure"]
 
 
-#: Plastic volumetric strains by which snow is compressed or pulled beyond its strength.
+#: Plastic volumetric strains of snow beyond its strength, in compression and tension.
 STRAINS = (-0.01, -1e-4, 1e-5, 1e-4)
 
 

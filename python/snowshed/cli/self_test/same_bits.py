@@ -19,7 +19,7 @@ from snowshed.scene.scene import Scene
 #: Cells, m: enough particles for two threads; few of them.
 FINE, COARSE = 0.0025, 0.02
 STEPS = 200
-#: A run of the executable must end; this is far beyond what it takes, s.
+#: Limit on the run time of the executable, far beyond the usual time, s.
 LONGEST_S = 120.0
 
 

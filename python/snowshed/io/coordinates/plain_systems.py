@@ -1,4 +1,4 @@
-"""Which descriptions of coordinate systems are read: those that need no other file and no request.
+"""Accepted descriptions of coordinate systems: those that need no other file and no request.
 
 Libraries take more for a coordinate system than its description: addresses, which they fetch, and
 names of files, which they open. A file of somebody else could have anything fetched or read.
@@ -12,7 +12,7 @@ from snowshed.base.limits import COORDINATE_SYSTEM
 
 #: Codes of PROJ's own data base, such as EPSG:25833 or EPSG:25833+5941.
 CODE = re.compile(r"(EPSG:\d{1,9}(\+\d{1,9})?|ESRI:\d{1,9}|OGC:CRS(84|27|83)h?)", re.IGNORECASE)
-#: The old way to write a code as a proj string.
+#: The old form of a code in a proj string.
 OLD_CODE = re.compile(r"\+init=(epsg:\d{1,9})(\s+\+(no_defs|type=crs))*", re.IGNORECASE)
 WKT = re.compile(
     r"(PROJCS|PROJCRS|PROJECTEDCRS|GEOGCS|GEOGCRS|GEOGRAPHICCRS|GEODCRS|GEODETICCRS|GEOCCS|COMPD_CS"
@@ -63,7 +63,7 @@ def _names_no_file(proj: str) -> bool:
 
 
 def first_part(wkt: str) -> str:
-    """Return the horizontal system in the WKT of a compound one; other WKT as it is.
+    """Return the horizontal system in the WKT of a compound one; other WKT unchanged.
 
     Examples
     --------

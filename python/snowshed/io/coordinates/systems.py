@@ -1,7 +1,7 @@
 """Coordinate systems of maps: read, compared, and handed on beside ASCII grids.
 
-They are kept in words, such as "EPSG:31287" or WKT. What needs to know more than the words asks
-rasterio, of the extra snowshed[terrain]; it is given plain descriptions only
+A system is kept as text, such as "EPSG:31287" or WKT. Questions beyond the text go to rasterio, of
+the extra snowshed[terrain], which receives plain descriptions only
 (`snowshed.io.coordinates.plain_systems`).
 """
 
@@ -24,7 +24,7 @@ ALLOWED = "allowed: WKT, a code such as EPSG:31287, a proj string without files"
 
 
 def read_prj(raster: Path) -> str:
-    """Return the coordinate system of the .prj beside a raster, in words; empty without one.
+    """Return the coordinate system in the .prj beside a raster, as text; empty without a .prj.
 
     Raises
     ------
@@ -127,7 +127,7 @@ def horizontal_system(words: str) -> Optional[Any]:
 def system_of(words: str) -> Optional[Any]:
     """Return rasterio's view of a coordinate system; None if it is not there or knows none.
 
-    Descriptions that are not plain (`snowshed.io.coordinates.plain_systems`) are none.
+    Descriptions that are not plain are refused (`snowshed.io.coordinates.plain_systems`).
     """
     rasterio = _rasterio()
     plain = plain_system(words)

@@ -95,7 +95,7 @@ def _features(content: Mapping[str, Any], path: Path) -> list[Mapping[str, Any]]
 
 
 class _Outlines:
-    """Collects the corners of rings, and makes all polygons at once."""
+    """Corners of rings, from which all polygons are made together."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -112,7 +112,7 @@ class _Outlines:
             return
         kind = geometry.get("type") if isinstance(geometry, dict) else None
         if kind not in GEOMETRIES or not isinstance(geometry, dict):
-            raise InputError(f"{where}: its geometry is none of GeoJSON")
+            raise InputError(f"{where}: not a GeoJSON geometry")
         coordinates = geometry.get("coordinates")
         if kind not in ("Polygon", "MultiPolygon"):
             raise InputError(f"{where}: not a polygon but a {kind}")
@@ -166,7 +166,7 @@ class _Outlines:
 
 
 def _numbers(counts: Sequence[int]) -> Integers:
-    """Return the number of the whole for each part, where wholes have so many parts."""
+    """Return the index of the whole for each part, from the number of parts of each whole."""
     numbers: Integers = np.repeat(np.arange(len(counts)), counts)
     return numbers
 

@@ -23,7 +23,7 @@ class PolygonLayer:
     fields
         Names of all fields of the file.
     crs
-        Coordinate system in words; empty where the file has none.
+        Coordinate system as text; empty if the file has none.
     """
 
     shapes: Sequence[Any]

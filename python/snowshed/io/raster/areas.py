@@ -34,7 +34,7 @@ class MapArea:
     Attributes
     ----------
     name
-        As the file has it, or "area 1" and so on.
+        Name from the file, or "area 1" and so on.
     outline
         Corners (x, y), m, the first not repeated.
     holes
@@ -42,9 +42,9 @@ class MapArea:
     thickness
         Thickness of the snow, m; None where the file does not say it.
     crs
-        Coordinate system of the file in words, such as "EPSG:31287"; empty where it has none.
+        Coordinate system of the file as text, such as "EPSG:31287"; empty if it has none.
     file
-        Where it was read.
+        Source file.
     """
 
     name: str
@@ -71,7 +71,7 @@ def read_areas(
     layer
         Name of the layer of a GeoPackage; None: the only one.
     option
-        What names a layer, for the message where there are several.
+        Option that names a layer, for the message if there are several.
     with_thickness
         Whether the thickness of snow is read; else it is None.
 
@@ -142,7 +142,7 @@ def _rings(polygons: Any, shapely: Any) -> list[list[Ring]]:
 
 
 def _check_shapes(shapes: Sequence[Any], path: Path, shapely: Any) -> None:
-    """Refuse what are no polygons, and polygons that cross themselves."""
+    """Refuse invalid polygons, and polygons that cross themselves."""
     kinds, valid = shapely.get_type_id(shapes), shapely.is_valid(shapes)
     for number, (kind, is_valid) in enumerate(zip(kinds, valid), 1):
         where = f"{path}, feature {number}"

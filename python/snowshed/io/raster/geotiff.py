@@ -1,7 +1,7 @@
 """Rasters from GeoTIFF, read as GDAL reads them. They need the extra snowshed[terrain].
 
-GDAL sees the content of the file and of the files beside it that are named here, in memory:
-whatever else lies in the folder is not opened, and no other format is tried.
+GDAL sees the file and the named files beside it as copies in memory: other files in the folder are
+not opened, and no other format is tried.
 """
 
 from __future__ import annotations
@@ -28,13 +28,13 @@ from snowshed.io.input_file import read_regular
 from snowshed.io.raster.sidecars import sidecar, small_file
 from snowshed.io.raster.vertical_units import metres_of, split_system
 
-#: What GDAL may see beside a GeoTIFF: facts, and world files, by which it finds its place.
+#: Files beside a GeoTIFF that GDAL may see: metadata, and world files with its position.
 FACTS = "a.tif.aux.xml"
 WORLD_FILES = (".tfw", ".tifw", ".tiffw", ".wld")
 
 
 class BandFacts(NamedTuple):
-    """What GDAL knows of a band beside its values."""
+    """GDAL's metadata of a band."""
 
     scale: float
     offset: float
@@ -56,14 +56,14 @@ class PlacedHeights(NamedTuple):
 
 
 def read_geotiff(path: Path, band: Optional[int] = None) -> PlacedHeights:
-    """Return a band of a GeoTIFF in metres, with what it says of scale, unit and missing values.
+    """Return a band of a GeoTIFF in metres, with its scale, unit and missing values applied.
 
     Parameters
     ----------
     path
         The file.
     band
-        Which band, from 1; needed where the file has several.
+        Band of the file, from 1; needed if there are several.
 
     Raises
     ------
@@ -95,7 +95,7 @@ def read_geotiff(path: Path, band: Optional[int] = None) -> PlacedHeights:
 
 @contextmanager
 def _opened(path: Path, content: bytes, extra: dict[str, bytes]) -> Iterator[Any]:
-    """Open the bytes of a GeoTIFF, beside which there are those of other files by their endings."""
+    """Open the bytes of a GeoTIFF and of files beside it, by their suffixes."""
     rasterio: Any = require("rasterio", "terrain", "reading a GeoTIFF")
     gdal: Any = require("rasterio._err", "terrain", "reading a GeoTIFF")  # not all are translated
     if not content:

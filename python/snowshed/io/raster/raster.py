@@ -30,7 +30,7 @@ class Raster:
     Attributes
     ----------
     heights : (rows, columns)
-        m, the southernmost row first; NaN where there is none.
+        Elevations, m, the southernmost row first; NaN for missing values.
     east, north
         Map coordinates of the middle of the cell [0, 0], m.
     cell
@@ -38,7 +38,7 @@ class Raster:
     name
         For messages.
     crs
-        Coordinate system of the map in words, such as "EPSG:31287"; empty where it is not known.
+        Coordinate system of the map as text, such as "EPSG:31287"; empty if unknown.
     plain
         Whether the file of this name is an ESRI ASCII grid that holds just these heights.
     numbers
@@ -101,8 +101,7 @@ class Raster:
 def read_raster(path: PathLike, band: Optional[int] = None) -> Raster:
     """Read heights in metres.
 
-    What a file says of scale, offset, unit and missing values is taken into account; a note says
-    what was changed.
+    Scale, offset, unit and missing values of the file are applied; a note reports changes.
 
     Parameters
     ----------
@@ -110,7 +109,7 @@ def read_raster(path: PathLike, band: Optional[int] = None) -> Raster:
         An ESRI ASCII grid (any name, its coordinate system in a .prj beside it) or a GeoTIFF, told
         apart by their contents, on a projected map.
     band
-        Which band of a GeoTIFF, from 1; needed where it has several.
+        Band of a GeoTIFF, from 1; needed if there are several.
 
     Raises
     ------
@@ -160,8 +159,8 @@ def is_single(raster: Raster) -> bool:
 def write_ascii_grid(path: PathLike, raster: Raster, *, exact: bool = False) -> None:
     """Write a raster as an ESRI ASCII grid, whole or not at all; NaN becomes -9999.
 
-    Values have nine digits, from which single precision is recovered; with `exact` as many as
-    double precision needs. Single values need them, too, where a reader keeps double precision.
+    Values have nine digits, enough to recover single precision; with `exact`, enough for double
+    precision. Single values need them, too, if a reader uses double precision.
 
     Examples
     --------

@@ -19,12 +19,12 @@ from snowshed.io.raster.raster import Raster
 
 #: Areas that touch at a corner are kept apart by this share of a cell.
 GAP = 1e-7
-#: Thicknesses that are none of snow but stand for something else, m.
+#: Thicknesses that are codes and not snow, m.
 THICKEST = 100.0
 
 
 def snow_part(depth: Raster) -> Raster:
-    """Return the part of a raster of thickness that holds snow, with a row of cells around it.
+    """Return the part of a raster of thickness with snow, and a row of cells around it.
 
     Raises
     ------
@@ -54,8 +54,8 @@ def snow_part(depth: Raster) -> Raster:
 def areas_of_depth(depth: Raster) -> list[MapArea]:
     """Return the areas in which a raster of thickness holds snow, along the edges of its cells.
 
-    Cells of 0 and cells without a value hold none; but a cell without a value amid snow is a gap in
-    what is known.
+    Cells of 0 and cells without a value hold no snow; however, a cell without a value amid snow is
+    a gap in the data.
 
     Raises
     ------
@@ -118,7 +118,7 @@ def _refuse(depth: Raster, wrong: Booleans, what: str) -> None:
 def _refuse_gaps(depth: Raster, snow: Booleans) -> None:
     """Refuse cells without a value in the holes of areas.
 
-    Areas that meet at a corner are apart there, so that what is around them passes between.
+    Areas that meet at a corner are separate there, so that their surroundings connect between them.
     """
     from scipy import ndimage  # takes a tenth of a second, and most slides have polygons
 

@@ -19,7 +19,7 @@ ENDING = ".aux.xml"
 
 
 def sidecar(raster: Path, ending: str = ENDING) -> Optional[bytes]:
-    """Return the content of a small file beside a raster; None where there is none.
+    """Return the content of a small file beside a raster, if it exists.
 
     Raises
     ------
@@ -33,7 +33,7 @@ def sidecar(raster: Path, ending: str = ENDING) -> Optional[bytes]:
 
 
 def small_file(file: Path) -> bytes:
-    """Return the content of a file of facts; errors are those of `sidecar`."""
+    """Return the content of a metadata file; errors are those of `sidecar`."""
     content = read_regular(file)
     if len(content) > SIDECAR:
         raise InputError(f"{file}: {len(content)} bytes; at most {SIDECAR} are read")
@@ -41,7 +41,7 @@ def small_file(file: Path) -> bytes:
 
 
 def refuse_other_facts(grid: Path, values: Floats) -> None:
-    """Refuse a file beside an ESRI ASCII grid by which GDAL would read other values.
+    """Refuse a file beside an ESRI ASCII grid that would change the values for GDAL.
 
     The core, which reads the grid again when a scene runs, does not know such files. Statistics in
     them do no harm.

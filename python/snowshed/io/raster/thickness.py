@@ -1,4 +1,4 @@
-"""Which field of a file of polygons holds the thickness of the snow, and in what unit."""
+"""The field of a file of polygons that holds the thickness of snow, and its unit."""
 
 from __future__ import annotations
 
@@ -30,9 +30,9 @@ class ThicknessField:
     Attributes
     ----------
     name
-        Of the field, as the file has it.
+        Name of the field in the file.
     metres
-        Of one unit.
+        Metres of a unit.
     """
 
     name: str
@@ -65,7 +65,7 @@ class ThicknessField:
 def thickness_fields(fields: Sequence[str], file: str) -> list[ThicknessField]:
     """Return the fields of a file that hold a thickness, the first before the others.
 
-    What is not plain from the names is told: another unit, and fields that are not read.
+    Notes report what the names do not show: another unit, and ignored fields.
 
     Raises
     ------

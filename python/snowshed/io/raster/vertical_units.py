@@ -35,14 +35,14 @@ def metres_of(unit: str, name: str) -> float:
     Parameters
     ----------
     unit
-        As a file names it, such as "ft" or "US survey foot".
+        Name of the unit in a file, such as "ft" or "US survey foot".
     name
-        Of the file, for the message.
+        Name of the file, for the message.
 
     Raises
     ------
     InputError
-        If it is none of length.
+        If the unit is not a length.
 
     Examples
     --------
@@ -64,15 +64,14 @@ def split_system(system: Any, name: str) -> tuple[str, Optional[float]]:
     Parameters
     ----------
     system
-        As rasterio has it.
+        The coordinate system from rasterio.
     name
-        Of the file, for the message.
+        Name of the file, for the message.
 
     Returns
     -------
     str, float or None
-        The system on the map in words, such as "EPSG:25833", and None where nothing is said of
-        heights.
+        The horizontal system as text, such as "EPSG:25833", and the vertical unit, if given.
 
     Raises
     ------
@@ -91,7 +90,7 @@ def split_system(system: Any, name: str) -> tuple[str, Optional[float]]:
 
 
 def split_words(words: str, name: str) -> tuple[str, Optional[float]]:
-    """Do the same for words that a .prj held, "EPSG:31287" or WKT; as they are without rasterio."""
+    """Do the same for the text of a .prj, "EPSG:31287" or WKT; unchanged without rasterio."""
     try:
         rasterio = importlib.import_module("rasterio")
     except ImportError:

@@ -19,7 +19,7 @@ def available() -> bool:
 
 
 def run_writer(path: Path, request: bytes) -> bytes:
-    """Have the program write a file and return what it answers.
+    """Let the program write a file, and return its answer.
 
     Raises
     ------

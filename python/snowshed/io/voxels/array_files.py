@@ -101,16 +101,16 @@ def numbers_of(
     Parameters
     ----------
     name
-        What the image is called in messages.
+        Name of the image in messages.
     data
         The file.
     shape
-        Of the image.
+        Shape of the image.
     dtype
-        Of the numbers.
+        Type of the numbers.
     start
-        Bytes before the first number. Where there are some, what comes after the last number is
-        left out and told.
+        Bytes before the first number. With an offset, bytes after the last number are left out, and
+        a note reports them.
 
     Raises
     ------

@@ -19,7 +19,7 @@ LAST = "ElementDataFile"
 
 @dataclass(frozen=True)
 class Fields:
-    """What a header says; every error names the field and what it holds.
+    """Fields of a header; every error names the field and its content.
 
     Attributes
     ----------
@@ -28,7 +28,7 @@ class Fields:
     values
         Texts by the names of the fields.
     end
-        Where the header ends, bytes.
+        End of the header, bytes.
     """
 
     path: Path
@@ -76,7 +76,7 @@ class Fields:
         return next((name for name in names if name in self.values), None)
 
     def text(self, name: str, default: str) -> str:
-        """Return a field as it is."""
+        """Return the text of a field."""
         return self.values.get(name, default)
 
     def flag(self, name: str, default: bool) -> bool:
@@ -111,7 +111,7 @@ class Fields:
         return numbers
 
     def wrong(self, name: str, needed: str) -> InputError:
-        """Return the error that a field is not what is needed."""
+        """Return the error for a field with a wrong value."""
         return InputError(f"{self.path}: {name} {quoted(self.values.get(name, ''))}: {needed}")
 
 

@@ -16,7 +16,7 @@ from snowshed.base.limits import MB
 from snowshed.io.input_file import open_regular
 from snowshed.io.voxels.voxel_file import VoxelFile, check_unpacked
 
-PIECE = MB  # packed bytes that are read at once
+PIECE = MB  # packed bytes in a chunk
 EITHER = 47  # of zlib: a stream of zlib or of gzip, told by its head
 
 
@@ -28,17 +28,17 @@ def packed_numbers(
     Parameters
     ----------
     name
-        What the image is called in messages.
+        Name of the image in messages.
     data
         The file.
     shape
         Voxels (nz, ny, nx).
     dtype
-        Of the numbers.
+        Type of the numbers.
     start
-        Where the stream begins, bytes.
+        Beginning of the stream, bytes.
     size
-        How long it is; 0: as long as the file.
+        Length of the packed bytes; 0: to the end of the file.
 
     Raises
     ------
@@ -78,12 +78,12 @@ class _PackedLayers:
 
 
 class _Stream:
-    """What a stream unpacks to, from its beginning on.
+    """The unpacked bytes of a stream, from its beginning.
 
     Attributes
     ----------
     done
-        How many bytes were taken.
+        Number of bytes read.
     """
 
     def __init__(self, name: str, start: int) -> None:

@@ -34,18 +34,18 @@ class Picture:
     size
         Pixels along y and x, as stored.
     dtype
-        Of the numbers.
+        Type of the numbers.
     kind
-        What else all pictures of a stack must have in common, in words.
+        Further properties that all pictures of a stack share, as text.
     read
         Returns the numbers as stored.
     orientation
-        Where the stored rows and columns belong, one of `ORIENTATIONS`; None: it does not say, so
-        it is as the first picture.
+        Orientation of the stored rows and columns, one of `ORIENTATIONS`; None if the picture does
+        not state it, which means that of the first picture.
     stored
         Bytes that it takes in its file.
     notes
-        What was assumed.
+        Assumptions made in reading.
     """
 
     name: str
@@ -64,7 +64,7 @@ def stacked(
     voxel_size: Optional[float] = None,
     printed_size: Optional[float] = None,
 ) -> VoxelFile:
-    """Return the image of pictures that lie one on another, and tell what was assumed of them.
+    """Return the image of a stack of pictures, and print the assumptions.
 
     Raises
     ------

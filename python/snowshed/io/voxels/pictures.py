@@ -17,11 +17,11 @@ from snowshed.io.voxels.tiff_pages import contiguous_copies, is_big_endian, page
 from snowshed.io.voxels.tiff_tags import Tags, read_pages
 from snowshed.io.voxels.voxel_file import VoxelFile
 
-#: What the ending of a slice says.
+#: Format of a slice by its suffix.
 FORMATS = {".tif": "TIFF", ".tiff": "TIFF", ".png": "PNG", ".bmp": "BMP"}
 #: Units of the tag ResolutionUnit, m.
 INCH, UNITS = 0.0254, {2: 0.0254, 3: 0.01}
-#: Dots per inch that programs write without knowing what a picture shows.
+#: Dots per inch that programs write by default, without knowing the picture.
 USUAL_DPI = (1, 72, 96, 100, 150, 200, 300, 600, 1200)
 
 
@@ -110,7 +110,7 @@ def _printed_size(tags: Tags) -> Optional[float]:
 
 
 def _numbered(folder: Path) -> list[Path]:
-    """Return the slices of a folder by their number, of which none is missing."""
+    """Return the slices of a folder by their number, without gaps."""
     paths = []
     for path in folder.iterdir():
         if path.suffix.lower() in FORMATS and not path.name.startswith("."):

@@ -1,4 +1,4 @@
-"""What the description of a TIFF file says of its pages: by ImageJ, OME, or tifffile.
+"""The description of a TIFF file's pages: by ImageJ, OME, or tifffile.
 
 Only what bears on the numbers and their places is read: how many slices there are, whether they are
 slices at all, and how large a voxel is. No other file that a description names is opened.
@@ -23,22 +23,22 @@ UNITS = {
     "\N{GREEK SMALL LETTER MU}m": 1e-6, "mm": 1e-3, "cm": 1e-2, "m": 1.0, "inch": 0.0254,
 }  # fmt: skip
 CUBIC = 1.001  # largest over smallest edge of what counts as a cube
-#: What a description calls the three ways in which pages may follow each other.
+#: Names in descriptions for the three dimensions along which pages may follow each other.
 KINDS = ("channels", "slices", "frames")
 
 
 @dataclass(frozen=True)
 class Description:
-    """What a description says.
+    """Content of a description.
 
     Attributes
     ----------
     slices
-        How many there are; None: it does not say.
+        Number of slices, if the file states it.
     voxel_size
         Edge of a voxel, m; None: it does not say.
     notes
-        What was assumed.
+        Assumptions made in reading.
     """
 
     slices: Optional[int] = None
@@ -47,12 +47,12 @@ class Description:
 
 
 def described(name: str, text: str, pixels_per_unit: Optional[float]) -> Description:
-    r"""Return what the description of a file says.
+    r"""Return the content of a file's description.
 
     Parameters
     ----------
     name
-        Of the file.
+        Name of the file.
     text
         The tag ImageDescription of its first page.
     pixels_per_unit
@@ -167,7 +167,7 @@ def _tag(element: ElementTree.Element) -> str:
 
 
 def _count(text: Optional[str]) -> int:
-    """Return a count of a description; one that is none is refused."""
+    """Return a count in a description; raises InputError for other values."""
     if not re.fullmatch(r"[0-9]{1,9}", text or ""):
         raise InputError(f"{quoted(text or '')}: no count, in the description of a TIFF file")
     return int(text or "0")

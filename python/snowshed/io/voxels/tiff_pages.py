@@ -30,7 +30,7 @@ LARGEST_TILE = 1 << 20  # pixels, of an image that is smaller
 
 @dataclass(frozen=True)
 class Layout:
-    """Where the numbers of a page are.
+    """Positions of the numbers of a page.
 
     Attributes
     ----------
@@ -39,11 +39,11 @@ class Layout:
     piece
         The same of a strip or tile.
     tiled
-        Whether they are tiles, all of which are whole; the last strip may have fewer rows.
+        Whether the segments are tiles, which all are complete; the last strip may have fewer rows.
     places, counts
         First byte, and number of bytes, of each strip or tile, row by row.
     coding
-        How they are packed.
+        Coding of the pixels.
     """
 
     size: tuple[int, int]
@@ -66,7 +66,7 @@ def page_picture(path: Path, tags: Tags, big_endian: bool) -> Picture:
     Raises
     ------
     InputError
-        If it is damaged, has colours, or is packed in a way that is not read.
+        If the page is damaged, has colours, or uses an unsupported compression.
     """
     name = tags.name
     height, width = tags.number(257, 0), tags.number(256, 0)
@@ -115,7 +115,7 @@ def _check_one_number(tags: Tags) -> None:
 
 
 def _dtype(tags: Tags, big_endian: bool) -> tuple[np.dtype[Any], tuple[str, ...]]:
-    """Return the type of the numbers, in the byte order of the file, and what was assumed."""
+    """Return the type of the numbers, in the byte order of the file, and assumptions."""
     bits, sample_format = tags.number(258, 1), tags.number(339, 1)
     kind = KINDS.get(sample_format, "")
     known = {"u": (1, 2, 4, 8, 16, 32, 64), "i": (8, 16, 32, 64), "f": (16, 32, 64)}
@@ -257,7 +257,7 @@ def is_big_endian(path: Path) -> bool:
 
 
 def contiguous_copies(picture: Picture, count: int) -> list[Picture]:
-    """Return pictures that lie one after another in a file, of which the first alone is a page.
+    """Return consecutive pictures of a file in which only the first is a page.
 
     Raises
     ------

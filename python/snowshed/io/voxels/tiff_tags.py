@@ -1,4 +1,4 @@
-"""The pages of a TIFF file: their tags, as tifffile reads them, and what is made of them."""
+"""The pages of a TIFF file, and their tags from tifffile."""
 
 from __future__ import annotations
 
@@ -28,17 +28,17 @@ DIALECTS = (
     "is_lsm", "is_ndpi", "is_philips", "is_scanimage", "is_nih", "is_stk", "is_svs", "is_ome",
     "is_imagej", "is_micromanager", "is_mmstack", "is_sis", "is_fluoview", "is_tvips", "is_eer",
 )  # fmt: skip
-#: How often the bytes of a file may be read to find its pages: thrice do.
+#: Largest number of passes over a file to find its pages; three are normal.
 READ_OFTEN = 4
 
 
 class Tags:
-    """The tags of a page, as numbers and texts; what a damaged file has in their place is refused.
+    """The tags of a page, as numbers and texts; damaged values are refused.
 
     Parameters
     ----------
     page
-        As tifffile has it.
+        The page from tifffile.
     name
         For messages.
     """
@@ -49,7 +49,7 @@ class Tags:
         self._tags = page.tags
 
     def value(self, code: int) -> Any:
-        """Return the value of a tag as it is; None: the page does not have it."""
+        """Return the value of a tag, if the page has it."""
         tag = self._tags.get(code)
         return None if tag is None else tag.value
 
@@ -106,7 +106,7 @@ def tiff_errors(path: Path) -> Iterator[None]:
 
 
 def read_pages(path: Path, look: Callable[[Tags], Page]) -> list[Page]:
-    """Return what is made of the tags of each page of a TIFF file, while it is open.
+    """Apply a function to the tags of each page of an open TIFF file, and return the results.
 
     Raises
     ------
@@ -140,7 +140,7 @@ def _tags(tiff: TiffFile, path: Path) -> Iterator[Tags]:
 
 
 class _Bounded(io.RawIOBase):
-    """A file of which no tag beyond `TAG` is read, and no byte too often."""
+    """A file that limits the tags that are read (`TAG`), and the passes over its bytes."""
 
     def __init__(self, file: BinaryIO) -> None:
         self._file = file

@@ -14,7 +14,7 @@ from snowshed.io.voxels.voxel_file import VoxelFile
 
 @dataclass(frozen=True)
 class Turn:
-    """How the axes of an image follow from those of its file, both along z, y, x.
+    """The axes of an image in terms of those of its file, both in the order z, y, x.
 
     Attributes
     ----------
@@ -47,7 +47,7 @@ class Turn:
 def turned(file: VoxelFile, turn: Turn) -> VoxelFile:
     """Return an image turned; of its file no more is held than some layers.
 
-    Where layers of the image are not layers of the file, each reading passes through all of it.
+    If layers of the image are not layers of the file, each reading passes through the whole file.
     """
     if turn.is_none:
         return file

@@ -11,7 +11,7 @@ from xml.etree import ElementTree
 from snowshed._core import InputError
 from snowshed.io.input_file import read_input
 
-#: How the comment behind the list begins that says its checksum, as the core writes it.
+#: Beginning of the comment with the list's checksum, as the core writes it.
 SEAL = b"<!-- checksum "
 
 

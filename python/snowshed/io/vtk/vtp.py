@@ -28,7 +28,7 @@ TYPES = MappingProxyType(
     }
 )
 APPENDED = b'<AppendedData encoding="raw">\n_'
-#: How a file ends, with the checksum of what stands before; and without.
+#: End of a file, with and without a checksum of the content before.
 END = re.compile(rb"  <!-- crc32 ([0-9a-f]{8}) -->\n</VTKFile>\n\Z")
 OLD_END, LONGEST_END = b"\n  </AppendedData>\n</VTKFile>\n", 64
 LENGTH_BYTES = 8  # before each block

@@ -203,7 +203,7 @@ def _acis_head(lines: Sequence[str]) -> tuple[int, str] | None:
 
 
 def _is_bare_acis(lines: Sequence[str]) -> bool:
-    """Return whether a file is what the service answers: a station's name, then rows."""
+    """Return whether a file is an answer of the service: a station's name, then rows."""
     bare = len(lines) > 1 and BARE_TITLE.fullmatch(lines[0]) and BARE_ROW.fullmatch(lines[1])
     return bool(bare)
 

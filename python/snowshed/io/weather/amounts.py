@@ -42,7 +42,7 @@ def without_overlap(
     step
         Hours of the shortest total.
     what
-        Their unit and quantity, for the notes.
+        Unit and quantity of the amounts, for the notes.
 
     Examples
     --------

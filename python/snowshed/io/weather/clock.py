@@ -17,7 +17,7 @@ SUNDAY = 6
 def on_one_clock(station: Station, source: str) -> Station:
     """Return a station whose rows have increasing times of one clock, without offsets.
 
-    Times with offsets are put on the clock of the smallest, which is that of standard time.
+    Times with offsets are converted to the smallest offset, which is standard time.
 
     Raises
     ------

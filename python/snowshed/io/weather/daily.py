@@ -34,7 +34,7 @@ WATER = _Several("PRCP", "MDPR", "DAPR", "mm of precipitation")
 COUNTS = (SNOW.number, WATER.number)
 #: Elements of several days and of their number, by that of a day.
 TOTALS = {one.day: (one.days, one.number) for one in (SNOW, WATER)}
-#: Which elements tell each quantity, by the names in the files.
+#: Elements of each quantity, by their names in the files.
 COLUMNS: Mapping[str, str] = {
     "temperature": "TAVG, or TMAX and TMIN",
     "precipitation": "PRCP",
@@ -51,14 +51,14 @@ def with_totals(elements: Mapping[str, Quantity]) -> dict[str, Quantity]:
 
 @dataclass
 class Days:
-    """What was measured on the days of a station, whose elements come in any order.
+    """Measurements of the days of a station, whose elements come in any order.
 
     Attributes
     ----------
     values
-        By day: its first line, and values by element.
+        Line and values by element, for each day.
     left_out
-        How many values were left out, by reason.
+        Number of left-out values, by reason.
     """
 
     values: dict[datetime, dict[str, Any]] = field(default_factory=dict)

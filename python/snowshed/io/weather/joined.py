@@ -28,7 +28,7 @@ class _File(NamedTuple):
 
 
 class _Value(NamedTuple):
-    """What one row of one file contributes."""
+    """Contribution of a row of a file."""
 
     file: int
     row: Observation
@@ -53,7 +53,7 @@ def read_stations(paths: Sequence[Path], temperature: Optional[Path] = None) -> 
     Raises
     ------
     InputError
-        If a file is none of a station, or a typical year, or the snow and the temperatures have no
+        If a file is not from a station, is a typical year, or the snow and the temperatures have no
         day in common.
     OSError
         If one cannot be read.

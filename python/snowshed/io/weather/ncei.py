@@ -12,9 +12,9 @@ mm and degrees C            one decimal, 10.0    one decimal, or none  whole
 inches and degrees F        whole                two decimals, 0.20    one decimal
 =========================== ==================== ===================== =================
 
-Nothing is guessed: units are taken only where all that a file holds is of one row of this table
-and of no other. Precipitation with one decimal alone may be either, so that it needs temperatures
-beside it; without any decimal a file is taken only in the form that the archive alone has.
+Units are never guessed: they are accepted only if the whole content of the file matches exactly one
+row of this table. Precipitation with one decimal fits two rows, so temperatures are needed beside
+it; a file without decimals is accepted only in the form of the archive.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ STANDARD: Mapping[str, Quantity] = with_totals(
 )
 STATION, DATE, PLACE = "STATION", "DATE", "LATITUDE"
 FLAGS = "_ATTRIBUTES"  # of measurement, of quality, of the source, and the time of observation
-ARCHIVE = [STATION, DATE, PLACE]  # the order of columns in the archive alone
+ARCHIVE = [STATION, DATE, PLACE]  # the order of columns that only the archive has
 
 
 def is_summaries(lines: Sequence[str]) -> bool:

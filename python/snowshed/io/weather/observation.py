@@ -1,4 +1,4 @@
-"""What weather files tell, in one form: a row for each time, in SI units and degrees C."""
+"""Observations from weather files in one form: a row for each time, in SI units and degrees C."""
 
 from __future__ import annotations
 
@@ -36,9 +36,9 @@ class Observation:
     line
         In the file, from 1.
     time
-        When it was, or the day. It is of one clock throughout a station, without summer time.
+        Time or day of the observation, on one clock throughout a station, without summer time.
     temperature
-        Of the air, degrees C.
+        Temperature of the air, degrees C.
     precipitation
         mm of water that fell in the last `precipitation_hours`.
     snowfall
@@ -46,13 +46,14 @@ class Observation:
     snow_depth
         m.
     precipitation_hours, snowfall_hours
-        How long the amounts gathered. Amounts of different rows do not overlap, except those of
-        `Station.rolling`. Of whole days they end with the day of `time`, of hours with `end`.
+        Duration over which the amounts accumulated. Amounts of different rows do not overlap,
+        except those of `Station.rolling`. Amounts of whole days end with the day of `time`, amounts
+        of hours with `end`.
     seam
         Whether the row continues another series (another source year, sensor or file), so that a
         difference of the snow depth to the row before is no weather.
     end
-        When the hours of the amounts end; None: at `time`.
+        End of the hours of the amounts. [default: `time`]
     """
 
     line: int
@@ -72,7 +73,7 @@ class Observation:
         Parameters
         ----------
         hours
-            How long the amount gathered; None: within the day of `time`.
+            Duration over which the amount accumulated. [default: within the day of `time`]
 
         Examples
         --------
@@ -125,13 +126,13 @@ class Station:
     format
         Its name.
     name
-        Of the station, as far as the file tells.
+        Name of the station, if the file states it.
     rows
         In the order of time, each later than the one before. Those of a typical year are put
         together as a year that begins in the station's summer: July 2001 to June 2002 in the
         north, January to December 2001 in the south.
     notes
-        What was assumed in reading it.
+        Assumptions made in reading.
     typical_year
         Whether its months come from different years.
     latitude, longitude
@@ -141,10 +142,10 @@ class Station:
     utc_offset
         Hours of the rows' clock ahead of universal time; None: the file does not tell.
     columns
-        Where each quantity stands in the file: names of fields of `Observation`, and of columns.
+        Source of each quantity: names of fields of `Observation`, and of columns in the file.
     rolling
-        Names of the quantities of which every row holds the sum of the last hours, so that those
-        of several rows overlap; of precipitation such sums are never handed on.
+        Quantities whose rows all hold sums over the last hours, so that rows overlap; overlapping
+        sums of precipitation are never passed on.
     """
 
     format: str
@@ -169,7 +170,7 @@ class Station:
 
 @dataclass(frozen=True)
 class Quantity:
-    """What a cell holds: its unit in the file, and how it becomes the unit of an observation.
+    """Quantity of a cell: its unit in the file, and the conversion to the unit of an observation.
 
     Attributes
     ----------
@@ -180,7 +181,7 @@ class Quantity:
     factor, offset
         value = factor * cell + offset.
     hours
-        How long an amount gathered; None: since the row before, or it is no amount.
+        Duration over which an amount accumulated; None: since the previous row, or no amount.
     """
 
     name: str
@@ -204,7 +205,7 @@ class Quantity:
         Raises
         ------
         InputError
-            If it is no number, or none of such a quantity.
+            If the text is not a number, or not a plausible value.
 
         Examples
         --------
@@ -258,7 +259,7 @@ def time_of(text: str, where: str, *formats: str) -> datetime:
     Raises
     ------
     InputError
-        If it is none.
+        If the text is not a time.
     """
     cell = text.strip().strip('"')
     for one in formats:
@@ -287,7 +288,7 @@ def time_of(text: str, where: str, *formats: str) -> datetime:
 
 @lru_cache(maxsize=16)
 def _pattern(form: str) -> re.Pattern[str]:
-    """Return what a time in a format of `strptime` looks like, which is ten times as fast."""
+    """Return the pattern of a time format of `strptime`; parsing by it is ten times as fast."""
     text = re.escape(form).replace("\\ ", " ")
     for sign, (name, digits) in PARTS.items():
         text = text.replace(sign, f"(?P<{name}>[0-9]{digits})")
@@ -311,7 +312,7 @@ def coordinate(text: str, where: str, largest: float) -> Optional[float]:
     Raises
     ------
     InputError
-        If its amount is larger than allowed, or it is none.
+        If the amount is larger than allowed, or not a number.
 
     Examples
     --------

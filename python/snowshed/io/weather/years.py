@@ -29,7 +29,7 @@ def arranged(
     rows
         In the order of the file, with their own years.
     latitude
-        Of the station, degrees; None counts as north.
+        Latitude of the station, degrees; None counts as north.
     source
         The file, for messages.
 
@@ -47,7 +47,7 @@ def arranged(
 
 
 def _are_actual(rows: Sequence[Observation]) -> bool:
-    """Return whether rising rows go on from year to year, or hold an hour of the year twice."""
+    """Return whether rising rows continue from year to year, or repeat an hour of the year."""
     steady = all(later.time - earlier.time <= NEAR for earlier, later in zip(rows, rows[1:]))
     if steady:
         return not _is_calendar_year(rows)
@@ -55,7 +55,7 @@ def _are_actual(rows: Sequence[Observation]) -> bool:
 
 
 def _is_calendar_year(rows: Sequence[Observation]) -> bool:
-    """Return whether rows go from 1 January to 31 December, of which a winter must be made."""
+    """Return whether rows span 1 January to 31 December, so that a winter must be put together."""
     first, last = rows[0].time, rows[-1].time
     begin = datetime((first + NEAR).year, 1, 1)
     return abs(first - begin) <= NEAR and abs(last - begin - YEAR) <= 2 * NEAR

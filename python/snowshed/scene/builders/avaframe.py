@@ -33,13 +33,13 @@ class AvaFrameSimulation:
     Attributes
     ----------
     scene
-        What to simulate.
+        The scene to simulate.
     release
         Name of the release file, without ending.
     sim_type
         "entres", "ent", "res" or "null": with areas of entrainment, of resistance, or neither.
     project
-        What the ini asks for.
+        The settings of the ini file.
     folder
         The project folder.
     files
@@ -83,7 +83,8 @@ def avaframe_simulations(
     thickness
         Thickness of the released snow [m], in place of the files'.
     ascii_copy
-        Where the copy of terrain goes that is a GeoTIFF or has other cells than the ini asks for.
+        File for a copy of the terrain, needed for a GeoTIFF or other cell sizes than those of the
+        ini.
 
     Raises
     ------

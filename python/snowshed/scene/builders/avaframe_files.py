@@ -1,7 +1,7 @@
 """The files of an AvaFrame project: which are its own, and may be read and copied.
 
-Projects are handed from person to person. A link in one could lead to any file of whoever runs it,
-whose content would then stand among the results.
+Projects are exchanged between people. A link in a project could lead to any file of the user, whose
+content would then be among the results.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ KNOWN = (
     *(".shp", ".shx", ".dbf", ".cpg", ".qpj", ".qix", ".sbn", ".sbx", ".gpkg", ".geojson"),
     *(".ini", ".csv"),
 )
-#: What AvaFrame keeps in Inputs for itself.
+#: Entries of Inputs for AvaFrame's own use.
 OWN_COPIES = "remeshedRasters"
 
 
@@ -37,7 +37,7 @@ class InputFile:
     Attributes
     ----------
     file
-        Where it is.
+        Folder of the project.
     place
         Its path from the project's folder Inputs.
     """
@@ -54,9 +54,8 @@ def project_inputs(root: Path) -> list[InputFile]:
     Raises
     ------
     InputError
-        If a file is none of the project: a link that leads out of it, to a folder or to nothing, a
-        device, a pipe; if a name holds what no name should; or if there are too many or too large
-        ones.
+        If a file is unsafe: a link that leads out of the project, to a folder or to nothing, a
+        device, a pipe; if a name has forbidden characters; or if files are too many or too large.
     """
     inputs = root / "Inputs"
     _check_own(inputs, root, folder=True)
@@ -123,7 +122,7 @@ def _entries(folder: Path) -> list[os.DirEntry[str]]:
 
 
 def _check_own(path: Path, root: Path, *, folder: bool) -> None:
-    """Refuse what lies elsewhere, and what is no regular file, or folder."""
+    """Refuse files outside the project, and everything except regular files and folders."""
     try:
         inside = path.resolve(strict=True).is_relative_to(root.resolve())
     except (OSError, RuntimeError):  # there is nothing, or links lead in a circle

@@ -1,4 +1,4 @@
-"""What an ini of AvaFrame's com5SnowSlide asks for: honoured or refused, never passed over.
+"""The settings of an ini of AvaFrame's com5SnowSlide: honoured or refused, never ignored.
 
 com5SnowSlide runs com1DFA with other defaults; its ini may set any parameter of com1DFA.
 """
@@ -37,7 +37,7 @@ RESULT_TYPES = ("ppr", "pft", "pfv", "P", "FT", "FV")
 
 @dataclass
 class ProjectSettings:
-    """What an ini asks for.
+    """The settings of an ini.
 
     Attributes
     ----------
@@ -50,7 +50,7 @@ class ProjectSettings:
     release_thickness, entrained_thickness
         Thickness of all areas in place of the files', m; None: the files'.
     default_entrained_thickness
-        Where the file of the entrainment areas says none, m.
+        Entrainment thickness where the file of the areas has none, m.
     release_scenario
         Name of the only release file to take; empty: all of them.
     result_types, saved_times
@@ -58,7 +58,7 @@ class ProjectSettings:
     with_dam, with_secondary_release
         Whether to take dams and secondary release areas where there are any.
     places
-        Where the ini sets the values, by their names.
+        Positions of the values in the ini, by their names.
     """
 
     values: dict[str, object] = field(default_factory=lambda: {"cell": 2.0, "time_step": 0.01})
@@ -75,19 +75,19 @@ class ProjectSettings:
     places: dict[str, str] = field(default_factory=dict)
 
     def located(self, error: InputError) -> InputError:
-        """Return an error of a scene with the place in the ini that sets what it is about."""
+        """Return an error of a scene with the position of its setting in the ini."""
         about = re.match(r"/numerics/(\w+)", str(error))
         place = self.places.get(about[1]) if about else None
         return InputError(f"{place}: {error}") if place else error
 
 
 def read_ini(file: Optional[Path]) -> ProjectSettings:
-    """Return what an ini of com5SnowSlide asks for; its defaults without one.
+    """Return the settings of an ini of com5SnowSlide; without an ini, its defaults.
 
     Raises
     ------
     InputError
-        If the file is no ini, or a key or its value is none that works here.
+        If the file is not an ini, or a key or its value is not supported.
 
     Examples
     --------
@@ -234,7 +234,7 @@ class _Keys:
                 or key.endswith(OTHER_FRICTION)
             ):
                 near = suggestion(key, [*SETTINGS, *OWN_KEYS, *FIXED])
-                raise InputError(f"{self.where(key)}: none of the keys that are known here{near}")
+                raise InputError(f"{self.where(key)}: unknown key{near}")
 
 
 def _keys_of(file: Optional[Path]) -> tuple[dict[str, str], dict[str, int]]:

@@ -30,7 +30,7 @@ from snowshed.scene.scene import Scene
 MAX_TIME = 400.0  # s, as AvaFrame has it
 THINNEST = 0.01  # m, of snow that is worth a slide
 MAX_THICKNESS = 10.0  # m, of snow that is believed; as of the core
-#: What names the layer of a file on the command line.
+#: Options that name the layer of a file.
 LAYER_OPTIONS = {
     "release": "--layer",
     "entrainment": "--entrainment-layer",
@@ -75,30 +75,29 @@ def slide_scene(
     entrained_thickness
         Thickness of the snow that can be taken up [m], in place of the file's.
     layers
-        Layers of GeoPackages that hold several, by what they are read for: "release",
-        "entrainment", "resistance".
+        Layers of GeoPackages with several, by purpose: "release", "entrainment", "resistance".
     settings
         Settings of the method; None: its defaults.
     ascii_copy
-        Where the copy of terrain as an ASCII grid in metres goes, which the scene names, if the
-        file is none; that of a raster of thickness goes beside it.
+        File for a copy of the terrain as an ASCII grid in metres, which the scene names, if the
+        terrain is in another format; a copy of a raster of thickness goes beside it.
     title
-        What this scene is.
+        Title of the scene.
     band, thickness_band
-        Which band of the raster of elevations and of that of thickness, from 1; needed where a
-        GeoTIFF has several.
+        Bands of the rasters of elevations and of thickness, from 1; needed if a GeoTIFF has
+        several.
     max_slope
         Steepest cliff that is believed under the release [degrees]; None: 70.
     max_thickness
         Largest thickness of snow that is believed [m]; None: 10.
     max_cells
-        How many cells the raster of elevations may have; None: 2.5 million.
+        Largest number of cells of the raster of elevations. [default: 2.5 million]
 
     Raises
     ------
     InputError
-        If a file is not what it should be, coordinate systems differ, elevations or cells are none
-        in metres, areas lie beside the terrain or on each other, or the thickness is missing.
+        If a file is invalid, coordinate systems differ, elevations or cells are not in metres,
+        areas lie beside the terrain or overlap, or the thickness is missing.
     OSError
         If a file cannot be read, or the copy not be written.
     """
@@ -222,7 +221,7 @@ def _release_areas(
     if depth is not None:
         if thickness is not None:
             raise InputError("give one of a thickness and a raster of thickness")
-        snow_part(depth)  # which refuses what is no thickness
+        snow_part(depth)  # refuses values that are not a thickness
         return areas_of_depth(depth) if release is None else polygons.areas(release, "release")
     if release is None:
         raise InputError("give the release: polygons or a raster of thickness")

@@ -155,7 +155,7 @@ def signed_distances(
         )
     zs = bottom + spacing * np.arange(count)
     points = np.stack(np.meshgrid(xs, ys, zs, indexing="ij"), axis=-1).reshape(-1, 3)
-    reach = spacing * (count + DEEP)  # nothing at the sides is nearer than what is below
+    reach = spacing * (count + DEEP)  # the sides are farther away than the bottom
     distances = _distances(_solid(heights, xs, ys, bottom - reach, reach), points, spacing)
     return distances.reshape(len(xs), len(ys), count), bottom
 

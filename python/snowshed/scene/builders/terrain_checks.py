@@ -1,4 +1,4 @@
-"""The one reader of terrain, and what it refuses: elevations and areas that cannot be."""
+"""The only reader of terrain, which refuses implausible elevations and areas."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ STEEPEST = 65.0  # degrees, the median of terrain that is in metres
 MAX_SLOPE = 70.0  # degrees, of cliffs that are believed under a release and beside elevations of 0
 FOOT = 0.3048  # m
 METRE_CELLS = (0.5, 1.0, 2.0, 3.0, 5.0, 10.0, 20.0, 25.0, 30.0)  # m, of usual rasters
-SAMPLE = 1_000_000  # cells of which the median slope is taken
+SAMPLE = 1_000_000  # cells for the median slope
 
 
 def read_terrain(
@@ -39,11 +39,11 @@ def read_terrain(
     path
         An ESRI ASCII grid or a GeoTIFF, on a projected map.
     band
-        Which band of a GeoTIFF; needed where it has several.
+        Band of a GeoTIFF; needed if it has several.
     max_slope
         Degrees from the horizontal: what `check_terrain` believes.
     max_cells
-        How many cells it may have.
+        Largest number of cells.
 
     Raises
     ------
@@ -168,7 +168,7 @@ def common_system(named: Sequence[tuple[str, str]]) -> str:
     Parameters
     ----------
     named
-        Files and their coordinate systems in words.
+        Files, and their coordinate systems as text.
     """
     given = [(file, system) for file, system in named if system]
     for file, system in given[1:]:

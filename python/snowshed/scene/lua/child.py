@@ -67,7 +67,7 @@ def _give_up(limits: dict[str, Any]) -> None:
     for which, amount in GIVEN_UP:
         with contextlib.suppress(ValueError, OSError):  # not every system has every limit
             resource.setrlimit(which, (amount, amount))
-    # What these signals do when nobody handles them is to end the process, also inside a call.
+    # The default action of these signals ends the process, even during a call.
     signal.setitimer(signal.ITIMER_PROF, limits["hard_seconds"])
     signal.setitimer(signal.ITIMER_REAL, limits["wall_seconds"])
 

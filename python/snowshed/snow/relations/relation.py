@@ -25,16 +25,16 @@ class Relation:
     name
         Authors and year, in kebab case.
     quantity, unit
-        What it gives.
+        Resulting quantity, and its unit.
     formula
-        As it is computed, in plain text.
+        Formula, in plain text.
     source
         Publication, and where else the formula was compared.
     ranges
         For every argument, in order, the range the relation was made for, in the units of `UNITS`.
         Beyond it the relation still gives a number; `outside` says so.
     scatter
-        What is known of its scatter, in words.
+        Description of its scatter.
     function
         The formula itself.
     range_verified

@@ -20,9 +20,9 @@ class SinteringLaw:
     Attributes
     ----------
     exponent
-        Of the age.
+        Exponent of the age.
     source
-        Where it was measured, and what.
+        Measured quantity and its source.
     """
 
     exponent: float

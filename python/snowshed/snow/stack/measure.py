@@ -55,18 +55,18 @@ class Extent:
 
 @dataclass(frozen=True)
 class StackMeasure(Extent):
-    """A measured stack; its own extent is that of all snow off the panel, less outliers.
+    """A measured stack; its own extent is that of all snow off the panel, without outliers.
 
     Attributes
     ----------
     trimming
-        The reading of A.4.2 by which the stack's own extent and that of its body were measured.
+        Trimming rule (thesis A.4.2) for the extent of the stack and of its body.
     trimmed
         Extent of all snow off the panel by each reading; in 3D there is but one, under both names.
     body
         Extent of the largest connected body.
     mass, volume
-        Of all snow off the panel, kg and m3 (per metre of width in 2D).
+        Mass and volume of all snow off the panel, kg and m3 (per metre of width in 2D).
     detached_mass
         Part of the mass outside the largest connected body, kg.
     on_panel_mass
@@ -99,9 +99,9 @@ class StackMeasure(Extent):
 def level(positions: Floats, ground_tilt_deg: float) -> Floats:
     """Turn positions about y so that tilted ground becomes z = 0 (A.4.4).
 
-    The ground passes through the origin and falls in the direction of +x for positive tilt Psi;
-    its normal is (sin Psi, 0, cos Psi). The rotation that turns it upright is R_y(-Psi) of
-    (A.4.1): in the thesis's figure the angle counts the other way.
+    The ground passes through the origin and falls in the direction of +x for positive tilt Psi; its
+    normal is (sin Psi, 0, cos Psi). The rotation that levels it is R_y(-Psi) of (A.4.1): the
+    thesis's figure counts the angle in the opposite direction.
 
     Parameters
     ----------
@@ -152,7 +152,7 @@ def measure_stack(
     dimension
         2 or 3.
     dx
-        Size of the grid cells, m; decides what is connected.
+        Size of the grid cells, m; decides which snow is connected.
     ground_tilt_deg
         Psi, degrees; positive falls in the slide direction.
     exclude : (n,), optional
@@ -164,8 +164,8 @@ def measure_stack(
     ground : (n,), optional
         z of the ground below each particle, m, on levelled ground; without it, 0.
     trimming
-        How A.4.2 is read where the outermost 3 % are dropped in 2D: "outermost_first" or
-        "equal_pace", see `snowshed.snow.stack.trimming`.
+        Trimming rule (thesis A.4.2) of the outermost 3 % in 2D: "outermost_first" or "equal_pace",
+        see `snowshed.snow.stack.trimming`.
 
     Returns
     -------
@@ -175,8 +175,8 @@ def measure_stack(
     Raises
     ------
     InputError
-        If an array has another shape or length, or holds anything but finite numbers, or a mass or
-        density is negative, or `dimension`, `dx` or `trimming` is none; the message names the
+        If an array has a wrong shape or length, or holds values that are not finite, or a mass or
+        density is negative, or `dimension`, `dx` or `trimming` is wrong; the message names the
         argument.
 
     Examples

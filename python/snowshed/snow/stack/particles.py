@@ -20,7 +20,7 @@ MOST_STEPS = 200
 
 @dataclass(frozen=True)
 class Surroundings:
-    """What lies around particles; None where the scene has no such thing.
+    """Surroundings of particles; a field is None if the scene lacks the object.
 
     Attributes
     ----------
@@ -36,7 +36,7 @@ class Surroundings:
 
 
 def surroundings(simulation: _core.Simulation, positions: Floats) -> Surroundings:
-    """Return what lies around particles.
+    """Return the surroundings of particles.
 
     Obstacles of a scene with a plane ground are structures. Without one, obstacles are the ground,
     as is terrain.
@@ -112,7 +112,7 @@ def _board_distance(simulation: _core.Simulation, positions: Floats) -> Floats:
 
 
 def _ground_below(simulation: _core.Simulation, positions: Floats) -> Floats:
-    """Return z of the first solid below each particle, m; its own z where there is none.
+    """Return z of the first solid below each particle, m; its own z if there is no solid.
 
     A point goes down by its distance to the solid until it is there (sphere tracing, Hart 1996).
     """

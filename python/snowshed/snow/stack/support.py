@@ -1,7 +1,7 @@
-"""What snow rests on: the ground, the panel, or a structure.
+"""The support of snow: the ground, the panel, or a structure.
 
-A stack is what lies below the panel. Snow that hangs over the panel's edge, or lies on a roof, a
-guard or another panel, has not come down: it is told apart by the body of snow it belongs to.
+A stack is the snow below the panel. Snow that hangs over the panel's edge, or lies on a roof, a
+guard or another panel, does not belong to it: the support of its connected body decides.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ ALOFT = 4.0  # cells between the snow on the ground and a body that falls
 
 @dataclass(frozen=True)
 class Support:
-    """What the snow beside that on the panel rests on, and whether it touches that on the panel.
+    """Support of the snow off the panel, and whether it touches the snow on the panel.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""Which particles belong to a stack's edge: the outermost 3 % are dropped (thesis A.4.1, A.4.2).
+"""Trimming of a stack's edge: the outermost 3 % are dropped (thesis A.4.1, A.4.2).
 
 The thesis counts particles, because they all carry the same mass there; here their mass is summed,
 which is the same where masses are equal and still right where they are not. The last step inward
@@ -44,7 +44,7 @@ def inliers(
     dimension
         3: from the outside inward around the centre of mass (A.4.1); 2: from both ends (A.4.2).
     trimming
-        How A.4.2 is read: one of `TRIMMINGS`. In 3D there is nothing to choose.
+        Trimming rule (thesis A.4.2): one of `TRIMMINGS`. In 3D there is no choice.
 
     Raises
     ------
@@ -84,7 +84,7 @@ def outermost_first_order(x: Floats, masses: Floats) -> Integers:
 
 
 def equal_pace_order(x: Floats, masses: Floats) -> Integers:
-    """Return the order in which particles are met when stepping inward from both ends at once.
+    """Return the order of particles in steps inward from both ends at once.
 
     Since the last increment gives up only its outermost particles, the size of the increments
     does not matter: it is the order of the distance to the nearer end. The masses do not either.

@@ -43,13 +43,13 @@ class Range:
     Attributes
     ----------
     value
-        Its mean; that of what is positive is geometric.
+        The mean of the samples; geometric for positive quantities.
     low, high
         The 95 % interval of the mean by Student's t; NaN with one sample.
     deviation
         Between samples: the standard deviation of the logarithm, or of the value itself.
     samples
-        How many.
+        Number of samples.
     """
 
     value: float
@@ -88,7 +88,7 @@ class FittedSnow:
         Each parameter's range, by its name in `Snow`; and ``tension_pa`` (axial),
         ``yield_residual``, ``hardening_residual``, ``confined_yield_over_law``.
     notes
-        What should be known before it is used.
+        Notes on the limits of the fit.
     """
 
     law: CamClay
@@ -99,7 +99,7 @@ class FittedSnow:
     def steps(self) -> float:
         """Time steps of the material point method over those of the calibrated snow.
 
-        They are as many as the speed of elastic waves is high.
+        Their number is proportional to the speed of elastic waves.
         """
         return self.law.wave_speed / CamClay.of(Snow.preset("calibrated")).wave_speed
 
@@ -123,7 +123,7 @@ def fit_material(
     curves
         From `read_curves`.
     density
-        Of the snow, kg/m3.
+        Density of the snow, kg/m3.
     modulus
         Young's modulus to take instead of the grains', Pa, so that steps may be longer; xi then
         makes up for it.

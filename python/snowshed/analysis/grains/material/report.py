@@ -33,7 +33,7 @@ def write_snow(folder: Path, fitted: FittedSnow, source: Mapping[str, Any]) -> P
     fitted
         The snow.
     source
-        What was loaded, and how.
+        Description of the samples and the tests.
     """
     ranges = {name: _finite(asdict(one)) for name, one in fitted.ranges.items()}
     data = {

@@ -29,7 +29,7 @@ class MaterialFolder:
         The folder: ``samples/``, ``runs/`` (the store), ``snow-DENSITY.json``,
         ``material-DENSITY.png`` and ``material.csv``.
     settings
-        Of the tests.
+        Settings of the tests.
     modulus
         Young's modulus of the snow, Pa; None: that of the grains.
     """

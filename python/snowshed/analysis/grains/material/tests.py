@@ -50,11 +50,11 @@ class MaterialTests:
     Parameters
     ----------
     samples
-        Of about the same density and one voxel size.
+        Samples of about the same density and of one voxel size.
     folder
         For the samples' files.
     settings
-        Of the method.
+        Settings of the method.
     """
 
     def __init__(

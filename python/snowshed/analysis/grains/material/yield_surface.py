@@ -24,7 +24,7 @@ class YieldSurface:
     slope, cohesion
         M and beta.
     residual
-        Root mean square of what it misses of q, over that of q.
+        Root mean square of the residual of q, relative to that of q.
     """
 
     slope: float
@@ -40,7 +40,7 @@ def fit_yield_surface(p: Floats, q: Floats) -> YieldSurface:
     Parameters
     ----------
     p, q : (n,)
-        Of the strengths, over p0; p is negative in tension.
+        Stresses of the strengths, relative to p0; p is negative in tension.
 
     Raises
     ------
