@@ -107,7 +107,8 @@ def test_outputs_that_cannot_be_written_are_no_fault_of_the_input(tmp_path, caps
     monkeypatch.setattr("snowshed.results.avaframe.write_avaframe_outputs", fail)
     assert slide(project, tmp_path / "out", "-q") == 3
     assert (
-        "the slide has ended, but its outputs could not be written: no rasterio" in capsys.readouterr().err
+        "the slide has ended, but its outputs could not be written: no "
+        "rasterio" in capsys.readouterr().err
     )
 
 

@@ -77,9 +77,9 @@ DEVIATIONS: Mapping[str, Deviation] = {
         ),
         Deviation(
             "reseed",
-            "Between events the stack is turned into a solid and seeded anew.",
+            "Between events, the stack becomes a solid and is reseeded.",
             "The particles stay as they are.",
-            "Seeding anew makes broken bonds whole, forgets compaction, and moves the stack.",
+            "Reseeding heals broken bonds, discards compaction, and moves the stack.",
             lambda chapter: {"events.between": "reseed"},
         ),
         Deviation(
@@ -94,16 +94,16 @@ DEVIATIONS: Mapping[str, Deviation] = {
             "An event is over after 50, 60 and 100 frames in chapters 3, 4 and 5: "
             "2.1, 2.5 and 4.2 s at 24 frames a second (the rate is not printed).",
             "An event is over when the snow rests.",
-            "A long slab on a rough panel slides longer than that, and snow that still moves is no "
-            "stack yet.",
+            "A long slab on a rough panel slides longer than that, and moving snow is not a stack "
+            "yet.",
             _cut,
         ),
         Deviation(
             "trimming",
             "A.4.2, its second sentence to the letter: both ends of a 2D stack step inward by the "
             "same increment.",
-            "The particle farthest from the centre of mass goes first, as the first sentence asks: "
-            "it is the principle of the 3D rule.",
+            "The particle farthest from the centre of mass is dropped first, as in the first "
+            "sentence and in the 3D rule.",
             "Where snow has rolled far off, steps at equal pace take the 3 % from the dense end; "
             "the length of a stack then scatters more from seeding to seeding.",
             lambda chapter: {},

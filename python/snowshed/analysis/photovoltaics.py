@@ -222,7 +222,7 @@ def _dates(season: pd.DataFrame) -> pd.Series:
         raise InputError("the season: no rows")
     if (dates.iloc[-1] - dates.iloc[0]).days > LONGEST:
         raise InputError(
-            f"the season, column date: it goes from {dates.iloc[0].date()} to "
+            f"the season, column date: it spans {dates.iloc[0].date()} to "
             f"{dates.iloc[-1].date()}; at most {LONGEST} days are allowed"
         )
     return dates

@@ -174,5 +174,5 @@ def whole_number(name: str, given: int, *, lowest: int) -> int:
     except TypeError:
         number = lowest - 1
     if number < lowest:
-        raise InputError(f"{name}: {given!r}; a whole number from {lowest} is needed")
+        raise InputError(f"{name}: {given!r}; an integer from {lowest} is needed")
     return number

@@ -47,7 +47,7 @@ def part(text: str) -> float:
     except ValueError:
         value = nan
     if not 0 < value < 1:
-        raise click.BadParameter(f"{text!r} is no accuracy; give a percentage such as 5%")
+        raise click.BadParameter(f"{text!r} is not an accuracy; give a percentage such as 5%")
     return value
 
 
@@ -207,7 +207,7 @@ def recorded_stacks(measurements: Iterable[Measurement]) -> list[RecordedStack]:
 def _slab_thickness(data: Mapping[str, Any]) -> float:
     if data.get("slab") is None:
         raise InputError(
-            "--accuracy: the scene has no slab, and dx is chosen by its thickness; give --dx"
+            "--accuracy: the scene has no slab, whose thickness determines dx; give --dx"
         )
     slab = data["slab"]
     events = {layer["event"] for layer in slab["layers"]}

@@ -378,4 +378,4 @@ def _check_names(names: Sequence[str], where: str) -> None:
         )
     for number, name in enumerate(names):  # few, as was checked
         if name in names[:number]:
-            raise InputError(f"{where}: not a table: the column {quoted(name)} is there twice")
+            raise InputError(f"{where}: not a table: the column {quoted(name)} occurs twice")

@@ -137,10 +137,7 @@ class Film:
         if not self.whole:
             return ["the film ends within a frame: its run is still active, or was killed"]
         if self.version == 1:
-            return [
-                "the film is of version 1, which knows the checksum of each frame, but not whether "
-                "frames are missing at its end"
-            ]
+            return ["the film is of version 1, which does not detect missing frames at its end"]
         return [] if self.closed else ["the film is not complete: its run has not come to its end"]
 
     def checksum(self, frames: int) -> str:

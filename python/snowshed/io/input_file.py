@@ -152,7 +152,7 @@ def _awaited(descriptor: int, path: Path, largest: int) -> bytes:
         wait = min(end - time.monotonic(), PIPE_SILENCE)
         if wait <= 0.0 or not select.select([descriptor], [], [], wait)[0]:
             raise InputError(
-                f"{path}: a pipe or a device to which nobody writes, or too slowly; write its "
+                f"{path}: a pipe or a device without a writer, or with a slow one; write its "
                 "content to a file first"
             )
         try:

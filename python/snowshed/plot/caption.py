@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 ELASTIC = ("youngs_modulus", "poissons_ratio")
 PLASTIC = ("critical_state_slope", "preconsolidation_pressure", "cohesion", "hardening_factor")
 #: Treatment of the stack between events.
-BETWEEN = {"carry": "the stack stays", "reseed": "the stack is seeded anew"}
+BETWEEN = {"carry": "the stack stays", "reseed": "the stack is reseeded"}
 MOST_LAYERS = 4  # whose thicknesses are named one by one
 
 

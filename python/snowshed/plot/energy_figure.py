@@ -68,7 +68,7 @@ def energy_figure(table: pd.DataFrame, scene: Mapping[str, Any]) -> Figure:
         if "residual_j" in table:
             shown["gained (+) or lost by time integration"] = table["residual_j"]
         _draw(below, table, shown, per_width)
-        below.set_title("Released, and what took it up, in sum")
+        below.set_title("Released energy, and its sinks, cumulative")
         below.set_xlabel("time through all events, s")
         describe(figure, f"Energy balance\n{_caption(scene)}")
     return figure

@@ -55,7 +55,7 @@ NOT_GIVEN: Any = None
 
 SLIP_CHANGED = (
     '"slip" now holds snow on the surface except at its edge; '
-    'what it did up to version 1 of scenes is "separate" now'
+    'for the behaviour of version 1, use "separate" now'
 )
 
 
@@ -381,7 +381,7 @@ class Scene(Record):
 def _refuse_null(data: JsonValue, where: str) -> None:
     """Refuse null: in a file, as for the core, a key that is not given is left out."""
     if data is None:
-        raise InputError(f"{where or '/'}: null is no value; leave the key out")
+        raise InputError(f"{where or '/'}: null is not a value; leave the key out")
     if where.count("/") > 2 * DEEPEST:
         raise InputError(f"{where[:100]}...: nested more than {DEEPEST} deep")
     items = enumerate(data) if isinstance(data, list) else ()

@@ -93,7 +93,7 @@ def snow_of_depth(days: Days, temperature: Floats) -> DepthSnow:
         found.notes.append(
             f"{_times(len(numbers), 'reading')} of the snow depth "
             f"({_some(days.dates, numbers)}) went up or down by {SPIKE:g} m or more and was taken "
-            "back: a spike or a drop-out of the sensor, which is no snow"
+            "back: a spike or a drop-out of the sensor, not snow"
         )
     readings = np.flatnonzero(~np.isnan(level))
     if len(readings):
@@ -110,7 +110,7 @@ def _take_rise(days: Days, found: DepthSnow, before: int, after: int, rise: floa
     own = slice(before + 1, after + 1)
     said = f"{rise:.2f} m from {days.dates[before]} to {days.dates[after]}"
     if rise > RECORD_DAY * span:
-        found.notes.append(f"the snow depth rises by {said}, which is no snowfall: {RECORD_WORDS}")
+        found.notes.append(f"the snow depth rises by {said}, which is not snowfall: {RECORD_WORDS}")
         return
     if span > LONGEST_GAP + 1:
         if rise >= LEAST_RISE:
@@ -139,8 +139,8 @@ def _tell_gaps(days: Days, found: DepthSnow) -> None:
     )
     among = f" over {len(gaps)} gaps without readings, the most" if len(gaps) > 1 else ""
     found.notes.append(
-        f"the snow depth rises{among} {said}: that is no snowfall of a day, and is shared out "
-        "evenly among its days"
+        f"the snow depth rises{among} {said}: this is not snowfall of a day, and is divided "
+        "evenly among the days"
     )
 
 
@@ -190,12 +190,12 @@ def _tell_jumps(days: Days, found: DepthSnow) -> None:
     if rising:
         found.notes.append(
             f"the snow depth jumps at {_times(len(rising), 'joint')} of two series "
-            f"({_sizes(rising)}), which is no snowfall"
+            f"({_sizes(rising)}), which is not snowfall"
         )
     if others:
         found.notes.append(
             f"the snow depth jumps {_times(len(others), 'time')} faster than snow falls "
-            f"({_sizes(others)}), which is no snowfall"
+            f"({_sizes(others)}), which is not snowfall"
         )
 
 

@@ -233,8 +233,8 @@ def _notes(snow: _Snow, days: Days, calendar: Calendar) -> Iterator[str]:
         yield RULE
     if Source.DEPTH in snow.source:
         yield (
-            f"new snow is the daily rise of the snow depth, from {100 * LEAST_RISE:g} cm; since "
-            "snow settles at the same time, it is too little"
+            f"new snow is the daily rise of the snow depth, from {100 * LEAST_RISE:g} cm; it is "
+            "too small, because snow settles meanwhile"
         )
     yield from _contradictions(snow, calendar)
     filled = [n for n, source in enumerate(snow.source) if source is Source.FILLED]
@@ -247,8 +247,8 @@ def _notes(snow: _Snow, days: Days, calendar: Calendar) -> Iterator[str]:
     missing = [n for n, source in enumerate(snow.source) if source is Source.MISSING]
     if missing:
         yield (
-            f"the snow of {some_days(days.dates, missing)} is not known; none is laid on the panel "
-            "then, and they count as not observed"
+            f"the snow of {some_days(days.dates, missing)} is unknown; no snow is laid on the "
+            "panel, and these days count as not observed"
         )
 
 
@@ -297,9 +297,9 @@ def _why(used: Source, wrong: frozenset[Source]) -> str:
     if used is Source.DEPTH and Source.GAUGE in wrong:
         return ": gauges catch too little snow in wind or stand still (WMO/TD-872, 1998)"
     if used is Source.DEPTH:
-        return ": no cover rises by more than what falls"
+        return ": a cover cannot rise by more than the snowfall"
     if used is Source.GAUGE and Source.DEPTH in wrong:
         return ": a cover settles, melts and drifts away while it snows"
     if used is Source.GAUGE:
-        return ": nobody entered any new snow all winter"
-    return ": new snow that was measured goes before what is derived"
+        return ": no new snow was entered all winter"
+    return ": measured new snow is preferred to derived"

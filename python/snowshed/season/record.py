@@ -117,7 +117,7 @@ class WinterList:
         """Notes on the winters with too few days of observed snow."""
         return [
             f"the snow of {winter.name} was observed on {winter.observed} of {winter.season} days "
-            f"{self.season.text} ({percent(winter.share)}); what fell on the others is not known"
+            f"{self.season.text} ({percent(winter.share)}); the snowfall of the others is unknown"
             for winter in self.winters
             if winter.rows and not winter.counts and Source.GIVEN not in winter.sources
         ]

@@ -46,7 +46,7 @@ def season_scene(
     if len(released) > MOST_EVENTS:
         raise InputError(f"{len(released)} releases; a scene has at most {MOST_EVENTS} events")
     if scene.get("bodies"):
-        raise InputError("/bodies: a season lays its own snow; leave further bodies out")
+        raise InputError("/bodies: a season lays its own snow; remove further bodies")
     natural: dict[str, Any] = scene["snow"]
     slab = scene.pop("slab", None) or {}
     strength = (settings or SeasonSettings()).strength

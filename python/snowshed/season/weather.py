@@ -134,7 +134,9 @@ def read_record(
         raise InputError(f"snow from: {quoted(snow_from)}; allowed: {allowed}")
     files = _files_of(season)
     if temperature is not None and not files:
-        raise InputError("a file of temperatures goes with weather files only, not with a table")
+        raise InputError(
+            "a file of temperatures is allowed with weather files only, not with a table"
+        )
     if len(files) > 1 or temperature is not None:
         joined = read_stations(files, None if temperature is None else Path(temperature))
         return _of_station(joined, " and ".join(map(str, files)), snow_from)

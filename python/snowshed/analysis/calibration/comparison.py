@@ -82,7 +82,7 @@ def simulated(frame: pd.DataFrame, measure: str = "stack") -> Simulated:
     varied = table.varying(axes, "calibration")
     measured = table.measured(measure, QUANTITIES)
     if not varied:
-        raise InputError("nothing varies in it but tilt and seed, so that nothing is calibrated")
+        raise InputError("only tilt and seed vary in it, so nothing can be calibrated")
     numbered = frame.assign(**{SET: frame.groupby(varied, sort=False).ngroup() + 1})
     sets = numbered.drop_duplicates(SET).set_index(SET)[varied].astype(float)
     rows = measured.assign(**{SET: numbered[SET]}).rename(columns={TILT: "tilt"})
@@ -116,9 +116,7 @@ def compare(stacks: Simulated, measurements: Sequence[Measurement]) -> pd.DataFr
     counts = both.groupby(SET)["simulated"].transform("size")
     whole = both[counts == len(measurements)]
     if whole.empty:
-        raise InputError(
-            f"none of the {len(stacks.sets)} parameter sets has all stacks that were measured"
-        )
+        raise InputError(f"none of the {len(stacks.sets)} parameter sets has all measured stacks")
     return whole.sort_values([SET, "line", "quantity"], ignore_index=True)
 
 

@@ -157,7 +157,7 @@ def _check_header(names: Sequence[str], where: str) -> None:
     for name in names:
         if name not in COLUMNS:
             raise InputError(
-                f"{where}: {quoted(name)} is no column; allowed: {', '.join(COLUMNS)} "
+                f"{where}: {quoted(name)} is not a column; allowed: {', '.join(COLUMNS)} "
                 "(separated by commas)"
             )
     for name in KEYS:
@@ -166,7 +166,7 @@ def _check_header(names: Sequence[str], where: str) -> None:
     measured = [q for q in QUANTITIES if measured_column(q) in names]
     if not measured:
         wanted = ", ".join(measured_column(quantity) for quantity in QUANTITIES)
-        raise InputError(f"{where}: no column of a measured value; there may be: {wanted}")
+        raise InputError(f"{where}: no column of a measured value; allowed: {wanted}")
     for quantity in measured:
         if uncertainty_column(quantity) not in names:
             raise InputError(
@@ -209,7 +209,7 @@ class _Row:
         column, uncertain = measured_column(quantity), uncertainty_column(quantity)
         if not self.cells.get(column):
             if self.cells.get(uncertain):
-                raise self._error(f"{uncertain}: an uncertainty, but {column} is empty")
+                raise self._error(f"{uncertain}: an uncertainty, although {column} is empty")
             return None
         value = self._number(column)
         if quantity in POSITIVE and value <= 0:

@@ -116,7 +116,8 @@ def _page(maps: HazardMaps, scene: Mapping[str, Any], facts: Mapping[str, Any]) 
         title=scene.get("title") or "Snow slides",
         sentence=(
             f"Of {maps.runs} slides at least half reach {likely:,.0f} m², and at least one in "
-            f"twenty {possible:,.0f} m²; at every place 95\N{NO-BREAK SPACE}% of them stay below "
+            f"twenty {possible:,.0f} m²; at every position, 95\N{NO-BREAK SPACE}% of them stay "
+            "below "
             f"{speed:.1f} m/s and {pressure:.1f} kPa."
         ),
         uncertainty=uncertainty(maps.runs),

@@ -229,10 +229,10 @@ def _maps_of(store: Store, hash_: str) -> PeakMaps:
 def _check(reached: float, pressures: Sequence[float], percentiles: Sequence[int]) -> None:
     for value in (reached, *pressures):
         if not 0.0 <= value < math.inf:
-            raise InputError(f"{value:g} is no threshold; it is not negative, and finite")
+            raise InputError(f"{value:g} is not a threshold; allowed: finite numbers from 0")
     for value in percentiles:
         if not 0 <= value <= 100:
-            raise InputError(f"{value:g} is no percentile; allowed are 0 to 100")
+            raise InputError(f"{value:g} is not a percentile; allowed: 0 to 100")
 
 
 def hazard_facts(maps: HazardMaps) -> dict[str, Any]:

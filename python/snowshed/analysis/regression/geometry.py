@@ -134,7 +134,7 @@ def _trial(scene: Scene, between: str, friction: float, seeds: int) -> Study:
         f"geometry-trial-{between}",
         range(1, seeds + 1),
         "A trial of the geometry data set: 9 panels on a coarse grid, 3 events each, 27 rows. "
-        "It shows the way from study to prediction; its numbers mean nothing.",
+        "It shows the steps from study to prediction; its numbers are meaningless.",
     )
 
 

@@ -192,7 +192,7 @@ def _refusal(outside: Mapping[int, list[str]], questions: Questions) -> str:
         shown.append(f"and {len(outside) - SHOWN} more panels")
     this = "this panel" if len(outside) == 1 else "these panels"
     return (
-        f"{subject} outside the data: {'; '.join(shown)}; no model can be trusted there. Simulate "
+        f"{subject} outside the data: {'; '.join(shown)}; no model is reliable there. Simulate "
         f"{this} (snowshed panel), or force an answer with --extrapolate"
     )
 

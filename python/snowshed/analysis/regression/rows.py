@@ -210,7 +210,7 @@ def _input_names(inputs: Sequence[str]) -> tuple[str, ...]:
     for name in inputs:
         if not is_input(name):
             raise InputError(
-                f"input: {name!r} is no parameter of a scene, such as {', '.join(INPUTS[1:])}"
+                f"input: {name!r} is not a parameter of a scene, such as {', '.join(INPUTS[1:])}"
             )
     if not inputs or len(set(inputs)) < len(inputs):
         raise InputError(f"inputs: {', '.join(inputs) or 'none'}; needed: one or more, each once")

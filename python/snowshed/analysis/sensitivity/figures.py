@@ -137,7 +137,7 @@ def sobol_figure(table: pd.DataFrame) -> Figure:
     events, parameters = _unique(table, "event"), _unique(table, "parameter")
     with matplotlib.rc_context(STYLE):
         figure = blank(1.4 + 2.6 * len(events), 6.0)
-        headline(figure, "Sobol indices: part of the variance of the stack")
+        headline(figure, "Sobol indices: shares of the variance of the stack")
         grid = figure.subplots(2, len(events), sharey=True, sharex=True, squeeze=False)
         for row, target in zip(grid, TARGETS):
             for axes, event in zip(row, events):

@@ -46,8 +46,8 @@ def found_threshold(name: str, parts: Parts) -> tuple[float, str]:
     lowest, highest = min(low for low, _ in found), max(high for _, high in found)
     if lowest == highest:
         raise InputError(
-            f"{name}: empty: every voxel has the value {number(float(lowest))}; there is no ice "
-            "among air"
+            f"{name}: empty: every voxel has the value {number(float(lowest))}; it shows only ice "
+            "or only air"
         )
     histogram = _Histogram.between(name, lowest, highest)
     neighbours = _Neighbours()

@@ -186,7 +186,7 @@ def _cut(field: SingleFloats, fraction: float, connected: bool) -> Booleans:
     if best is None or least > 0.02 * target:
         raise InputError(
             f"ice fraction {fraction:.3g}: the largest connected part has {1 - least / target:.0%} "
-            "of it; so little ice is not connected in this field"
+            "of it; there is too little ice for a connected part"
         )
     return best
 

@@ -131,7 +131,7 @@ def read_ice(file: VoxelFile, settings: Optional[ImageSettings] = None) -> ReadI
 
 
 def _voxel_size(file: VoxelFile, given: Optional[float]) -> float:
-    """Return the edge of a voxel, m; tell where the file says something else."""
+    """Return the edge of a voxel, m; tell where the file contradicts it."""
     if given is None:
         if file.voxel_size is None:
             hint = ""

@@ -54,7 +54,7 @@ def read_geojson(path: Path) -> PolygonLayer:
     for number, feature in enumerate(features, 1):
         properties = feature.get("properties") or {}
         if not isinstance(properties, dict):
-            raise InputError(f"{path}, feature {number}: its properties are no object")
+            raise InputError(f"{path}, feature {number}: its properties are not an object")
         fields.update(dict.fromkeys(properties))
         records.append({key: value for key, value in properties.items() if is_wanted(key)})
         outlines.add(feature.get("geometry"), f"{path}, feature {number}")
@@ -82,7 +82,7 @@ def _features(content: Mapping[str, Any], path: Path) -> list[Mapping[str, Any]]
     if kind == "FeatureCollection":
         features = content.get("features")
         if not isinstance(features, list) or not all(isinstance(one, dict) for one in features):
-            raise InputError(f"{path}: not GeoJSON: its features are no list of objects")
+            raise InputError(f"{path}: not GeoJSON: its features are not a list of objects")
         return features
     if kind == "Feature":
         return [content]
@@ -118,11 +118,11 @@ class _Outlines:
             raise InputError(f"{where}: not a polygon but a {kind}")
         parts = [coordinates] if kind == "Polygon" else coordinates
         if not isinstance(parts, list):
-            raise InputError(f"{where}: its coordinates are no list")
+            raise InputError(f"{where}: its coordinates are not a list")
         parts = [part for part in parts if part != []]
         for part in parts:
             if not isinstance(part, list):
-                raise InputError(f"{where}: its coordinates are no list of rings")
+                raise InputError(f"{where}: its coordinates are not a list of rings")
             for ring in part:
                 self._add_ring(ring, where)
             self.polygon_rings.append(len(part))
@@ -130,11 +130,11 @@ class _Outlines:
 
     def _add_ring(self, ring: object, where: str) -> None:
         if not isinstance(ring, list) or len(ring) < 3 or set(map(type, ring)) != {list}:
-            raise InputError(f"{where}: a ring is no list of three corners or more")
+            raise InputError(f"{where}: a ring is not a list of at least three corners")
         if len(self.x) + len(ring) > CORNERS:
             raise InputError(f"{self.path}: more than {CORNERS} corners; simplify the outlines")
         if min(map(len, ring)) < 2 or not set(map(type, chain.from_iterable(ring))) <= NUMBERS:
-            raise InputError(f"{where}: a corner is no list of two numbers or more")
+            raise InputError(f"{where}: a corner is not a list of at least two numbers")
         self.x += [corner[0] for corner in ring]
         self.y += [corner[1] for corner in ring]
         self.ring_sizes.append(len(ring))
@@ -175,8 +175,8 @@ def _crs(content: Mapping[str, Any], farthest: Floats, path: Path) -> str:
     if "crs" not in content:
         if farthest[0] > 180 or farthest[1] > 90:
             raise InputError(
-                f"{path}: has no coordinate system; its numbers are not the degrees that GeoJSON "
-                f"has without one; {HOW}"
+                f"{path}: has no coordinate system; its numbers are not degrees, which GeoJSON "
+                f"requires without one; {HOW}"
             )
         return DEGREES
     system = content["crs"]
@@ -193,5 +193,5 @@ def _crs(content: Mapping[str, Any], farthest: Floats, path: Path) -> str:
     code = CODES.fullmatch(words)
     plain = plain_system(f"{code[1]}:{code[2]}" if code else words)
     if not plain:
-        raise InputError(f"{path}: crs: {quoted(words)} is no code such as EPSG:31287")
+        raise InputError(f"{path}: crs: {quoted(words)} is not a code such as EPSG:31287")
     return plain

@@ -96,7 +96,7 @@ def read_areas(
     if not areas:
         raise InputError(f"{path}: holds no polygon")
     if not found.crs:
-        tell(f"{path}: has no coordinate system; it is taken to be that of the terrain")
+        tell(f"{path}: has no coordinate system; that of the terrain is assumed")
     return areas
 
 

@@ -168,13 +168,13 @@ def _checked_band(source: Any, path: Path, band: Optional[int]) -> int:
     if band is None and len(bands) != 1:
         raise InputError(
             f"{path}: has {len(bands)} bands ({_named(source, bands)}); say which to read (--band; "
-            "of a raster of thickness --thickness-band)"
+            "for a raster of thickness --thickness-band)"
         )
     chosen = bands[0] if band is None else band
     if source.colorinterp[chosen - 1].name == "palette":
         raise InputError(f"{path}: its values are numbers of colours: a picture, not a raster")
     if np.dtype(source.dtypes[chosen - 1]).kind not in "iuf":
-        raise InputError(f"{path}: holds {source.dtypes[chosen - 1]} values, which are no heights")
+        raise InputError(f"{path}: holds {source.dtypes[chosen - 1]} values, which are not heights")
     if len(bands) > 1:
         tell(f"{path.name}: band {chosen} of {len(bands)} is read ({_named(source, [chosen])})", 4)
     return chosen
@@ -276,7 +276,7 @@ def _placed(
     """Return heights at their place on the map, the southernmost row first."""
     if transform.is_identity:
         how = "; gdalwarp makes a map of its control points" if has_points else ""
-        raise InputError(f"{path}: has no place on the map{how}")
+        raise InputError(f"{path}: has no position on the map{how}")
     square = math.isclose(transform.a, abs(transform.e), rel_tol=1e-6)
     if transform.b or transform.d or transform.a <= 0 or not square:
         raise InputError(f"{path}: not on square cells with north up; resample it first (gdalwarp)")

@@ -133,7 +133,9 @@ def _read_ascii(path: Path) -> Raster:
     heights, west, south, cell, missing, commas = read_ascii_grid(str(path))
     refuse_other_facts(path, heights)
     if missing:
-        tell(f"{path.name}: {missing} values of -9999 are missing ones; the header says none", 3)
+        tell(
+            f"{path.name}: {missing} values of -9999 are missing ones; the header declares none", 3
+        )
     if commas:
         tell(f"{path.name}: {commas} numbers have a decimal comma", 3)
     raster = Raster(heights, west, south, cell, str(path), read_prj(path), plain=True)

@@ -107,7 +107,7 @@ def thickness_fields(fields: Sequence[str], file: str) -> list[ThicknessField]:
         alike = [field for field in fields if any(word in field.lower() for word in ALIKE)]
         if alike:
             tell(
-                f"{file}: no field is called thickness or d0; not read as a thickness: "
+                f"{file}: no field is called thickness or d0; ignored as a thickness: "
                 f"{', '.join(quoted(field) for field in alike[:5])}"
             )
     return found

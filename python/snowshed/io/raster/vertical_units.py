@@ -54,7 +54,7 @@ def metres_of(unit: str, name: str) -> float:
         if text in METRES:
             return METRES[text]
     raise InputError(
-        f"{name}: its values are in {quoted(unit)}, which is no unit of length; give metres"
+        f"{name}: its values are in {quoted(unit)}, which is not a unit of length; give metres"
     )
 
 

@@ -97,7 +97,7 @@ def _kind(fields: Fields) -> str:
         if fields.has(name)
     }
     if len(orders) > 1:
-        raise fields.wrong("ElementByteOrderMSB", "BinaryDataByteOrderMSB says something else")
+        raise fields.wrong("ElementByteOrderMSB", "BinaryDataByteOrderMSB contradicts it")
     return ELEMENTS[element] + ("-be" if True in orders else "")
 
 
@@ -174,7 +174,9 @@ def _spacing(fields: Fields) -> Optional[float]:
     if name is None:
         return None
     if name == "ElementSize":
-        tell(f"{fields.path}: ElementSize is taken for the spacing, as there is no ElementSpacing")
+        tell(
+            f"{fields.path}: ElementSize is used as the spacing, because ElementSpacing is missing"
+        )
     unit = fields.text("DistanceUnits", "mm").lower()
     unit = {"?": "mm", "\N{MICRO SIGN}m": "um", "\N{GREEK SMALL LETTER MU}m": "um"}.get(unit, unit)
     if unit not in UNITS:

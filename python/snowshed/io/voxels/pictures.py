@@ -102,7 +102,7 @@ def _printed_size(tags: Tags) -> Optional[float]:
     if unit is None or across is None or along is None:
         return None
     if not isclose(across, along, rel_tol=1e-3):
-        tell(f"{tags.name}: its tags of resolution say that pixels are no squares; not applied")
+        tell(f"{tags.name}: its tags of resolution declare pixels that are not square; ignored")
         return None
     if any(isclose(across * INCH / unit, usual, rel_tol=1e-2) for usual in USUAL_DPI):
         return None

@@ -147,7 +147,7 @@ def _palette(tags: Tags, dtype: np.dtype[Any]) -> tuple[NDArray[Any], tuple[str,
     shades = (red >> 8).astype(np.uint8) if count <= 256 else red.astype(np.uint16)
     if (shades == np.arange(count)).all():
         return shades, ()
-    return shades, ("the shades of its palette are taken for its numbers",)
+    return shades, ("the shades of its palette are used as its numbers",)
 
 
 def _layout(path: Path, tags: Tags, size: tuple[int, int], big_endian: bool) -> Layout:

@@ -118,6 +118,7 @@ def check_unpacked(name: str, unpacked: int, stored: int) -> None:
     if unpacked > UNPACKED_FREELY and unpacked > UNPACKED_RATIO * stored:
         raise InputError(
             f"{name}: {number(stored / 1e6)} MB unpack to {number(unpacked / 1e6)} MB, more than "
-            f"{UNPACKED_RATIO} times as much, as no image of snow does; crop it, or save it "
+            f"{UNPACKED_RATIO} times as much, which is implausible for an image of snow; crop it, "
+            "or save it "
             f"uncompressed (up to {UNPACKED_FREELY // MB} MB, any compression is read)"
         )

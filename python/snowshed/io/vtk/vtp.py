@@ -93,7 +93,7 @@ def _values(array: ElementTree.Element, data: bytes, count: int) -> NDArray[Any]
         int(array.attrib["offset"]) + LENGTH_BYTES,
     )
     if values.dtype.kind == "f" and not np.isfinite(values).all():
-        raise ValueError(f"{array.attrib['Name']} holds what is no finite number")
+        raise ValueError(f"{array.attrib['Name']} holds a number that is not finite")
     return values.reshape(count, components) if components > 1 else values
 
 

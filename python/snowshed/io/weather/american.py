@@ -70,7 +70,7 @@ def read_dly(name: str, lines: Sequence[str]) -> Station:
         place = f"{name}, line {number}"
         if not DLY.match(line):
             raise InputError(
-                f"{place}, column 1: {quoted(line[:DLY_LINE])} is no station, year, month and "
+                f"{place}, column 1: {quoted(line[:DLY_LINE])} is not a station, year, month and "
                 "element"
             )
         same_station(line[:11], lines[0][:11], f"{place}, column station")

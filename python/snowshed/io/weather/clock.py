@@ -100,7 +100,7 @@ def repeated_hour(earlier: datetime, later: datetime, step: float) -> str:
     back = (earlier - later) / HOUR
     if step < DAY and 0.0 <= back <= 1.0:
         return (
-            "; this hour is there twice, as where summer time ends: give times of standard time, "
+            "; this hour occurs twice, as at the end of summer time: give times of standard time, "
             "or times with offsets such as 2024-10-27T02:00+01:00"
         )
     return ""
@@ -120,5 +120,5 @@ def _of_missing_hours(rows: Sequence[Observation], step: float) -> list[str]:
     return [
         f"the hour after {missing[0]:%Y-%m-%d %H:%M} is missing"
         + (f", and {len(missing) - 1} more like it" if len(missing) > 1 else "")
-        + ", as where summer time begins; the times are taken as they stand"
+        + ", as at the beginning of summer time; the times are used unchanged"
     ]

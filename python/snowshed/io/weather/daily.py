@@ -69,7 +69,7 @@ class Days:
         found = self.values.setdefault(day, {"line": line})
         if found.get(element, value) != value:
             raise InputError(
-                f"{where}: {element} of {day.date()} is there twice with different values; the "
+                f"{where}: {element} of {day.date()} occurs twice with different values; the "
                 f"first is in line {found['line']} or below"
             )
         found[element] = value

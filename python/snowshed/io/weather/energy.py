@@ -121,7 +121,7 @@ def _epw_time(cells: dict[str, str], place: str) -> tuple[datetime, datetime]:
         time = begin.replace(minute=max(min(minute, 60) - 1, 0))
         return time, begin + timedelta(minutes=min(minute, 60) or 60)
     except (ValueError, OverflowError):
-        raise InputError(f"{place}, column day: {year}-{month}-{day} is no date") from None
+        raise InputError(f"{place}, column day: {year}-{month}-{day} is not a date") from None
 
 
 def is_tmy3(lines: Sequence[str]) -> bool:

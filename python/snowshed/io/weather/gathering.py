@@ -77,8 +77,8 @@ def _fill_in(
     added = added_to_counter(times, values)
     if added is not None:
         notes.append(
-            f"{title} only rises, up to {max(values):g}: it is a counter, and what is added to it "
-            f"counts, {sum(added):.4g} in all"
+            f"{title} only rises, up to {max(values):g}: it is a counter, so its increments are "
+            f"used, {sum(added):.4g} in all"
         )
     for n, (i, span) in enumerate(zip(own, hours_before(times))):
         amount = values[n] if added is None else added[n]

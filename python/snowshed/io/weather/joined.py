@@ -81,8 +81,8 @@ def _read(path: Path) -> _File:
     station = read_station(path) or read_plain(path)
     if station.typical_year:
         raise InputError(
-            f"{path}: a typical year of the format {station.format}, whose days go with no other "
-            "file"
+            f"{path}: a typical year of the format {station.format}, which cannot be combined "
+            "with another file"
         )
     return _File(Path(path).name, station)
 

@@ -123,7 +123,7 @@ def _units(
 def _unknown(name: str, head: Sequence[str], found: str) -> InputError:
     first = next(one for one in head if one in ELEMENTS)
     return InputError(
-        f"{name}, line 2, column {first}: {found}, its units cannot be told; give a longer file, "
+        f"{name}, line 2, column {first}: {found}, its units are ambiguous; give a longer file, "
         f"one with temperatures, or that of the archive (its columns begin {', '.join(ARCHIVE)}, "
         f"and have {FLAGS})"
     )

@@ -261,7 +261,7 @@ def _header(name: str, lines: Sequence[str]) -> _Header:
         key, equals, value = (part.strip() for part in line.partition("="))
         if not equals:
             raise InputError(
-                f"{name}, line {number}, column 1: {quoted(line)} is no KEY = VALUE of a header"
+                f"{name}, line {number}, column 1: {quoted(line)} is not a KEY = VALUE of a header"
             )
         values[key], places[key] = value, number
     raise InputError(

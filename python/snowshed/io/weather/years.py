@@ -77,7 +77,7 @@ def _typical(
         if before is not None and time == made[-1].time:
             first, second = sorted((before.line, row.line))
             raise InputError(
-                f"{source}, line {second}, column date: {time:%m-%d %H:%M} is there twice, as in "
+                f"{source}, line {second}, column date: {time:%m-%d %H:%M} occurs twice, also in "
                 f"line {first}; allowed: a typical year, or actual years in their order"
             )
         seam = before is not None and not timedelta(0) < row.time - before.time <= NEAR
@@ -98,6 +98,6 @@ def _notes(years: Sequence[int], latitude: Optional[float]) -> list[str]:
     else:
         origin = f"its months come from {len(years)} different years"
     return [
-        f"it is a typical year: {origin}; it is put together from {begins} to {ends}, and a jump "
-        "of the snow depth at a joint of months is no snowfall"
+        f"it is a typical year: {origin}; it is assembled from {begins} to {ends}, and a jump "
+        "of the snow depth at a joint of months is not snowfall"
     ]

@@ -97,7 +97,7 @@ def avaframe_simulations(
     root = Path(folder)
     inputs = root / "Inputs"
     if not inputs.is_dir():
-        raise InputError(f"{root}: no AvaFrame project: it has no folder Inputs")
+        raise InputError(f"{root}: not an AvaFrame project: it has no folder Inputs")
     own = project_inputs(root)
     project = read_ini(_ini_of(root, inputs / "CFGs", inputs))
     project.values.update(settings or {})

@@ -240,8 +240,8 @@ def _snow_area(
         raise InputError(f"{area.name}: {snow:g} m of snow; at least {THINNEST:g} m are needed")
     if snow > most and depth is None:  # of a raster the core knows which cells count
         raise InputError(
-            f"{area.name}: {snow:g} m of snow; at most {most:g} m are believed; is it in "
-            "centimetres? If not, allow more (--max-thickness)"
+            f"{area.name}: {snow:g} m of snow; at most {most:g} m are plausible; is it in "
+            "centimetres? If not, raise --max-thickness"
         )
     return Area(name=area.name, outline=area.outline, holes=_holes(area), thickness=snow)
 

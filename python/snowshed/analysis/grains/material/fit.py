@@ -218,8 +218,8 @@ def _read_strengths(
         )
     if found.cohesion in (0.0, 1.0):
         notes.append(
-            f"beta {found.cohesion:g} is the end of what the law takes: its tensile strength is "
-            f"not the grains' of {ranges['tension_pa'].value:.3g} Pa"
+            f"beta {found.cohesion:g} is at the limit of the law: its tensile strength differs "
+            f"from that of the grains, {ranges['tension_pa'].value:.3g} Pa"
         )
 
 
@@ -270,7 +270,7 @@ def _note_meaning(fitted: FittedSnow, modulus: Optional[float], few_grains: int)
         f"{percent(fitted.law.lost_after, 2)} of plastic dilation"
     )
     if few_grains:
-        notes.append(f"{few_grains} grains: such a small sample hardly stands for its snow")
+        notes.append(f"{few_grains} grains: so small a sample hardly represents its snow")
     if fitted.ranges["preconsolidation_pressure"].samples < 2:
         notes.append("one sample: the ranges of the parameters are not known")
 
