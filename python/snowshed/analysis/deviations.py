@@ -19,7 +19,7 @@ FRAMES: Mapping[int, int] = {3: 50, 4: 60, 5: 100}
 FRAME_RATE = 24.0
 #: Size of the thesis's grid cells, m.
 THESIS_DX = 0.01
-#: Stands for all deviations together.
+#: Name of all deviations together.
 ALL = "all"
 
 

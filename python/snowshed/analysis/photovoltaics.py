@@ -138,7 +138,7 @@ def coverage_nrel(
 
 
 def blocked_days(season: pd.DataFrame, dx: float) -> pd.Series:
-    """Return on which days the snow below reaches the lower edge; the index holds the dates.
+    """Return whether the snow below reaches the lower edge, by day; the index holds the dates.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Arrays that callers give: turned into NumPy arrays of one type, or an error that names them."""
+"""Array arguments: conversion to NumPy arrays of one type, with errors that name the argument."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def points(name: str, given: ArrayLike, dimension: int, count: Optional[int] = N
     name
         Name of the argument in messages.
     given : (n, 3), or (n, 2) in 2D
-        Anything NumPy makes an array of. Two columns are x and z; y is then zero.
+        Anything that NumPy converts to an array. Two columns are x and z; y is then zero.
     dimension
         2 or 3.
     count
@@ -30,12 +30,12 @@ def points(name: str, given: ArrayLike, dimension: int, count: Optional[int] = N
     Returns
     -------
     (n, 3)
-        In double; a copy only where the type or the columns differ.
+        In double precision; a copy only if the type or the columns differ.
 
     Raises
     ------
     InputError
-        If there are other columns or rows, or anything but finite numbers.
+        If there are other columns or rows, or values that are not finite.
 
     Examples
     --------
@@ -60,7 +60,7 @@ def column(name: str, given: ArrayLike, count: int, *, non_negative: bool = Fals
     Raises
     ------
     InputError
-        If there are more or fewer, or some are not finite, or negative where they must not be.
+        If their number is wrong, or some are not finite, or negative where this is forbidden.
 
     Examples
     --------

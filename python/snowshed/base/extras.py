@@ -1,4 +1,4 @@
-"""Libraries that not everyone needs: optional extras, imported where they are used."""
+"""Optional libraries, imported on first use."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Types of a record's fields: which values a field takes, and in what form it keeps them.
+"""Types of a record's fields: accepted values, and their stored form.
 
 A type is an annotation such as ``Optional[float]``; None means "not given" and is always allowed.
 """

@@ -1,4 +1,4 @@
-"""Numbers, parts and durations as people read them."""
+"""Numbers, shares and durations as text."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ TIMES = "\N{MULTIPLICATION SIGN}"
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 #: Smaller shares are written as plain numbers, not in percent.
 SMALL = 1e-5
-#: Up to how many seconds an estimate is told in which unit, of how many seconds, to what digit.
+#: Units of an estimate: used below this number of seconds; seconds per unit; name; decimals.
 UNITS_OF_TIME = (
     (100, 1, "s", 0),
     (6000, 60, "min", 1),

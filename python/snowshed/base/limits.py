@@ -1,8 +1,8 @@
 """Limits on the cost of files. Every reader checks them before it uses memory or time.
 
-A file of somebody else may be small and unpack to more than the memory holds, or never end. The
-limits are far above what people have, and low enough that a reader that meets one has taken no more
-than a gigabyte and some seconds.
+A file from elsewhere may be small and unpack to more than the memory, or never end. The limits are
+far above real files, and low enough that a reader needs at most a gigabyte and some seconds to meet
+one.
 """
 
 from __future__ import annotations

@@ -13,11 +13,11 @@ from contextlib import contextmanager
 
 
 class SnowshedNote(UserWarning):
-    """Something that the reader of a result should know; nothing is wrong with the program."""
+    """A fact that the reader of a result should know; the program has no fault."""
 
 
 def tell(text: str, stacklevel: int = 2) -> None:
-    """Say a note.
+    """Issue a note.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ def tell(text: str, stacklevel: int = 2) -> None:
 
 @contextmanager
 def recorded() -> Iterator[list[str]]:
-    """Collect the notes that are said within the block, each once, and say them after it again."""
+    """Collect the notes of a block, each once, and issue them after it again."""
     notes: list[str] = []
     said: list[warnings.WarningMessage] = []
     try:

@@ -12,7 +12,7 @@ LONGEST = 400  # characters
 def number_in(text: str) -> float:
     """Return the number in a text; NaN if the text is not a finite number.
 
-    Other than ``float`` it takes no digits of other scripts, no underscores and no words.
+    Unlike ``float``, it accepts no digits of other scripts, no underscores and no words.
 
     Examples
     --------

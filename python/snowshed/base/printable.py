@@ -1,4 +1,4 @@
-"""Texts from files and callers in a form that does no harm where it is shown.
+"""Texts from files and callers, made safe for display.
 
 Texts may hold commands to a terminal, marks that change the writing direction, or formulas of a
 spreadsheet.

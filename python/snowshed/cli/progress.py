@@ -19,7 +19,7 @@ from snowshed.base.formatting import duration
 from snowshed.base.progress import Progress, Reporter
 from snowshed.cli.terminal import PlainConsole
 
-#: Time over which the speed is averaged that gives the time left, s.
+#: Time over which the speed is averaged, which gives the remaining time, s.
 SPEED_PERIOD_S = 30.0
 LONG_PERIOD_S = 3600.0  # where units take long, and the time left should not jump when one ends
 

@@ -1,6 +1,6 @@
-"""Tables in CSV files: those that grow row by row, those that people write, and any other.
+"""CSV tables: tables that grow row by row, hand-written tables, and any others.
 
-All are read by the same rules: UTF-8, one name for each column, and a cell for each in every row.
+All follow the same rules: UTF-8, a unique name for each column, and a cell for each in every row.
 """
 
 from __future__ import annotations
@@ -144,9 +144,9 @@ class Row:
     table, place
         Position for messages: the table, and the line or row.
     number
-        Its line, or else its row, from 1.
+        Line, or else row, from 1.
     cells
-        Its texts by the names of their columns.
+        Texts by the names of their columns.
     """
 
     table: str
@@ -156,7 +156,7 @@ class Row:
 
     @property
     def where(self) -> str:
-        """Table and place."""
+        """Name of the table with its line."""
         return f"{self.table}, {self.place}"
 
 
@@ -167,7 +167,7 @@ class TextTable:
     Attributes
     ----------
     columns
-        Names.
+        Names of the columns.
     rows
         The rows below the head.
     """
@@ -179,7 +179,7 @@ class TextTable:
 def read_text_table(
     path: Path, hint: str, check_columns: Callable[[Sequence[str], str], None]
 ) -> TextTable:
-    """Return a CSV table that people write: with comments (#) and empty lines, cells as texts.
+    """Return a hand-written CSV table: with comments (#) and empty lines, cells as texts.
 
     Parameters
     ----------
@@ -188,8 +188,8 @@ def read_text_table(
     hint
         Advice for an empty file, for the message.
     check_columns
-        Called with the names and where they stand before any row is read; raises InputError if
-        they do not serve.
+        Called with the names and their position before any row is read; raises InputError for
+        unsuitable names.
 
     Raises
     ------
@@ -209,7 +209,7 @@ def read_text_table(
 
 
 def csv_text(table: pd.DataFrame, **options: Any) -> str:
-    """Return a table as CSV without its index; texts in it do no harm in a spreadsheet.
+    """Return a table as CSV without its index; its texts are safe in a spreadsheet.
 
     Parameters
     ----------
@@ -290,8 +290,8 @@ def read_csv(path: Path, *, as_text: bool = False) -> pd.DataFrame:
     Raises
     ------
     InputError
-        If it is no table in UTF-8, a column has no name of its own, there are too many, or a row
-        has not a cell for each.
+        If it is not a table in UTF-8, names of columns are missing or repeated, there are too many,
+        or a row has too few or too many cells.
     OSError
         If it cannot be read.
     """

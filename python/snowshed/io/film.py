@@ -22,7 +22,7 @@ LINEAR_STEPS = 64.0  # up to about which codes are even steps
 
 
 class FilmQuantity(NamedTuple):
-    """A quantity of particles that a film holds, and the step in which small values are stored."""
+    """A quantity of particles in a film, and the step in which small values are stored."""
 
     name: str
     unit: str
@@ -63,7 +63,7 @@ class FilmFrame:
     Attributes
     ----------
     time
-        s, through all events.
+        Times of the frames, through all events, s.
     event
         Number of the event, from 1.
     ids : (n,)
@@ -71,7 +71,7 @@ class FilmFrame:
     events, materials : (n,)
         Event of each particle, and its index among the scene's snows.
     radii : (n,)
-        m; empty where the method has none.
+        Grid size, m; empty if the method has none.
     positions : (n, 3)
         m; y is 0 in 2D.
     codes : (n, q)
@@ -99,8 +99,8 @@ class Film:
     Raises
     ------
     InputError
-        If it cannot be read, is no film, or damaged. A last frame that is cut off, as a killed run
-        leaves it, is left out; `whole` is false then, and `notes` say so.
+        If it cannot be read, is not a film, or damaged. An incomplete last frame, as a killed run
+        leaves it, is dropped; `whole` is false then, and `notes` mention it.
 
     Examples
     --------

@@ -77,7 +77,7 @@ def open_regular(path: Path) -> BinaryIO:
 
 
 def stored_bytes(file: BinaryIO, enough: int) -> int:
-    """Return how many bytes of a file are not holes, counted no farther than `enough`.
+    """Return the number of bytes of a file outside holes, counted up to `enough`.
 
     Holes read as zeros and take no room on the disk, so a file may claim any size.
 
@@ -115,14 +115,14 @@ def _memory() -> int:
 
 
 def read_input(path: Path, largest: int = TEXT) -> bytes:
-    """Return the content of a file; devices without end are read no farther than `largest` bytes.
+    """Return the content of a file; endless devices are read up to `largest` bytes.
 
     A pipe is read until its writer closes it; a silent writer is not waited for.
 
     Raises
     ------
     InputError
-        If it is longer than the limit, or a pipe into which nothing is written.
+        If it is longer than the limit, or a pipe without a writer.
     OSError
         If it cannot be read.
 

@@ -1,4 +1,4 @@
-"""JSON objects in files that somebody may have damaged."""
+"""JSON objects in files that may be damaged."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ def parse_object(text: str | bytes, where: str) -> dict[str, Any]:
     Raises
     ------
     InputError
-        If it holds anything else, a key twice, or says a checksum that is not its own, naming
-        `where` it is.
+        If the text is not an object, a key occurs twice, or the checksum is wrong; the message
+        names `where` it is.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Packed files: gzip and xz, which may be small and unpack to more than the memory holds."""
+"""Packed files: gzip and xz, which may unpack to more than the memory."""
 
 from __future__ import annotations
 
@@ -32,9 +32,9 @@ def unpacked(content: bytes, path: Path, largest: int = TEXT) -> bytes:
     content
         Content of the file, packed or not.
     path
-        Its name, for messages.
+        Name for messages.
     largest
-        Bytes that it may have when it is unpacked.
+        Largest unpacked size, bytes.
 
     Raises
     ------

@@ -50,9 +50,9 @@ def file_mark(path: Path) -> tuple[int, str]:
 
 
 def check_run_file(path: Path) -> None:
-    """Raise InputError unless a file is as the run wrote it whose run.json stands beside it.
+    """Raise InputError unless a file matches the run.json beside it.
 
-    Nothing is checked where there is no run.json, or it is of the version before.
+    Nothing is checked without a run.json, or with one of the version before.
     """
     record = read_record(path.parent)
     tables, files = (record.get(name) for name in ("tables", "files"))

@@ -29,9 +29,8 @@ MOST_MARKED = 40  # events whose ends are marked
 def energy_figure(table: pd.DataFrame, scene: Mapping[str, Any]) -> Figure:
     """Draw the energy balance of a run over time.
 
-    Above, the energy that the snow holds: of its motion and of its elastic strain. Below, what
-    height has released and new snow has brought in sum, and what took it up. Thin vertical lines
-    are the beginnings of events.
+    Above: the energy of the snow, kinetic and elastic. Below: the cumulative energy from height and
+    new snow, and its sinks. Thin vertical lines mark the beginnings of events.
 
     Parameters
     ----------

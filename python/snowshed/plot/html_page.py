@@ -1,4 +1,4 @@
-"""Pages that need no other file: tables of texts, embedded figures, one look for all reports."""
+"""Self-contained pages: tables of texts, embedded figures, one style for all reports."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class Grid:
     Attributes
     ----------
     head, rows
-        Texts; every row as long as the head.
+        Rows of texts; every row as long as the head.
     align
         A letter for each column: "l" for words, at the left, "r" for numbers.
     groups

@@ -43,7 +43,7 @@ def slide_figure(
     outlines
         Corners of the release areas, in map coordinates, m.
     quantity
-        One of `PEAKS`.
+        Name in `PEAKS`.
     area
         Area of the figure's map, square inches.
     """

@@ -49,9 +49,9 @@ class Film:
     Attributes
     ----------
     ground
-        PNG, in base64.
+        Picture of the ground as PNG, in base64.
     frames
-        PNG, in base64, with the times, s.
+        Pictures of the snow as PNG, in base64, with their times, s.
     width, ratio
         Width of the picture in CSS pixels, and its ratio of width to height.
     largest
@@ -283,7 +283,7 @@ def multiples_figure(
     Parameters
     ----------
     maps
-        Their terrain and place.
+        Terrain of the maps, with its position.
     outlines
         Corners of the release areas, in map coordinates, m.
     frames

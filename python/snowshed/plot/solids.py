@@ -53,22 +53,22 @@ class Box:
 
 @dataclass(frozen=True)
 class Solid:
-    """Something that snow collides with.
+    """A solid that snow collides with.
 
     Attributes
     ----------
     name
         Name of the solid.
     kind
-        "ground", "panel" or "solid": how it is painted.
+        Kind, which decides the colour: "ground", "panel" or "solid".
     corners : (n, 3)
-        m, where it is before it moves.
+        Corners before any motion, m.
     triangles : (m, 3)
         Corners of each triangle.
     motion
         Motion, as in a scene; None for a fixed solid.
     grid
-        Distance of lines drawn on it, m; 0: none.
+        Distance of lines on its surface, m; 0: no lines.
     """
 
     name: str

@@ -54,7 +54,7 @@ def stack_figure(simulation: _core.Simulation, stack: StackMeasure) -> Figure:
     Parameters
     ----------
     simulation
-        Gives the particles, the panel, the tilt of the ground, and the scene.
+        Simulation with the particles, the panel, the tilt of the ground, and the scene.
     stack
         The measure of the same particles.
     """
@@ -138,7 +138,7 @@ def _shades(count: int) -> list[Any]:
 def _draw_particles(axes: Axes, simulation: _core.Simulation, stack: Booleans) -> None:
     """Draw particles in the size they have, those that lie nearest in front.
 
-    Those that are no part of the stack, because something holds them, are grey.
+    Particles outside the stack, because something holds them, are grey.
     """
     positions, events = simulation.positions(), simulation.events()
     if len(positions) == 0:
@@ -168,7 +168,7 @@ def _points_per_metre(axes: Axes) -> float:
 
 
 def _name_events(axes: Axes, simulation: _core.Simulation, *, apart: bool) -> None:
-    """Say which colour is which event, where there is air: at the upper right."""
+    """Draw a legend of the events in free space, at the upper right."""
     count = max(simulation.event, 1)
     shades = _shades(count)
     named = [(f"event {i}", shades[i - 1]) for i in named_events(count)]

@@ -25,7 +25,7 @@ def surface_of(distance: Floats) -> tuple[Floats, Integers]:
     Returns
     -------
     corners : (n, 3)
-        In samples from the first.
+        Vertices in units of samples, from the first.
     triangles : (m, 3)
 
     References

@@ -1,7 +1,7 @@
 """Scenes: values that are set one by one, and resolved by the core.
 
-This takes the place of the thesis's Lua remote controller (A.3.1): values may be set, appended
-and overridden, the last one wins, then the scene is resolved.
+This replaces the thesis's Lua remote controller (A.3.1): values may be set, appended and
+overridden; the last one wins, then the scene is resolved.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ SLIP_CHANGED = (
 
 @dataclass
 class Scene(Record):
-    """A scene in the making; fields that are None take the core's defaults. SI units.
+    """A scene under construction; fields that are None use the core's defaults. SI units.
 
     Attributes
     ----------
@@ -315,8 +315,8 @@ class Scene(Record):
         Raises
         ------
         InputError
-            If the path names nothing a scene has, or something that is no list, or if the list
-            takes no such value. The scene is then as it was.
+            If the path does not exist, or is not a list, or the list does not accept the value. The
+            scene is then unchanged.
         """
         with locate(self, path) as (record, key, where):
             held = getattr(record, record.field_of(key, where))
@@ -355,7 +355,7 @@ class Scene(Record):
                     record.assign(key, value, where)
 
     def resolve(self) -> ResolvedScene:
-        """Have the core validate the scene and fill its defaults.
+        """Validate the scene and fill its defaults, in the core.
 
         Raises
         ------
@@ -366,7 +366,7 @@ class Scene(Record):
         return ResolvedScene.parse(json.dumps(self.to_data()), self._base_dir)
 
     def _warn_of_slip(self) -> None:
-        """Say, for one version, that slip has another meaning; files tell it by their version."""
+        """Note, for one version, that slip has another meaning; files state it by their version."""
         parts = [self.panel, self.ground, *(self.obstacles or ())]
         if self.snowshed != 1 and any(part and part.condition == "slip" for part in parts):
             warnings.warn(SLIP_CHANGED, FutureWarning, stacklevel=3)

@@ -18,7 +18,7 @@ Node = Mapping[str, JsonValue]
 
 @dataclass(frozen=True)
 class Parameter:
-    """One value of a scene that can be set.
+    """A value of a scene that can be set.
 
     Attributes
     ----------
@@ -31,7 +31,7 @@ class Parameter:
     choices
         Allowed values of an enumeration; None for other parameters.
     aliases
-        Other dotted paths under which it may be given.
+        Other dotted paths of the value.
     accuracy
         Whether it trades accuracy for computing time.
     """

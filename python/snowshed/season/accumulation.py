@@ -69,7 +69,7 @@ def accumulate(
     tilt
         Phi, the tilt of the panel, degrees.
     gravity
-        m/s2.
+        Gravity, m/s2.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Whether rows can be the weather of seasons: their order, gaps, and amounts of snow."""
+"""Plausibility of the rows of seasons: order, gaps, and amounts of snow."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ def _days(earlier: Weather, later: Weather) -> float:
 
 
 def _check_years(rows: Sequence[Weather], places: Sequence[Row]) -> None:
-    """Refuse years without weather stations, gaps of decades, and of years beside few rows."""
+    """Refuse implausible years, gaps of decades, and isolated years."""
     for number, (earlier, later) in enumerate(zip(rows, rows[1:]), 1):
         days = _days(earlier, later)
         if days <= YEAR:
@@ -104,7 +104,7 @@ def _check_years(rows: Sequence[Weather], places: Sequence[Row]) -> None:
 
 
 def _check_amounts(rows: Sequence[Weather], places: Sequence[Row], name: str) -> None:
-    """Refuse amounts of a day, or of a winter, that never were."""
+    """Refuse record-breaking amounts of a day, or of a winter."""
     falls = _daily_sums(rows)
     for day, (total, first) in falls.items():
         whole = first > 0 and (rows[first].date - rows[first - 1].date).total_seconds() <= DAY

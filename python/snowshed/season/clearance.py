@@ -90,7 +90,7 @@ def _tilt(scene: Mapping[str, Any]) -> float:
 
 
 def _surface(outline: Floats, x: float) -> float:
-    """Return how high the snow lies at a place, m; none lies beyond the ends of the stack."""
+    """Return the height of the snow at x, m; zero beyond the ends of the stack."""
     if len(outline) == 0:
         return 0.0
     places, heights = outline[:, 0], outline[:, 1]
@@ -131,7 +131,7 @@ class Contact:
 
 
 def first_contact(table: pd.DataFrame, dx: float) -> Optional[Contact]:
-    """Return the first row of a season after which anything touches the panel; None: nothing does.
+    """Return the first row of a season after a contact with the panel, if any.
 
     Parameters
     ----------
@@ -162,7 +162,7 @@ def first_contact(table: pd.DataFrame, dx: float) -> Optional[Contact]:
 
 
 def first_reached(clearances: Sequence[float], dx: float) -> Optional[int]:
-    """Return the first event after which a clearance is gone, from 1; None: it never is.
+    """Return the first event after which a clearance is gone, from 1, if any.
 
     A clearance of `dx`, m, counts as none: the grid does not resolve a gap below one cell, and the
     particles' centres are half a spacing below the surface.

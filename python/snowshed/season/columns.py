@@ -31,9 +31,9 @@ class Column:
     Attributes
     ----------
     source
-        Which.
+        Source of the column.
     snow : (n,)
-        m on each day; NaN: not known.
+        New snow of each day, m; NaN: unknown.
     filled : (n,)
         Whether its value is no observation of that day.
     """
@@ -61,7 +61,7 @@ class Choice:
     sums
         Sum of each column over the days that all compared columns cover, m.
     contradicted
-        Sources that were left out or put last, because another one contradicts them.
+        Sources that were left out or used last, because another contradicts them.
     """
 
     observing: Sequence[Source]
@@ -180,7 +180,7 @@ class Chooser:
         return {one.source: float(np.nansum(one.snow[days & one.known])) for one in there}
 
     def _idle(self, source: Source) -> bool:
-        """Return whether a column is zero throughout the file, and another one tells of snow."""
+        """Return whether a column is zero throughout the file although another one has snow."""
         own = self._all[source]
         if np.nansum(own.snow) > 0.0:
             return False

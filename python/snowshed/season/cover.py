@@ -39,10 +39,10 @@ def natural_cover(
     season
         The rows, in order.
     settings
-        Says where the depth comes from (`SeasonSettings.cover`), how snow settles, and the density
-        of new snow.
+        Settings: source of the depth (`SeasonSettings.cover`), law of settling, and density of new
+        snow.
     gravity
-        m/s2.
+        Gravity, m/s2.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""The days of a station: what each of its quantities is on each day, and where it is not known."""
+"""Daily quantities of a station, and their gaps."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ FOLLOWING = 2.0  # hours between readings that are held against that rate
 
 @dataclass(frozen=True)
 class Days:
-    """Days of a station, in order; NaN: not known.
+    """Days of a station, in order; NaN: unknown.
 
     Attributes
     ----------

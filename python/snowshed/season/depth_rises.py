@@ -1,9 +1,8 @@
 """New snow from the rises of the snow depth, without invalid readings.
 
-A rise from one day to the next is new snow. Since snow settles at the same time, it is too little.
-A rise over some days without a reading is shared out among them. No snowfall are: a rise beyond the
-record of 24 hours, a spike or a drop-out that the next readings take back, and the joint of two
-series.
+A rise from one day to the next is new snow; it is too small, because snow settles meanwhile. A rise
+over some days without a reading is divided among them. These are not snowfall: a rise beyond the
+record of 24 hours, a spike or a drop-out that the next readings revert, and the seam of two series.
 """
 
 from __future__ import annotations
@@ -34,9 +33,9 @@ class Total:
     Attributes
     ----------
     days
-        Their numbers.
+        Numbers of the days.
     rise
-        m.
+        Rise of the depth, m.
     """
 
     days: range
@@ -50,7 +49,7 @@ class DepthSnow:
     Attributes
     ----------
     snow : (n,)
-        m on each day; NaN: not known.
+        New snow of each day, m; NaN: unknown.
     filled : (n,)
         Whether a rise is spread over so many days that it counts as unobserved.
     depth : (n,)

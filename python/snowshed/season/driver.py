@@ -94,7 +94,7 @@ def run_season(
     out_dir
         The results folder (``snowshed.results.season_folder``); new or empty, unless resuming.
     settings
-        Release, density and settling; None: the defaults.
+        Settings of release, density and settling. [default: `SeasonSettings()`]
     resume
         Whether to resume an interrupted season in `out_dir`.
     progress

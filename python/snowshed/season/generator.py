@@ -1,4 +1,4 @@
-"""Made winters: a stochastic generator of daily snowfall and temperature, fitted to a station.
+"""Synthetic winters: a stochastic generator of daily snowfall and temperature, fitted to a station.
 
 Snowfall days follow a Markov chain of two states, depths a gamma distribution, temperatures an
 autoregressive process of the first order about the mean of the month; all by month. This is the

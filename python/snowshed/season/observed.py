@@ -1,4 +1,4 @@
-"""From the observations of a station to the days of a season: the one place that decides.
+"""Days of a season from the observations of a station: the only place that decides.
 
 `Source` names the origin of a day's new snow, for every format. Each day uses the first of the
 winter's columns (`columns`) with a value; days without a value are filled by a stated rule, or are
@@ -56,7 +56,7 @@ def record_of(station: Station, source: str, only: Optional[Source] = None) -> R
     Raises
     ------
     InputError
-        If there is no snow or no temperature in any row, or not the column that was asked for.
+        If no row has snow, no row has a temperature, or the requested column is missing.
     """
     _check_order(station, source)
     days = days_of_station(station)
@@ -190,7 +190,7 @@ def _take(snow: _Snow, n: int, choice: Choice, columns: Mapping[Source, Column])
 
 
 def _share_out(snow: _Snow, total: Total) -> None:
-    """Take what other columns know of some of its days out of a rise over several days."""
+    """Take snow that other columns observed out of a rise over several days."""
     own, known = [], 0.0
     for n in total.days:
         if snow.source[n] is Source.DEPTH or snow.reason[n].endswith(Source.DEPTH.label):

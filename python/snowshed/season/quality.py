@@ -1,8 +1,8 @@
-"""The quality of a winter: on how many of its days the snow was observed, and how.
+"""The quality of a winter's snow data: the share of observed days, and their sources.
 
-A winter counts if its snow was observed on a stated share of the days of the station's snow season.
-Days of a gap, and days that were filled, are no observed days. A season file that lists snowfalls
-and nothing else tells all of them, so that its days without a row count as days without snow.
+A winter counts if its snow was observed on a given share of the days of the station's snow season.
+Days in gaps, and filled days, do not count as observed. In a season file that only lists snowfalls,
+days without a row count as days without snow.
 """
 
 from __future__ import annotations
@@ -30,9 +30,9 @@ class WinterQuality:
     Attributes
     ----------
     name
-        Such as "2001/02", or "2001" in the south.
+        Name, such as "2001/02", or "2001" in the south.
     rows
-        Its rows, in order; none if the file has none.
+        Rows of the winter, in order; empty if the file has none.
     season
         The days that should be observed: those of the snow season.
     observed
@@ -93,7 +93,7 @@ def qualities_of(
     coverage: float = COVERAGE,
     sums: Optional[Mapping[int, Mapping[Source, float]]] = None,
 ) -> tuple[list[WinterQuality], SnowSeason]:
-    """Return what each winter from the first to the last row is worth, and the snow season.
+    """Return the quality of each winter from the first to the last row, and the snow season.
 
     Parameters
     ----------
@@ -150,7 +150,7 @@ def is_list(rows: Sequence[Weather]) -> bool:
 
 
 def observed_days(rows: Sequence[Weather], begin: date, after: date) -> int:
-    """Return on how many days from the first to before the second date snow was observed."""
+    """Return the number of days with observed snow from the first date to before the second."""
     days = sorted({row.date.date().toordinal() for row in rows if row.source.observed})
     first, last = begin.toordinal(), after.toordinal()
     number = sum(first <= day < last for day in days)

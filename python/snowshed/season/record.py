@@ -20,11 +20,11 @@ class Record:
     Attributes
     ----------
     rows
-        In order.
+        Rows in order.
     notes
         Assumptions made in reading, a sentence each.
     latitude
-        Degrees; None: not known, so that temperatures tell which half of the year is winter.
+        Latitude, degrees; if unknown, temperatures decide which half of the year is winter.
     sums
         Totals of the file's columns, m, by the year in which a winter begins.
     """
@@ -71,11 +71,11 @@ class WinterList:
     Attributes
     ----------
     winters
-        All of them, in order.
+        All winters, in order.
     season
         The months in which snow must have been observed.
     coverage
-        On which share of their days.
+        Required share of observed days.
     """
 
     winters: Sequence[WinterQuality]

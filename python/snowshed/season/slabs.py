@@ -69,18 +69,18 @@ def season_scene(
 
 
 def snow_of_density(base: Mapping[str, Any], density: float, strength: Optional[str]) -> Snow:
-    """Return snow that is as much weaker and softer than other snow as its density says.
+    """Return snow with strength and stiffness scaled to another density.
 
-    The strength of the snow scales with the relation named `strength`, its stiffness with
-    Young's modulus of sigrist-2006. Both only as ratios: loose snow has a fraction of the strength
-    and stiffness that they give.
+    The strength of the snow scales with the relation named `strength`, its stiffness with Young's
+    modulus of sigrist-2006. Only ratios are used, because loose snow has a fraction of the strength
+    and stiffness of these relations.
 
     Parameters
     ----------
     base
         The other snow, complete.
     density
-        kg/m3.
+        Density, kg/m3.
     strength
         A name in `TENSILE_STRENGTH`; None: no change but the density.
 

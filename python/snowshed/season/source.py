@@ -29,7 +29,7 @@ class Source(Enum):
 
     @property
     def observed(self) -> bool:
-        """Whether somebody or something observed the snow of such a day."""
+        """Whether the snow of such a day was observed."""
         return self not in (Source.FILLED, Source.MISSING)
 
 

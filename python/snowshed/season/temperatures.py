@@ -1,4 +1,4 @@
-"""Temperatures of days on which none was measured."""
+"""Temperatures of days without a measurement."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def filled_temperatures(
     dates
         Days, in order.
     measured : (n,)
-        Degrees C; NaN: not measured; at least one is.
+        Temperatures, degrees C; NaN: not measured; at least one is measured.
     told : (n,)
         The days that notes count; None: all.
 

@@ -116,7 +116,7 @@ def read_weather(
 def read_record(
     season: Season, snow_from: str = AUTO, temperature: Optional[PathLike] = None
 ) -> Record:
-    """Return the weather of a season or of many winters, with all that is known of its quality.
+    """Return the weather of a season or of many winters, with its quality.
 
     Parameters
     ----------

@@ -29,7 +29,7 @@ class Weather:
     temperature
         Temperature of the air, degrees C, until the next row.
     friction, adhesion
-        Friction and adhesion (Pa) of the panel on that day; None: those of the settings.
+        Friction and adhesion (Pa) of the panel on that day. [default: those of the settings]
     snow_depth
         Depth of the natural snow cover, m; None: not measured.
     source

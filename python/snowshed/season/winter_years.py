@@ -1,4 +1,4 @@
-"""Winters by the calendar: where one ends and the next begins, its name, and its snow season.
+"""Winters by the calendar: limits, name, and snow season.
 
 Years are cut in the station's summer: on 1 July in the north, on 1 January in the south. The snow
 season of a station spans the days of the year between the first and the last hundredth of all its
@@ -83,7 +83,7 @@ class SnowSeason:
 
     @property
     def text(self) -> str:
-        """Such as "from 5 November to 20 April"."""
+        """Text such as "from 5 November to 20 April"."""
         ends = (f"{day} {month_name[month]}" for month, day in (self.first, self.last))
         return "from {} to {}".format(*ends)
 
@@ -97,14 +97,14 @@ class SnowSeason:
 
 
 def calendar_of(rows: Sequence[Weather], latitude: Optional[float] = None) -> Calendar:
-    """Return the winters of a place, by its latitude or else by when it is cold there.
+    """Return the calendar of a place, from its latitude or its temperatures.
 
     Parameters
     ----------
     rows
-        Its weather.
+        Weather of the place.
     latitude
-        Degrees, negative in the south; None: not known.
+        Latitude, degrees, negative in the south, if known.
 
     Examples
     --------

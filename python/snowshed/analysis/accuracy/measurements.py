@@ -78,11 +78,11 @@ class Measurement:
         Time of the solution alone (without seeding, imports or evaluation), s; particles times
         steps; steps; particles. 0 if the measurement failed.
     peak_memory_mb
-        The most memory its process held, that of Python and its libraries (20 to 100 MB) included.
+        Largest memory of its process, including Python and its libraries (20 to 100 MB).
     elapsed_s
-        Duration of all of it, with seeding and evaluation, s.
+        Duration including seeding and evaluation, s.
     failure
-        Why there is no result; empty if there is one.
+        Reason for a missing result; otherwise empty.
     """
 
     case: str

@@ -1,4 +1,4 @@
-"""Measurements that come with the package: what ``--accuracy`` chooses from.
+"""Recorded accuracy: measurements in the package from which ``--accuracy`` chooses.
 
 They were made by the full suite of the folder ``validation`` in the source of snowshed::
 

@@ -1,4 +1,4 @@
-"""Settings as people read them."""
+"""Labels of settings."""
 
 from __future__ import annotations
 

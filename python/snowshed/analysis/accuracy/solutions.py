@@ -1,4 +1,4 @@
-"""Ways of solving a problem, and how accurate and how quick each of them is.
+"""Solutions of a problem: accuracy and cost of each choice of settings.
 
 Errors count by their absolute value. Random seedings of the same settings are combined to one
 solution.
@@ -36,9 +36,9 @@ class Solution:
     Attributes
     ----------
     settings
-        All but those in `SAMPLING`.
+        All settings except those in `SAMPLING`.
     error
-        Root mean square.
+        Root mean square of the errors.
     wall_s
         Mean time of the solution, s.
     """
@@ -66,7 +66,7 @@ def records(rows: pd.DataFrame) -> list[Row]:
 
 
 def solutions(rows: pd.DataFrame) -> list[Solution]:
-    """Return the ways in which one quantity was solved for; failed measurements are left out.
+    """Return the solutions for one quantity; failed measurements are left out.
 
     Parameters
     ----------
@@ -102,10 +102,10 @@ def alike(found: Iterable[Solution], order_in: str) -> list[list[Solution]]:
 
 
 def assured_errors(found: Sequence[Solution], order_in: Optional[str]) -> list[float]:
-    """Return for each solution the largest error that it or any finer one like it has.
+    """Return for each solution the largest error of it and of all finer ones.
 
-    A coarse solution may be right by chance. That does not count: an accuracy is reached where
-    every finer solution, all other settings equal, reaches it too.
+    A coarse solution may be right by chance, which does not count: an accuracy is reached only if
+    every finer solution with equal other settings reaches it, too.
 
     Parameters
     ----------

@@ -86,7 +86,7 @@ class Measurement:
     value, uncertainty
         The measured value and its standard deviation, m.
     line
-        Line in the file.
+        Line in the file, from 1.
     """
 
     tilt: float

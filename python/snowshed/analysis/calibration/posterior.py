@@ -223,11 +223,11 @@ class _Density:
     Attributes
     ----------
     surrogate
-        Predicts the outputs.
+        Surrogate that predicts the outputs.
     quantities
         The measured ones; each has a discrepancy.
     output, quantity
-        Shape (m,): which output and which quantity each mean of rounds is of.
+        Shape (m,): output and quantity of each mean of rounds.
     values, variances
         Shape (m,): the means, m, and their variances by measuring and seeding, m².
     seedings

@@ -1,4 +1,4 @@
-"""From measurements and a stored study to ranking, parameter ranges and figures."""
+"""Ranking, parameter ranges and figures from measurements and a stored study."""
 
 from __future__ import annotations
 

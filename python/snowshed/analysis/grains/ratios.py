@@ -1,4 +1,4 @@
-"""Stresses of variants over those of the base, sample by sample, with their scatter."""
+"""Ratios of the stresses of variants to those of the base, sample by sample, with their scatter."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class LogMean:
     error
         NaN with fewer than two.
     count
-        Values that it is the mean of.
+        Number of values in the mean.
     """
 
     mean: float

@@ -65,8 +65,8 @@ class LabelledSample:
         Raises
         ------
         InputError
-            If there are no labels, or nothing says how large a voxel is, or its grains are not as
-            large as those of snow.
+            If there are no labels, the voxel size is unknown, or the grains are implausibly large
+            or small.
         OSError
             If the file cannot be read.
         """
@@ -196,7 +196,7 @@ def _checked_labels(file: Path, labels: AnyIntegers, split: bool) -> Labels:
 
 
 def _check_voxel_size(file: Path, labels: AnyIntegers, voxel_size: float) -> None:
-    """Raise InputError unless grains are as large as those of snow, as every test checks."""
+    """Raise InputError unless the grains have plausible sizes for snow."""
     voxels = np.unique(labels[labels > 0], return_counts=True)[1]
     if not len(voxels):
         raise InputError(f"{file}: no grain in the image: every voxel is 0, which is air")

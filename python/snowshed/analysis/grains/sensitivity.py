@@ -1,4 +1,4 @@
-"""From computed variants of a loading test to the table and the figure of what matters."""
+"""The table and the figure of the parameters that matter, from computed loading tests."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def evaluate_sensitivity(comparison: Comparison, runs: Path, folder: Path) -> pd
     runs
         Folder of the store.
     folder
-        For ``tests.csv`` (every test), ``sensitivity.csv`` and ``sensitivity.png``.
+        Folder for ``tests.csv`` (every test), ``sensitivity.csv`` and ``sensitivity.png``.
 
     Returns
     -------

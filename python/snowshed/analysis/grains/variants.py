@@ -32,7 +32,7 @@ class Variant:
     Attributes
     ----------
     name
-        In words: what differs, and its value.
+        Label: the varied parameter, and its value.
     varied
         Name of the varied parameter, which several variants share.
     samples
@@ -147,7 +147,7 @@ def sensitivity_variants(
     samples
         Samples of one snow and voxel size; each is loaded with every variant.
     folder
-        For the samples' files.
+        Folder for the samples' files.
     stage
         The test.
     settings
@@ -155,8 +155,8 @@ def sensitivity_variants(
     coarser
         Ratio of voxel sizes of base and samples. The next larger ratio is a variant.
     finer
-        Whether one less is a variant, too, which takes far longer: spheres half as large are four
-        times as many, and take twice as many steps.
+        Whether the next smaller ratio is a variant, too, which takes far longer: spheres of half
+        the size are four times as many, and need twice as many steps.
 
     Raises
     ------

@@ -121,7 +121,7 @@ def hazard_maps(
     Raises
     ------
     InputError
-        If there is no such study, no slide in it is done, maps were not kept, or they are of
+        If there is no such study, none of its slides is done, maps are missing, or they have
         different grids.
     """
     _check(reached, pressures, percentiles)

@@ -38,7 +38,7 @@ class FoldResult:
     validation, held_out
         Held-out rows, and the predictions for them, in the target's unit: shape (v,).
     predictions
-        For all rows after it was trained anew on all of them (5.2.4), shape (n,).
+        Predictions for all rows after training on all of them (5.2.4), shape (n,).
     expansion
         The model that was trained on all rows; None if it is not a sum of kernels.
     """

@@ -1,4 +1,4 @@
-"""The nested cross-validation of section 5.2.3: which rows train, test and validate."""
+"""The nested cross-validation of section 5.2.3: training, test and validation rows."""
 
 from __future__ import annotations
 

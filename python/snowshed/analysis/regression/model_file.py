@@ -138,7 +138,7 @@ def load_model(file: PathLike) -> StackModel:
     Raises
     ------
     InputError
-        If it is no model, is damaged, or holds values that no model has; it names file and key.
+        If it is not a model, is damaged, or holds invalid values; the message names file and key.
     """
     path = Path(file)
     try:

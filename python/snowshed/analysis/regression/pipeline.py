@@ -1,4 +1,4 @@
-"""From a table of stacks to models, tables and figures: what ``snowshed regress`` does."""
+"""Models, tables and figures from a table of stacks, for ``snowshed regress``."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ def regress(
     models
         Some of "linear", "rbf", "gaussian-process", "gradient-boosting". [default: all]
     scheme
-        Rounds and folds; None: those of section 5.2.3.
+        Rounds and folds. [default: those of section 5.2.3]
     jobs
         Number of processes. [default: the number of cores]
     title, measure

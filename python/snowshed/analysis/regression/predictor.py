@@ -126,8 +126,8 @@ def predict(
     inputs
         Values of further inputs of the model by their paths, such as "snow.cohesion".
     model
-        A model file of ``snowshed regress``, or what `load_model` made of it, which spares reading
-        it for every question; None: the one that comes with snowshed.
+        A model file of ``snowshed regress``, or its content from `load_model`, which saves reading
+        it for every question. [default: the model in the package]
     kind
         "rbf", "gaussian-process" or "linear"; None: the first of these that the file holds.
     extrapolate

@@ -36,7 +36,7 @@ class Spread:
     floor, slope
         a, in the target's unit, and b.
     factors
-        For each part of the cases how many scales they lie within.
+        Number of scales that contain a share of the cases, for each share.
     """
 
     floor: float
@@ -124,8 +124,8 @@ def stack_spread(rows: StackRows, target: str, predictions: Floats, deviations: 
     rows, target
         The data.
     predictions, deviations
-        For each row, shape (n,): what models say that have not seen its panel, and how much the
-        models that answer differ.
+        Predictions of models that have not seen the row's panel, and spread of the answering
+        models, for each row, shape (n,).
     """
     stacks = rows.stacks[target]
     row, repetition = np.nonzero(np.isfinite(stacks))

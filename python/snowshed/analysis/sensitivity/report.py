@@ -1,4 +1,4 @@
-"""From a stored study to the tables and figures of a method."""
+"""Tables and figures of a sensitivity method from a stored study."""
 
 from __future__ import annotations
 

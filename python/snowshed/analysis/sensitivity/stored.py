@@ -76,7 +76,7 @@ def read_stored(
     Raises
     ------
     InputError
-        If there is no such study, nothing of it is computed, or an axis does not hold numbers.
+        If there is no such study, none of its runs is computed, or an axis does not hold numbers.
     """
     table = StackTable.read(folder, study)
     try:

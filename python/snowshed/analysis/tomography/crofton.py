@@ -90,7 +90,7 @@ def surface_area(phase: Booleans, voxel_size: float = 1.0) -> float:
 def surface_density(phase: Booleans, voxel_size: float = 1.0) -> float:
     """Return the surface between two phases per volume of an image that is part of a whole, 1/m.
 
-    Unlike in `surface_area`, a direction in which the sides cut more lines has no less weight.
+    Unlike in `surface_area`, directions with more lines cut at the sides do not have less weight.
 
     Examples
     --------

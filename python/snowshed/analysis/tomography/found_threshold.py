@@ -23,7 +23,7 @@ Parts = Callable[[], Iterable[NDArray[Any]]]
 
 
 def found_threshold(name: str, parts: Parts) -> tuple[float, str]:
-    """Return what separates ice and air, and how it was found: "two values" or "Otsu".
+    """Return the threshold between ice and air, and its origin: "two values" or "Otsu".
 
     Parameters
     ----------

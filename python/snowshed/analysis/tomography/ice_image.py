@@ -29,7 +29,7 @@ class IceImage:
     synthetic
         Whether a generator made it.
     labels : (nz, ny, nx)
-        The grains, if they are known as those of a sphere pack are: 0 air, else a grain.
+        Labels of known grains, as in a sphere pack: 0 air, else a grain.
 
     Raises
     ------

@@ -124,7 +124,7 @@ def covariances(ice: Booleans, axis: int) -> Floats:
 
 
 def correlation_length(ice: Booleans, axis: int) -> float:
-    """Return where the covariance along an axis has fallen to 1/e, in voxels; nan if it has not.
+    """Return the distance in voxels at which the covariance along an axis has fallen to 1/e.
 
     Examples
     --------

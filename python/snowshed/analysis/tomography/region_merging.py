@@ -11,7 +11,7 @@ from snowshed.base.arrays import Floats, Integers
 
 
 def merge_shallow(touching: Adjacency, peaks: Floats, depth: float) -> Integers:
-    """Return new labels, in which maxima of the distance less deep than `depth` are no grain.
+    """Return new labels without grains at maxima of the distance less deep than `depth`.
 
     The depth of a maximum is its height above the saddle towards a higher one, its dynamics. The
     merged basins are those of the maxima of the h-maxima transform (Soille 2004, Morphological
@@ -44,12 +44,12 @@ def merge_shallow(touching: Adjacency, peaks: Floats, depth: float) -> Integers:
 def merge_contiguous(
     touching: Adjacency, voxels: Integers, contiguity: float, smallest: int = 0
 ) -> Integers:
-    """Return new labels, in which what hangs together by more than a share of its surface is one.
+    """Return new labels, in which labels with a contact above a share of their surface are merged.
 
-    The contiguity of two labels is the area of their contact over the whole surface of that which
-    has less. The most contiguous pair is merged first, and what changes is computed anew.
-    Afterwards a label of fewer voxels than `smallest` joins that with which it shares the largest
-    contact.
+    The contiguity of two labels is the ratio of the area of their contact to the smaller of their
+    whole surfaces. The most contiguous pair is merged first, and its contiguities are computed
+    again. Afterwards, a label of fewer voxels than `smallest` joins the label with the largest
+    contact to it.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ def merge_contiguous(
 
 
 class _Graph:
-    """Labels and their contacts, which are merged one by one."""
+    """Labels and their contacts, merged one by one."""
 
     def __init__(self, touching: Adjacency, voxels: Integers) -> None:
         self.root = np.arange(len(touching.air))

@@ -30,16 +30,16 @@ class SegmentationSettings:
         Method that cuts the ice: the watershed of the distance from the air, or the concave
         surface.
     depth
-        A maximum of the distance is a grain only if it is this much higher than the neck towards a
-        higher one, voxels (watershed).
+        Height of a maximum of the distance above the neck towards a higher one, from which it is a
+        grain, voxels (watershed).
     smoothing
         Standard deviation of the Gaussian that smooths the surface, voxels (curvature).
     neck_curvature
         The surface is a neck where its smaller principal curvature is below this, 1/voxel
         (curvature).
     contiguity
-        Two pieces are one grain if their contact has more than this part of the surface of that
-        which has less surface. 0 < value <= 1; 1: none are merged.
+        Share of the smaller surface of two pieces above which their contact makes them one grain. 0
+        < value <= 1; 1: no pieces are merged.
     smallest
         A grain of fewer voxels joins the neighbour with the largest contact.
     threads

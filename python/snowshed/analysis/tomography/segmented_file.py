@@ -1,4 +1,4 @@
-"""From a file with an image of snow to a folder with its grains."""
+"""A folder of grains from a file with an image of snow."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from snowshed.base.paths import PathLike
 from snowshed.base.progress import Progress, Reporter
 from snowshed.io.voxels.voxel_file import VoxelFile
 
-#: Memory, bytes: of a voxel that is read, and of one in which grains are found.
+#: Memory, bytes: per voxel of the file, and per voxel of the segmentation.
 BYTES_READ, BYTES_SEGMENTED = 2, 45
 #: Time on one core of a desktop computer, s per voxel.
 SECONDS_PER_VOXEL = 1e-6

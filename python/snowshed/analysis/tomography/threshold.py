@@ -1,4 +1,4 @@
-"""From the numbers of an image to ice and air, a few layers at a time."""
+"""Ice and air from the numbers of an image, a few layers at a time."""
 
 from __future__ import annotations
 

@@ -21,13 +21,13 @@ from typing import Generic, Optional, TypeVar, cast
 
 from snowshed.base.pool.messages import Died, Done, Fraction, Raised, Ready
 
-STOP_S = 60.0  # s a process has to write its checkpoint
-END_S = 5.0  # s a process has to end once its socket is closed
+STOP_S = 60.0  # time for a process to write its checkpoint, s
+END_S = 5.0  # time for a process to end after its socket is closed, s
 LAST_WORDS = 4096  # bytes of a process's stderr whose last line is reported
 
 Task = TypeVar("Task")
 Result = TypeVar("Result")
-#: Computes a task; may call its second argument with the part that is done, 0 to 1.
+#: Computes a task; may call its second argument with the finished share, 0 to 1.
 Compute = Callable[[Task, Callable[[float], None]], Result]
 
 
@@ -40,16 +40,16 @@ def available_cores() -> int:
 
 @dataclass(frozen=True)
 class Isolation:
-    """Keeps the tasks of a `Pool` apart from each other, and ends those that hang.
+    """Isolates the tasks of a `Pool` from each other, and ends those that hang.
 
     Attributes
     ----------
     forked
-        Whether each task has a fork of its process, which never computes itself: a task then sees
-        no memory of another, and its process's peak memory is its own.
+        Whether each task runs in a fork of its process, which itself never computes: a task then
+        sees no memory of another, and the peak memory of its process is its own.
     limit_s
-        Wall time of a task in s, once its process is ready. A task that takes longer is killed with
-        its process.
+        Longest wall time of a task in s, from the moment when its process is ready. A longer task
+        is killed with its process.
     environment
         Variables of the environment that are set for the processes.
     """
@@ -105,7 +105,7 @@ class Pool(Generic[Task, Result]):
     processes
         Number of tasks to run in parallel.
     compute
-        A function of a module, or a `functools.partial` of one; it is sent to each process once.
+        A function of a module, or a `functools.partial` of it; it is sent to each process once.
     isolation
         Isolation of the tasks; by default, tasks share a process with earlier ones.
 
@@ -139,7 +139,7 @@ class Pool(Generic[Task, Result]):
 
     @property
     def fractions(self) -> list[tuple[Task, float]]:
-        """Each task that is being computed, and how much of its work is done."""
+        """Tasks under way, each with its finished share."""
         return [(busy.task, busy.done) for busy in self._processes if busy.task is not None]
 
     def submit(self, task: Task) -> None:
@@ -239,7 +239,7 @@ class _Process(Generic[Task, Result]):
 
     @property
     def left_s(self) -> float:
-        """The time that is left to its task, s; a process that only starts has no limit."""
+        """Remaining time of its task, s; a starting process has no limit."""
         return float("inf") if not self._ready else self._began + self._limit_s - time.monotonic()
 
     def start(self, task: Task) -> bool:
@@ -277,7 +277,7 @@ class _Process(Generic[Task, Result]):
         self._signal(signal.SIGTERM)
 
     def give_up(self) -> Ended[Task, Result]:
-        """Kill the process, whose task takes too long."""
+        """Kill the process after a timeout."""
         assert self.task is not None
         task, self.task, self.dead = self.task, None, True
         self._signal(signal.SIGKILL)

@@ -1,7 +1,7 @@
 """A process of a `Pool`: ``python -m snowshed.base.pool.process SOCKET [forked]``.
 
-It ends as soon as the other end of its socket is closed, so it never outlives who started it, not
-even one that was killed.
+It ends as soon as the other end of its socket is closed, so that it never outlives its parent, not
+even a killed one.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Accepted descriptions of coordinate systems: those that need no other file and no request.
 
-Libraries take more for a coordinate system than its description: addresses, which they fetch, and
-names of files, which they open. A file of somebody else could have anything fetched or read.
+Libraries accept more than descriptions as coordinate systems: addresses, which they fetch, and
+names of files, which they open. A file from elsewhere could make them fetch or read anything.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ NO_FILE = re.compile(r"\+?(nadgrids|geoidgrids)=@null", re.IGNORECASE)
 
 
 def plain_system(words: str) -> str:
-    """Return the description of a coordinate system if it is one that is read, else "".
+    """Return the description of a coordinate system if it is accepted, else "".
 
     Those are WKT, codes such as "EPSG:31287", and proj strings without names of files.
 

@@ -1,4 +1,4 @@
-"""Coordinate systems of maps: read, compared, and handed on beside ASCII grids.
+"""Coordinate systems of maps: read, compared, and written beside ASCII grids.
 
 A system is kept as text, such as "EPSG:31287" or WKT. Questions beyond the text go to rasterio, of
 the extra snowshed[terrain], which receives plain descriptions only
@@ -125,7 +125,7 @@ def horizontal_system(words: str) -> Optional[Any]:
 
 
 def system_of(words: str) -> Optional[Any]:
-    """Return rasterio's view of a coordinate system; None if it is not there or knows none.
+    """Return rasterio's view of a coordinate system; None without rasterio, or if it knows none.
 
     Descriptions that are not plain are refused (`snowshed.io.coordinates.plain_systems`).
     """

@@ -1,4 +1,4 @@
-"""Files of polygons: GeoPackage, ESRI Shapefile, GeoJSON; which one a file is, its content says.
+"""Files of polygons: GeoPackage, ESRI Shapefile, GeoJSON, recognised by their content.
 
 No other format is read. GDAL knows dozens of formats, recognises them by content, and some are
 requests to other machines or names of other files. Therefore GeoPackage and GeoJSON are read
@@ -35,7 +35,7 @@ def read_layer(path: Path, layer: Optional[str], option: str) -> PolygonLayer:
     Raises
     ------
     InputError
-        If it is no regular file, no such format, damaged, or has several layers.
+        If it is not a regular file, of another format, damaged, or has several layers.
     OSError
         If there is no such file, or it cannot be read.
     """

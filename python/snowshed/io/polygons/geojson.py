@@ -106,7 +106,7 @@ class _Outlines:
         self.feature_parts: list[int] = []  # how many polygons each has; -1 without a geometry
 
     def add(self, geometry: object, where: str) -> None:
-        """Take the polygon, or polygons, of a feature."""
+        """Collect the polygon, or polygons, of a feature."""
         if geometry is None:
             self.feature_parts.append(-1)
             return

@@ -61,7 +61,7 @@ def read_geopackage(path: Path, layer: Optional[str], option: str) -> PolygonLay
 
 @contextmanager
 def _opened(path: Path) -> Iterator[sqlite3.Connection]:
-    """Open a file so that nothing beside it is written; changes that wait in its log count."""
+    """Open a file without writing beside it; changes in its log count."""
     with TemporaryDirectory() as folder:
         log = _companion(path, "-wal", LOG)
         if _companion(path, "-journal", JOURNAL) is not None:

@@ -83,7 +83,7 @@ def _literally(name: str) -> str:
 
 
 def _check_sizes(path: Path, companions: dict[str, Path]) -> None:
-    """Refuse what holds no polygons, and too many, before GDAL reads them."""
+    """Refuse files without polygons, or with too many, before GDAL reads them."""
     content = np.memmap(path, dtype=np.uint8, mode="r")
     if len(content) < HEAD:
         raise InputError(f"{path}: not a file of polygons: cut off")

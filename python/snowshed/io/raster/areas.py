@@ -36,11 +36,11 @@ class MapArea:
     name
         Name from the file, or "area 1" and so on.
     outline
-        Corners (x, y), m, the first not repeated.
+        Corners (x, y) of the outline, m, the first not repeated.
     holes
-        Rings within it that do not belong to it.
+        Rings of holes.
     thickness
-        Thickness of the snow, m; None where the file does not say it.
+        Thickness of the snow, m, if the file states it.
     crs
         Coordinate system of the file as text, such as "EPSG:31287"; empty if it has none.
     file
@@ -78,8 +78,8 @@ def read_areas(
     Raises
     ------
     InputError
-        If the file holds no polygons, has several layers, one polygon crosses itself, its
-        coordinates are in degrees, or the libraries that read it are missing.
+        If the file has no polygons or several layers, a polygon crosses itself, its coordinates are
+        in degrees, or the reading libraries are missing.
     OSError
         If there is no such file.
     """

@@ -1,4 +1,4 @@
-"""Rasters from GeoTIFF, read as GDAL reads them. They need the extra snowshed[terrain].
+"""Rasters from GeoTIFF, read by GDAL's rules. They need the extra snowshed[terrain].
 
 GDAL sees the file and the named files beside it as copies in memory: other files in the folder are
 not opened, and no other format is tried.
@@ -68,7 +68,7 @@ def read_geotiff(path: Path, band: Optional[int] = None) -> PlacedHeights:
     Raises
     ------
     InputError
-        If it is no such file, has several bands or images, is turned, or is too large.
+        If it is not a GeoTIFF, has several bands or images, is rotated, or is too large.
     OSError
         If it cannot be read.
     """
@@ -120,7 +120,7 @@ def _opened(path: Path, content: bytes, extra: dict[str, bytes]) -> Iterator[Any
 
 @contextmanager
 def _without_words_of_gdal() -> Iterator[None]:
-    """Keep rasterio from printing a traceback where GDAL quotes bytes that are no text."""
+    """Prevent tracebacks of rasterio where GDAL quotes bytes that are not text."""
     unraisable, uncaught = sys.unraisablehook, sys.excepthook
 
     def drop_or_tell(found: Any) -> None:
@@ -189,7 +189,7 @@ def _named(source: Any, bands: list[int]) -> str:
 
 
 def _check_size(source: Any, path: Path, band: int) -> None:
-    """Refuse what would fill the memory before it is read."""
+    """Refuse rasters that would fill the memory, before reading them."""
     if source.width * source.height > RASTER_CELLS:
         raise InputError(
             f"{path}: {source.width} columns and {source.height} rows; at most {RASTER_CELLS} "
@@ -216,7 +216,7 @@ def _facts(source: Any, band: int) -> BandFacts:
 def _tell_of_sidecar(
     path: Path, content: bytes, extra: dict[str, bytes], band: int, facts: BandFacts
 ) -> None:
-    """Say what of a band's facts comes from the file .aux.xml beside it."""
+    """Print a note on facts about a band that come from the file .aux.xml beside it."""
     if FACTS not in extra:
         return
     without = {name: data for name, data in extra.items() if name != FACTS}

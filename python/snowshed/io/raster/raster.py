@@ -32,17 +32,17 @@ class Raster:
     heights : (rows, columns)
         Elevations, m, the southernmost row first; NaN for missing values.
     east, north
-        Map coordinates of the middle of the cell [0, 0], m.
+        Map coordinates of the centre of the cell [0, 0], m.
     cell
         Size of a cell, m.
     name
-        For messages.
+        Name for messages.
     crs
         Coordinate system of the map as text, such as "EPSG:31287"; empty if unknown.
     plain
         Whether the file of this name is an ESRI ASCII grid that holds just these heights.
     numbers
-        Type of the numbers in the file, such as "int16"; empty where they are text.
+        Type of the numbers in the file, such as "int16"; empty for text.
     """
 
     heights: Floats
@@ -55,7 +55,7 @@ class Raster:
     numbers: str = ""
 
     def height_at(self, east: Floats, north: Floats) -> Floats:
-        """Return heights at map coordinates, m, interpolated between cell middles (bilinear).
+        """Return heights at map coordinates, m, interpolated between cell centres (bilinear).
 
         Raises
         ------
@@ -106,16 +106,16 @@ def read_raster(path: PathLike, band: Optional[int] = None) -> Raster:
     Parameters
     ----------
     path
-        An ESRI ASCII grid (any name, its coordinate system in a .prj beside it) or a GeoTIFF, told
-        apart by their contents, on a projected map.
+        An ESRI ASCII grid (any name, its coordinate system in a .prj beside it) or a GeoTIFF,
+        recognised by content, on a projected map.
     band
         Band of a GeoTIFF, from 1; needed if there are several.
 
     Raises
     ------
     InputError
-        If the file is not such a raster, saying where; for a GeoTIFF without the library that
-        reads it, what to install.
+        If the file is not such a raster, with the position; for a GeoTIFF without the library that
+        reads it, with the package to install.
     OSError
         If the file cannot be read.
     """

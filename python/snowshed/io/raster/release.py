@@ -1,4 +1,4 @@
-"""Release areas from a raster of thickness: the cells that hold snow.
+"""Release areas from a raster of thickness: the cells with snow.
 
 They need the extra snowshed[terrain].
 """
@@ -17,7 +17,7 @@ from snowshed.base.limits import CELLS_TIMES_CORNERS, RELEASE_CORNERS, SNOW_CELL
 from snowshed.io.raster.areas import MapArea
 from snowshed.io.raster.raster import Raster
 
-#: Areas that touch at a corner are kept apart by this share of a cell.
+#: Areas that touch at a corner are separated by this share of a cell.
 GAP = 1e-7
 #: Thicknesses that are codes and not snow, m.
 THICKEST = 100.0
@@ -87,7 +87,7 @@ def areas_of_depth(depth: Raster) -> list[MapArea]:
 
 
 def _outlines(depth: Raster, snow: Booleans, shapely: Any) -> list[Any]:
-    """Return the outlines of cells with snow that share an edge, a little apart from each other."""
+    """Return the outlines of connected cells with snow, slightly separated from each other."""
     features: Any = require("rasterio.features", "terrain", "reading a raster of thickness")
     affine: Any = require("rasterio", "terrain", "reading a raster of thickness").Affine
     west, south = depth.east - 0.5 * depth.cell, depth.north - 0.5 * depth.cell

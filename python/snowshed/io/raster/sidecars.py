@@ -1,4 +1,4 @@
-"""Files of facts that programs leave beside rasters: NAME.aux.xml, as GDAL and ArcGIS write it."""
+"""Metadata files beside rasters: NAME.aux.xml, from GDAL and ArcGIS."""
 
 from __future__ import annotations
 
@@ -43,15 +43,15 @@ def small_file(file: Path) -> bytes:
 def refuse_other_facts(grid: Path, values: Floats) -> None:
     """Refuse a file beside an ESRI ASCII grid that would change the values for GDAL.
 
-    The core, which reads the grid again when a scene runs, does not know such files. Statistics in
-    them do no harm.
+    The core, which reads the grid again when a scene runs, ignores such files. Statistics in them
+    are harmless.
 
     Parameters
     ----------
     grid
         The ASCII grid.
     values
-        Its values.
+        Values of the raster.
     """
     content = sidecar(grid)
     if content is None:

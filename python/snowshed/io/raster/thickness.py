@@ -18,7 +18,7 @@ NAMES = ("thickness", "d0")
 #: The same with a unit: thickness_cm, d0 (mm), "Thickness [m]".
 WITH_UNIT = re.compile(r"(thickness|d0)[\s_.\-]*[(\[]?\s*([a-z]+\d?)\s*[)\]]?", re.IGNORECASE)
 METRES = {"m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 0.001}
-#: Words in names of fields that may be meant as a thickness.
+#: Words in names of fields that may mean a thickness.
 ALIKE = ("thick", "depth", "height", "d0", "hoehe", "höhe", "dicke", "mächtig", "epaisseur")
 BLANK = ("", "none", "nan", "null")
 

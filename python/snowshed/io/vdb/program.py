@@ -14,7 +14,7 @@ REFUSED = 2  # exit code; the reason is on standard output
 
 
 def available() -> bool:
-    """Say whether this snowshed was built with OpenVDB."""
+    """Return whether this snowshed was built with OpenVDB."""
     return os.access(PROGRAM, os.X_OK)
 
 

@@ -82,7 +82,7 @@ def write_vdb(
     Raises
     ------
     InputError
-        If snowshed was built without OpenVDB, arrays do not fit each other, or the particles are
+        If snowshed was built without OpenVDB, the lengths of arrays differ, or the particles make
         no solid.
     OSError
         If the file cannot be written.

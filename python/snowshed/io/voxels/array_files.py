@@ -1,4 +1,4 @@
-"""Images in NPY files, and in raw files whose size and type are known from elsewhere."""
+"""Images in NPY files, and in raw files of given size and type."""
 
 from __future__ import annotations
 

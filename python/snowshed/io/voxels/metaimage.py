@@ -1,7 +1,7 @@
 """Images in MetaImage files: a text header (.mhd) beside the numbers, or before them (.mha).
 
-The fields mean what ITK takes them for (MetaIO, https://itk.org/Wiki/ITK/MetaIO/Documentation).
-Each field that changes the numbers or their places is honoured, or the file is refused.
+The fields have the meaning of ITK (MetaIO, https://itk.org/Wiki/ITK/MetaIO/Documentation). Every
+field that changes the numbers or their positions is honoured, or the file is refused.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Opening a three-dimensional image by its name."""
+"""Opening a three-dimensional image."""
 
 from __future__ import annotations
 

@@ -23,7 +23,7 @@ EITHER = 47  # of zlib: a stream of zlib or of gzip, told by its head
 def packed_numbers(
     name: Path, data: Path, shape: tuple[int, int, int], dtype: np.dtype[Any], start: int, size: int
 ) -> VoxelFile:
-    """Return an image whose numbers are one stream of zlib; it is unpacked no farther than asked.
+    """Return an image whose numbers are one stream of zlib, unpacked only as far as needed.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ def packed_numbers(
 
 
 class _PackedLayers:
-    """Reads layers; those that follow on the last ones are unpacked without beginning anew."""
+    """Reads layers; consecutive layers continue the unpacking."""
 
     def __init__(
         self, name: str, data: Path, shape: tuple[int, int, int], dtype: np.dtype[Any], start: int

@@ -25,12 +25,12 @@ ORIENTATIONS = {
 
 @dataclass(frozen=True)
 class Picture:
-    """A picture of one number per pixel whose size is known, and which is read when it is needed.
+    """A picture of one number per pixel, of known size, read on demand.
 
     Attributes
     ----------
     name
-        For messages.
+        Name for messages.
     size
         Pixels along y and x, as stored.
     dtype
@@ -43,7 +43,7 @@ class Picture:
         Orientation of the stored rows and columns, one of `ORIENTATIONS`; None if the picture does
         not state it, which means that of the first picture.
     stored
-        Bytes that it takes in its file.
+        Size in its file, bytes.
     notes
         Assumptions made in reading.
     """

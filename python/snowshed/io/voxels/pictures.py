@@ -31,7 +31,7 @@ def open_stack(path: Path) -> VoxelFile:
     Raises
     ------
     InputError
-        If it is damaged, has colours, its pages differ or are no slices of one stack.
+        If it is damaged, has colours, or its pages differ or do not form one stack.
     OSError
         If it cannot be read.
     """
@@ -55,8 +55,8 @@ def open_slices(folder: Path) -> VoxelFile:
     Raises
     ------
     InputError
-        If slices are missing, of mixed types or sizes, or have colours, or other files have such
-        an ending.
+        If slices are missing, of mixed types or sizes, or have colours, or other files have the
+        same suffix.
     OSError
         If they cannot be read.
     """
@@ -97,7 +97,7 @@ def _pages(path: Path) -> tuple[list[Picture], Description, Optional[float]]:
 
 
 def _printed_size(tags: Tags) -> Optional[float]:
-    """Return the edge of a pixel by the tags of resolution, unless it is one of no meaning."""
+    """Return the edge of a pixel from the tags of resolution, if it is meaningful."""
     unit, across, along = UNITS.get(tags.number(296, 2)), tags.ratio(282), tags.ratio(283)
     if unit is None or across is None or along is None:
         return None

@@ -1,4 +1,4 @@
-"""Numbers that a file holds as text, with white space between them."""
+"""Numbers as text, separated by white space."""
 
 from __future__ import annotations
 

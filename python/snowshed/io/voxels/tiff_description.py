@@ -1,7 +1,7 @@
 """The description of a TIFF file's pages: by ImageJ, OME, or tifffile.
 
-Only what bears on the numbers and their places is read: how many slices there are, whether they are
-slices at all, and how large a voxel is. No other file that a description names is opened.
+Only facts about the numbers and their positions are read: the number of slices, whether they are
+slices at all, and the voxel size. No other file that a description names is opened.
 """
 
 from __future__ import annotations
@@ -78,7 +78,7 @@ def described(name: str, text: str, pixels_per_unit: Optional[float]) -> Descrip
 
 
 def _stack(name: str, counts: Mapping[str, int]) -> tuple[int, tuple[str, ...]]:
-    """Return how many slices there are, of pages that follow each other in several ways."""
+    """Return the number of slices, from pages along several dimensions."""
     more = {kind: count for kind, count in counts.items() if count > 1}
     if len(more) > 1:
         said = " x ".join(f"{count} {kind}" for kind, count in more.items())

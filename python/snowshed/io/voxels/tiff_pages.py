@@ -262,7 +262,7 @@ def contiguous_copies(picture: Picture, count: int) -> list[Picture]:
     Raises
     ------
     InputError
-        If its numbers are packed or do not lie in one piece, or the file ends before.
+        If its numbers are compressed or not contiguous, or the file ends early.
     """
     reader = picture.read
     if not isinstance(reader, _Reader):

@@ -40,7 +40,7 @@ class Tags:
     page
         The page from tifffile.
     name
-        For messages.
+        Name for messages.
     """
 
     def __init__(self, page: TiffPage, name: str) -> None:

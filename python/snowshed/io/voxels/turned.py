@@ -1,4 +1,4 @@
-"""Images whose axes are stored in another order, or from the other end."""
+"""Images whose axes are stored in another order or direction."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Turn:
 
     @property
     def is_none(self) -> bool:
-        """Whether the image is as its file has it."""
+        """Whether the axes of the image are those of its file."""
         return self == Turn()
 
     def of(self, array: NDArray[Any]) -> NDArray[Any]:

@@ -1,4 +1,4 @@
-"""A three-dimensional image whose size is known and whose layers are read when they are needed."""
+"""A three-dimensional image of known size, whose layers are read on demand."""
 
 from __future__ import annotations
 
@@ -104,9 +104,9 @@ def check_unpacked(name: str, unpacked: int, stored: int) -> None:
     name
         Name of the file.
     unpacked
-        Bytes of its numbers.
+        Size of its numbers, bytes.
     stored
-        Bytes that it takes on the disk.
+        Size on the disk, bytes.
 
     Examples
     --------

@@ -31,7 +31,7 @@ def read_series(path: Union[str, os.PathLike[str]]) -> list[tuple[float, Path]]:
     Raises
     ------
     InputError
-        If it is no such list, names files elsewhere, or says a checksum that is not its own.
+        If it is not such a list, names files elsewhere, or has a wrong checksum.
     OSError
         If it cannot be read.
 

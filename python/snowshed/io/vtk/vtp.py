@@ -46,7 +46,7 @@ def read_particles(path: Union[str, os.PathLike[str]]) -> dict[str, NDArray[Any]
     -------
     dict
         ``position`` (n, 3), m, and the quantities of the particles, (n,) or (n, 3), in SI units;
-        all finite, ordered by ``id``. The arrays cannot be written to.
+        all finite, ordered by ``id``. The arrays are read-only.
 
     Raises
     ------
@@ -82,7 +82,7 @@ def _check_sum(content: bytes) -> None:
 
 
 def _values(array: ElementTree.Element, data: bytes, count: int) -> NDArray[Any]:
-    """Return the values of one array; ValueError or KeyError where the file does not hold them."""
+    """Return the values of one array; raises ValueError or KeyError if the file lacks them."""
     components = int(array.attrib["NumberOfComponents"])
     if count < 0 or components not in (1, 3):
         raise ValueError(f"{count} points with {components} values each")
@@ -110,7 +110,7 @@ def write_triangles(
     path
         The file.
     points : (n, 3)
-        m.
+        Positions of the corners, m.
     triangles : (m, 3)
         The points of each.
     values

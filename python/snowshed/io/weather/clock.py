@@ -1,4 +1,4 @@
-"""One clock for all rows of a station: times with offsets, and hours that summer time moves."""
+"""One clock for all rows of a station: times with offsets, and hours shifted by summer time."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def on_one_clock(station: Station, source: str) -> Station:
     Raises
     ------
     InputError
-        If only some times have offsets, or a time is not after the one before.
+        If only some times have offsets, or a time is not after the previous one.
     """
     rows, offset, notes = station.rows, station.utc_offset, [*station.notes]
     aware = rows[0].time.tzinfo is not None
@@ -82,7 +82,7 @@ def _check_order(rows: Sequence[Observation], source: str, step: float) -> None:
 
 
 def repeated_hour(earlier: datetime, later: datetime, step: float) -> str:
-    """Return what to add to a message where an hour may be there twice; nothing elsewhere.
+    """Return a hint if an hour may occur twice; otherwise nothing.
 
     Parameters
     ----------

@@ -33,7 +33,7 @@ class Cells:
     Parameters
     ----------
     columns
-        To read.
+        Columns to read.
     missing
         Texts that stand for a missing value.
     """

@@ -1,4 +1,4 @@
-"""Days of a station, element by element, as the daily data of the United States tell them."""
+"""Days of a station, element by element, in the daily data of the United States."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ class Days:
     left_out: Counter[str] = field(default_factory=Counter)
 
     def enter(self, day: datetime, line: int, element: str, value: Any, where: str) -> None:
-        """Enter a value, None if it is missing; raises InputError for another one of a day."""
+        """Enter a value, None if it is missing; raises InputError for a second value of a day."""
         found = self.values.setdefault(day, {"line": line})
         if found.get(element, value) != value:
             raise InputError(

@@ -87,9 +87,9 @@ def _fill_in(
 
 
 def added_to_counter(times: Sequence[datetime], values: Sequence[float]) -> Optional[list[float]]:
-    """Return what each row adds to a counter, mm or m; None: the values are no counter.
+    """Return the increments of a counter, mm or m; None if the values are not a counter.
 
-    A counter rises or stands still, except where it is emptied: seldom, or at the same time of the
+    A counter rises or stands still, except when it is emptied: seldom, or at the same time of the
     day.
 
     Examples

@@ -48,7 +48,7 @@ def read_stations(paths: Sequence[Path], temperature: Optional[Path] = None) -> 
     paths
         The files, the better ones first.
     temperature
-        Another file, whose temperatures come before those of `paths`.
+        Another file, whose temperatures are preferred to those of `paths`.
 
     Raises
     ------
@@ -126,7 +126,7 @@ def _apart(one: _File, other: _File) -> Iterator[str]:
 
 
 def _on_clock(station: Station, offset: Optional[float]) -> Station:
-    """Return a station on another clock, if it is known and the rows are not those of days."""
+    """Return a station on another clock, if that is known and its rows are shorter than days."""
     if offset is None or station.utc_offset in (None, offset):
         return station
     if usual_step([row.time for row in station.rows]) > 12.0:
@@ -139,7 +139,7 @@ def _on_clock(station: Station, offset: Optional[float]) -> Station:
 
 
 def _of_quantity(files: Sequence[_File], name: str, own: Optional[int]) -> list[_Value]:
-    """Return the values of a quantity, each day those of one file, the first that has any."""
+    """Return the values of a quantity; each day uses the first file with a value."""
     order = list(range(len(files)))
     if own is not None:  # the file of the temperature, which is for nothing else
         order = [order[own], *order[:own]] if name == TEMPERATURE else order[:own]

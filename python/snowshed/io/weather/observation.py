@@ -34,17 +34,17 @@ class Observation:
     Attributes
     ----------
     line
-        In the file, from 1.
+        Line in the file, from 1.
     time
         Time or day of the observation, on one clock throughout a station, without summer time.
     temperature
         Temperature of the air, degrees C.
     precipitation
-        mm of water that fell in the last `precipitation_hours`.
+        Depth of the water in the last `precipitation_hours`, mm.
     snowfall
-        Depth of new snow, m, of the last `snowfall_hours`.
+        Depth of the new snow in the last `snowfall_hours`, m.
     snow_depth
-        m.
+        Depth of the snow on the ground, m.
     precipitation_hours, snowfall_hours
         Duration over which the amounts accumulated. Amounts of different rows do not overlap,
         except those of `Station.rolling`. Amounts of whole days end with the day of `time`, amounts
@@ -124,23 +124,23 @@ class Station:
     Attributes
     ----------
     format
-        Its name.
+        Name of the format.
     name
         Name of the station, if the file states it.
     rows
-        In the order of time, each later than the one before. Those of a typical year are put
-        together as a year that begins in the station's summer: July 2001 to June 2002 in the
-        north, January to December 2001 in the south.
+        Observations in the order of time. A typical year is assembled as a year that begins in the
+        station's summer: July 2001 to June 2002 in the north, January to December 2001 in the
+        south.
     notes
         Assumptions made in reading.
     typical_year
         Whether its months come from different years.
     latitude, longitude
-        Degrees, north and east; None: the file does not tell.
+        Latitude and longitude, degrees north and east, if the file states them.
     altitude
-        m above the sea; None: the file does not tell.
+        Altitude above the sea, m, if the file states it.
     utc_offset
-        Hours of the rows' clock ahead of universal time; None: the file does not tell.
+        Hours of the rows' clock ahead of universal time, if the file states them.
     columns
         Source of each quantity: names of fields of `Observation`, and of columns in the file.
     rolling
@@ -177,7 +177,7 @@ class Quantity:
     name
         A field of `Observation`.
     unit
-        In the file, for messages.
+        Name of the column, for messages.
     factor, offset
         value = factor * cell + offset.
     hours

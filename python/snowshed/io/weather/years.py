@@ -1,7 +1,7 @@
 """Typical years and actual years of building and solar energy.
 
-A typical year has months of different years. It is put together again as a year that begins in the
-station's summer. Files of the same formats may hold actual years.
+A typical year has months of different years. It is assembled as a year that begins in the station's
+summer. Files of the same formats may hold actual years.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ def arranged(
     Raises
     ------
     InputError
-        If an hour of the year is there twice, and the rows are not in the order of time.
+        If an hour of the year occurs twice, and the rows are not in the order of time.
     """
     rising = all(earlier.time < later.time for earlier, later in zip(rows, rows[1:]))
     years = sorted({row.time.year for row in rows})

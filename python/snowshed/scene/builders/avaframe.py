@@ -69,8 +69,8 @@ def avaframe_simulations(
 ) -> list[AvaFrameSimulation]:
     """Return the simulations of an AvaFrame project folder, in the compatible mode.
 
-    There is one for every release file and every type of simulation; the first has all areas that
-    are asked for.
+    Every combination of a release file and a type of simulation gives one; the first has all
+    requested areas.
 
     Parameters
     ----------
@@ -79,9 +79,9 @@ def avaframe_simulations(
         ``ENT`` and ``RES``; the ini of com5SnowSlide, if any, in ``Inputs/CFGs``, ``Inputs`` or the
         folder.
     settings
-        Settings that go before those of the ini, by their names in `SlideSettings`.
+        Settings that override those of the ini, by their names in `SlideSettings`.
     thickness
-        Thickness of the released snow [m], in place of the files'.
+        Thickness of the released snow [m], instead of that of the files.
     ascii_copy
         File for a copy of the terrain, needed for a GeoTIFF or other cell sizes than those of the
         ini.
@@ -89,8 +89,8 @@ def avaframe_simulations(
     Raises
     ------
     InputError
-        If the folder is no such project, asks for what com5SnowSlide does not do here, or holds
-        links to files that are not its own.
+        If the folder is not such a project, asks for unsupported features of com5SnowSlide, or has
+        links to files outside.
     OSError
         If a file cannot be read.
     """
@@ -188,7 +188,7 @@ def _entrained_thickness(file: Optional[Path], project: ProjectSettings) -> Opti
 
 
 def _terrain(file: Path, project: ProjectSettings, ascii_copy: Optional[PathLike]) -> Path:
-    """Return the terrain on the cells that are asked for, resampled as AvaFrame does it."""
+    """Return the terrain on the requested cells, resampled as in AvaFrame."""
     cell = float(str(project.values["cell"]))
     if cell == 0:
         return file

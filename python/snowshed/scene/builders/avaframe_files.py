@@ -1,4 +1,4 @@
-"""The files of an AvaFrame project: which are its own, and may be read and copied.
+"""The files of an AvaFrame project that may be read and copied.
 
 Projects are exchanged between people. A link in a project could lead to any file of the user, whose
 content would then be among the results.
@@ -49,7 +49,7 @@ class InputFile:
 def project_inputs(root: Path) -> list[InputFile]:
     """Return the files in the folder Inputs of a project that may be read and copied.
 
-    Files with other endings than projects have are left out, which is told.
+    Files with other suffixes are left out, with a note.
 
     Raises
     ------

@@ -48,13 +48,13 @@ class ProjectSettings:
     sim_types
         "entres", "ent", "res" and "null", or "available".
     release_thickness, entrained_thickness
-        Thickness of all areas in place of the files', m; None: the files'.
+        Thickness of all areas [m]; None: that of the files.
     default_entrained_thickness
         Entrainment thickness where the file of the areas has none, m.
     release_scenario
         Name of the only release file to take; empty: all of them.
     result_types, saved_times
-        Maps to write, and when beside the end, s.
+        Maps to write, and their times before the end, s.
     with_dam, with_secondary_release
         Whether to take dams and secondary release areas where there are any.
     places

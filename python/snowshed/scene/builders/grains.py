@@ -1,4 +1,4 @@
-"""Scenes of grains: a segmented image that is loaded."""
+"""Scenes of grains: loading tests of a segmented image."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def grains_scene(
     Raises
     ------
     InputError
-        If `labels` is no NPY file by its name, or nothing says how large a voxel is.
+        If `labels` is not an NPY file, or the voxel size is unknown.
 
     Examples
     --------

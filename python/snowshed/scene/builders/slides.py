@@ -64,16 +64,16 @@ def slide_scene(
     raster
         Elevations, m: an ESRI ASCII grid or a GeoTIFF, on a projected map.
     release
-        Polygons of the areas that break loose; a field "thickness" holds that of the snow, m. None:
-        all cells where `thickness_raster` holds snow.
+        Polygons of the release areas; a field "thickness" holds that of the snow, m. None: all
+        cells with snow in `thickness_raster`.
     thickness
-        Thickness of the snow, normal to the ground [m], in place of the file's.
+        Thickness of the snow, normal to the ground [m], instead of that of the file.
     thickness_raster
-        The same in the cells of a raster, m; it must say it everywhere in the release.
+        Raster of the thickness, m, with a value everywhere in the release.
     entrainment, resistance
-        Polygons of areas where snow is taken up, and of forest.
+        Polygons of entrainment areas, and of forest.
     entrained_thickness
-        Thickness of the snow that can be taken up [m], in place of the file's.
+        Thickness of the erodible snow [m], instead of that of the file.
     layers
         Layers of GeoPackages with several, by purpose: "release", "entrainment", "resistance".
     settings
@@ -87,9 +87,9 @@ def slide_scene(
         Bands of the rasters of elevations and of thickness, from 1; needed if a GeoTIFF has
         several.
     max_slope
-        Steepest cliff that is believed under the release [degrees]; None: 70.
+        Steepest plausible cliff under the release [degrees]. [default: 70]
     max_thickness
-        Largest thickness of snow that is believed [m]; None: 10.
+        Largest plausible thickness of snow [m]. [default: 10]
     max_cells
         Largest number of cells of the raster of elevations. [default: 2.5 million]
 
@@ -151,7 +151,7 @@ def example_slide(folder: PathLike) -> Scene:
     """Write an example's terrain to a folder, and return the scene of a slide on it.
 
     A hillside of up to 38 degrees with a winding gully, spurs and hummocks runs out onto a gentle
-    meadow; a slab of half a metre breaks loose near its top. All of it is made of formulas.
+    meadow; a slab of half a metre is released near its top. Formulas define all of it.
 
     Examples
     --------

@@ -1,7 +1,7 @@
-"""Terrain as ground: a raster's heights turned into a grid of signed distances.
+"""Terrain as ground: elevations of a raster, converted to a grid of signed distances.
 
-The heights become a closed body of triangles, whose exact distances the core gives; sampled on a
-regular grid they make a shape that costs the same at every step however rough the terrain is.
+The elevations become a closed body of triangles. The core computes its exact distances on a regular
+grid, a shape whose cost per step does not depend on the roughness of the terrain.
 """
 
 from __future__ import annotations

@@ -41,7 +41,7 @@ def read_terrain(
     band
         Band of a GeoTIFF; needed if it has several.
     max_slope
-        Degrees from the horizontal: what `check_terrain` believes.
+        Steepest plausible slope for `check_terrain`, degrees from the horizontal.
     max_cells
         Largest number of cells.
 
@@ -69,7 +69,7 @@ def read_terrain(
 
 
 def check_terrain(terrain: Raster, max_slope: float = MAX_SLOPE) -> None:
-    """Refuse elevations and cells that cannot be in metres, and missing ones that look like some.
+    """Refuse elevations and cells that cannot be in metres, and undeclared missing values.
 
     Neighbouring elevations may differ by 100 m where the ground between is no steeper than 80
     degrees, or than `max_slope`; beside exactly 0 m by 10 m where it is no steeper than that.
@@ -132,7 +132,7 @@ def _check_cells(terrain: Raster) -> None:
 
 
 def check_place(terrain: Raster, areas: Sequence[MapArea]) -> None:
-    """Refuse areas that lie beside the terrain altogether."""
+    """Refuse areas that lie completely outside the terrain."""
     rows, columns = terrain.heights.shape
     low = np.array([terrain.east, terrain.north])
     high = low + terrain.cell * np.array([columns - 1, rows - 1])
@@ -148,7 +148,7 @@ def check_place(terrain: Raster, areas: Sequence[MapArea]) -> None:
 
 
 def check_apart(areas: Sequence[MapArea]) -> None:
-    """Refuse release areas that overlap: it is not clear how much snow lies there."""
+    """Refuse overlapping release areas, because the amount of snow there is ambiguous."""
     if len(areas) < 2:
         return
     shapely: Any = require("shapely", "terrain", "reading polygons")
@@ -163,7 +163,7 @@ def check_apart(areas: Sequence[MapArea]) -> None:
 
 
 def common_system(named: Sequence[tuple[str, str]]) -> str:
-    """Return the coordinate system that all files have that say it; empty where none does.
+    """Return the common coordinate system of all files that state one; otherwise empty.
 
     Parameters
     ----------

@@ -1,8 +1,8 @@
 """The process in which Lua runs: it reads a request in JSON and writes the calls of the scripts.
 
-It is a program of its own, without the rest of the package. It therefore starts quickly, and holds
-nothing that a script could misuse. Before the scripts run it gives up the right to open files and
-to start processes, and limits its memory and time. No Python object is put into the Lua state.
+It is a separate program, without the rest of the package. Therefore it starts quickly, and holds
+nothing that a script could misuse. Before the scripts run, it gives up the right to open files and
+to start processes, and limits its memory and time. The Lua state holds no Python object.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""From Lua scripts to scenes."""
+"""Scenes from Lua scripts."""
 
 from __future__ import annotations
 

@@ -75,13 +75,13 @@ def settled_densities(
     law
         Law of settling.
     densities
-        kg/m3, of any shape; those above `DENSEST` stay.
+        Densities of the layers, kg/m3, of any shape; layers above `DENSEST` do not settle.
     stresses
-        From the snow above, Pa, of the same shape.
+        Stress from the snow above, Pa, of the same shape.
     seconds
         The time.
     temperature
-        Degrees C.
+        Temperature, degrees C.
 
     Examples
     --------

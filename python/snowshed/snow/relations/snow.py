@@ -24,7 +24,7 @@ def snow_from_density(
     Parameters
     ----------
     density
-        kg/m3.
+        Density, kg/m3.
     youngs_modulus
         A name in `YOUNGS_MODULUS`; None keeps that of the base.
     tensile_strength

@@ -15,7 +15,7 @@ def largest_body(positions: Floats, masses: Floats, dx: float) -> Booleans:
     Parameters
     ----------
     positions : (n, 3)
-        Positions, m.
+        Positions of the particles, m.
     masses : (n,)
         Masses, kg.
     dx

@@ -36,10 +36,10 @@ from snowshed.snow.stack.trimming import DEFAULT_TRIMMING, TRIMMINGS, check_trim
 
 @dataclass(frozen=True)
 class Extent:
-    """The extent of snow in metres; x from the panel's centre, z from the ground. NaN: no snow.
+    """The extent of snow, m; x from the panel's centre, z from the ground. NaN without snow.
 
-    `ground` (k,) is where the ground lies under the points of `outline`: z, m, on levelled ground;
-    zero but on terrain.
+    `ground` (k,) holds the ground's z below the points of `outline`, m, on levelled ground; it is
+    zero except on terrain.
     """
 
     height: float = 0.0
@@ -62,13 +62,13 @@ class StackMeasure(Extent):
     trimming
         Trimming rule (thesis A.4.2) for the extent of the stack and of its body.
     trimmed
-        Extent of all snow off the panel by each reading; in 3D there is but one, under both names.
+        Extent of all snow off the panel by each trimming rule; in 3D both are the same.
     body
         Extent of the largest connected body.
     mass, volume
         Mass and volume of all snow off the panel, kg and m3 (per metre of width in 2D).
     detached_mass
-        Part of the mass outside the largest connected body, kg.
+        Mass outside the largest connected body, kg.
     on_panel_mass
         Snow that is excluded because it lies on the panel or hangs over its edge, kg.
     on_structures_mass
@@ -76,7 +76,7 @@ class StackMeasure(Extent):
     joined
         Whether the stack and the snow on the panel touch.
     members : (n,)
-        Booleans: which of the particles that were given make up the stack.
+        Mask of the given particles that belong to the stack.
     """
 
     trimming: str = DEFAULT_TRIMMING
@@ -136,10 +136,10 @@ def measure_stack(
     ground: Optional[ArrayLike] = None,
     trimming: str = DEFAULT_TRIMMING,
 ) -> StackMeasure:
-    """Measure the stack that particles form.
+    """Measure the stack of the given particles.
 
-    Arrays may be anything that NumPy makes an array of: lists, single precision, columns of a
-    DataFrame. They are not changed.
+    Arrays may be anything that NumPy converts: lists, single precision, columns of a DataFrame.
+    They are not changed.
 
     Parameters
     ----------
@@ -170,7 +170,7 @@ def measure_stack(
     Returns
     -------
     StackMeasure
-        All zero, with NaN positions, if no snow is off the panel.
+        A stack of zeros, with NaN positions, if no snow is off the panel.
 
     Raises
     ------
@@ -232,7 +232,8 @@ def measure_stack(
 def _held(
     snow: Floats, on_panel: Booleans, touching: Booleans, dx: float
 ) -> tuple[Booleans, Booleans, Booleans, bool]:
-    """Return which snow the panel holds, structures hold, and falls, and if a stack joins it."""
+    """Return masks of held snow (panel, structures) and falling snow, and if the stack joins it.
+    """
     off = ~on_panel
     found = supports(snow[off], snow[on_panel], touching[off], snow[off, 2], dx)
     at_panel = on_panel.copy()

@@ -1,4 +1,4 @@
-"""Measuring the stack of a simulation: which of its snow has come down, and on what ground."""
+"""Measuring the stack of a simulation: its fallen snow, and the ground below."""
 
 from __future__ import annotations
 
@@ -25,8 +25,7 @@ class Surroundings:
     Attributes
     ----------
     structures : (n,)
-        Booleans: True for particles that touch the panel's board or an obstacle that is not the
-        ground.
+        Mask of particles that touch the panel's board or an obstacle other than the ground.
     ground : (n,)
         z of the ground below each particle, m, where it is not the scene's plane.
     """
@@ -44,9 +43,9 @@ def surroundings(simulation: _core.Simulation, positions: Floats) -> Surrounding
     Parameters
     ----------
     simulation
-        With the scene.
+        Simulation with its scene.
     positions : (n, 3)
-        m.
+        Positions of the particles, m.
     """
     scene = json.loads(simulation.scene)
     if len(positions) == 0:
@@ -74,9 +73,9 @@ def measure_particles(
     Parameters
     ----------
     simulation
-        With the scene.
+        Simulation with its scene.
     positions, masses, densities, on_panel : (n, 3) or (n,)
-        m, kg, kg/m3, and whether each lies on the panel.
+        Positions, m; masses, kg; densities, kg/m3; and mask of the particles on the panel.
     trimming
         As for `measure_stack`.
     """

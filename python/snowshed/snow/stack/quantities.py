@@ -26,8 +26,7 @@ class Measure:
     prefix
         Prefix of its columns.
     trimming
-        The reading of A.4.2 that it stands for; None: the one that the table names in its column
-        ``trimming``.
+        Trimming rule of the measure; None: that of the table's column ``trimming``.
 
     Examples
     --------

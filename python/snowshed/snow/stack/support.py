@@ -24,8 +24,8 @@ class Support:
     Attributes
     ----------
     at_panel, on_structure, falling : (n,)
-        Booleans: True for particles of bodies that do not reach the ground, because the snow on the
-        panel or a structure holds them, or because they still fall.
+        Mask of particles of bodies that do not reach the ground, because the panel's snow or a
+        structure holds them, or because they still fall.
     joined
         Whether a body that lies on the ground touches the snow on the panel.
     """
@@ -46,11 +46,11 @@ def supports(
     snow : (n, 3)
         Positions of snow that does not lie on the panel, m.
     on_panel_snow : (k, 3)
-        Positions of that on the panel.
+        Positions of the snow on the panel.
     touches_structure : (n,)
         Whether each particle touches a structure other than the panel.
     heights : (n,)
-        Above the ground below, m.
+        Heights above the ground below, m.
     dx
         Size of the grid cells, m: snow closer than that is one body.
 

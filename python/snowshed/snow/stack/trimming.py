@@ -97,7 +97,8 @@ def equal_pace_order(x: Floats, masses: Floats) -> Integers:
     return np.argsort(np.minimum(x - x.min(), x.max() - x), kind="stable")
 
 
-#: The readings of A.4.2 by name: from x (m) and masses to the order in which particles are dropped.
+#: Trimming rules of A.4.2 by name: functions from x (m) and masses to the order of dropped
+#: particles.
 TRIMMINGS: Mapping[str, Callable[[Floats, Floats], Integers]] = {
     "outermost_first": outermost_first_order,
     "equal_pace": equal_pace_order,

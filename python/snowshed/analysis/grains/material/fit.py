@@ -1,4 +1,4 @@
-"""The snow that loading tests of grains make, with the ranges of its parameters."""
+"""Snow fitted to loading tests of grains, with the ranges of its parameters."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ from snowshed.methods.grains.phases import LINEAR
 from snowshed.scene.components import Snow
 
 Reading = TypeVar("Reading")
-#: Ratio of the law to the grains from which it is said.
+#: Ratio of the law to the grains from which a note reports it.
 POOR = 2.0
-#: Part of the strengths from which it is said that the yield surface misses them.
+#: Share of the strengths from which a note reports that the yield surface misses them.
 MISSED = 0.25
 #: p0 over K above which the law's elastic strains are no longer small.
 SOFT = 0.1
@@ -97,7 +97,7 @@ class FittedSnow:
 
     @property
     def steps(self) -> float:
-        """Time steps of the material point method over those of the calibrated snow.
+        """Ratio of the time steps of the material point method to those of the calibrated snow.
 
         Their number is proportional to the speed of elastic waves.
         """
@@ -125,15 +125,14 @@ def fit_material(
     density
         Density of the snow, kg/m3.
     modulus
-        Young's modulus to take instead of the grains', Pa, so that steps may be longer; xi then
-        makes up for it.
+        Young's modulus to use instead of the grains', Pa, for longer steps; xi then compensates.
     few_grains
-        Grains of the smallest sample, if they are too few.
+        Number of grains of the smallest sample, if it is too small.
 
     Raises
     ------
     InputError
-        If a parameter cannot be read from any sample, or the law would mean nothing.
+        If a parameter cannot be read from any sample, or the law would be meaningless.
     """
     notes: list[str] = []
     found = list(_read(curves, CONFINED, readings.elasticity, notes).values())

@@ -234,7 +234,8 @@ def hardening(curve: LoadingCurve, elastic: Elasticity, p0: float) -> Hardening:
     def law(factor: float) -> Floats:
         return elastic.hardened(p0, factor, np.maximum(x, 0.0))
 
-    # In logarithms, as factors of all sizes are possible; beginning at that of the last stress.
+    # Residuals are logarithmic, because factors of all sizes are possible; the search begins at the
+    # last stress.
     last = math.asinh(max(y[-1], 1.01 * p0) / elastic.bulk_modulus)
     guess = math.log(max((last - math.asinh(p0 / elastic.bulk_modulus)) / x[-1], 1e-6))
     ends = (math.log(1e-9), math.log(LARGEST_HARDENING))

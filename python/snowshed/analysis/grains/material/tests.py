@@ -52,7 +52,7 @@ class MaterialTests:
     samples
         Samples of about the same density and of one voxel size.
     folder
-        For the samples' files.
+        Folder for the samples' files.
     settings
         Settings of the method.
     """
@@ -102,7 +102,7 @@ class MaterialTests:
 
 
 def compaction_strain(ice_fraction: float) -> float:
-    """Return the strain along each axis to which snow of an ice fraction is compacted.
+    """Return the strain along each axis that compacts snow of an ice fraction.
 
     Examples
     --------
