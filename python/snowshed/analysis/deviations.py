@@ -130,7 +130,9 @@ def deviations_named(names: Sequence[str]) -> list[Deviation]:
         if name not in DEVIATIONS and name != ALL:
             allowed = ", ".join([*DEVIATIONS, ALL])
             raise InputError(f"deviation: {name!r} is unknown; allowed: {allowed}")
-    return [one for one in DEVIATIONS.values() if one.name in names or ALL in names]
+    return [
+        deviation for deviation in DEVIATIONS.values() if deviation.name in names or ALL in names
+    ]
 
 
 def deviating_settings(chapter: int, names: Sequence[str] = (ALL,)) -> dict[str, object]:
@@ -161,11 +163,14 @@ def deviating_settings(chapter: int, names: Sequence[str] = (ALL,)) -> dict[str,
     if chapter not in FRAMES:
         raise InputError(f"chapter: {chapter!r}; allowed: {', '.join(map(str, FRAMES))}")
     settings: dict[str, object] = {}
-    for one in deviations_named(names):
-        settings.update(one.change(chapter))
+    for deviation in deviations_named(names):
+        settings.update(deviation.change(chapter))
     return settings
 
 
 def deviating_trimming(names: Sequence[str] = (ALL,)) -> str:
     """Return the trimming rule (A.4.2) for stacks with the given deviations undone."""
-    return next((one.trimming for one in deviations_named(names) if one.trimming), DEFAULT_TRIMMING)
+    return next(
+        (deviation.trimming for deviation in deviations_named(names) if deviation.trimming),
+        DEFAULT_TRIMMING,
+    )

@@ -184,7 +184,11 @@ def recorded_stacks(measurements: Iterable[Measurement]) -> list[RecordedStack]:
     from snowshed.analysis.accuracy.measurements import to_table
     from snowshed.analysis.accuracy.solutions import assured_errors, key_of, rows_of, solutions
 
-    table = to_table(one for one in measurements if one.case == CASE and not one.failure)
+    table = to_table(
+        measurement
+        for measurement in measurements
+        if measurement.case == CASE and not measurement.failure
+    )
 
     def by_settings(quantity: str, order_in: Optional[str]) -> dict[Hashable, float]:
         found = solutions(rows_of(table, CASE, quantity))
@@ -194,13 +198,13 @@ def recorded_stacks(measurements: Iterable[Measurement]) -> list[RecordedStack]:
     spreads = [by_settings(f"{name}_spread", None) for name in QUANTITIES]
     return [
         RecordedStack(
-            settings=one.settings,
+            settings=solution.settings,
             errors=[of_each[key] for of_each in errors],
             spreads=[of_each[key] for of_each in spreads if key in of_each],
-            wall_s=one.wall_s,
+            wall_s=solution.wall_s,
         )
-        for one in solutions(rows_of(table, CASE, QUANTITIES[0]))
-        if all((key := key_of(one.settings)) in of_each for of_each in errors)
+        for solution in solutions(rows_of(table, CASE, QUANTITIES[0]))
+        if all((key := key_of(solution.settings)) in of_each for of_each in errors)
     ]
 
 

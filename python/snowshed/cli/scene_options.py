@@ -55,7 +55,7 @@ Command = TypeVar("Command", bound=Callable[..., Any])
 def _show_all(context: click.Context, parameter: click.Parameter, given: bool) -> None:
     if not given or context.resilient_parsing:
         return
-    aliases = {option_name(path) for one in scene_parameters() for path in one.aliases}
+    aliases = {option_name(path) for parameter in scene_parameters() for path in parameter.aliases}
     for option in context.command.params:
         if isinstance(option, click.Option):
             option.hidden = bool(aliases & set(option.opts))

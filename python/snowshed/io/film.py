@@ -129,7 +129,7 @@ class Film:
             FilmQuantity(_shown(name), _shown(unit), _shown(meaning), step)
             for name, unit, meaning, step in reader.quantities
         )
-        self.frames = tuple(FrameFacts(*one) for one in reader.frames)
+        self.frames = tuple(FrameFacts(*frame) for frame in reader.frames)
 
     @property
     def notes(self) -> list[str]:

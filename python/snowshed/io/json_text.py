@@ -69,7 +69,7 @@ def _repeated(text: str) -> Iterator[tuple[str, int]]:
             key = str(json.loads(before))
             names[-1] = key
             if key in seen[-1]:
-                steps = (str(one).replace("~", "~0").replace("/", "~1") for one in names)
+                steps = (str(name).replace("~", "~0").replace("/", "~1") for name in names)
                 yield "/" + "/".join(steps), text.count("\n", 0, token.start()) + 1
             seen[-1].add(key)
         before = sign

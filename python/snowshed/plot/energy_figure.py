@@ -111,4 +111,4 @@ def _named(name: str) -> str:
 
 def _scale(largest: float) -> tuple[float, str]:
     """Return the unit in which an energy is between 1 and 1000, as far as there is one."""
-    return next((one for one in SCALES if largest >= one[0]), SCALES[-1])
+    return next((scale for scale in SCALES if largest >= scale[0]), SCALES[-1])

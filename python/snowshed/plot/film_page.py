@@ -86,10 +86,10 @@ def write_view_page(file: Path, film: Film, content: ViewContent) -> None:
         sentence=content.sentence,
         described=f"{content.title}, moving view",
         style=(VIEWER / "view.css").read_text(encoding="utf-8"),
-        script="\n".join((VIEWER / one).read_text(encoding="utf-8") for one in SCRIPTS),
+        script="\n".join((VIEWER / script).read_text(encoding="utf-8") for script in SCRIPTS),
         data=_embedded(_data(film, summary, content)),
         film=base64.b64encode(film.path.read_bytes()).decode(),
-        colourings=[one.option for one in summary.colourings],
+        colourings=[colouring.option for colouring in summary.colourings],
         still=still_picture(film, summary, content.solids, content.focus),
         notes=[*content.notes, *_film_notes(film)],
         facts=[*content.facts, *_film_facts(film)],
@@ -110,15 +110,15 @@ def _data(film: Film, summary: FilmSummary, content: ViewContent) -> dict[str, A
         "lift": view_lift(content.solids),
         "events": content.events,
         "meshes": [solid.data for solid in content.solids],
-        "colourings": [_colouring(one) for one in summary.colourings],
+        "colourings": [_colouring(colouring) for colouring in summary.colourings],
         "measures": [
             {
-                "event": one.event,
-                "from": list(one.start),
-                "to": list(one.end),
-                "label": printable(one.label),
+                "event": measure.event,
+                "from": list(measure.start),
+                "to": list(measure.end),
+                "label": printable(measure.label),
             }
-            for one in content.measures
+            for measure in content.measures
         ],
     }
 
@@ -156,7 +156,7 @@ def _film_notes(film: Film) -> list[str]:
 
 
 def _film_facts(film: Film) -> list[tuple[str, str]]:
-    most = max(one.particles for one in film.frames)
+    most = max(frame.particles for frame in film.frames)
     return [
         ("film", f"{len(film.frames)} frames, every {film.interval:.3g} s of the snow's time"),
         ("particles shown", f"{most:,}"),

@@ -25,7 +25,7 @@ WIDTH = 8.0  # inches
 
 def view_lift(solids: Sequence[Solid]) -> float:
     """Return how high above the horizon the camera begins, radians."""
-    return TERRAIN_LIFT if any(one.name == "terrain" for one in solids) else LIFT
+    return TERRAIN_LIFT if any(solid.name == "terrain" for solid in solids) else LIFT
 
 
 @dataclass(frozen=True)

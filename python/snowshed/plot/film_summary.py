@@ -65,7 +65,7 @@ class Colouring:
         elif self.name == "material":
             values = frame.materials.astype(float)
         else:
-            which = [one.name for one in film.quantities].index(self.name)
+            which = [quantity.name for quantity in film.quantities].index(self.name)
             values = film.quantities[which].values(frame.codes[:, which]).astype(float)
         part = (values - self.low) / max(self.high - self.low, 1e-20)
         chosen: Floats = self.colours()[np.clip(255 * part, 0, 255).round().astype(int)]

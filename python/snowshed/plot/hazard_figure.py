@@ -69,7 +69,7 @@ def probability_figure(
         draw_terrain(axes, ground, part)
         shown = np.where(probability > 0.0, probability, np.nan)
         drawn = draw_values(axes, ground, shown, cmap="plasma_r", vmin=0.0, vmax=1.0)
-        levels = [one for one in LEVELS if probability.max() >= one > probability.min()]
+        levels = [level for level in LEVELS if probability.max() >= level > probability.min()]
         if levels:
             lines = axes.contour(
                 *coordinates(ground), probability, levels=levels, colors=[INK],

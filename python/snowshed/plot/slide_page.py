@@ -157,15 +157,15 @@ def _area_table(areas: Sequence[ReleaseArea]) -> Grid:
             "slope, °", "altitude, m")  # fmt: skip
     rows = [
         (
-            one.name,
-            f"{one.thickness:g}",
-            f"{one.area:,.0f}",
-            f"{one.sloping_area:,.0f}",
-            f"{one.volume:,.0f}",
-            f"{one.slope:.0f} ({one.flattest:.0f} to {one.steepest:.0f})",
-            f"{one.lowest:.0f} to {one.highest:.0f}",
+            area.name,
+            f"{area.thickness:g}",
+            f"{area.area:,.0f}",
+            f"{area.sloping_area:,.0f}",
+            f"{area.volume:,.0f}",
+            f"{area.slope:.0f} ({area.flattest:.0f} to {area.steepest:.0f})",
+            f"{area.lowest:.0f} to {area.highest:.0f}",
         )
-        for one in areas
+        for area in areas
     ]
     return Grid(head, rows, "lrrrrrr")
 
@@ -185,9 +185,9 @@ def _mass_table(figures: Mapping[str, Any]) -> Grid:
 def _settings_table(scene: Mapping[str, Any]) -> Grid:
     found = scene["numerics"]
     rows = [
-        (name, _shown(found[name]), one.unit, one.description)
-        for one in scene_parameters("slide")
-        for section, _, name in [one.path.partition(".")]
+        (name, _shown(found[name]), parameter.unit, parameter.description)
+        for parameter in scene_parameters("slide")
+        for section, _, name in [parameter.path.partition(".")]
         if section == "numerics" and name in found and name != "threads"
     ]
     return Grid(("setting", "value", "unit", "meaning"), rows, "lrll")
@@ -234,7 +234,7 @@ def _film(maps: SlideMaps, outlines: Sequence[Outline], frames: Sequence[Frame])
     largest = _largest(frames)
     colours = mpl.colormaps[COLOURS]
     scale = [mpl.colors.to_hex(colours(share)) for share in np.linspace(0.15, 1.0, 8)]
-    shown = [(one.time, _overlay(one.window(rows, columns), largest)) for one in frames]
+    shown = [(frame.time, _overlay(frame.window(rows, columns), largest)) for frame in frames]
     encoded = base64.b64encode(file.getvalue()).decode()
     rings = [_in_percent(outline, part) for outline in outlines]
     return Film(encoded, shown, round(96 * width), width / height, largest, scale, rings)
@@ -251,7 +251,7 @@ def _in_percent(outline: Outline, part: Extent) -> str:
 
 def _largest(frames: Sequence[Frame]) -> float:
     """Return the thickness that hardly any snow exceeds, m."""
-    values = np.concatenate([one.thickness[one.thickness > LEAST_SHOWN] for one in frames])
+    values = np.concatenate([frame.thickness[frame.thickness > LEAST_SHOWN] for frame in frames])
     return float(np.quantile(values, 0.995)) if values.size else 1.0
 
 
@@ -322,7 +322,7 @@ def _moving(frames: Sequence[Frame], count: int) -> list[Frame]:
     The times follow the path of the snow's centre, because a slide creeps for a long time at its
     end.
     """
-    middles = np.array([_middle(one) for one in frames])
+    middles = np.array([_middle(frame) for frame in frames])
     way = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(middles, axis=0).T))])
     if way[-1] <= 0.0:
         return [frames[0], frames[-1]]

@@ -122,7 +122,7 @@ def scene_solids(
         focus = focus.joined(_below(focus, scene["ground"]["tilt"]))
     if terrain is not None:
         solids.insert(0, _terrain(terrain, focus))
-    return [_flattened(one) for one in solids] if flat else solids, focus
+    return [_flattened(solid) for solid in solids] if flat else solids, focus
 
 
 def _flattened(solid: Solid) -> Solid:

@@ -60,7 +60,7 @@ def record(measurements: Iterable[Measurement], path: Path) -> None:
     ...     [one.key for one in load_recorded(path)]
     ['disc {"dx": 0.1}', 'bar {"dx": 0.1}']
     """
-    new = [one for one in measurements if not one.failure]
+    new = [measurement for measurement in measurements if not measurement.failure]
     cases = {one.case for one in new}
     kept = [one for one in load_recorded(path) if one.case not in cases]
     lines = ",\n".join(json.dumps(one.to_json(), allow_nan=False) for one in kept + new)

@@ -107,8 +107,8 @@ def compare(stacks: Simulated, measurements: Sequence[Measurement]) -> pd.DataFr
         If the study has no run for a measured tilt or event, naming the measurement's line; or if
         no set has all stacks that were measured.
     """
-    for one in measurements:
-        _check_simulated(stacks, one)
+    for measurement in measurements:
+        _check_simulated(stacks, measurement)
     keys = [SET, "tilt", "event"]
     means = stacks.rows.groupby(keys)[list(QUANTITIES)].mean().reset_index()
     means = means.melt(keys, var_name="quantity", value_name="simulated")

@@ -150,7 +150,7 @@ def to_table(measurements: Sequence[Measurement]) -> pd.DataFrame:
     """Return measurements as a table, one row each: the fields of `Measurement`."""
     import pandas as pd
 
-    return pd.DataFrame([vars(one) for one in measurements])
+    return pd.DataFrame([vars(measurement) for measurement in measurements])
 
 
 def _check_header(names: Sequence[str], where: str) -> None:

@@ -162,7 +162,12 @@ def outputs_of(measurements: Sequence[Measurement]) -> list[Output]:
     >>> outputs_of([Measurement(40, 1, round, "height", 0.05, 0.01) for round in (1, 2)])
     [('height', 40, 1)]
     """
-    return list(dict.fromkeys((one.quantity, one.tilt, one.event) for one in measurements))
+    return list(
+        dict.fromkeys(
+            (measurement.quantity, measurement.tilt, measurement.event)
+            for measurement in measurements
+        )
+    )
 
 
 def sample_posterior(
@@ -248,16 +253,24 @@ class _Density:
     @classmethod
     def of(cls, surrogate: Surrogate, measurements: Sequence[Measurement]) -> _Density:
         outputs = list(surrogate.outputs)
-        quantities = list(dict.fromkeys(one.quantity for one in measurements))
+        quantities = list(dict.fromkeys(measurement.quantity for measurement in measurements))
         rounds: dict[Output, list[Measurement]] = {}
-        for one in measurements:
-            rounds.setdefault((one.quantity, one.tilt, one.event), []).append(one)
+        for measurement in measurements:
+            rounds.setdefault(
+                (measurement.quantity, measurement.tilt, measurement.event), []
+            ).append(measurement)
         output = np.array([outputs.index(key) for key in rounds])
         seedings = surrogate.noises()[output]
         means = [_weighted(of_one, noise) for of_one, noise in zip(rounds.values(), seedings)]
         values, variances = np.array(means).T
         scales = {
-            name: np.mean([abs(one.value) for one in measurements if one.quantity == name])
+            name: np.mean(
+                [
+                    abs(measurement.value)
+                    for measurement in measurements
+                    if measurement.quantity == name
+                ]
+            )
             for name in quantities
         }
         return cls(

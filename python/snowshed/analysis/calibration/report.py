@@ -102,7 +102,7 @@ def _used(measurements: Sequence[Measurement], quantities: Sequence[str]) -> lis
             raise InputError(f"quantity: {quantity!r} is unknown; allowed: {allowed}")
     if {"length", "head", "tail"} <= set(quantities):
         raise InputError("quantity: length is tail - head; give two of length, head and tail")
-    used = [one for one in measurements if one.quantity in quantities]
+    used = [measurement for measurement in measurements if measurement.quantity in quantities]
     if not used:
         raise InputError(f"none of {', '.join(quantities)} was measured")
     return used

@@ -165,7 +165,7 @@ class Surrogate:
 
     def noises(self) -> Floats:
         """Return the part of these variances that the seeding causes, shape (outputs,)."""
-        return np.array([one.deviation**2 * one.noise for one in self.processes])
+        return np.array([process.deviation**2 * process.noise for process in self.processes])
 
     def accuracy(self) -> pd.DataFrame:
         """Return the accuracy of every output for runs that it has not seen (leave one run out).

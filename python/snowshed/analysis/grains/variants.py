@@ -81,7 +81,7 @@ class Comparison:
 
     def study(self) -> Study:
         """Return the study that computes all variants."""
-        return Study(self.scene, [one.part for one in self.variants], self.name)
+        return Study(self.scene, [variant.part for variant in self.variants], self.name)
 
     def hashes(self) -> dict[tuple[str, int], str]:
         """Return the hash of each test, by its variant's name and its sample's number."""
@@ -173,10 +173,10 @@ def sensitivity_variants(
     >>> [one.name for one in found.variants][:4]
     ['base', 'friction 0.1', 'friction 0.5', 'elastic modulus 1e+08 Pa']
     """
-    base = [one.coarser(coarser) for one in samples]
+    base = [sample.coarser(coarser) for sample in samples]
     files = [one.write(folder) for one in base]
     voxel = base[0].voxel_size
-    title = "synthetic snow" if any(one.source for one in samples) else ""
+    title = "synthetic snow" if any(sample.source for sample in samples) else ""
     scene = grains_scene(files[0], voxel, [stage], settings=settings, title=title)
     full: Any = scene.resolve().data
 
@@ -209,7 +209,7 @@ def other_spheres(samples: Sequence[LabelledSample], folder: Path, times: int) -
     """
     if times < 1:
         raise InputError("finer spheres: the samples have no finer voxels; needs coarser above 1")
-    other = [one.coarser(times) for one in samples]
+    other = [sample.coarser(times) for sample in samples]
     size = other[0].voxel_size
     files = [one.write(folder) for one in other]
     return Variant(f"spheres {1e6 * size:g} um", "sphere size", files, size)

@@ -72,9 +72,13 @@ def write_hazard(
     """
     place = Path(folder)
     maps = hazard_maps(store, study, reached=reached, pressures=pressures)
-    for one in maps.exceedances:
-        for ending, values in (("", one.probability), ("_low", one.lower), ("_high", one.upper)):
-            _write(place / "probability" / f"{one.name}{ending}.asc", maps, values)
+    for exceedance in maps.exceedances:
+        for ending, values in (
+            ("", exceedance.probability),
+            ("_low", exceedance.lower),
+            ("_high", exceedance.upper),
+        ):
+            _write(place / "probability" / f"{exceedance.name}{ending}.asc", maps, values)
     for (quantity, percentile), values in maps.percentiles.items():
         _write(place / "percentiles" / f"{QUANTITIES[quantity][1]}_p{percentile}.asc", maps, values)
     table = read_table(store, study)
@@ -107,10 +111,13 @@ def _page(maps: HazardMaps, scene: Mapping[str, Any], facts: Mapping[str, Any]) 
     percentiles: dict[int, dict[str, Floats]] = {}
     for (quantity, percentile), values in maps.percentiles.items():
         percentiles.setdefault(percentile, {})[quantity] = values
-    head = ("area, m², with a probability of", *(f"at least {100 * one:.0f} %" for one in LEVELS))
+    head = (
+        "area, m², with a probability of",
+        *(f"at least {100 * level:.0f} %" for level in LEVELS),
+    )
     rows = [
-        (one.label, *(f"{maps.area(one, level):,.0f}" for level in LEVELS))
-        for one in maps.exceedances
+        (exceedance.label, *(f"{maps.area(exceedance, level):,.0f}" for level in LEVELS))
+        for exceedance in maps.exceedances
     ]
     return HazardPage(
         title=scene.get("title") or "Snow slides",
@@ -123,7 +130,7 @@ def _page(maps: HazardMaps, scene: Mapping[str, Any], facts: Mapping[str, Any]) 
         uncertainty=uncertainty(maps.runs),
         ground=maps.terrain,
         outlines=release_outlines(scene),
-        probabilities={one.label: one.probability for one in maps.exceedances},
+        probabilities={exceedance.label: exceedance.probability for exceedance in maps.exceedances},
         percentiles=percentiles,
         areas=Grid(head, rows, "l" + "r" * len(LEVELS)),
         ranges=facts["ranges"],

@@ -182,7 +182,9 @@ class _Sums:
         thresholds = [("thickness", reached), *(("pressure", value) for value in pressures)]
         self.counts = {key: np.zeros(shape, dtype=np.int32) for key in thresholds}
         self.percentiles: dict[tuple[str, int], Floats] = {
-            (quantity, one): np.zeros(shape) for quantity in QUANTITIES for one in percentiles
+            (quantity, percentile): np.zeros(shape)
+            for quantity in QUANTITIES
+            for percentile in percentiles
         }
 
     def add(self, begin: int, end: int, maps: Iterator[PeakMaps]) -> None:
@@ -243,13 +245,13 @@ def hazard_facts(maps: HazardMaps) -> dict[str, Any]:
         "cell_m": maps.terrain.cell,
         "exceedances": [
             {
-                "quantity": one.quantity,
-                "threshold": one.threshold,
-                "unit": QUANTITIES[one.quantity][0],
-                "largest_probability": float(one.probability.max()),
-                "area_m2": {f"{level:g}": maps.area(one, level) for level in LEVELS},
+                "quantity": exceedance.quantity,
+                "threshold": exceedance.threshold,
+                "unit": QUANTITIES[exceedance.quantity][0],
+                "largest_probability": float(exceedance.probability.max()),
+                "area_m2": {f"{level:g}": maps.area(exceedance, level) for level in LEVELS},
             }
-            for one in maps.exceedances
+            for exceedance in maps.exceedances
         ],
         "largest_values": {
             f"{quantity}_p{percentile}": float(values.max())

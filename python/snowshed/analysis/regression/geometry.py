@@ -108,7 +108,7 @@ def geometry_study(
         [*common, *_panels(tilts, heights, some), axis(SEED, _seeds(seeds, share))]
         for tilts, heights, lengths in grids
         for share in SHARES.values()
-        if (some := [one for one in lengths if _share(one) == share])
+        if (some := [length for length in lengths if _share(length) == share])
     ]
     undone = deviations_named(deviations)
     others = [one.name for one in undone if one.simulated and one.name != between]

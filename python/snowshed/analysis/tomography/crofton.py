@@ -83,7 +83,7 @@ def surface_area(phase: Booleans, voxel_size: float = 1.0) -> float:
     >>> round(area / (4 * np.pi * 10.0**2), 2)
     1.0
     """
-    area = sum(weight(one) * _crossings(phase, one)[0] for one in DIRECTIONS)
+    area = sum(weight(direction) * _crossings(phase, direction)[0] for direction in DIRECTIONS)
     return area * voxel_size**2
 
 
@@ -99,7 +99,7 @@ def surface_density(phase: Booleans, voxel_size: float = 1.0) -> float:
     >>> round(surface_density(layers), 2)  # 7 % too small: a plane along two axes
     0.93
     """
-    crossed = ((weight(one), *_crossings(phase, one)) for one in DIRECTIONS)
+    crossed = ((weight(direction), *_crossings(phase, direction)) for direction in DIRECTIONS)
     return sum(area * crossings / pairs for area, crossings, pairs in crossed) / voxel_size
 
 

@@ -81,7 +81,9 @@ def _features(content: Mapping[str, Any], path: Path) -> list[Mapping[str, Any]]
     kind = content.get("type")
     if kind == "FeatureCollection":
         features = content.get("features")
-        if not isinstance(features, list) or not all(isinstance(one, dict) for one in features):
+        if not isinstance(features, list) or not all(
+            isinstance(feature, dict) for feature in features
+        ):
             raise InputError(f"{path}: not GeoJSON: its features are not a list of objects")
         return features
     if kind == "Feature":

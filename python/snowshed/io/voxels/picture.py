@@ -77,7 +77,7 @@ def stacked(
     height, width = first.size
     check_size(name, (len(pictures), height, width))
     unpacked = len(pictures) * height * width * first.dtype.itemsize
-    check_unpacked(name, unpacked, sum(one.stored for one in pictures))
+    check_unpacked(name, unpacked, sum(picture.stored for picture in pictures))
     orientation = first.orientation or 1
     transposed = ORIENTATIONS[orientation][0]
     shape = (len(pictures), width, height) if transposed else (len(pictures), height, width)

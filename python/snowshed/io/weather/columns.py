@@ -78,7 +78,9 @@ def observations(
     readings
         Values of the `columns`, row by row.
     """
-    counts = [sum(one.values[i] is not None for one in readings) for i in range(len(columns))]
+    counts = [
+        sum(reading.values[i] is not None for reading in readings) for i in range(len(columns))
+    ]
     taken: dict[str, int] = {}
     notes = []
     for name in dict.fromkeys(column.quantity.name for column in columns):

@@ -246,14 +246,14 @@ def _station(
     notes += [f"{file.name}: {note}" for file in files for note in file.station.notes]
     stations = [file.station for file in files]
     return Station(
-        " and ".join(dict.fromkeys(one.format for one in stations)),
-        next((one.name for one in stations if one.name), ""),
+        " and ".join(dict.fromkeys(station.format for station in stations)),
+        next((station.name for station in stations if station.name), ""),
         rows,
         notes,
         False,
-        next((one.latitude for one in stations if one.latitude is not None), None),
-        next((one.longitude for one in stations if one.longitude is not None), None),
-        next((one.altitude for one in stations if one.altitude is not None), None),
+        next((station.latitude for station in stations if station.latitude is not None), None),
+        next((station.longitude for station in stations if station.longitude is not None), None),
+        next((station.altitude for station in stations if station.altitude is not None), None),
         stations[0].utc_offset,
         columns,
         frozenset(rolling),

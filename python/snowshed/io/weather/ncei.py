@@ -60,7 +60,7 @@ ARCHIVE = [STATION, DATE, PLACE]  # the order of columns that only the archive h
 def is_summaries(lines: Sequence[str]) -> bool:
     """Return whether a file is of the daily summaries."""
     head = [cell.strip().strip('"') for cell in lines[0].split(",")]
-    return head[0] == STATION and DATE in head and any(one in head for one in ELEMENTS)
+    return head[0] == STATION and DATE in head and any(element in head for element in ELEMENTS)
 
 
 def read_summaries(name: str, lines: Sequence[str]) -> Station:

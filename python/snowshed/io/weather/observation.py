@@ -238,7 +238,7 @@ class Quantity:
 
 @lru_cache(maxsize=64)
 def _numbers(texts: tuple[str, ...]) -> frozenset[float]:
-    return frozenset(number_in(one) for one in texts)
+    return frozenset(number_in(text) for text in texts)
 
 
 #: Beyond these nothing was ever measured, and a unit is mistaken. Ultrasonic sensors show bare

@@ -124,16 +124,16 @@ def _by_factors(
 ) -> dict[int, Quantity]:
     """Return the fields to read in SI units, by the factors and offsets of the header to them."""
     offsets, factors = (
-        _numbers(header, one, fields, separator) for one in ("units_offset", "units_multiplier")
+        _numbers(header, field, fields, separator) for field in ("units_offset", "units_multiplier")
     )
     quantities = {}
-    for place, one in enumerate(fields):
-        if one in FIELDS:
-            name, unit, hours = FIELDS[one]
+    for place, field in enumerate(fields):
+        if field in FIELDS:
+            name, unit, hours = FIELDS[field]
             shift = UNITS[name][unit][1]
             factor, offset = factors[place] if factors else 1.0, offsets[place] if offsets else 0.0
             if factor == 0.0:
-                raise InputError(f"{header.where('units_multiplier')}: 0 for {one}")
+                raise InputError(f"{header.where('units_multiplier')}: 0 for {field}")
             told = (
                 unit if (factor, offset) == (1.0, 0.0) else f"{unit} by {factor:g} and {offset:g}"
             )
@@ -153,14 +153,14 @@ def _by_units(header: _Header, fields: Sequence[str], separator: str) -> dict[in
         raise InputError(f"{header.where('units')}: {len(units)} units for {len(fields)} fields")
     by_factors = _by_factors(header, fields, separator)
     quantities = {}
-    for place, one in enumerate(fields):
-        if one not in FIELDS:
+    for place, field in enumerate(fields):
+        if field not in FIELDS:
             continue
-        name, si, hours = FIELDS[one]
+        name, si, hours = FIELDS[field]
         unit = units[place]
         if unit not in UNITS[name]:
             raise InputError(
-                f"{header.where('units')}: {quoted(unit)} of {one}; allowed: "
+                f"{header.where('units')}: {quoted(unit)} of {field}; allowed: "
                 f"{', '.join(UNITS[name])}"
             )
         quantities[place] = Quantity(name, unit, *UNITS[name][unit], hours)
@@ -171,7 +171,7 @@ def _by_units(header: _Header, fields: Sequence[str], separator: str) -> dict[in
             math.isclose(factor, to_si[0]) and math.isclose(offset, to_si[1], abs_tol=0.01)
         ):
             raise InputError(
-                f"{header.where('units')}: {quoted(unit)} of {one}, and a factor {factor:g} that "
+                f"{header.where('units')}: {quoted(unit)} of {field}, and a factor {factor:g} that "
                 f"is none of {unit} to {si}; correct one of them"
             )
     return quantities

@@ -232,8 +232,7 @@ def measure_stack(
 def _held(
     snow: Floats, on_panel: Booleans, touching: Booleans, dx: float
 ) -> tuple[Booleans, Booleans, Booleans, bool]:
-    """Return masks of held snow (panel, structures) and falling snow, and if the stack joins it.
-    """
+    """Return masks of snow held by panel and structures, and falling, and if the stack joins it."""
     off = ~on_panel
     found = supports(snow[off], snow[on_panel], touching[off], snow[off, 2], dx)
     at_panel = on_panel.copy()

@@ -197,7 +197,7 @@ def _read_strengths(
     """
     tensions = _read(curves, TENSION, readings.tension, notes)
     strengths = {**_read(curves, SHEAR, readings.shear_strength, notes), **tensions}
-    ranges["tension_pa"] = Range.of([_axial(*one) for one in tensions.values()])
+    ranges["tension_pa"] = Range.of([_axial(*tension) for tension in tensions.values()])
     p0 = ranges["preconsolidation_pressure"].value
     points: dict[int, list[tuple[float, float]]] = {}
     for (_, sample), (p, q) in strengths.items():
@@ -248,7 +248,7 @@ def _check_confined(
     """Compare the peak of confined compression, to which nothing is fitted."""
     stress = law.confined_yield()
     peaks = _read(curves, CONFINED, readings.confined_peak, notes)
-    ranges["confined_yield_over_law"] = found = Range.of([one / stress for one in peaks.values()])
+    ranges["confined_yield_over_law"] = found = Range.of([peak / stress for peak in peaks.values()])
     if not 1 / POOR <= found.value <= POOR:
         notes.append(
             f"in confined compression the grains' peak is {found.value:.2g} times the law's yield "
@@ -283,11 +283,11 @@ def exponents(laws: Sequence[CamClay]) -> dict[str, float]:
     >>> {name: round(n, 6) for name, n in exponents(laws).items()}
     {'youngs_modulus': 4.0, 'preconsolidation_pressure': 1.0}
     """
-    densities = np.log([one.density for one in laws])
+    densities = np.log([law.density for law in laws])
     if len(set(densities)) < 2:
         return {}
-    moduli = np.log([one.elastic.youngs_modulus for one in laws])
-    pressures = np.log([one.preconsolidation_pressure for one in laws])
+    moduli = np.log([law.elastic.youngs_modulus for law in laws])
+    pressures = np.log([law.preconsolidation_pressure for law in laws])
     return {
         "youngs_modulus": float(np.polyfit(densities, moduli, 1)[0]),
         "preconsolidation_pressure": float(np.polyfit(densities, pressures, 1)[0]),

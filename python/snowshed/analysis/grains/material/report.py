@@ -57,9 +57,9 @@ def write_table(folder: Path, fits: Sequence[FittedSnow]) -> None:
     import pandas as pd
 
     rows = [
-        {"density_kg_m3": one.law.density, "parameter": name, **asdict(found)}
-        for one in fits
-        for name, found in one.ranges.items()
+        {"density_kg_m3": fit.law.density, "parameter": name, **asdict(found)}
+        for fit in fits
+        for name, found in fit.ranges.items()
     ]
     write_csv(pd.DataFrame(rows), folder / TABLE)
 

@@ -61,10 +61,10 @@ class MaterialTests:
         self, samples: Sequence[LabelledSample], folder: Path, settings: GrainsSettings
     ) -> None:
         self.samples = list(samples)
-        self.files = [one.write(folder) for one in samples]
+        self.files = [sample.write(folder) for sample in samples]
         self.voxel_size = samples[0].voxel_size
         density = settings.density or 917.0
-        self.ice_fraction = sum(one.ice_fraction for one in samples) / len(samples)
+        self.ice_fraction = sum(sample.ice_fraction for sample in samples) / len(samples)
         self.density = density * self.ice_fraction
         self.scene = grains_scene(
             self.files[0], self.voxel_size, [LoadingStage(speed=SPEED)], settings=settings
@@ -73,7 +73,7 @@ class MaterialTests:
     @property
     def few_grains(self) -> int:
         """Grains of the smallest sample, if they are few; else 0."""
-        least = min(one.grains for one in self.samples)
+        least = min(sample.grains for sample in self.samples)
         return least if least < FEW_GRAINS else 0
 
     def without_shear(self) -> Comparison:
