@@ -57,8 +57,8 @@ def _cut(chapter: int) -> dict[str, object]:
 
 
 DEVIATIONS: Mapping[str, Deviation] = {
-    one.name: one
-    for one in (
+    deviation.name: deviation
+    for deviation in (
         Deviation(
             "slip",
             "The panel is SLIP: the normal speed of snow on it is zero.",

@@ -52,9 +52,9 @@ def convert(value: object, hint: object, where: str) -> object:
         value = value.tolist()
     alternatives = alternatives_of(hint)
     for kind in alternatives:
-        kept = _as(kind, value, where)
-        if kept is not MISMATCH:
-            return kept
+        converted = _as(kind, value, where)
+        if converted is not MISMATCH:
+            return converted
     raise InputError(f"{where}: {shown(value)} is {_expected(alternatives, value)}")
 
 
@@ -109,10 +109,10 @@ def _as_sequence(origin: type, item: object, value: object, where: str) -> objec
     if not isinstance(value, (list, tuple)):
         return MISMATCH
     items = []
-    for i, one in enumerate(value):
-        if one is None:
-            raise InputError(f"{where}/{i}: None is {_expected((item,), one)}")
-        items.append(convert(one, item, f"{where}/{i}"))
+    for i, entry in enumerate(value):
+        if entry is None:
+            raise InputError(f"{where}/{i}: None is {_expected((item,), entry)}")
+        items.append(convert(entry, item, f"{where}/{i}"))
     return items if origin is list else tuple(items)
 
 

@@ -191,8 +191,8 @@ def recorded_stacks(measurements: Iterable[Measurement]) -> list[RecordedStack]:
     )
 
     def by_settings(quantity: str, order_in: Optional[str]) -> dict[Hashable, float]:
-        found = solutions(rows_of(table, CASE, quantity))
-        return {key_of(o.settings): e for o, e in zip(found, assured_errors(found, order_in))}
+        recorded = solutions(rows_of(table, CASE, quantity))
+        return {key_of(o.settings): e for o, e in zip(recorded, assured_errors(recorded, order_in))}
 
     errors = [by_settings(name, ORDER_IN) for name in QUANTITIES]
     spreads = [by_settings(f"{name}_spread", None) for name in QUANTITIES]

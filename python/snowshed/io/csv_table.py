@@ -76,9 +76,9 @@ class Table:
 
     def keep_through(self, event: int) -> None:
         """Drop the rows of later events."""
-        kept = [row for row in self.rows if int(row["event"]) <= event]
-        if len(kept) < len(self.rows):
-            self.rows = kept
+        rows = [row for row in self.rows if int(row["event"]) <= event]
+        if len(rows) < len(self.rows):
+            self.rows = rows
             self._write()
 
     def fill_columns(self) -> None:
@@ -113,8 +113,8 @@ class Table:
 
     def checksum(self, event: int) -> str:
         """Return a checksum of the rows through an event, with the names of their columns."""
-        kept = [row for row in self.rows if int(row["event"]) <= event]
-        return hashlib.blake2b(self._text(kept).encode(), digest_size=16).hexdigest()
+        rows = [row for row in self.rows if int(row["event"]) <= event]
+        return hashlib.blake2b(self._text(rows).encode(), digest_size=16).hexdigest()
 
     def _write(self) -> None:
         write_text(self.path, self._text(self.rows))
@@ -357,14 +357,14 @@ def _records(
 def _numbered(path: Path | str, text: str, comment: str, pulled: list[int]) -> Iterator[str]:
     """Yield the lines that are neither empty nor comments, noting their numbers in `pulled`."""
     length = 0
-    for number, found in enumerate(LINES.finditer(text), 1):
-        start, end = found.span()
+    for number, match in enumerate(LINES.finditer(text), 1):
+        start, end = match.span()
         length = end - start if not pulled else length + end - start
         if length > LINE:  # before the reader makes cells of it
             raise InputError(
                 f"{path}, line {number}: not a table: a row longer than {LINE // MB} MB"
             )
-        line = found.group()
+        line = match.group()
         if comment and (not line.strip() or line.lstrip().startswith(comment)):
             continue
         pulled.append(number)

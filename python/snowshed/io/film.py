@@ -149,19 +149,19 @@ class Film:
         for _ in reader.frames:
             yield self._frame(reader.next())
 
-    def _frame(self, found: dict[str, object]) -> FilmFrame:
-        places = np.asarray(found["positions"])
-        positions = np.zeros((len(places), 3))
-        positions[:, [0, 2] if self.dimension == 2 else [0, 1, 2]] = self.quantum * places
+    def _frame(self, decoded: dict[str, object]) -> FilmFrame:
+        points = np.asarray(decoded["positions"])
+        positions = np.zeros((len(points), 3))
+        positions[:, [0, 2] if self.dimension == 2 else [0, 1, 2]] = self.quantum * points
         return FilmFrame(
-            time=float(found["time"]),  # type: ignore[arg-type]
-            event=int(found["event"]),  # type: ignore[call-overload]
-            ids=np.asarray(found["ids"]),
-            events=np.asarray(found["events"]),
-            materials=np.asarray(found["materials"]),
-            radii=self.quantum * np.asarray(found["radii"]),
+            time=float(decoded["time"]),  # type: ignore[arg-type]
+            event=int(decoded["event"]),  # type: ignore[call-overload]
+            ids=np.asarray(decoded["ids"]),
+            events=np.asarray(decoded["events"]),
+            materials=np.asarray(decoded["materials"]),
+            radii=self.quantum * np.asarray(decoded["radii"]),
             positions=positions,
-            codes=np.asarray(found["codes"]),
+            codes=np.asarray(decoded["codes"]),
         )
 
     def __repr__(self) -> str:

@@ -89,18 +89,18 @@ def stored_bytes(file: BinaryIO, enough: int) -> int:
     ...     stored_bytes(file, 1 << 20) < 1 << 20
     True
     """
-    found, at, end = 0, 0, os.fstat(file.fileno()).st_size
+    length, at, end = 0, 0, os.fstat(file.fileno()).st_size
     place = file.tell()
     try:
-        while at < end and found < enough:
+        while at < end and length < enough:
             data = os.lseek(file.fileno(), at, os.SEEK_DATA)
             at = os.lseek(file.fileno(), data, os.SEEK_HOLE)
-            found += at - data
+            length += at - data
     except OSError:  # no data behind this place
         pass
     finally:
         file.seek(place)
-    return found
+    return length
 
 
 def _open_at_once(path: str, flags: int) -> int:

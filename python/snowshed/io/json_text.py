@@ -44,10 +44,10 @@ def loads(text: Union[str, bytes]) -> Any:
 
 
 def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    found = dict(pairs)
-    if len(found) < len(pairs):
+    mapping = dict(pairs)
+    if len(mapping) < len(pairs):
         raise _RepeatedKeyError
-    return found
+    return mapping
 
 
 def _repeated(text: str) -> Iterator[tuple[str, int]]:

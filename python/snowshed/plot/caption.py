@@ -95,9 +95,9 @@ def _slab(slab: dict[str, Any]) -> str:
 def _span(scene: dict[str, Any], name: str) -> str:
     """Return a parameter of the snow with its unit; from where to where, if layers differ."""
     layers = (scene.get("slab") or {}).get("layers") or [{}]
-    found = [layer.get("snow", scene["snow"])[name] for layer in layers]
+    values = [layer.get("snow", scene["snow"])[name] for layer in layers]
     known = label(f"snow.{name}")
-    ends = sorted({min(found), max(found)})
+    ends = sorted({min(values), max(values)})
     return " to ".join([*map(known.value, ends[:-1]), known.quantity(ends[-1])])
 
 

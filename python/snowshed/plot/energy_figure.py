@@ -62,8 +62,8 @@ def energy_figure(table: pd.DataFrame, scene: Mapping[str, Any]) -> Figure:
         above.set_title("In the snow")
         lines = {name: table[name] for name in taken}
         largest = max((np.abs(line).max() for line in (released, *lines.values())), default=0.0)
-        kept = {n: line for n, line in lines.items() if np.abs(line).max() > SMALL * largest}
-        shown = {"released by height, and brought": released, **kept}
+        visible = {n: line for n, line in lines.items() if np.abs(line).max() > SMALL * largest}
+        shown = {"released by height, and brought": released, **visible}
         if "residual_j" in table:
             shown["gained (+) or lost by time integration"] = table["residual_j"]
         _draw(below, table, shown, per_width)

@@ -127,12 +127,17 @@ def _box(box: Box) -> dict[str, list[float]]:
     return {"low": box.low.tolist(), "high": box.high.tolist()}
 
 
-def _colouring(one: Colouring) -> dict[str, Any]:
+def _colouring(colouring: Colouring) -> dict[str, Any]:
     tables = {
-        name: base64.b64encode(np.round(255 * one.colours(dark=dark)).astype(np.uint8).tobytes())
+        name: base64.b64encode(
+            np.round(255 * colouring.colours(dark=dark)).astype(np.uint8).tobytes()
+        )
         for name, dark in (("light", False), ("dark", True))
     }
-    return {**asdict(one), "colours": {name: table.decode() for name, table in tables.items()}}
+    return {
+        **asdict(colouring),
+        "colours": {name: table.decode() for name, table in tables.items()},
+    }
 
 
 def _embedded(data: Mapping[str, Any]) -> Any:

@@ -130,14 +130,14 @@ class FilmPainter:
         self._draw_balls(seen[order, :2], colours)
         return self.figure
 
-    def _draw_balls(self, places: Floats, colours: Floats) -> None:
+    def _draw_balls(self, positions: Floats, colours: Floats) -> None:
         """Draw each ball as a disc with a lighter one on it, where the light falls."""
         light = np.clip(0.92 * colours + 0.08, 0.0, 1.0)
-        lit = places + self.radius * np.array([-0.2, 0.25])
-        self.dots.set_offsets(np.stack([places, lit], axis=1).reshape(-1, 2))
+        lit = positions + self.radius * np.array([-0.2, 0.25])
+        self.dots.set_offsets(np.stack([positions, lit], axis=1).reshape(-1, 2))
         both = np.stack([0.8 * colours, light], axis=1).reshape(-1, 3).tolist()
         self.dots.set_facecolor([(red, green, blue) for red, green, blue in both])
-        self.dots.set_sizes(np.tile([self.size, 0.42 * self.size], len(places)))
+        self.dots.set_sizes(np.tile([self.size, 0.42 * self.size], len(positions)))
 
 
 def still_picture(film: Film, summary: FilmSummary, solids: Sequence[Solid], focus: Box) -> Picture:

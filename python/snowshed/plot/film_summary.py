@@ -151,21 +151,21 @@ def _colourings(
     film: Film, ranges: Sequence[tuple[float, float]], materials: int
 ) -> list[Colouring]:
     events = film.frames[-1].event
-    found = []
+    colourings = []
     if events > 1:
         labels = [f"event {k}" for k in range(1, events + 1)] if events <= MOST_LABELS else None
         title = "Brought by" if labels else "Brought by event"
-        found.append(Colouring("event", title, 1.0, float(events), labels))
+        colourings.append(Colouring("event", title, 1.0, float(events), labels))
     for quantity, (low, high) in zip(film.quantities, ranges):
         if high > low:
             unit = "" if quantity.unit == "1" else f", {quantity.unit.replace('m3', 'm³')}"
-            found.append(Colouring(quantity.name, _short(quantity.meaning) + unit, low, high))
+            colourings.append(Colouring(quantity.name, _short(quantity.meaning) + unit, low, high))
     if materials:
         labels = [f"snow {k + 1}" for k in range(materials + 1)]
-        found.append(Colouring("material", "Snow", 0.0, float(materials), labels))
-    if not found:
-        found.append(Colouring("event", "Brought by", 1.0, 2.0, ["event 1"]))
-    return found
+        colourings.append(Colouring("material", "Snow", 0.0, float(materials), labels))
+    if not colourings:
+        colourings.append(Colouring("event", "Brought by", 1.0, 2.0, ["event 1"]))
+    return colourings
 
 
 def _short(meaning: str) -> str:

@@ -110,9 +110,9 @@ def percentiles_figure(
     with rc_context(STYLE):
         figure = blank(ACROSS, width / ratio + 0.5)
         panels = figure.subplots(1, len(values), squeeze=False).ravel()
-        for axes, (quantity, found) in zip(panels, values.items()):
+        for axes, (quantity, raster) in zip(panels, values.items()):
             draw_terrain(axes, ground, part, labels=False)
-            shown = np.where(found > 0.0, found, np.nan)
+            shown = np.where(raster > 0.0, raster, np.nan)
             drawn = draw_values(axes, ground, shown, cmap=VALUES[quantity], vmin=0.0)
             draw_outlines(axes, outlines)
             figure.colorbar(drawn, ax=axes, shrink=0.8, pad=0.02)

@@ -122,7 +122,7 @@ class HazardPage:
 
     def _figure_table(self) -> Grid:
         rows = [
-            (NAMES.get(name, name), *(f"{found[share]:,.4g}" for share in ("p5", "p50", "p95")))
-            for name, found in self.figures.items()
+            (NAMES.get(name, name), *(f"{quantiles[share]:,.4g}" for share in ("p5", "p50", "p95")))
+            for name, quantiles in self.figures.items()
         ]
         return Grid(("figure", "5 %", "50 %", "95 %"), rows, "lrrr")

@@ -127,9 +127,7 @@ def template(package: str, name: str) -> jinja2.Template:
     """
     import jinja2
 
-    loaders = [
-        jinja2.PackageLoader(fromkey) for fromkey in dict.fromkeys((package, "snowshed.plot"))
-    ]
+    loaders = [jinja2.PackageLoader(name) for name in dict.fromkeys((package, "snowshed.plot"))]
     environment = jinja2.Environment(
         loader=jinja2.ChoiceLoader(loaders),
         autoescape=True,

@@ -183,12 +183,12 @@ def _mass_table(figures: Mapping[str, Any]) -> Grid:
 
 
 def _settings_table(scene: Mapping[str, Any]) -> Grid:
-    found = scene["numerics"]
+    settings = scene["numerics"]
     rows = [
-        (name, _shown(found[name]), parameter.unit, parameter.description)
+        (name, _shown(settings[name]), parameter.unit, parameter.description)
         for parameter in scene_parameters("slide")
         for section, _, name in [parameter.path.partition(".")]
-        if section == "numerics" and name in found and name != "threads"
+        if section == "numerics" and name in settings and name != "threads"
     ]
     return Grid(("setting", "value", "unit", "meaning"), rows, "lrll")
 
@@ -323,12 +323,12 @@ def _moving(frames: Sequence[Frame], count: int) -> list[Frame]:
     end.
     """
     middles = np.array([_middle(frame) for frame in frames])
-    way = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(middles, axis=0).T))])
-    if way[-1] <= 0.0:
+    distance = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(middles, axis=0).T))])
+    if distance[-1] <= 0.0:
         return [frames[0], frames[-1]]
-    wanted = np.linspace(0.0, 0.999 * way[-1], count)
-    places = list(dict.fromkeys(np.searchsorted(way, wanted).tolist()))
-    return [frames[place] for place in [*places[:-1], len(frames) - 1]]
+    wanted = np.linspace(0.0, 0.999 * distance[-1], count)
+    indices = list(dict.fromkeys(np.searchsorted(distance, wanted).tolist()))
+    return [frames[place] for place in [*indices[:-1], len(frames) - 1]]
 
 
 def _middle(frame: Frame) -> tuple[float, float]:

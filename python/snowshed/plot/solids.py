@@ -225,14 +225,14 @@ def _parts(
     elif kind == "plate":
         yield _plate(vector["center"], vector["normal"], shape)
     elif kind == "union":
-        for one in shape["shapes"]:
-            yield from _parts(one, scene, base_dir, near)
-    elif kind == "mesh" and (found := _mesh(shape, base_dir)) is not None:
-        yield found
+        for part in shape["shapes"]:
+            yield from _parts(part, scene, base_dir, near)
+    elif kind == "mesh" and (surface := _mesh(shape, base_dir)) is not None:
+        yield surface
     else:
-        found = _sampled(shape, scene, base_dir, near)
-        if len(found.triangles):
-            yield found
+        surface = _sampled(shape, scene, base_dir, near)
+        if len(surface.triangles):
+            yield surface
 
 
 def _in_space(vector: Any) -> Floats:

@@ -91,7 +91,11 @@ def schema_of_method(method: str) -> JsonObject:
         if method in _list(_object(part).get("x-methods", [method]))
     }
     settings = _object(parts[SETTINGS_KEY])
-    own = [one for one in _list(settings["anyOf"]) if _object(one).get("title") == method]
+    own = [
+        alternative
+        for alternative in _list(settings["anyOf"])
+        if _object(alternative).get("title") == method
+    ]
     parts[SETTINGS_KEY] = {**settings, "anyOf": own}
     return {**schema, "properties": parts}
 
@@ -137,11 +141,11 @@ def properties(schema: Node, node: Node) -> dict[str, JsonObject]:
     node
         The object's part of it.
     """
-    found: dict[str, JsonObject] = {}
+    variants: dict[str, JsonObject] = {}
     for part in _parts(schema, node):
         for name, inner in _object(part.get("properties")).items():
-            found.setdefault(name, _object(inner))
-    return found
+            variants.setdefault(name, _object(inner))
+    return variants
 
 
 def resolve(schema: Node, node: Node) -> JsonObject:

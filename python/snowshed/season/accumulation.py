@@ -126,7 +126,7 @@ def pauses(days: Sequence[Day]) -> dict[int, list[Interval]]:
 
     The temperature of a row of the season file holds until the next row.
     """
-    found: dict[int, list[Interval]] = {}
+    intervals: dict[int, list[Interval]] = {}
     waiting: Optional[list[Interval]] = None
     for day, earlier in zip(days, [None, *days]):
         if earlier is not None and waiting is not None:
@@ -134,9 +134,9 @@ def pauses(days: Sequence[Day]) -> dict[int, list[Interval]]:
             waiting.append(Interval(elapsed, earlier.weather.temperature))
         if day.event is not None:
             if waiting is not None:
-                found[day.event] = waiting
+                intervals[day.event] = waiting
             waiting = []
-    return found
+    return intervals
 
 
 def stack_ageing(days: Sequence[Day], settings: SeasonSettings) -> Optional[Ageing]:

@@ -24,7 +24,7 @@ HINT = "is it in cm, mm or inches?"
 
 
 def check_rows(
-    rows: Sequence[Weather], places: Sequence[Row], name: str, *, snowless: bool = False
+    rows: Sequence[Weather], table_rows: Sequence[Row], name: str, *, snowless: bool = False
 ) -> None:
     """Raise InputError if rows are no weather of seasons.
 
@@ -32,7 +32,7 @@ def check_rows(
     ----------
     rows
         The weather.
-    places
+    table_rows
         Position of each row, for messages.
     name
         The file.
@@ -43,14 +43,14 @@ def check_rows(
         raise InputError(f"{name}: no rows below the header")
     if len(rows) > MOST_ROWS:
         raise InputError(f"{name}: {len(rows)} rows; at most {MOST_ROWS} are allowed")
-    for earlier, later, before, row in zip(rows, rows[1:], places, places[1:]):
+    for earlier, later, before, row in zip(rows, rows[1:], table_rows, table_rows[1:]):
         if later.date <= earlier.date:
             raise InputError(
                 f"{row.where}, column date: {later.date.isoformat(' ')} is not after "
                 f"{before.place}, {earlier.date.isoformat(' ')}"
             )
-    _check_years(rows, places)
-    _check_amounts(rows, places, name)
+    _check_years(rows, table_rows)
+    _check_amounts(rows, table_rows, name)
     if not snowless and not any(row.snowfall for row in rows):
         raise InputError(f"{name}: {NO_SNOW}; the snowfall of every row is 0")
 
@@ -82,7 +82,7 @@ def _days(earlier: Weather, later: Weather) -> float:
     return (later.date - earlier.date).total_seconds() / DAY
 
 
-def _check_years(rows: Sequence[Weather], places: Sequence[Row]) -> None:
+def _check_years(rows: Sequence[Weather], table_rows: Sequence[Row]) -> None:
     """Refuse implausible years, gaps of decades, and isolated years."""
     for number, (earlier, later) in enumerate(zip(rows, rows[1:]), 1):
         days = _days(earlier, later)
@@ -91,11 +91,12 @@ def _check_years(rows: Sequence[Weather], places: Sequence[Row]) -> None:
         few = min(number, len(rows) - number) <= FEW
         if days > WEATHER_GAP or (few and days > LONE and later.source is Source.GIVEN):
             raise InputError(
-                f"{places[number].where}, column date: {later.date.date()} is {days / 365.25:.0f} "
-                f"years after {places[number - 1].place}, {earlier.date.date()}; is a year "
+                f"{table_rows[number].where}, column date: {later.date.date()} is "
+                f"{days / 365.25:.0f} "
+                f"years after {table_rows[number - 1].place}, {earlier.date.date()}; is a year "
                 "mistyped?"
             )
-    for row, place in ((rows[0], places[0]), (rows[-1], places[-1])):
+    for row, place in ((rows[0], table_rows[0]), (rows[-1], table_rows[-1])):
         if not YEARS[0] <= row.date.year <= YEARS[1]:
             raise InputError(
                 f"{place.where}, column date: {row.date.date()}; allowed: the years {YEARS[0]} to "
@@ -103,7 +104,7 @@ def _check_years(rows: Sequence[Weather], places: Sequence[Row]) -> None:
             )
 
 
-def _check_amounts(rows: Sequence[Weather], places: Sequence[Row], name: str) -> None:
+def _check_amounts(rows: Sequence[Weather], table_rows: Sequence[Row], name: str) -> None:
     """Refuse record-breaking amounts of a day, or of a winter."""
     falls = _daily_sums(rows)
     for day, (total, first) in falls.items():
@@ -113,7 +114,8 @@ def _check_amounts(rows: Sequence[Weather], places: Sequence[Row], name: str) ->
         most = RECORD_DAY if whole or not single else MOST_SNOWFALL
         if total > most:
             raise InputError(
-                f"{places[first].where}, column snowfall_m: {total:.3g} m of snow on {day.date()}; "
+                f"{table_rows[first].where}, column snowfall_m: {total:.3g} m of snow on "
+                f"{day.date()}; "
                 f"{RECORD_WORDS}; {HINT}"
             )
     totals = sorted(total for total, _ in falls.values() if total)

@@ -81,8 +81,8 @@ def panel_ends(scene: Mapping[str, Any]) -> list[list[float]]:
     """Return the panel's upper and lower edge, [x, z], on levelled ground."""
     edge = panel_edge(scene)
     ends = np.array([[edge.upper[0], 0.0, edge.upper[1]], [edge.x, 0.0, edge.z]])
-    found: list[list[float]] = level(ends, _tilt(scene))[:, [0, 2]].tolist()
-    return found
+    levelled: list[list[float]] = level(ends, _tilt(scene))[:, [0, 2]].tolist()
+    return levelled
 
 
 def _tilt(scene: Mapping[str, Any]) -> float:
@@ -93,8 +93,8 @@ def _surface(outline: Floats, x: float) -> float:
     """Return the height of the snow at x, m; zero beyond the ends of the stack."""
     if len(outline) == 0:
         return 0.0
-    places, heights = outline[:, 0], outline[:, 1]
-    return float(np.interp(x, places, heights, left=0.0, right=0.0))
+    positions, heights = outline[:, 0], outline[:, 1]
+    return float(np.interp(x, positions, heights, left=0.0, right=0.0))
 
 
 #: Causes of a first contact, by the columns of the table that show it.

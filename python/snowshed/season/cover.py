@@ -97,7 +97,7 @@ def end_of_readings(season: Sequence[Weather]) -> Optional[Weather]:
 
 def _measured(season: Sequence[Weather]) -> list[Optional[float]]:
     """Return the depth that readings tell at each row, m; None where they do not."""
-    found: list[Optional[float]] = [row.snow_depth for row in season]
+    depths: list[Optional[float]] = [row.snow_depth for row in season]
     readings = [number for number, row in enumerate(season) if row.snow_depth is not None]
     for before, after in zip(readings, readings[1:]):
         first, last = season[before], season[after]
@@ -107,5 +107,5 @@ def _measured(season: Sequence[Weather]) -> list[Optional[float]]:
         low, high = first.snow_depth or 0.0, last.snow_depth or 0.0
         for number in range(before + 1, after):
             part = (season[number].date - first.date).total_seconds() / span
-            found[number] = low + part * (high - low)
-    return found
+            depths[number] = low + part * (high - low)
+    return depths

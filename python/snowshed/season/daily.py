@@ -119,12 +119,12 @@ def _calendar(known: set[date]) -> list[date]:
 
 
 def _lines(dates: Sequence[date], lines: dict[date, int]) -> list[int]:
-    found: list[int] = []
+    indices: list[int] = []
     following = lines[max(lines)]
     for day in reversed(dates):
         following = lines.get(day, following)
-        found.append(following)
-    return found[::-1]
+        indices.append(following)
+    return indices[::-1]
 
 
 def _sums(rows: Sequence[Observation], name: str) -> tuple[dict[date, float], set[date]]:
@@ -157,7 +157,9 @@ def _disjoint(station: Station) -> Sequence[Observation]:
     clocks = Counter((row.time.hour, row.time.minute) for row in told)
     if not clocks:
         return ()
-    hour, minute = max(clocks, key=lambda one: (clocks[one], -abs(one[0] + one[1] / 60 - MORNING)))
+    hour, minute = max(
+        clocks, key=lambda clock: (clocks[clock], -abs(clock[0] + clock[1] / 60 - MORNING))
+    )
     return list(_read_at(told, hour, minute))
 
 

@@ -85,7 +85,7 @@ class Climate:
         months = np.array([day.date.month for day in days])
         falls = np.array([day.snowfall for day in days])
         before = np.append(False, snows[:-1])
-        found: dict[int, MonthClimate] = {}
+        climates: dict[int, MonthClimate] = {}
         anomalies = np.zeros(len(days))
         for month in range(1, 13):
             own = months == month
@@ -95,7 +95,7 @@ class Climate:
             mean, variance = amounts.mean(), max(amounts.var(), 1e-4 * amounts.mean() ** 2)
             warm = temperatures[own]
             anomalies[own] = warm - warm.mean()
-            found[month] = MonthClimate(
+            climates[month] = MonthClimate(
                 _share(snows[own & ~before]),
                 _share(snows[own & before]),
                 float(mean**2 / variance),  # by moments
@@ -104,13 +104,13 @@ class Climate:
                 float(warm.std()),
                 float(warm.mean() - temperatures[own & snows].mean()),
             )
-        if not found:
+        if not climates:
             raise InputError(
                 f"the weather: no month with snow has {LEAST_DAYS} days, to fit a generator to"
             )
         pairs = anomalies[:-1] * anomalies[1:]
         spread = float((anomalies**2).mean())
-        return cls(found, float(np.clip(pairs.mean() / spread, 0.0, 0.99)) if spread else 0.0)
+        return cls(climates, float(np.clip(pairs.mean() / spread, 0.0, 0.99)) if spread else 0.0)
 
     def winters(self, count: int, *, seed: int, first_year: int = 2001) -> list[Weather]:
         """Return daily rows of made winters; the same seed makes the same ones.

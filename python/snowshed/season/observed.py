@@ -275,7 +275,7 @@ def _contradictions(snow: _Snow, calendar: Calendar) -> Iterator[str]:
         yield (
             f"columns contradict each other by more than a factor of {CONTRADICTION:g} ({named}"
             f"{more}); the {used.label} is used, not the "
-            f"{' or the '.join(sorted(one.label for one in wrong))}{_why(used, wrong)}"
+            f"{' or the '.join(sorted(source.label for source in wrong))}{_why(used, wrong)}"
         )
 
 

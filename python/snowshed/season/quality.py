@@ -119,13 +119,13 @@ def qualities_of(
     by_year: dict[int, list[Weather]] = {}
     for row in rows:
         by_year.setdefault(calendar.year(row.date.date()), []).append(row)
-    found = []
+    qualities = []
     for year in range(min(by_year), max(by_year) + 1):
         own = by_year.get(year, [])
         begin, after = season.span(year)
         days = (after - begin).days
         seen = days if listed and own else observed_days(own, begin, after)
-        found.append(
+        qualities.append(
             WinterQuality(
                 calendar.name(year),
                 own,
@@ -138,7 +138,7 @@ def qualities_of(
                 (sums or {}).get(year, {}),
             )
         )
-    return found, season
+    return qualities, season
 
 
 def is_list(rows: Sequence[Weather]) -> bool:

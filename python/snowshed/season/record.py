@@ -60,8 +60,8 @@ class Record:
         >>> winters.counted_text, winters.excluded_text
         ('2 of 3 winters', '2003/04 (79 %)')
         """
-        found, season = qualities_of(self.rows, self.calendar, coverage, self.sums)
-        return WinterList(found, season, coverage)
+        qualities, season = qualities_of(self.rows, self.calendar, coverage, self.sums)
+        return WinterList(qualities, season, coverage)
 
 
 @dataclass(frozen=True)
@@ -130,9 +130,9 @@ class WinterList:
                 "days_of_snow_season": winter.season,
                 "observed_days": winter.observed,
                 "new_snow_m": round(winter.snowfall, 4),
-                "days_by_source": {one.label: days for one, days in winter.sources.items()},
+                "days_by_source": {source.label: days for source, days in winter.sources.items()},
                 "filled_snow_m": round(winter.filled_snow, 4),
-                "sums_m": {one.label: round(total, 4) for one, total in winter.sums.items()},
+                "sums_m": {source.label: round(total, 4) for source, total in winter.sums.items()},
                 "counts": winter.counts,
             }
             for winter in self.winters

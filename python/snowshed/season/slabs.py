@@ -107,9 +107,9 @@ def snow_of_density(base: Mapping[str, Any], density: float, strength: Optional[
 def _densities(released: Sequence[Day]) -> list[float]:
     """Return densities of the slabs, kg/m3, rounded so that a scene can hold all of them."""
     for step in (1.0, 10.0):
-        found = [
+        densities = [
             max(step * round(day.slab_load / day.slab_thickness / step), step) for day in released
         ]
-        if len(set(found)) <= MOST_SNOWS:
+        if len(set(densities)) <= MOST_SNOWS:
             break
-    return found
+    return densities

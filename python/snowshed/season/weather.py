@@ -168,15 +168,15 @@ def _files_of(season: Season) -> list[Path]:
     if isinstance(season, (str, os.PathLike)):
         return [Path(season)]
     if isinstance(season, Sequence):
-        return [Path(one) for one in season if isinstance(one, (str, os.PathLike))]
+        return [Path(path) for path in season if isinstance(path, (str, os.PathLike))]
     return []
 
 
 def _of_station(station: Station, source: str, snow_from: str) -> Record:
     record = record_of(station, source, CHOICES.get(snow_from))
-    places = [Row(source, f"line {row.line}", row.line, {}) for row in record.rows]
+    table_rows = [Row(source, f"line {row.line}", row.line, {}) for row in record.rows]
     notes = [f"the weather is of a file in the format {station.format}", *record.notes]
-    check_rows(record.rows, places, source, snowless=True)
+    check_rows(record.rows, table_rows, source, snowless=True)
     if not any(row.snowfall for row in record.rows):
         notes.append(f"{NO_SNOW} in this file")
     return replace(record, notes=notes)

@@ -40,8 +40,8 @@ def load_recorded(path: Optional[Path] = None) -> list[Measurement]:
     data = read_object(path)
     check_values(data, {"measurements": list}, str(path))
     return [
-        Measurement.from_json(one, f"{path}: /measurements/{i}")
-        for i, one in enumerate(data["measurements"])
+        Measurement.from_json(measurement, f"{path}: /measurements/{i}")
+        for i, measurement in enumerate(data["measurements"])
     ]
 
 
@@ -61,7 +61,9 @@ def record(measurements: Iterable[Measurement], path: Path) -> None:
     ['disc {"dx": 0.1}', 'bar {"dx": 0.1}']
     """
     new = [measurement for measurement in measurements if not measurement.failure]
-    cases = {one.case for one in new}
-    kept = [one for one in load_recorded(path) if one.case not in cases]
-    lines = ",\n".join(json.dumps(one.to_json(), allow_nan=False) for one in kept + new)
+    cases = {measurement.case for measurement in new}
+    earlier = [measurement for measurement in load_recorded(path) if measurement.case not in cases]
+    lines = ",\n".join(
+        json.dumps(measurement.to_json(), allow_nan=False) for measurement in earlier + new
+    )
     write_text(path, f'{{"measurements": [\n{lines}\n]}}\n')

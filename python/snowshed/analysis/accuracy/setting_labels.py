@@ -51,5 +51,5 @@ def settings(chosen: Mapping[str, Optional[Value]], names: Optional[Iterable[str
     >>> settings({"dx": 0.01, "transfer": "apic", "seed": 2}, ["transfer", "dx"])
     'apic, dx 0.01'
     """
-    kept = chosen if names is None else [name for name in names if name in chosen]
-    return ", ".join(setting(name, chosen[name]) for name in kept)
+    labelled = chosen if names is None else [name for name in names if name in chosen]
+    return ", ".join(setting(name, chosen[name]) for name in labelled)

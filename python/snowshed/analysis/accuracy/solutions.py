@@ -90,18 +90,19 @@ def key_of(settings: Settings, *, without: Collection[str] = ()) -> Hashable:
     return tuple(sorted((name, v) for name, v in settings.items() if name not in without))
 
 
-def alike(found: Iterable[Solution], order_in: str) -> list[list[Solution]]:
+def alike(solved: Iterable[Solution], order_in: str) -> list[list[Solution]]:
     """Return the solutions that differ in one setting only, from the coarsest to the finest."""
     groups: dict[Hashable, list[Solution]] = {}
-    for one in found:
-        if order_in in one.settings:
-            groups.setdefault(key_of(one.settings, without=(order_in,)), []).append(one)
+    for solution in solved:
+        if order_in in solution.settings:
+            groups.setdefault(key_of(solution.settings, without=(order_in,)), []).append(solution)
     return [
-        sorted(group, key=lambda one: -float(one.settings[order_in])) for group in groups.values()
+        sorted(group, key=lambda solution: -float(solution.settings[order_in]))
+        for group in groups.values()
     ]
 
 
-def assured_errors(found: Sequence[Solution], order_in: Optional[str]) -> list[float]:
+def assured_errors(solved: Sequence[Solution], order_in: Optional[str]) -> list[float]:
     """Return for each solution the largest error of it and of all finer ones.
 
     A coarse solution may be right by chance, which does not count: an accuracy is reached only if
@@ -109,17 +110,17 @@ def assured_errors(found: Sequence[Solution], order_in: Optional[str]) -> list[f
 
     Parameters
     ----------
-    found
+    solved
         Solutions for one quantity.
     order_in
         The setting that refines a solution as it falls; None: the errors are used directly.
     """
-    assured = {id(one): abs(one.error) for one in found}
-    for group in alike(found, order_in) if order_in else []:
+    assured = {id(solution): abs(solution.error) for solution in solved}
+    for group in alike(solved, order_in) if order_in else []:
         worst = 0.0
-        for one in reversed(group):
-            worst = assured[id(one)] = max(worst, abs(one.error))
-    return [assured[id(one)] for one in found]
+        for finer in reversed(group):
+            worst = assured[id(finer)] = max(worst, abs(finer.error))
+    return [assured[id(solution)] for solution in solved]
 
 
 def quickest(costs: Sequence[float], errors: Sequence[float], wanted: float) -> int:

@@ -120,15 +120,17 @@ def compare(stacks: Simulated, measurements: Sequence[Measurement]) -> pd.DataFr
     return whole.sort_values([SET, "line", "quantity"], ignore_index=True)
 
 
-def _check_simulated(stacks: Simulated, one: Measurement) -> None:
+def _check_simulated(stacks: Simulated, measurement: Measurement) -> None:
     tilts = np.unique(stacks.rows["tilt"].to_numpy(float))
-    if one.tilt not in tilts:
+    if measurement.tilt not in tilts:
         listed = ", ".join(f"{tilt:g}" for tilt in tilts)
         raise InputError(
-            f"tilt {one.tilt:g}, measured in line {one.line}: no such run; there are: {listed}"
+            f"tilt {measurement.tilt:g}, measured in line {measurement.line}: no such run; there "
+            f"are: {listed}"
         )
     last = int(stacks.rows["event"].max())
-    if one.event > last:
+    if measurement.event > last:
         raise InputError(
-            f"event {one.event}, measured in line {one.line}: its runs have {last} events"
+            f"event {measurement.event}, measured in line {measurement.line}: its runs have "
+            f"{last} events"
         )

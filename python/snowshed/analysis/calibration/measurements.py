@@ -136,14 +136,14 @@ def read_measurements(file: PathLike) -> list[Measurement]:
     path = Path(file)
     hint = "`snowshed calibrate --template FILE` writes one to fill in"
     table = read_text_table(path, hint, _check_header)
-    found: list[Measurement] = []
+    measurements: list[Measurement] = []
     seen: dict[tuple[float, int, int], int] = {}
     for row in table.rows:
         if any(row.cells.values()):
-            found += _Row(row).measurements(seen)
-    if not found:
+            measurements += _Row(row).measurements(seen)
+    if not measurements:
         raise InputError(f"{path}: no measurement in it: all cells for measured values are empty")
-    return found
+    return measurements
 
 
 def to_table(measurements: Sequence[Measurement]) -> pd.DataFrame:
@@ -189,12 +189,12 @@ class _Row:
         """Return the measurements of the line; `seen` holds the line of every stack so far."""
         key = self._tilt(), self._whole("event"), self._whole(ROUND, 1)
         values = {quantity: self._value(quantity) for quantity in QUANTITIES}
-        found = [
+        measurements = [
             Measurement(*key, quantity, *value, self.row.number)
             for quantity, value in values.items()
             if value is not None
         ]
-        if found:
+        if measurements:
             earlier = seen.setdefault(key, self.row.number)
             if earlier != self.row.number:
                 raise self._error(
@@ -202,7 +202,7 @@ class _Row:
                     "already; give repetitions another round"
                 )
             self._check_ends(values)
-        return found
+        return measurements
 
     def _value(self, quantity: str) -> Optional[tuple[float, float]]:
         """Return the measured value and its uncertainty, or None if it was not measured."""

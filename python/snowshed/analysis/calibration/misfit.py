@@ -79,10 +79,10 @@ def _chi_square(rows: pd.DataFrame) -> pd.Series[float]:
 def _scores(rows: pd.DataFrame, *, relative: bool) -> dict[str, pd.Series[float]]:
     """Return the scores of one quantity, each indexed by the set."""
     difference = rows["value"] - rows["simulated"]
-    found = {
+    columns = {
         "mean_error_m": difference.abs().groupby(rows[SET]).mean(),
         "rmse_m": (difference**2).groupby(rows[SET]).mean() ** 0.5,
     }
     if relative:
-        found["relative_error"] = (difference / rows["value"]).groupby(rows[SET]).mean()
-    return found
+        columns["relative_error"] = (difference / rows["value"]).groupby(rows[SET]).mean()
+    return columns

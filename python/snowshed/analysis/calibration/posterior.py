@@ -107,8 +107,8 @@ class Posterior:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # notes of arviz on its own next version
             arviz = require("arviz", EXTRA, PURPOSE)
-            found = arviz.summary(self.draws, kind="diagnostics", round_to="none")
-        columns: pd.DataFrame = found[[*DIAGNOSTICS]]
+            summary = arviz.summary(self.draws, kind="diagnostics", round_to="none")
+        columns: pd.DataFrame = summary[[*DIAGNOSTICS]]
         return columns
 
     def ranges(self) -> pd.DataFrame:
@@ -289,10 +289,10 @@ class _Density:
         unit, discrepancy = points[:, :count], points[:, count:]
         inside = ((unit >= 0) & (unit <= 1)).all(axis=1)
         inside &= ((discrepancy >= 0) & (discrepancy <= LARGEST_DISCREPANCY)).all(axis=1)
-        found = np.full(len(points), -np.inf)
+        logarithms = np.full(len(points), -np.inf)
         if inside.any():
-            found[inside] = self._log_density(unit[inside], discrepancy[inside])
-        return found
+            logarithms[inside] = self._log_density(unit[inside], discrepancy[inside])
+        return logarithms
 
     def _log_density(self, unit: Floats, discrepancy: Floats) -> Floats:
         means, variances = self.surrogate.predict(unit)
@@ -319,8 +319,8 @@ class _Density:
 
 def _weighted(rounds: Sequence[Measurement], seeding: float) -> tuple[float, float]:
     """Return mean and variance of rounds, weighted by the inverse of their variances."""
-    weights = 1 / (np.array([one.uncertainty for one in rounds]) ** 2 + seeding)
-    mean = weights @ np.array([one.value for one in rounds]) / weights.sum()
+    weights = 1 / (np.array([measurement.uncertainty for measurement in rounds]) ** 2 + seeding)
+    mean = weights @ np.array([measurement.value for measurement in rounds]) / weights.sum()
     return float(mean), float(1 / weights.sum())
 
 

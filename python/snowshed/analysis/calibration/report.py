@@ -146,31 +146,35 @@ def evaluate(
     InputError
         As for `read_simulated` and `calibrate`.
     """
-    found = calibrate(measurements, read_simulated(stored, study, measure), quantities=quantities)
-    write(found, Path(folder))
-    return found
+    calibration = calibrate(
+        measurements, read_simulated(stored, study, measure), quantities=quantities
+    )
+    write(calibration, Path(folder))
+    return calibration
 
 
-def write(found: Calibration, folder: Path) -> None:
+def write(calibration: Calibration, folder: Path) -> None:
     """Write the tables and figures of a calibration into a folder."""
     from snowshed.analysis.calibration import figures
     from snowshed.plot.figure_style import save
 
-    posterior, parameters = found.posterior, found.stacks.parameters
+    posterior, parameters = calibration.posterior, calibration.stacks.parameters
     bands = figures.predicted_bands(posterior)
     tables = {
-        "ranking": found.ranked,
-        "rmse-statistics": statistics(found.ranked).reset_index(),
-        "comparison": found.comparison,
-        "ranges": found.ranges,
+        "ranking": calibration.ranked,
+        "rmse-statistics": statistics(calibration.ranked).reset_index(),
+        "comparison": calibration.comparison,
+        "ranges": calibration.ranges,
         "posterior": posterior.table(),
         "surrogate": posterior.surrogate.accuracy(),
     }
     drawings = {
-        "relative-error": figures.relative_error_figure(found.ranked, parameters),
-        "rmse": figures.rmse_figure(found.ranked, parameters),
-        "fit": figures.fit_figure(found.comparison, int(found.best["set"]), posterior, bands),
-        "posterior": figures.posterior_figure(posterior, found.best),
+        "relative-error": figures.relative_error_figure(calibration.ranked, parameters),
+        "rmse": figures.rmse_figure(calibration.ranked, parameters),
+        "fit": figures.fit_figure(
+            calibration.comparison, int(calibration.best["set"]), posterior, bands
+        ),
+        "posterior": figures.posterior_figure(posterior, calibration.best),
     }
     folder.mkdir(parents=True, exist_ok=True)
     for name, table in tables.items():

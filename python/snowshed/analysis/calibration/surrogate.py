@@ -159,8 +159,8 @@ class Surrogate:
 
     def predict(self, unit: Floats) -> tuple[Floats, Floats]:
         """Return mean and variance of single runs, shapes (outputs, n), m and m²."""
-        found = [process.predict(unit) for process in self.processes]
-        means, variances = zip(*found)
+        predictions = [process.predict(unit) for process in self.processes]
+        means, variances = zip(*predictions)
         return np.array(means), np.array(variances)
 
     def noises(self) -> Floats:

@@ -70,19 +70,19 @@ class LabelledSample:
         OSError
             If the file cannot be read.
         """
-        found = find_sample(path, LABELS)
-        size = found.voxel_size if voxel_size is None else voxel_size
+        sample = find_sample(path, LABELS)
+        size = sample.voxel_size if voxel_size is None else voxel_size
         if size is None:
-            raise InputError(f"{found.file}: how large is a voxel? Give its edge in m (--voxel)")
+            raise InputError(f"{sample.file}: how large is a voxel? Give its edge in m (--voxel)")
         positive("voxel size", size)
-        opened = open_npy(found.file)
+        opened = open_npy(sample.file)
         if opened.dtype.kind not in "iu":
-            raise InputError(f"{found.file}: no labels; they are whole numbers (nz, ny, nx)")
+            raise InputError(f"{sample.file}: no labels; they are whole numbers (nz, ny, nx)")
         labels = opened.layers(0, opened.shape[0])
-        labels = _checked_labels(found.file, labels, split_labels)
-        _check_voxel_size(found.file, labels, size)
-        named = found.file.resolve().parent if found.file.name == LABELS else found.file
-        return cls(named.stem, labels, size, found.source)
+        labels = _checked_labels(sample.file, labels, split_labels)
+        _check_voxel_size(sample.file, labels, size)
+        named = sample.file.resolve().parent if sample.file.name == LABELS else sample.file
+        return cls(named.stem, labels, size, sample.source)
 
     @property
     def ice_fraction(self) -> float:

@@ -41,9 +41,9 @@ def evaluate_sensitivity(comparison: Comparison, runs: Path, folder: Path) -> pd
     from snowshed.plot.figure_style import save
 
     tests = comparison.table(runs)
-    found = compare_variants(tests)
+    table = compare_variants(tests)
     folder.mkdir(parents=True, exist_ok=True)
     write_csv(tests, folder / TESTS)
-    write_csv(found, folder / TABLE)
-    save(sensitivity_figure(found, comparison.scene.title or ""), folder / FIGURE)
-    return found
+    write_csv(table, folder / TABLE)
+    save(sensitivity_figure(table, comparison.scene.title or ""), folder / FIGURE)
+    return table

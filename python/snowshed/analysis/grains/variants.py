@@ -174,7 +174,7 @@ def sensitivity_variants(
     ['base', 'friction 0.1', 'friction 0.5', 'elastic modulus 1e+08 Pa']
     """
     base = [sample.coarser(coarser) for sample in samples]
-    files = [one.write(folder) for one in base]
+    files = [sample.write(folder) for sample in base]
     voxel = base[0].voxel_size
     title = "synthetic snow" if any(sample.source for sample in samples) else ""
     scene = grains_scene(files[0], voxel, [stage], settings=settings, title=title)
@@ -194,7 +194,7 @@ def sensitivity_variants(
         variants.append(Variant(words, "speed", files, voxel, path))
     for times in ([coarser - 1] if finer else []) + [coarser + 1]:
         variants.append(other_spheres(samples, folder, times))
-    small = [one.middle(HALF).write(folder) for one in base]
+    small = [sample.middle(HALF).write(folder) for sample in base]
     variants.append(Variant("volume / 8", "volume", small, voxel))
     return Comparison(scene, variants, "grains-sensitivity")
 
@@ -211,7 +211,7 @@ def other_spheres(samples: Sequence[LabelledSample], folder: Path, times: int) -
         raise InputError("finer spheres: the samples have no finer voxels; needs coarser above 1")
     other = [sample.coarser(times) for sample in samples]
     size = other[0].voxel_size
-    files = [one.write(folder) for one in other]
+    files = [sample.write(folder) for sample in other]
     return Variant(f"spheres {1e6 * size:g} um", "sphere size", files, size)
 
 

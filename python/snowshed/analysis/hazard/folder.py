@@ -150,14 +150,14 @@ def _notes(maps: HazardMaps, scene: Mapping[str, Any], table: pd.DataFrame) -> l
         "ended": "rest",
         "bonds_broken": 0.0,
     }
-    found = validity_notes(areas, scene[SETTINGS_KEY], figures)
+    notes = validity_notes(areas, scene[SETTINGS_KEY], figures)
     counts = {
         "more than a tenth of the bonds broke: they did not move as a unit": (
             table["bonds_broken"] > AS_ONE * table["bonds_made"]
         ),
         "the slide had not come to rest at the time limit": table["ended"] == "time_limit",
     }
-    return found + [
+    return notes + [
         f"In {slides.sum()} of {maps.runs} runs {what}."
         for what, slides in counts.items()
         if slides.any()

@@ -190,19 +190,19 @@ class _Sums:
     def add(self, begin: int, end: int, maps: Iterator[PeakMaps]) -> None:
         """Fill the rows from `begin` to before `end` from the maps of all runs."""
         values = np.empty((len(QUANTITIES), self.runs, end - begin, self.shape[1]), np.float32)
-        for run, found in enumerate(maps):
-            if found.shape != self.shape:
+        for run, run_maps in enumerate(maps):
+            if run_maps.shape != self.shape:
                 raise InputError("the slides of the study are on different grids")
             for place, quantity in enumerate(QUANTITIES):
-                values[place, run] = found.window(quantity, begin, end)
+                values[place, run] = run_maps.window(quantity, begin, end)
         for place, quantity in enumerate(QUANTITIES):
             for key in self.counts:
                 if key[0] == quantity:
                     self.counts[key][begin:end] = (values[place] > key[1]).sum(axis=0)
-            wanted = [one for name, one in self.percentiles if name == quantity]
+            wanted = [percentile for name, percentile in self.percentiles if name == quantity]
             found_values = np.percentile(values[place], wanted, axis=0)
-            for one, cut in zip(wanted, found_values):
-                self.percentiles[quantity, one][begin:end] = cut
+            for share, cut in zip(wanted, found_values):
+                self.percentiles[quantity, share][begin:end] = cut
 
     def exceedances(self) -> list[Exceedance]:
         return [

@@ -98,7 +98,7 @@ def geometry_study(
         }
     )
     shown = {"panel.friction": friction, "events.between": between}
-    shown.update({path: one for path, one in changes.items() if path not in ACCURACY.values()})
+    shown.update({path: value for path, value in changes.items() if path not in ACCURACY.values()})
     common = [axis(path, [value]) for path, value in shown.items()]  # which the table shows
     grids = (
         ((FLAT_TILT,), PANEL_HEIGHTS, PANEL_LENGTHS),
@@ -111,7 +111,9 @@ def geometry_study(
         if (some := [length for length in lengths if _share(length) == share])
     ]
     undone = deviations_named(deviations)
-    others = [one.name for one in undone if one.simulated and one.name != between]
+    others = [
+        deviation.name for deviation in undone if deviation.simulated and deviation.name != between
+    ]
     name = ["thesis"] if len(undone) == len(DEVIATIONS) else [between, *others]
     return Study(scene, parts, "-".join(["geometry", *name]), description=DESCRIPTION)
 

@@ -114,18 +114,18 @@ class _Iteration:
 
     def run(self, tolerance: float) -> SupportVectors:
         """Iterate to the tolerance, or to where rounding lets it come no nearer."""
-        best, found = np.inf, self._function()
+        best, solution = np.inf, self._function()
         for _ in range(MOST_STEPS):
             residual = self._residuals()
             if residual < best:
-                best, found = residual, self._function()
+                best, solution = residual, self._function()
             if residual <= tolerance or residual > DIVERGED * best or not self._step():
                 break
         if not best <= USELESS:
             raise FloatingPointError(
                 f"the fit did not converge: C {self._c:g}, epsilon {self._epsilon:g}"
             )
-        return found
+        return solution
 
     def _function(self) -> SupportVectors:
         return SupportVectors(self._alpha.value - self._star.value, self._intercept)

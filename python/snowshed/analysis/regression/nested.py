@@ -149,7 +149,7 @@ def _claim(folder: Path, rows: StackRows, scheme: CrossValidation) -> None:
                 "version of snowshed; take a new folder"
             )
         return
-    if folder.exists() and any(not LEFTOVER.match(one.name) for one in folder.iterdir()):
+    if folder.exists() and any(not LEFTOVER.match(file.name) for file in folder.iterdir()):
         raise InputError(f"{folder}: not empty, and holds no regression")
     folder.mkdir(parents=True, exist_ok=True)
     write_text(path, json.dumps(identity, indent=1) + "\n")

@@ -89,8 +89,8 @@ class PathSearchCV(MetaEstimatorMixin, BaseEstimator):
             estimator = clone(self.estimator).set_params(**point)
             by_fold = [
                 [
-                    -median_absolute_error(found - y[test])
-                    for found in estimator.path_predictions(X[train], y[train], X[test], path)
+                    -median_absolute_error(predictions - y[test])
+                    for predictions in estimator.path_predictions(X[train], y[train], X[test], path)
                 ]
                 for train, test in splits
             ]

@@ -157,13 +157,13 @@ class _Output:
         for task, result in self._results.items():
             if (task.target, task.kind) == (target, kind):
                 rounds.setdefault(task.round, []).append(result.parameters)
-        found = unseen_panels(self._kinds[kind], list(rounds.values()), self._rows, target)
+        errors = unseen_panels(self._kinds[kind], list(rounds.values()), self._rows, target)
         ensemble = Ensemble.of(results)
         values = self._rows.targets[target]
         unit = float(values.std()) or 1.0
         deviation = ensemble.predict(ensemble.points).std(axis=0) * unit
-        spread = stack_spread(self._rows, target, found, deviation)
-        return Member(ensemble, float(values.mean()), unit, spread), found - values
+        spread = stack_spread(self._rows, target, errors, deviation)
+        return Member(ensemble, float(values.mean()), unit, spread), errors - values
 
     def _report(
         self,

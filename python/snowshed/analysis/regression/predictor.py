@@ -173,8 +173,8 @@ def _shipped() -> StackModel:
 def _objections(model: StackModel, questions: Questions) -> dict[int, list[str]]:
     """Return the reasons for panels outside the data, by their numbers."""
     starts = np.flatnonzero(np.diff(questions.panel)) + 1
-    found = map(model.domain.objections, np.split(questions.inputs, starts))
-    return {number: texts for number, texts in enumerate(found) if texts}
+    objections = map(model.domain.objections, np.split(questions.inputs, starts))
+    return {number: texts for number, texts in enumerate(objections) if texts}
 
 
 def _told(outside: Mapping[int, list[str]], number: int, questions: Questions) -> list[str]:
@@ -219,8 +219,8 @@ def _answers(model: StackModel, kind: str, questions: Questions) -> pd.DataFrame
 def _columns(model: StackModel, target: str, kind: str, scaled: Floats) -> dict[str, Floats]:
     """Return the numbers of one target, each with a value for every event."""
     member = model.members[target, kind]
-    found = member.ensemble.predict(scaled) * member.deviation + member.mean
-    value, deviation = found.mean(axis=0), found.std(axis=0)
+    predicted = member.ensemble.predict(scaled) * member.deviation + member.mean
+    value, deviation = predicted.mean(axis=0), predicted.std(axis=0)
     spread = member.spread.half_width(value, deviation, SPREAD)
     reach = member.spread.half_width(value, deviation, INTERVAL)
     return {

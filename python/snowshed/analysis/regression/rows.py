@@ -228,17 +228,19 @@ def _rows(table: StackTable, measure: Measure, names: Sequence[str]) -> StackRow
     _check_enough(len(table.frame), left_out)
     settings = table.common_settings(names)
     inputs = np.column_stack([table.numbers(name) for name in names])
-    height, length = (table.numbers(measure.column(one), positive=True) for one in STACK)
+    height, length = (table.numbers(measure.column(quantity), positive=True) for quantity in STACK)
     events = inputs[:, 0]
     _check_seeds(table, inputs)
     table.refuse(INPUTS[0], (events < 1) | (events % 1 != 0), "a whole number, 1 or more")
-    found = rows_of(inputs, height, length)
-    _check_enough(len(found), left_out)
-    if len(found) > MOST_ROWS:
-        raise InputError(f"{len(found)} rows; at most {MOST_ROWS} are allowed")
+    selected = rows_of(inputs, height, length)
+    _check_enough(len(selected), left_out)
+    if len(selected) > MOST_ROWS:
+        raise InputError(f"{len(selected)} rows; at most {MOST_ROWS} are allowed")
     frame = table.frame
     moving = int((frame["ended"] == "time_limit").sum()) if "ended" in frame else 0
-    return replace(found, left_out=left_out, moving=moving, settings=settings, names=tuple(names))
+    return replace(
+        selected, left_out=left_out, moving=moving, settings=settings, names=tuple(names)
+    )
 
 
 def _check_enough(rows: int, left_out: int) -> None:

@@ -106,14 +106,14 @@ def unseen_panels(
     values = rows.targets[target]
     scaling = Scaling.of(values[:, None])
     scaled = scaling.scaled(values[:, None])[:, 0]
-    found = np.empty((len(elected), len(rows)))
+    predictions = np.empty((len(elected), len(rows)))
     for number, choices in enumerate(elected):
         folds = ShuffledGroupKFold(min(len(choices), rows.panel_count), (seed, number, 1))
         splits = folds.split(inputs, groups=rows.panels)
         for (train, held_out), parameters in zip(splits, choices):
             model = kind.estimator(parameters).fit(inputs[train], scaled[train])
-            found[number, held_out] = model.predict(inputs[held_out])
-    return np.asarray(found.mean(axis=0) * scaling.deviation[0] + scaling.mean[0])
+            predictions[number, held_out] = model.predict(inputs[held_out])
+    return np.asarray(predictions.mean(axis=0) * scaling.deviation[0] + scaling.mean[0])
 
 
 def stack_spread(rows: StackRows, target: str, predictions: Floats, deviations: Floats) -> Spread:

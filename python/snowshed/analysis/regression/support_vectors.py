@@ -56,9 +56,9 @@ def fit_along_c(
     quick, fit, earlier = True, None, 0.0
     for c in bounds:
         if fit is None or not np.abs(fit.coefficients).max() <= (1 - AT_BOUND) * earlier:
-            found = _libsvm(kernel, y, c, epsilon) if quick else None
-            quick = found is not None
-            fit = found or _exact(kernel, y, c, epsilon)
+            solution = _libsvm(kernel, y, c, epsilon) if quick else None
+            quick = solution is not None
+            fit = solution or _exact(kernel, y, c, epsilon)
         earlier = c
         yield fit
 

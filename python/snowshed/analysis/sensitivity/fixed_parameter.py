@@ -88,10 +88,10 @@ def _group(
     points = rows.groupby(keys)[target].agg(["mean", "count"]).reset_index()
     points["rescaled"] = rescaled(points["mean"].to_numpy(float))
     span = float(points["mean"].max() - points["mean"].min()) or 1.0
-    found = []
+    rows_of_values = []
     for parameter in group:
         for (value, event), held in points.groupby([parameter, "event"]):
-            found.append(
+            rows_of_values.append(
                 {
                     "group": name,
                     "parameter": parameter,
@@ -108,7 +108,7 @@ def _group(
                     "noise": noise[event, target] / span / np.sqrt(held["count"].mean()),
                 }
             )
-    return pd.DataFrame(found)
+    return pd.DataFrame(rows_of_values)
 
 
 def _with_others_kept(stored: StoredRuns, group: Sequence[str]) -> pd.DataFrame:

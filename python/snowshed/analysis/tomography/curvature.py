@@ -70,8 +70,8 @@ def surface_voxels(ice: Booleans) -> tuple[Integers, ...]:
     """Return where ice has air at one of its faces: indices along z, y, x."""
     inner = ice.copy()
     for axis in range(3):
-        low = tuple(slice(None, -1) if one == axis else slice(None) for one in range(3))
-        high = tuple(slice(1, None) if one == axis else slice(None) for one in range(3))
+        low = tuple(slice(None, -1) if index == axis else slice(None) for index in range(3))
+        high = tuple(slice(1, None) if index == axis else slice(None) for index in range(3))
         inner[low] &= ice[high]
         inner[high] &= ice[low]
     return np.nonzero(ice & ~inner)
@@ -110,16 +110,16 @@ def _curvatures(smooth: SingleFloats, at: list[Integers]) -> tuple[Floats, Float
 
     def mixed(first: int, second: int) -> Floats:
         corners = [
-            (one, other, [one * (axis == first) + other * (axis == second) for axis in range(3)])
-            for one in (-1, 1)
+            (step, other, [step * (axis == first) + other * (axis == second) for axis in range(3)])
+            for step in (-1, 1)
             for other in (-1, 1)
         ]
-        total = np.sum([one * other * near(*steps) for one, other, steps in corners], axis=0)
+        total = np.sum([first * other * near(*steps) for first, other, steps in corners], axis=0)
         return np.asarray(0.25 * total)
 
     here = near(0, 0, 0)
-    ahead = [near(*(int(axis == one) for axis in range(3))) for one in range(3)]
-    behind = [near(*(-int(axis == one) for axis in range(3))) for one in range(3)]
+    ahead = [near(*(int(axis == index) for axis in range(3))) for index in range(3)]
+    behind = [near(*(-int(axis == index) for axis in range(3))) for index in range(3)]
     gz, gy, gx = (0.5 * (a - b) for a, b in zip(ahead, behind))
     hzz, hyy, hxx = (a - 2 * here + b for a, b in zip(ahead, behind))
     hzy, hzx, hyx = mixed(0, 1), mixed(0, 2), mixed(1, 2)

@@ -42,8 +42,8 @@ def found_threshold(name: str, parts: Parts) -> tuple[float, str]:
     >>> found_threshold("a", lambda: [np.array([[[0, 200], [200, 0]]], dtype=np.uint8)])
     (100.0, 'two values')
     """
-    found = [(part.min().item(), part.max().item()) for part in parts()]
-    lowest, highest = min(low for low, _ in found), max(high for _, high in found)
+    ends = [(part.min().item(), part.max().item()) for part in parts()]
+    lowest, highest = min(low for low, _ in ends), max(high for _, high in ends)
     if lowest == highest:
         raise InputError(
             f"{name}: empty: every voxel has the value {number(float(lowest))}; it shows only ice "
@@ -98,11 +98,11 @@ class _Histogram:
         if self.whole:
             # Differences of 8 bytes fit, those of fewer bytes may overflow.
             wide = part if part.dtype.itemsize == 8 else part.astype(np.int64)
-            places = (wide - wide.dtype.type(self.lowest)).astype(np.int64)
+            bins = (wide - wide.dtype.type(self.lowest)).astype(np.int64)
         else:
             shifted = part.astype(np.float64) - float(self.lowest)
-            places = np.minimum((shifted / self.width).astype(np.int64), self.bins - 1)
-        self.counts += np.bincount(places.ravel(), minlength=self.bins)
+            bins = np.minimum((shifted / self.width).astype(np.int64), self.bins - 1)
+        self.counts += np.bincount(bins.ravel(), minlength=self.bins)
 
     @property
     def has_many_values(self) -> bool:
@@ -126,10 +126,10 @@ class _Neighbours:
     same: int = 0
 
     def add(self, part: NDArray[Any]) -> None:
-        for one, other in ((part[:, 1:], part[:, :-1]), (part[:, :, 1:], part[:, :, :-1])):
-            ice = (one > 0) & (other > 0)
+        for first, other in ((part[:, 1:], part[:, :-1]), (part[:, :, 1:], part[:, :, :-1])):
+            ice = (first > 0) & (other > 0)
             self.pairs += int(np.count_nonzero(ice))
-            self.same += int(np.count_nonzero(ice & (one == other)))
+            self.same += int(np.count_nonzero(ice & (first == other)))
 
     @property
     def are_same(self) -> bool:

@@ -142,13 +142,13 @@ def _search(
     for attempt in range(MOST_TRIES):
         field = noise.field(_resolved(wavelength, voxel_size, noise.shape))
         ice = _cut(field, fraction, connected)
-        found = surface_density(ice) * ice.size * fraction / np.count_nonzero(ice)
-        if abs(found / target - 1) < least:
-            best, least = (ice, wavelength), abs(found / target - 1)
+        density = surface_density(ice) * ice.size * fraction / np.count_nonzero(ice)
+        if abs(density / target - 1) < least:
+            best, least = (ice, wavelength), abs(density / target - 1)
         if least < SURFACE_TOLERANCE:
             break
         # Parts that come loose or hold make the surface jump; smaller steps then get nearer.
-        wavelength *= float(found / target) ** (1.0 if attempt < MOST_TRIES // 3 else 0.4)
+        wavelength *= float(density / target) ** (1.0 if attempt < MOST_TRIES // 3 else 0.4)
     if best is not None:
         return best
     raise InputError(

@@ -34,10 +34,10 @@ def merge_shallow(touching: Adjacency, peaks: Floats, depth: float) -> Integers:
     root = np.arange(len(peaks))
     height = peaks.copy()
     for edge in np.argsort(-touching.saddles, kind="stable"):
-        one, other = (_root(root, label) for label in touching.pairs[edge])
-        if one != other and min(height[one], height[other]) - touching.saddles[edge] < depth:
-            root[max(one, other)] = min(one, other)
-            height[min(one, other)] = max(height[one], height[other])
+        first, other = (_root(root, label) for label in touching.pairs[edge])
+        if first != other and min(height[first], height[other]) - touching.saddles[edge] < depth:
+            root[max(first, other)] = min(first, other)
+            height[min(first, other)] = max(height[first], height[other])
     return _consecutive(root)
 
 
@@ -81,25 +81,25 @@ class _Graph:
         self.surface = touching.surfaces
         self.voxels = voxels.copy()
         self.areas: list[dict[int, float]] = [{} for _ in self.root]
-        for (one, other), area in zip(touching.pairs.tolist(), touching.areas.tolist()):
-            self.areas[one][other] = self.areas[other][one] = area
+        for (first, other), area in zip(touching.pairs.tolist(), touching.areas.tolist()):
+            self.areas[first][other] = self.areas[other][first] = area
 
     def merge_above(self, contiguity: float) -> None:
         """Merge pairs of a larger contiguity, the largest first."""
         queue = [
-            (-self._contiguity(one, other), one, other)
-            for one, touched in enumerate(self.areas)
+            (-self._contiguity(label, other), label, other)
+            for label, touched in enumerate(self.areas)
             for other in touched
-            if one < other
+            if label < other
         ]
         heapq.heapify(queue)
         while queue and -queue[0][0] > contiguity:
-            negative, one, other = heapq.heappop(queue)
-            if other not in self.areas[one] or -self._contiguity(one, other) != negative:
+            negative, first, other = heapq.heappop(queue)
+            if other not in self.areas[first] or -self._contiguity(first, other) != negative:
                 continue  # merged, or changed and queued anew
-            self._merge(one, other)
-            for third in self.areas[one]:
-                pair = (one, third) if one < third else (third, one)
+            self._merge(first, other)
+            for third in self.areas[first]:
+                pair = (first, third) if first < third else (third, first)
                 heapq.heappush(queue, (-self._contiguity(*pair), *pair))
 
     def merge_small(self, smallest: int) -> None:
@@ -110,28 +110,30 @@ class _Graph:
             count, label = heapq.heappop(queue)
             if self.root[label] != label or count != self.voxels[label] or not self.areas[label]:
                 continue
-            other = max(self.areas[label], key=lambda one: (self.areas[label][one], -one))
-            kept = min(label, other)
-            self._merge(kept, max(label, other))
-            if self.voxels[kept] < smallest:
-                heapq.heappush(queue, (int(self.voxels[kept]), kept))
+            other = max(
+                self.areas[label], key=lambda neighbour: (self.areas[label][neighbour], -neighbour)
+            )
+            remaining = min(label, other)
+            self._merge(remaining, max(label, other))
+            if self.voxels[remaining] < smallest:
+                heapq.heappush(queue, (int(self.voxels[remaining]), remaining))
 
-    def _contiguity(self, one: int, other: int) -> float:
-        surface = min(self.surface[one], self.surface[other])
-        return float(self.areas[one][other] / surface) if surface > 0 else np.inf
+    def _contiguity(self, first: int, other: int) -> float:
+        surface = min(self.surface[first], self.surface[other])
+        return float(self.areas[first][other] / surface) if surface > 0 else np.inf
 
-    def _merge(self, kept: int, gone: int) -> None:
+    def _merge(self, remaining: int, gone: int) -> None:
         """Merge a label into one with a smaller number."""
-        area = self.areas[kept].pop(gone)
-        self.areas[gone].pop(kept)
+        area = self.areas[remaining].pop(gone)
+        self.areas[gone].pop(remaining)
         for third, shared in self.areas[gone].items():
-            total = self.areas[kept].get(third, 0.0) + shared
+            total = self.areas[remaining].get(third, 0.0) + shared
             self.areas[third].pop(gone)
-            self.areas[kept][third] = self.areas[third][kept] = total
+            self.areas[remaining][third] = self.areas[third][remaining] = total
         self.areas[gone] = {}
-        self.surface[kept] += self.surface[gone] - 2 * area
-        self.voxels[kept] += self.voxels[gone]
-        self.root[gone] = kept
+        self.surface[remaining] += self.surface[gone] - 2 * area
+        self.voxels[remaining] += self.voxels[gone]
+        self.root[gone] = remaining
 
 
 def _root(root: Integers, label: int) -> int:

@@ -37,13 +37,13 @@ def segmentation_plan(file: VoxelFile, settings: ImageSettings) -> tuple[int, fl
     InputError
         If the image has more voxels than fit into this machine's memory.
     """
-    kept = prod(cropped_shape(file, settings.crop))
-    coarse = kept // max(settings.downscale, 1) ** 3
-    needed = BYTES_READ * kept + BYTES_SEGMENTED * coarse
+    voxels = prod(cropped_shape(file, settings.crop))
+    coarse = voxels // max(settings.downscale, 1) ** 3
+    needed = BYTES_READ * voxels + BYTES_SEGMENTED * coarse
     there = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
     if needed > there:
         raise InputError(
-            f"{file.name}: {kept:,} voxels take some {number(needed / 1e9, 2)} GB; this machine "
+            f"{file.name}: {voxels:,} voxels take some {number(needed / 1e9, 2)} GB; this machine "
             f"has {number(there / 1e9, 2)} GB: crop or downscale the image"
         )
     return needed, SECONDS_PER_VOXEL * coarse
@@ -92,7 +92,7 @@ def segment_image(
     with recorded() as told:
         read = read_ice(file, wanted)
     measure(read.image)  # what cannot be snow is refused before the long part
-    found = segment(
+    segmentation = segment(
         read.image, settings, lambda part, doing: report(READ + (FOUND - READ) * part, doing)
     )
     report(FOUND, "writing")
@@ -103,7 +103,7 @@ def segment_image(
         "downscale": wanted.downscale,
         "notes": [*file.notes, *told],
     }
-    numbers = write_grains(folder, found, facts, surface=surface)
+    numbers = write_grains(folder, segmentation, facts, surface=surface)
     report(1.0, "")
     return numbers, read
 

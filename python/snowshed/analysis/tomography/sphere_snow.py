@@ -115,9 +115,9 @@ class _Pack:
             self._place(random.uniform(0.3, 0.7, 3) * self.shape, radius)
             return True
         other = int(random.integers(self.count))
-        way = random.normal(size=3)
+        direction = random.normal(size=3)
         apart = self._distance(radius, self.radii[other])
-        centre = self.centres[other] + way * (apart / np.linalg.norm(way))
+        centre = self.centres[other] + direction * (apart / np.linalg.norm(direction))
         if (centre < 0).any() or (centre >= self.shape).any():
             return False
         gaps = np.linalg.norm(self.centres[: self.count] - centre, axis=1) - self._distance(

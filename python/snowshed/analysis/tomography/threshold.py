@@ -124,9 +124,9 @@ def read_ice(file: VoxelFile, settings: Optional[ImageSettings] = None) -> ReadI
     check_phases(image)
     lost = 0.0
     if wanted.connected:
-        kept = largest_part(image.ice)
-        lost = 1.0 - float(np.count_nonzero(kept) / np.count_nonzero(image.ice))
-        image = image.with_ice(kept)
+        largest = largest_part(image.ice)
+        lost = 1.0 - float(np.count_nonzero(largest) / np.count_nonzero(image.ice))
+        image = image.with_ice(largest)
     return ReadImage(image, threshold, chosen, lost)
 
 

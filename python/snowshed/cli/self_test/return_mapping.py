@@ -63,5 +63,5 @@ def critical_state_error() -> float:
     inside = law.return_map(centre, height / 2, initial)  # elastic: nothing may change
     p, q, plastic = law.return_map(centre, 3 * height, initial)
     errors = [(p - centre) / strength, (q - height) / strength, plastic / initial - 1]
-    errors += [(found - trial) / strength for found, trial in zip(inside, (centre, height / 2))]
+    errors += [(mapped - trial) / strength for mapped, trial in zip(inside, (centre, height / 2))]
     return max(map(abs, errors))

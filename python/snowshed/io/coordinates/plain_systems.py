@@ -48,7 +48,7 @@ def plain_system(words: str) -> str:
     if text.startswith("+"):
         return text if _names_no_file(text) else ""
     within = re.findall(r'"\s*(\+[^"]*)"', text)
-    return text if WKT.match(text) and all(_names_no_file(one) for one in within) else ""
+    return text if WKT.match(text) and all(_names_no_file(part) for part in within) else ""
 
 
 def _names_no_file(proj: str) -> bool:

@@ -70,7 +70,7 @@ def write_prj(raster: Path, words: str) -> None:
     write_text(raster.with_suffix(".prj"), text + "\n")
 
 
-def are_same(one: str, other: str) -> bool:
+def are_same(left: str, other: str) -> bool:
     """Return whether two names are of the same coordinate system on the map.
 
     Compound systems are compared without their heights. National realisations of ETRS89, which
@@ -81,9 +81,9 @@ def are_same(one: str, other: str) -> bool:
     >>> are_same("EPSG:31287", "epsg:31287"), are_same("EPSG:31287", "EPSG:2056")
     (True, False)
     """
-    if one.casefold() == other.casefold():
+    if left.casefold() == other.casefold():
         return True
-    first, second = horizontal_system(one), horizontal_system(other)
+    first, second = horizontal_system(left), horizontal_system(other)
     if first is None or second is None:
         return False
     if first == second or _words(first) == _words(second):

@@ -159,12 +159,14 @@ class _Outlines:
             polygons = shapely.polygons(rings, indices=_numbers(self.polygon_rings))
         except (ValueError, shapely.errors.ShapelyError) as error:
             raise InputError(f"{self.path}: not a polygon: {error}") from None
-        found, first = [], 0
+        groups, first = [], 0
         for parts in self.feature_parts:
             own = polygons[first : first + max(parts, 0)]
             first += max(parts, 0)
-            found.append(None if parts < 0 else own[0] if parts == 1 else shapely.MultiPolygon(own))
-        return found
+            groups.append(
+                None if parts < 0 else own[0] if parts == 1 else shapely.MultiPolygon(own)
+            )
+        return groups
 
 
 def _numbers(counts: Sequence[int]) -> Integers:

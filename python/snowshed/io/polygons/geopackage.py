@@ -135,14 +135,14 @@ class _Package:
 
     def _check_table(self, table: str) -> None:
         """Refuse everything except tables in the file."""
-        found = self.connection.execute(
+        entry = self.connection.execute(
             "SELECT type, rootpage FROM sqlite_master WHERE lower(name) = lower(?)", (table,)
         ).fetchone()
-        if found is None:
+        if entry is None:
             raise InputError(f"{self.path}: not a GeoPackage: it has no table {quoted(table)}")
-        if found[0] != "table" or not found[1]:
+        if entry[0] != "table" or not entry[1]:
             raise InputError(
-                f"{self.path}: {quoted(table)} is a {found[0] if found[1] == 0 else 'program'}, "
+                f"{self.path}: {quoted(table)} is a {entry[0] if entry[1] == 0 else 'program'}, "
                 "which is not evaluated; save it as a table"
             )
 
@@ -156,15 +156,15 @@ class _Package:
         ).fetchall()
         if len(every) > LAYERS:
             raise InputError(f"{self.path}: more than {LAYERS} layers")
-        names = ", ".join(quoted(str(one[0])) for one in every[:20])
+        names = ", ".join(quoted(str(row[0])) for row in every[:20])
         if layer is not None:
-            found = [one for one in every if one[0] == layer]
-            if not found:
+            matching = [row for row in every if row[0] == layer]
+            if not matching:
                 raise InputError(
                     f"{self.path}: has no layer {quoted(layer)}; it has {names or 'none'}"
                 )
-            return str(found[0][0]), str(found[0][1]), found[0][3]
-        of_polygons = [one for one in every if str(one[2]).upper() in SURFACES]
+            return str(matching[0][0]), str(matching[0][1]), matching[0][3]
+        of_polygons = [row for row in every if str(row[2]).upper() in SURFACES]
         if not of_polygons:
             raise InputError(f"{self.path}: holds no layer of polygons")
         if len(of_polygons) > 1:
@@ -211,14 +211,14 @@ class _Package:
             raise InputError(f"{self.path}: a geometry is damaged: {error}") from None
 
     def _crs(self, system: object) -> str:
-        found = self.connection.execute(
+        row = self.connection.execute(
             "SELECT organization, organization_coordsys_id, definition FROM gpkg_spatial_ref_sys "
             "WHERE srs_id = ?",
             (system,),
         ).fetchone()
-        if found is None:
+        if row is None:
             raise InputError(f"{self.path}: does not describe its coordinate system {system}")
-        organization, number, definition = found
+        organization, number, definition = row
         plain = plain_system(str(definition))
         if str(organization).upper() == "EPSG" and isinstance(number, int):
             code = f"EPSG:{number}"

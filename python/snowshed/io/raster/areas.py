@@ -85,17 +85,17 @@ def read_areas(
     """
     path = Path(path)
     shapely: Any = require("shapely", "terrain", "reading polygons")
-    found = read_layer(path, layer, option)
-    if is_in_degrees(found.crs):
+    features = read_layer(path, layer, option)
+    if is_in_degrees(features.crs):
         raise InputError(
-            f"{path}: its coordinates are in degrees ({found.crs}); project it to metres"
+            f"{path}: its coordinates are in degrees ({features.crs}); project it to metres"
         )
-    fields = thickness_fields(found.fields, str(path)) if with_thickness else []
-    _check_shapes(found.shapes, path, shapely)
-    areas = list(_areas(found, fields, path, shapely))
+    fields = thickness_fields(features.fields, str(path)) if with_thickness else []
+    _check_shapes(features.shapes, path, shapely)
+    areas = list(_areas(features, fields, path, shapely))
     if not areas:
         raise InputError(f"{path}: holds no polygon")
-    if not found.crs:
+    if not features.crs:
         tell(f"{path}: has no coordinate system; that of the terrain is assumed")
     return areas
 
@@ -133,12 +133,12 @@ def _rings(polygons: Any, shapely: Any) -> list[list[Ring]]:
     corners, of_ring = corners[~repeated], of_ring[~repeated]
     x, y = corners.T.tolist()
     points = list(zip(x, y))
-    found: list[list[Ring]] = [[] for _ in polygons]
+    holes: list[list[Ring]] = [[] for _ in polygons]
     end = 0
     for owner, count in zip(owners.tolist(), np.bincount(of_ring, minlength=len(rings)).tolist()):
-        found[owner].append(points[end : end + count - 1])
+        holes[owner].append(points[end : end + count - 1])
         end += count
-    return found
+    return holes
 
 
 def _check_shapes(shapes: Sequence[Any], path: Path, shapely: Any) -> None:

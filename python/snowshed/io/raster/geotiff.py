@@ -123,9 +123,9 @@ def _without_words_of_gdal() -> Iterator[None]:
     """Prevent tracebacks of rasterio where GDAL quotes bytes that are not text."""
     unraisable, uncaught = sys.unraisablehook, sys.excepthook
 
-    def drop_or_tell(found: Any) -> None:
-        if not isinstance(found.exc_value, UnicodeDecodeError):
-            unraisable(found)
+    def drop_or_tell(event: Any) -> None:
+        if not isinstance(event.exc_value, UnicodeDecodeError):
+            unraisable(event)
 
     def drop_or_print(kind: Any, value: Any, trace: Any) -> None:
         if not isinstance(value, UnicodeDecodeError):
@@ -147,11 +147,11 @@ def _sidecars(path: Path) -> dict[str, bytes]:
             f"gdal_translate, or remove it"
         )
     facts = sidecar(path)
-    found = {FACTS: facts} if facts else {}
+    companions = {FACTS: facts} if facts else {}
     for file in (path.with_suffix(ending) for ending in WORLD_FILES):
-        if file.exists() and "a.tfw" not in found and (content := small_file(file)):
-            found["a.tfw"] = content
-    return found
+        if file.exists() and "a.tfw" not in companions and (content := small_file(file)):
+            companions["a.tfw"] = content
+    return companions
 
 
 def _checked_band(source: Any, path: Path, band: Optional[int]) -> int:
@@ -162,7 +162,7 @@ def _checked_band(source: Any, path: Path, band: Optional[int]) -> int:
             f"gdal_translate GTIFF_DIR:1:{path.name} one.tif"
         )
     alpha = [kind.name == "alpha" for kind in source.colorinterp]
-    bands = [number for number, one in enumerate(alpha, 1) if not one]
+    bands = [number for number, is_alpha in enumerate(alpha, 1) if not is_alpha]
     if band is not None and band not in bands:
         raise InputError(f"{path}: has no band {band}; allowed: {', '.join(map(str, bands))}")
     if band is None and len(bands) != 1:

@@ -86,16 +86,16 @@ class Raster:
         a, b = u - i, v - j
         z = self.heights
         right, up = np.minimum(i + 1, columns - 1), np.minimum(j + 1, rows - 1)
-        found: Floats = (1 - b) * ((1 - a) * z[j, i] + a * z[j, right]) + b * (
+        heights: Floats = (1 - b) * ((1 - a) * z[j, i] + a * z[j, right]) + b * (
             (1 - a) * z[up, i] + a * z[up, right]
         )
-        if np.isnan(found).any():
-            first = np.flatnonzero(np.isnan(found))[0]
+        if np.isnan(heights).any():
+            first = np.flatnonzero(np.isnan(heights))[0]
             raise InputError(
                 f"{self.name}: no height at {east.flat[first]:.10g} east, "
                 f"{north.flat[first]:.10g} north"
             )
-        return found
+        return heights
 
 
 def read_raster(path: PathLike, band: Optional[int] = None) -> Raster:
@@ -121,9 +121,9 @@ def read_raster(path: PathLike, band: Optional[int] = None) -> Raster:
     """
     path = Path(path)
     if path.suffix.lower() in GEOTIFF or first_bytes(path, 4) in TIFF_MARKS:
-        found = read_geotiff(path, band)
-        place = (found.east, found.north, found.cell)
-        return Raster(found.heights, *place, str(path), found.system, numbers=found.numbers)
+        raster = read_geotiff(path, band)
+        place = (raster.east, raster.north, raster.cell)
+        return Raster(raster.heights, *place, str(path), raster.system, numbers=raster.numbers)
     if band not in (None, 1):
         raise InputError(f"{path}: has no band {band}; an ESRI ASCII grid has one")
     return _read_ascii(path)

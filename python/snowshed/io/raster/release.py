@@ -92,10 +92,10 @@ def _outlines(depth: Raster, snow: Booleans, shapely: Any) -> list[Any]:
     affine: Any = require("rasterio", "terrain", "reading a raster of thickness").Affine
     west, south = depth.east - 0.5 * depth.cell, depth.north - 0.5 * depth.cell
     place = affine(depth.cell, 0.0, west, 0.0, depth.cell, south)
-    found = features.shapes(snow.astype(np.uint8), mask=snow, connectivity=4, transform=place)
+    shapes = features.shapes(snow.astype(np.uint8), mask=snow, connectivity=4, transform=place)
     inner = [
         shapely.Polygon(rings[0], rings[1:]).buffer(-GAP * depth.cell, join_style="mitre")
-        for rings in (shape["coordinates"] for shape, _ in found)
+        for rings in (shape["coordinates"] for shape, _ in shapes)
     ]
     return [area for shape in inner for area in shapely.get_parts(shape)]
 

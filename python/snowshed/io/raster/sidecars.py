@@ -66,8 +66,8 @@ def refuse_other_facts(grid: Path, values: Floats) -> None:
 
 def _facts(text: str) -> Iterator[tuple[str, str]]:
     for fact in ("Scale", "Offset", "UnitType", "NoDataValue"):
-        for found in re.finditer(rf"<{fact}[^<>]*>([^<]*)<", text):
-            yield fact, found[1].strip()
+        for match in re.finditer(rf"<{fact}[^<>]*>([^<]*)<", text):
+            yield fact, match[1].strip()
 
 
 def _changes(fact: str, value: str, values: Floats, name: str) -> bool:

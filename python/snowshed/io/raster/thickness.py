@@ -77,7 +77,9 @@ def thickness_fields(fields: Sequence[str], file: str) -> list[ThicknessField]:
     >>> thickness_fields(["fid", "Thickness"], "a.shp")
     [ThicknessField(name='Thickness', metres=1.0)]
     """
-    found = [ThicknessField(field, 1.0) for name in NAMES for field in fields if _is(field, name)]
+    candidates = [
+        ThicknessField(field, 1.0) for name in NAMES for field in fields if _is(field, name)
+    ]
     for field in fields:
         unit = WITH_UNIT.fullmatch(field.strip())
         if unit is None or any(_is(field, name) for name in NAMES):
@@ -99,18 +101,20 @@ def thickness_fields(fields: Sequence[str], file: str) -> list[ThicknessField]:
                     f"{', '.join(METRES)}"
                 )
             continue
-        found.append(ThicknessField(field, METRES[unit[2].lower()]))
-    if found and found[0].name != NAMES[0]:
-        in_unit = next(unit for unit, metres in METRES.items() if metres == found[0].metres)
-        tell(f"{file}: the thickness is that of its field {quoted(found[0].name)}, in {in_unit}")
-    if not found:
+        candidates.append(ThicknessField(field, METRES[unit[2].lower()]))
+    if candidates and candidates[0].name != NAMES[0]:
+        in_unit = next(unit for unit, metres in METRES.items() if metres == candidates[0].metres)
+        tell(
+            f"{file}: the thickness is that of its field {quoted(candidates[0].name)}, in {in_unit}"
+        )
+    if not candidates:
         alike = [field for field in fields if any(word in field.lower() for word in ALIKE)]
         if alike:
             tell(
                 f"{file}: no field is called thickness or d0; ignored as a thickness: "
                 f"{', '.join(quoted(field) for field in alike[:5])}"
             )
-    return found
+    return candidates
 
 
 def thickness_of(

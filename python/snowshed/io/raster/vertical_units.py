@@ -108,8 +108,8 @@ def split_words(words: str, name: str) -> tuple[str, Optional[float]]:
 def _vertical_axis(part: dict[str, Any]) -> Optional[dict[str, Any]]:
     """Return the axis of heights of a part of a coordinate system, if it has one."""
     axes = part.get("coordinate_system", {}).get("axis", [])
-    found = [axis for axis in axes if axis.get("direction") in ("up", "down")]
-    return found[0] if found else None
+    vertical = [axis for axis in axes if axis.get("direction") in ("up", "down")]
+    return vertical[0] if vertical else None
 
 
 def _metres_of_axis(axis: dict[str, Any], name: str) -> float:

@@ -138,11 +138,11 @@ def numbers_of(
     def read(low: int, high: int) -> NDArray[Any]:
         with open_regular(data) as file:
             file.seek(start + low * layer * dtype.itemsize)
-            found = np.fromfile(file, dtype, (high - low) * layer)
-        if len(found) < (high - low) * layer:
+            numbers = np.fromfile(file, dtype, (high - low) * layer)
+        if len(numbers) < (high - low) * layer:
             raise InputError(f"{data}: damaged: it has become shorter")
         if dtype.kind == "b":  # a byte may hold anything
-            found = found.view(np.uint8) != 0
-        return found.reshape(high - low, ny, nx)
+            numbers = numbers.view(np.uint8) != 0
+        return numbers.reshape(high - low, ny, nx)
 
     return VoxelFile(str(name), (nz, ny, nx), dtype, read)

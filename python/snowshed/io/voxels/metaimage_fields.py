@@ -84,10 +84,10 @@ class Fields:
         if name not in self.values:
             return default
         words = {"true": True, "t": True, "1": True, "false": False, "f": False, "0": False}
-        found = words.get(self.values[name].lower())
-        if found is None:
+        truth = words.get(self.values[name].lower())
+        if truth is None:
             raise self.wrong(name, "True or False is needed")
-        return found
+        return truth
 
     def whole(self, name: str, default: int) -> int:
         """Return a field that is a whole number from 0."""
@@ -117,5 +117,5 @@ class Fields:
 
 def _parted(line: str) -> tuple[str, str, str]:
     """Return name, separator and value of a line; both = and : separate, as in MetaIO."""
-    found = re.match(r"([^=:]*)([=:])(.*)", line, re.DOTALL)
-    return (found[1].strip(), found[2], found[3].strip()) if found else (line, "", "")
+    match = re.match(r"([^=:]*)([=:])(.*)", line, re.DOTALL)
+    return (match[1].strip(), match[2], match[3].strip()) if match else (line, "", "")

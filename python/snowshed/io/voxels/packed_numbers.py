@@ -73,8 +73,8 @@ class _PackedLayers:
         with open_regular(self.data) as file:
             while self.stream.done < low * layer:
                 self.stream.take(file, min(low * layer - self.stream.done, PIECE))
-            found = self.stream.take(file, (high - low) * layer)
-        return np.frombuffer(found, self.dtype).reshape(high - low, ny, nx)
+            unpacked = self.stream.take(file, (high - low) * layer)
+        return np.frombuffer(unpacked, self.dtype).reshape(high - low, ny, nx)
 
 
 class _Stream:
@@ -95,18 +95,19 @@ class _Stream:
     def take(self, file: BinaryIO, count: int) -> bytearray:
         """Return the next bytes."""
         file.seek(self._next)
-        found = bytearray()
-        while len(found) < count:
+        unpacked = bytearray()
+        while len(unpacked) < count:
             packed = self._unpacker.unconsumed_tail or file.read(PIECE)
             if not packed or self._unpacker.eof:
                 raise InputError(
-                    f"{self.name}: damaged: {self.done + len(found):,} bytes unpacked; its header "
+                    f"{self.name}: damaged: {self.done + len(unpacked):,} bytes unpacked; its "
+                    "header "
                     "says more"
                 )
             try:
-                found += self._unpacker.decompress(packed, count - len(found))
+                unpacked += self._unpacker.decompress(packed, count - len(unpacked))
             except zlib.error as error:
                 raise InputError(f"{self.name}: damaged: {error}") from None
         self._next = file.tell()
         self.done += count
-        return found
+        return unpacked

@@ -72,8 +72,8 @@ def stacked(
         If they differ, or are larger than any image of snow.
     """
     first = pictures[0]
-    for one in pictures[1:]:
-        _check_same(one, first)
+    for other in pictures[1:]:
+        _check_same(other, first)
     height, width = first.size
     check_size(name, (len(pictures), height, width))
     unpacked = len(pictures) * height * width * first.dtype.itemsize
@@ -87,13 +87,13 @@ def stacked(
         tell(f"{name}: turned as the tag Orientation ({orientation}) says")
 
     def read(low: int, high: int) -> NDArray[Any]:
-        found = np.empty((high - low, *shape[1:]), dtype=first.dtype.newbyteorder("="))
+        layers = np.empty((high - low, *shape[1:]), dtype=first.dtype.newbyteorder("="))
         for number, picture in enumerate(pictures[low:high]):
             pixels = picture.read()
             if pixels.shape != picture.size:
                 raise InputError(f"{picture.name}: damaged: {pixels.shape} pixels")
-            found[number] = oriented(pixels, orientation)
-        return found
+            layers[number] = oriented(pixels, orientation)
+        return layers
 
     return VoxelFile(name, shape, first.dtype, read, voxel_size, printed_size)
 
@@ -111,16 +111,17 @@ def oriented(pixels: NDArray[Any], orientation: int) -> NDArray[Any]:
     return pixels[:: -1 if upward else 1, :: -1 if leftward else 1]
 
 
-def _check_same(one: Picture, first: Picture) -> None:
+def _check_same(picture: Picture, first: Picture) -> None:
     known = Path(first.name).name
-    if one.size != first.size:
+    if picture.size != first.size:
         raise InputError(
-            f"{one.name}: {one.size[1]} x {one.size[0]} pixels; {known} has "
+            f"{picture.name}: {picture.size[1]} x {picture.size[0]} pixels; {known} has "
             f"{first.size[1]} x {first.size[0]}"
         )
-    if (one.kind, one.dtype) != (first.kind, first.dtype):
-        raise InputError(f"{one.name}: pixels of type {one.kind}; {known} has {first.kind}")
-    if (one.orientation or first.orientation or 1) != (first.orientation or 1):
+    if (picture.kind, picture.dtype) != (first.kind, first.dtype):
+        raise InputError(f"{picture.name}: pixels of type {picture.kind}; {known} has {first.kind}")
+    if (picture.orientation or first.orientation or 1) != (first.orientation or 1):
         raise InputError(
-            f"{one.name}: Orientation {one.orientation}; {known} has {first.orientation or 1}"
+            f"{picture.name}: Orientation {picture.orientation}; {known} has "
+            f"{first.orientation or 1}"
         )

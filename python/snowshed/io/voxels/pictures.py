@@ -125,17 +125,17 @@ def _numbered(folder: Path) -> list[Path]:
     numbers: dict[int, Path] = {}
     words: dict[str, Path] = {}
     for path in sorted(paths):
-        found = re.search(r"(\d{1,12})\D*$", path.stem)
-        if found is None:
+        match = re.search(r"(\d{1,12})\D*$", path.stem)
+        if match is None:
             raise InputError(f"{path}: no number in its name; slices are ordered by their numbers")
-        number = int(found[1])
+        number = int(match[1])
         if number in numbers:
             raise InputError(f"{path}: has the number of {numbers[number].name}, {number}")
         numbers[number] = path
-        words.setdefault(path.stem[: found.start(1)] + "*" + path.stem[found.end(1) :], path)
+        words.setdefault(path.stem[: match.start(1)] + "*" + path.stem[match.end(1) :], path)
     if len(words) > 1:
-        one, other = [path.name for path in words.values()][:2]
-        tell(f"{folder}: its slices have several names, as {one} and {other}; all are one stack")
+        first, other = [path.name for path in words.values()][:2]
+        tell(f"{folder}: its slices have several names, as {first} and {other}; all are one stack")
     order = sorted(numbers)
     for one_number, following in zip(order, order[1:]):
         if following != one_number + 1:

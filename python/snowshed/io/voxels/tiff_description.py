@@ -124,16 +124,16 @@ def _by_ome(name: str, text: str) -> Description:
         root = ElementTree.fromstring(text.strip().encode())
     except (ElementTree.ParseError, ValueError, RecursionError) as error:
         raise InputError(f"{name}: damaged: its description is no XML: {error}") from None
-    images = [one for one in root.iter() if _tag(one) == "Pixels"]
+    images = [element for element in root.iter() if _tag(element) == "Pixels"]
     if len(images) != 1:
         raise InputError(f"{name}: {len(images)} images by its description; one is needed")
     pixels = images[0]
-    files = {one.get("FileName") for one in pixels.iter() if _tag(one) == "UUID"}
+    files = {element.get("FileName") for element in pixels.iter() if _tag(element) == "UUID"}
     if len(files) > 1:
         raise InputError(f"{name}: one of {len(files)} files of an image; save it as one file")
-    data = [one for one in pixels.iter() if _tag(one) == "TiffData"]
-    for one in data:
-        shift = _count(one.get("FirstZ", "0")) - _count(one.get("IFD", "0"))
+    data = [element for element in pixels.iter() if _tag(element) == "TiffData"]
+    for entry in data:
+        shift = _count(entry.get("FirstZ", "0")) - _count(entry.get("IFD", "0"))
         if shift and max(_count(pixels.get(f"Size{axis}", "1")) for axis in "CT") == 1:
             raise InputError(f"{name}: its pages are not in the order of z; save it anew")
     sizes = zip(KINDS, "CZT")

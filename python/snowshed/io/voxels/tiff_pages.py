@@ -40,7 +40,7 @@ class Layout:
         The same of a strip or tile.
     tiled
         Whether the segments are tiles, which all are complete; the last strip may have fewer rows.
-    places, counts
+    offsets, counts
         First byte, and number of bytes, of each strip or tile, row by row.
     coding
         Coding of the pixels.
@@ -49,7 +49,7 @@ class Layout:
     size: tuple[int, int]
     piece: tuple[int, int]
     tiled: bool
-    places: tuple[int, ...]
+    offsets: tuple[int, ...]
     counts: tuple[int, ...]
     coding: Coding
 
@@ -155,34 +155,36 @@ def _layout(path: Path, tags: Tags, size: tuple[int, int], big_endian: bool) -> 
     height, width = size
     if tiled:
         piece = (tags.number(323, 0), tags.number(322, 0))
-        places, counts = tags.numbers(324), tags.numbers(325)
+        offsets, counts = tags.numbers(324), tags.numbers(325)
     else:
         piece = (min(tags.number(278, height), height), width)
-        places, counts = tags.numbers(273), tags.numbers(279)
+        offsets, counts = tags.numbers(273), tags.numbers(279)
     most_pixels = max(4 * height * width, LARGEST_TILE)
     if min(piece) < 1 or piece[0] * piece[1] > most_pixels:
         raise InputError(f"{tags.name}: damaged: strips or tiles of {piece[1]} x {piece[0]} pixels")
     coding = _coding(tags, big_endian)
     across, down = -(-width // piece[1]), -(-height // piece[0])
-    layout = Layout(size, piece, tiled, places, counts, coding)
-    if len(places) != across * down:
-        raise InputError(f"{tags.name}: damaged: {len(places)} strips or tiles for {across * down}")
+    layout = Layout(size, piece, tiled, offsets, counts, coding)
+    if len(offsets) != across * down:
+        raise InputError(
+            f"{tags.name}: damaged: {len(offsets)} strips or tiles for {across * down}"
+        )
     whole = tuple(
-        layout.rows_of(number) * coding.row_bytes(piece[1]) for number in range(len(places))
+        layout.rows_of(number) * coding.row_bytes(piece[1]) for number in range(len(offsets))
     )
     if coding.compression == segments.NONE:
         counts = whole
-    if len(counts) != len(places):
+    if len(counts) != len(offsets):
         raise InputError(f"{tags.name}: damaged: no lengths of its strips or tiles")
     end = path.stat().st_size
     most = coding.longest(*piece)
-    for place, count in zip(places, counts):
+    for place, count in zip(offsets, counts):
         if place < 8 or count < 1 or place + count > end or count > most:
             raise InputError(
                 f"{tags.name}: damaged: a strip or tile of {count:,} bytes at {place:,} in a file "
                 f"of {end:,}"
             )
-    return Layout(size, piece, tiled, places, counts, coding)
+    return Layout(size, piece, tiled, offsets, counts, coding)
 
 
 def _coding(tags: Tags, big_endian: bool) -> Coding:
@@ -232,22 +234,22 @@ class _Reader:
         layout = self.layout
         (height, width), (rows, columns) = layout.size, layout.piece
         across = -(-width // columns)
-        found: Optional[NDArray[Any]] = None
+        numbers: Optional[NDArray[Any]] = None
         with open_regular(self.path) as file:
-            for number, (place, count) in enumerate(zip(layout.places, layout.counts)):
+            for number, (place, count) in enumerate(zip(layout.offsets, layout.counts)):
                 packed = read_at(file, place, count, self.name)
                 y, x = number // across * rows, number % across * columns
                 there = layout.rows_of(number)
                 part = decoded(layout.coding, packed, there, columns, self.name)
                 if part.shape != (there, columns):
                     raise InputError(f"{self.name}: damaged: a strip of {part.shape} pixels")
-                if found is None:
-                    found = np.empty((height, width), part.dtype.newbyteorder("="))
+                if numbers is None:
+                    numbers = np.empty((height, width), part.dtype.newbyteorder("="))
                 part = part[: height - y, : width - x]
-                found[y : y + part.shape[0], x : x + part.shape[1]] = part
-        if found is None:
+                numbers[y : y + part.shape[0], x : x + part.shape[1]] = part
+        if numbers is None:
             raise InputError(f"{self.name}: damaged: it has no numbers")
-        return found if self.palette is None else self.palette[found]
+        return numbers if self.palette is None else self.palette[numbers]
 
 
 def is_big_endian(path: Path) -> bool:
@@ -268,9 +270,9 @@ def contiguous_copies(picture: Picture, count: int) -> list[Picture]:
     if not isinstance(reader, _Reader):
         raise TypeError("a page of a TIFF file is needed")
     layout = reader.layout
-    begins = layout.places[0]
-    ends = [place + length for place, length in zip(layout.places, layout.counts)]
-    whole = [*layout.places[1:], ends[-1]] == ends and layout.piece[1] == layout.size[1]
+    begins = layout.offsets[0]
+    ends = [place + length for place, length in zip(layout.offsets, layout.counts)]
+    whole = [*layout.offsets[1:], ends[-1]] == ends and layout.piece[1] == layout.size[1]
     length = ends[-1] - begins
     if layout.coding.compression != segments.NONE or not whole:
         raise InputError(
@@ -285,7 +287,7 @@ def contiguous_copies(picture: Picture, count: int) -> list[Picture]:
         )
     pictures = []
     for number in range(count):
-        places = tuple(place + number * length for place in layout.places)
-        moved = replace(reader, layout=replace(layout, places=places))
+        offsets = tuple(place + number * length for place in layout.offsets)
+        moved = replace(reader, layout=replace(layout, offsets=offsets))
         pictures.append(replace(picture, read=moved))
     return pictures

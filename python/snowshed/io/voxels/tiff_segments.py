@@ -123,10 +123,10 @@ def _by_libtiff(coding: Coding, packed: bytes, rows: int, columns: int) -> NDArr
         file = io.BytesIO(_one_strip(tags, packed, coding.tables))
         try:
             with pillow.open(file, formats=["TIFF"]) as image:
-                found = np.asarray(image)
+                pixels = np.asarray(image)
         except pillow.DecompressionBombError as error:
             raise ValueError(f"a strip or tile is too large: {error}") from None
-    return found.astype(np.uint8)
+    return pixels.astype(np.uint8)
 
 
 def _one_strip(tags: dict[int, int], packed: bytes, tables: Optional[bytes]) -> bytes:
@@ -165,7 +165,7 @@ def _numbers(coding: Coding, rows: NDArray[np.uint8], columns: int) -> NDArray[A
 def read_at(file: BinaryIO, offset: int, count: int, name: str) -> bytes:
     """Return bytes of a file; raises InputError if some are missing."""
     file.seek(offset)
-    found = file.read(count)
-    if len(found) < count:
+    content = file.read(count)
+    if len(content) < count:
         raise InputError(f"{name}: damaged: the file ends before its numbers do")
-    return found
+    return content

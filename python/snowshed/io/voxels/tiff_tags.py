@@ -59,7 +59,7 @@ class Tags:
         if value is None:
             return ()
         many = value if isinstance(value, (tuple, list)) else (value,)
-        if not all(isinstance(one, int) for one in many):
+        if not all(isinstance(value, int) for value in many):
             raise InputError(f"{self.name}: damaged: tag {code} holds {shortened(repr(value))}")
         return tuple(map(int, many))
 
@@ -123,19 +123,19 @@ def read_pages(path: Path, look: Callable[[Tags], Page]) -> list[Page]:
 
 
 def _tags(tiff: TiffFile, path: Path) -> Iterator[Tags]:
-    places: set[int] = set()
+    offsets: set[int] = set()
     while True:
-        name = f"{path}, page {len(places) + 1}"
+        name = f"{path}, page {len(offsets) + 1}"
         try:
-            page = tiff.pages[len(places)]
+            page = tiff.pages[len(offsets)]
         except IndexError:
             return
-        if len(places) == PAGES:
+        if len(offsets) == PAGES:
             raise InputError(f"{path}: more than {PAGES:,} pages")
         tags = Tags(page, name)  # type: ignore[arg-type]
-        if tags.offset in places:
+        if tags.offset in offsets:
             raise InputError(f"{name}: damaged: it is an earlier page again")
-        places.add(tags.offset)
+        offsets.add(tags.offset)
         yield tags
 
 

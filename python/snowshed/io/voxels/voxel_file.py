@@ -70,10 +70,10 @@ class VoxelFile:
         InputError
             If the file is damaged.
         """
-        found = self.read_layers(low, high)
-        if found.shape != (high - low, *self.shape[1:]):
-            raise InputError(f"{self.name}: layers {low} to {high - 1} have shape {found.shape}")
-        return found.astype(found.dtype.newbyteorder("="), copy=False)
+        layers = self.read_layers(low, high)
+        if layers.shape != (high - low, *self.shape[1:]):
+            raise InputError(f"{self.name}: layers {low} to {high - 1} have shape {layers.shape}")
+        return layers.astype(layers.dtype.newbyteorder("="), copy=False)
 
 
 def check_size(name: str, shape: tuple[int, ...]) -> None:

@@ -58,8 +58,8 @@ def read_particles(path: Union[str, os.PathLike[str]]) -> dict[str, NDArray[Any]
     content = read_regular(Path(path))
     try:
         _check_sum(content)
-        head, found, data = content.partition(APPENDED)
-        if not found:
+        head, separator, data = content.partition(APPENDED)
+        if not separator:
             raise ValueError("it has no appended raw data")
         piece = ElementTree.fromstring(head + b"</VTKFile>").find("PolyData/Piece")
         if piece is None:

@@ -142,13 +142,13 @@ def is_acis(lines: Sequence[str]) -> bool:
 
 def read_acis(name: str, lines: Sequence[str]) -> Station:
     """Return ACIS columns as observations; raises InputError naming line and column."""
-    found = _acis_head(lines)
-    if found is None:
+    layout = _acis_head(lines)
+    if layout is None:
         raise InputError(
             f"{name}, line 2, column 1: rows of ACIS without the names of their columns; add a "
             "line above, such as Date,maxt,mint,pcpn,snow,snwd, in the order of your request"
         )
-    start, separator = found
+    start, separator = layout
     head = split_cells(lines[start], f"{name}, line {start + 1}", separator)
     columns = {i: ACIS[key] for i, key in enumerate(map(_key, head)) if key in ACIS}
     days = Days()

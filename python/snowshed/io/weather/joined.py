@@ -107,22 +107,22 @@ def _alike(files: Sequence[_File]) -> tuple[list[_File], list[str]]:
     return made, notes
 
 
-def _same_name(one: str, other: str) -> bool:
-    return one.casefold().strip() == other.casefold().strip()
+def _same_name(first: str, other: str) -> bool:
+    return first.casefold().strip() == other.casefold().strip()
 
 
-def _apart(one: _File, other: _File) -> Iterator[str]:
-    a, b = one.station, other.station
+def _apart(first: _File, other: _File) -> Iterator[str]:
+    a, b = first.station, other.station
     if None not in (a.latitude, a.longitude, b.latitude, b.longitude):
         north = ((a.latitude or 0.0) - (b.latitude or 0.0)) * DEGREE
         east = ((a.longitude or 0.0) - (b.longitude or 0.0)) * DEGREE
         distance = math.hypot(north, east * math.cos(math.radians(a.latitude or 0.0)))
         if distance > FAR:
-            yield f"the stations of {one.name} and {other.name} are {distance:.3g} km apart"
+            yield f"the stations of {first.name} and {other.name} are {distance:.3g} km apart"
     if a.altitude is not None and b.altitude is not None:
         higher = abs(a.altitude - b.altitude)
         if higher > HIGHER:
-            yield f"the altitudes of {one.name} and {other.name} differ by {higher:.0f} m"
+            yield f"the altitudes of {first.name} and {other.name} differ by {higher:.0f} m"
 
 
 def _on_clock(station: Station, offset: Optional[float]) -> Station:
@@ -144,7 +144,7 @@ def _of_quantity(files: Sequence[_File], name: str, own: Optional[int]) -> list[
     if own is not None:  # the file of the temperature, which is for nothing else
         order = [order[own], *order[:own]] if name == TEMPERATURE else order[:own]
     taken: set[date] = set()
-    found = []
+    values = []
     for number in order:
         new: set[date] = set()
         for row in files[number].station.rows:
@@ -152,10 +152,10 @@ def _of_quantity(files: Sequence[_File], name: str, own: Optional[int]) -> list[
                 continue
             days = _days(row, name)
             if taken.isdisjoint(days):
-                found.append(_Value(number, row, name))
+                values.append(_Value(number, row, name))
                 new.update(days)
         taken |= new
-    return found
+    return values
 
 
 def _days(row: Observation, name: str) -> set[date]:

@@ -77,7 +77,7 @@ def read_summaries(name: str, lines: Sequence[str]) -> Station:
         place = f"{name}, line {number}"
         same_station(row[STATION], rows[0][1][STATION], f"{place}, column {STATION}")
         day = time_of(row[DATE], f"{place}, column {DATE}", "%Y-%m-%d")
-        for element in (one for one in (*units, *COUNTS) if one in row):
+        for element in (name for name in (*units, *COUNTS) if name in row):
             where = f"{place}, column {element}"
             value = None if element in COUNTS else units[element].read(row[element], where, MISSING)
             measurement, quality, *_ = [*row.get(element + FLAGS, "").split(","), "", ""]
@@ -115,15 +115,15 @@ def _units(
         return STANDARD, "inches and degrees F"
     if rain > 0:
         raise _unknown(name, head, "with one decimal, as mm and inches have, and no temperature")
-    if (head[:3] == ARCHIVE and any(one.endswith(FLAGS) for one in head)) or not rows:
+    if (head[:3] == ARCHIVE and any(title.endswith(FLAGS) for title in head)) or not rows:
         return ELEMENTS, "tenths of mm and of degrees C, and mm of snow"
     raise _unknown(name, head, "without a decimal in any row")
 
 
-def _unknown(name: str, head: Sequence[str], found: str) -> InputError:
-    first = next(one for one in head if one in ELEMENTS)
+def _unknown(name: str, head: Sequence[str], contents: str) -> InputError:
+    first = next(title for title in head if title in ELEMENTS)
     return InputError(
-        f"{name}, line 2, column {first}: {found}, its units are ambiguous; give a longer file, "
+        f"{name}, line 2, column {first}: {contents}, its units are ambiguous; give a longer file, "
         f"one with temperatures, or that of the archive (its columns begin {', '.join(ARCHIVE)}, "
         f"and have {FLAGS})"
     )

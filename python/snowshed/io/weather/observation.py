@@ -262,12 +262,12 @@ def time_of(text: str, where: str, *formats: str) -> datetime:
         If the text is not a time.
     """
     cell = text.strip().strip('"')
-    for one in formats:
-        found = _pattern(one).fullmatch(cell)
-        if found is None:
+    for form in formats:
+        match = _pattern(form).fullmatch(cell)
+        if match is None:
             continue
         try:
-            parts = found.groupdict(default="0")
+            parts = match.groupdict(default="0")
             return datetime(
                 int(parts["year"]),
                 int(parts["month"]),

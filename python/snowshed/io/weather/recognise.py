@@ -63,7 +63,7 @@ def read_station(path: Path) -> Optional[Station]:
         If it cannot be read.
     """
     lines = _lines(unpacked(read_input(path), path), path)
-    form = next((one for one in FORMATS.values() if one.recognises(lines)), None)
+    form = next((candidate for candidate in FORMATS.values() if candidate.recognises(lines)), None)
     if form is None:
         if lines[0].lstrip().startswith("{"):
             raise InputError(

@@ -185,7 +185,7 @@ def _station(
     quantities: Mapping[int, Quantity],
     separator: str | None,
 ) -> Station:
-    clock = next((one for one in ("timestamp", "julian") if one in fields), None)
+    clock = next((name for name in ("timestamp", "julian") if name in fields), None)
     if clock is None or not quantities:
         needed = f"none of {', '.join(FIELDS)}" if clock else "neither timestamp nor julian"
         raise InputError(
@@ -252,10 +252,10 @@ def _time(cell: str, place: str, clock: str) -> datetime:
 def _header(name: str, lines: Sequence[str]) -> _Header:
     """Return the header above [DATA], of lines without comments."""
     values: dict[str, str] = {}
-    places: dict[str, int] = {}
+    indices: dict[str, int] = {}
     for number, line in enumerate(lines, 1):
         if line == "[DATA]":
-            return _Header(name, number - 1, values, places)
+            return _Header(name, number - 1, values, indices)
         if number == 1 or not line or line.startswith(("[", "#", ";")):
             continue
         key, equals, value = (part.strip() for part in line.partition("="))
@@ -263,7 +263,7 @@ def _header(name: str, lines: Sequence[str]) -> _Header:
             raise InputError(
                 f"{name}, line {number}, column 1: {quoted(line)} is not a KEY = VALUE of a header"
             )
-        values[key], places[key] = value, number
+        values[key], indices[key] = value, number
     raise InputError(
         f"{name}, line {len(lines)}, column 1: the file ends without its section [DATA]"
     )
@@ -271,19 +271,19 @@ def _header(name: str, lines: Sequence[str]) -> _Header:
 
 def _listed(header: _Header, key: str, separator: str | None) -> list[str]:
     value = header.values.get(key, "")
-    return [one.strip() for one in value.split(separator)] if value else []
+    return [part.strip() for part in value.split(separator)] if value else []
 
 
 def _numbers(
     header: _Header, key: str, fields: Sequence[str], separator: str | None
 ) -> list[float]:
     """Return a number for each field; none if the header lacks the key, or its plural of iCSV."""
-    key = next((one for one in (key, f"{key}s") if one in header.values), key)
+    key = next((candidate for candidate in (key, f"{key}s") if candidate in header.values), key)
     if key not in header.values:
         return []
-    found = [number_in(part) for part in _listed(header, key, separator)]
-    if len(found) != len(fields) or not all(abs(one) < 1e9 for one in found):
+    numbers = [number_in(part) for part in _listed(header, key, separator)]
+    if len(numbers) != len(fields) or not all(abs(number) < 1e9 for number in numbers):
         raise InputError(
             f"{header.where(key)}: {quoted(header.values[key])}; needed: {len(fields)} numbers"
         )
-    return found
+    return numbers

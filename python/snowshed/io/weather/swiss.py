@@ -114,7 +114,7 @@ def _read(
         time = time_of(cells[when], f"{place}, column {head[when]}", *formats)
         readings.append(Reading(number, time, values))
     rows, titles, notes = observations(columns, readings)
-    unread = [one for one in head if one.startswith(SNOWY) and one not in parameters]
+    unread = [title for title in head if title.startswith(SNOWY) and title not in parameters]
     if unread:
         notes.append(f"not read: {', '.join(unread)}")
     return Station(form, station, rows, notes, utc_offset=0.0, columns=titles)

@@ -109,7 +109,7 @@ def avaframe_simulations(
         "ent": _one_if_any(inputs / "ENT", "entrainment"),
         "res": _one_if_any(inputs / "RES", "resistance"),
     }
-    raster = _one(inputs, RASTERS, "terrain")
+    raster = _only_file(inputs, RASTERS, "terrain")
     terrain = _terrain(raster, project, ascii_copy)
     _check_saved_maps(terrain, project)
     return [
@@ -139,10 +139,10 @@ def avaframe_scene(
 
     Parameters and errors are those of `avaframe_simulations`.
     """
-    found = avaframe_simulations(
+    simulations = avaframe_simulations(
         folder, settings=settings, thickness=thickness, ascii_copy=ascii_copy
     )
-    return found[0].scene
+    return simulations[0].scene
 
 
 def _scene(
@@ -218,7 +218,7 @@ def _check_saved_maps(terrain: Path, project: ProjectSettings) -> None:
     cells = maps * read_raster(terrain).heights.size
     if cells > SAVED_CELLS:
         raise InputError(
-            f"{project.places['saved_times']}: {maps} maps have {cells:.3g} cells; at most "
+            f"{project.positions['saved_times']}: {maps} maps have {cells:.3g} cells; at most "
             f"{SAVED_CELLS:.0e} are allowed"
         )
 
@@ -230,14 +230,14 @@ def _releases(folder: Path, project: ProjectSettings) -> list[Path]:
             f"{rasters[0]}: com5SnowSlide takes no release from a raster; give polygons, or use "
             "--terrain with --thickness-raster"
         )
-    found = _files(folder, POLYGONS)
+    files = _files(folder, POLYGONS)
     if project.release_scenario:
-        found = [file for file in found if file.stem == project.release_scenario]
-        if not found:
+        files = [file for file in files if file.stem == project.release_scenario]
+        if not files:
             raise InputError(f"{folder}: no release area {quoted(project.release_scenario)}")
-    if not found:
+    if not files:
         raise InputError(f"{folder}: no file of a release area ({', '.join(POLYGONS)})")
-    return found
+    return files
 
 
 def _sim_types(
@@ -271,28 +271,28 @@ def _refuse_what_is_not_done(inputs: Path, project: ProjectSettings) -> None:
 
 def _ini_of(*folders: Path) -> Optional[Path]:
     """Return the ini of com5SnowSlide in the folders; None without one."""
-    found = [file for folder in folders for file in sorted(folder.glob("*com5SnowSlideCfg.ini"))]
-    if len(found) > 1:
-        raise InputError(f"{folders[0]}: {len(found)} ini files of com5SnowSlide; keep one")
-    if not found:
+    files = [file for folder in folders for file in sorted(folder.glob("*com5SnowSlideCfg.ini"))]
+    if len(files) > 1:
+        raise InputError(f"{folders[0]}: {len(files)} ini files of com5SnowSlide; keep one")
+    if not files:
         return None
-    check_own_file(found[0], folders[0])
-    return found[0]
+    check_own_file(files[0], folders[0])
+    return files[0]
 
 
 def _files(folder: Path, patterns: tuple[str, ...]) -> list[Path]:
     return sorted(file for pattern in patterns for file in folder.glob(pattern))
 
 
-def _one(folder: Path, patterns: tuple[str, ...], what: str) -> Path:
-    found = _files(folder, patterns)
-    if len(found) != 1:
-        raise InputError(f"{folder}: {len(found)} files of the {what}; allowed: 1")
-    return found[0]
+def _only_file(folder: Path, patterns: tuple[str, ...], what: str) -> Path:
+    files = _files(folder, patterns)
+    if len(files) != 1:
+        raise InputError(f"{folder}: {len(files)} files of the {what}; allowed: 1")
+    return files[0]
 
 
 def _one_if_any(folder: Path, what: str) -> Optional[Path]:
     rasters = _files(folder, RASTERS)
     if rasters:
         raise InputError(f"{rasters[0]}: areas of {what} are taken from polygons only")
-    return _one(folder, POLYGONS, what) if _files(folder, POLYGONS) else None
+    return _only_file(folder, POLYGONS, what) if _files(folder, POLYGONS) else None

@@ -113,12 +113,12 @@ def _files(folder: Path, root: Path, depth: int) -> Iterator[Path]:
 
 def _entries(folder: Path) -> list[os.DirEntry[str]]:
     with os.scandir(folder) as entries:
-        found = []
+        files = []
         for entry in entries:
-            found.append(entry)
-            if len(found) > PROJECT_FILES:
+            files.append(entry)
+            if len(files) > PROJECT_FILES:
                 raise InputError(f"{folder}: more than {PROJECT_FILES} files")
-        return found
+        return files
 
 
 def _check_own(path: Path, root: Path, *, folder: bool) -> None:

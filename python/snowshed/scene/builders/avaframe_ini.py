@@ -57,7 +57,7 @@ class ProjectSettings:
         Maps to write, and their times before the end, s.
     with_dam, with_secondary_release
         Whether to take dams and secondary release areas where there are any.
-    places
+    positions
         Positions of the values in the ini, by their names.
     """
 
@@ -72,12 +72,12 @@ class ProjectSettings:
     saved_times: tuple[float, ...] = ()
     with_dam: bool = True
     with_secondary_release: bool = True
-    places: dict[str, str] = field(default_factory=dict)
+    positions: dict[str, str] = field(default_factory=dict)
 
     def located(self, error: InputError) -> InputError:
         """Return an error of a scene with the position of its setting in the ini."""
         about = re.match(r"/numerics/(\w+)", str(error))
-        place = self.places.get(about[1]) if about else None
+        place = self.positions.get(about[1]) if about else None
         return InputError(f"{place}: {error}") if place else error
 
 
@@ -99,7 +99,7 @@ def read_ini(file: Optional[Path]) -> ProjectSettings:
     for key, name in SETTINGS.items():
         if key in given:
             project.values[name] = given.setting(key, name)
-            project.places[name] = given.where(key)
+            project.positions[name] = given.where(key)
     if given.is_blank("meshcellsize"):
         project.values["cell"] = 0.0
     project.values.update(_friction(given))
@@ -115,7 +115,7 @@ def read_ini(file: Optional[Path]) -> ProjectSettings:
     project.release_scenario = given.text("releasescenario").removesuffix(".shp")
     project.result_types = _result_types(given)
     project.saved_times = _saved_times(given, project.max_time)
-    project.places["saved_times"] = given.where("tsteps")
+    project.positions["saved_times"] = given.where("tsteps")
     project.with_dam = given.switch("dam", True)
     project.with_secondary_release = given.switch("secrelarea", True)
     _check_kernel_radius(given, project.values["cell"])
@@ -206,14 +206,14 @@ class _Keys:
     ) -> tuple[str, ...]:
         if key not in self:
             return default
-        found = tuple(word.strip() for word in self.text(key).split("|"))
-        for word in found:
+        names = tuple(word.strip() for word in self.text(key).split("|"))
+        for word in names:
             if word not in allowed:
                 raise InputError(
                     f"{self.where(key)}: {quoted(word)} is not available; allowed: "
                     f"{', '.join(allowed)}"
                 )
-        return found
+        return names
 
     def refuse_the_rest(self) -> None:
         for key, text in self._found.items():
@@ -250,15 +250,15 @@ def _keys_of(file: Optional[Path]) -> tuple[dict[str, str], dict[str, int]]:
     except (configparser.Error, UnicodeDecodeError) as error:
         why = shortened(" ".join(printable(error).split()), 300)
         raise InputError(f"{file}: not an ini file: {why}") from None
-    found: dict[str, str] = {}
+    values: dict[str, str] = {}
     for section in parser.sections():
         if section != "GENERAL" and not section.endswith("_override"):
             raise InputError(
                 f"{file}: the section [{shortened(printable(section))}] is none of com5SnowSlide; "
                 "allowed: [GENERAL], [com1DFA_com1DFA_override]"
             )
-        found.update(parser.items(section))
-    return found, _lines_of(text)
+        values.update(parser.items(section))
+    return values, _lines_of(text)
 
 
 def _lines_of(text: str) -> dict[str, int]:
@@ -301,8 +301,8 @@ def _forced_thickness(given: _Keys, key: str) -> Optional[float]:
 
 def _result_types(given: _Keys) -> tuple[str, ...]:
     # The map of when snow first came is one of com1DFA's defaults; it is not made here.
-    found = given.words("restype", (*RESULT_TYPES, "timeInfo"), ("ppr", "pft", "pfv"))
-    return tuple(kind for kind in found if kind != "timeInfo") or ("pfv",)
+    types = given.words("restype", (*RESULT_TYPES, "timeInfo"), ("ppr", "pft", "pfv"))
+    return tuple(kind for kind in types if kind != "timeInfo") or ("pfv",)
 
 
 def _saved_times(given: _Keys, end: float) -> tuple[float, ...]:

@@ -192,22 +192,24 @@ def measure_stack(
         raise InputError(f"dimension: {dimension!r}; allowed: 2, 3")
     check_trimming(trimming)
     voxel = positive("dx", dx) ** dimension
-    places = points("positions", positions, dimension)
-    every_mass = column("masses", masses, len(places), non_negative=True)
-    every_density = column("densities", densities, len(places), non_negative=True)
+    coordinates = points("positions", positions, dimension)
+    every_mass = column("masses", masses, len(coordinates), non_negative=True)
+    every_density = column("densities", densities, len(coordinates), non_negative=True)
     on_panel = (
-        np.zeros(len(places), dtype=bool)
+        np.zeros(len(coordinates), dtype=bool)
         if exclude is None
-        else flags("exclude", exclude, len(places))
+        else flags("exclude", exclude, len(coordinates))
     )
-    levelled = level(places, finite("ground_tilt_deg", ground_tilt_deg))
-    under = np.zeros(len(places)) if ground is None else column("ground", ground, len(places))
+    levelled = level(coordinates, finite("ground_tilt_deg", ground_tilt_deg))
+    under = (
+        np.zeros(len(coordinates)) if ground is None else column("ground", ground, len(coordinates))
+    )
     levelled[:, 2] -= under
     if dimension == 2:
         levelled[:, 1] = 0.0
-    touching = np.zeros(len(places), dtype=bool)
+    touching = np.zeros(len(coordinates), dtype=bool)
     if structures is not None:
-        touching = flags("structures", structures, len(places))
+        touching = flags("structures", structures, len(coordinates))
     held, on_structure, falling, joined = _held(levelled, on_panel, touching, dx)
     below = ~(held | on_structure)
     members = below & ~falling
@@ -234,12 +236,12 @@ def _held(
 ) -> tuple[Booleans, Booleans, Booleans, bool]:
     """Return masks of snow held by panel and structures, and falling, and if the stack joins it."""
     off = ~on_panel
-    found = supports(snow[off], snow[on_panel], touching[off], snow[off, 2], dx)
+    support = supports(snow[off], snow[on_panel], touching[off], snow[off, 2], dx)
     at_panel = on_panel.copy()
     on_structure, falling = np.zeros((2, len(snow)), dtype=bool)
-    at_panel[off] = found.at_panel
-    on_structure[off], falling[off] = found.on_structure, found.falling
-    return at_panel, on_structure, falling, found.joined
+    at_panel[off] = support.at_panel
+    on_structure[off], falling[off] = support.on_structure, support.falling
+    return at_panel, on_structure, falling, support.joined
 
 
 def _volume(masses: Floats, densities: Floats, voxel: float) -> float:
@@ -250,8 +252,8 @@ def _volume(masses: Floats, densities: Floats, voxel: float) -> float:
 def _trimmed_extent(
     snow: Floats, masses: Floats, under: Floats, dimension: int, trimming: str
 ) -> Extent:
-    kept = inliers(snow, masses, dimension, trimming)
-    return _extent(snow[kept], under[kept], dimension)
+    inside = inliers(snow, masses, dimension, trimming)
+    return _extent(snow[inside], under[inside], dimension)
 
 
 def _extent(snow: Floats, under: Floats, dimension: int) -> Extent:

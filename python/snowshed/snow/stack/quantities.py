@@ -49,8 +49,8 @@ class Measure:
 
 
 MEASURES: Mapping[str, Measure] = {
-    one.name: one
-    for one in (
+    measure.name: measure
+    for measure in (
         Measure("stack", "97 % of the snow"),
         Measure("body", "the largest connected body of snow", "body_"),
         *(

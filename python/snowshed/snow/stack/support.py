@@ -94,6 +94,6 @@ def _near(snow: Floats, others: Floats, distance: float) -> Booleans:
 
     if len(snow) == 0 or len(others) == 0:
         return np.zeros(len(snow), dtype=bool)
-    found, _ = cKDTree(others).query(snow, distance_upper_bound=distance)
-    near: Booleans = np.isfinite(found)
+    distances, _ = cKDTree(others).query(snow, distance_upper_bound=distance)
+    near: Booleans = np.isfinite(distances)
     return near

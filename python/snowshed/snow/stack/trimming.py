@@ -67,9 +67,9 @@ def inliers(
         order = circular_order(positions[:, 0], positions[:, 1], masses)
     allowance = DROPPED_FRACTION * masses.sum() * (1 + 1e-9)
     dropped = order[np.cumsum(masses[order]) <= allowance]
-    kept = np.ones(len(positions), dtype=bool)
-    kept[dropped] = False
-    return kept
+    inside = np.ones(len(positions), dtype=bool)
+    inside[dropped] = False
+    return inside
 
 
 def outermost_first_order(x: Floats, masses: Floats) -> Integers:

@@ -68,12 +68,12 @@ class Range:
         (2.0, 0.2)
         """
         if logarithmic:
-            found = LogMean.of(values)
-            deviation = found.error * math.sqrt(found.count)
-            return cls(found.value, *found.interval(), deviation, found.count)
-        found = LogMean.of([math.exp(value) for value in values])
-        low, high = (math.log(one) for one in found.interval())
-        return cls(found.mean, low, high, found.error * math.sqrt(found.count), found.count)
+            mean = LogMean.of(values)
+            deviation = mean.error * math.sqrt(mean.count)
+            return cls(mean.value, *mean.interval(), deviation, mean.count)
+        mean = LogMean.of([math.exp(value) for value in values])
+        low, high = (math.log(end) for end in mean.interval())
+        return cls(mean.mean, low, high, mean.error * math.sqrt(mean.count), mean.count)
 
 
 @dataclass
@@ -135,14 +135,16 @@ def fit_material(
         If a parameter cannot be read from any sample, or the law would be meaningless.
     """
     notes: list[str] = []
-    found = list(_read(curves, CONFINED, readings.elasticity, notes).values())
+    elasticities = list(_read(curves, CONFINED, readings.elasticity, notes).values())
     ranges = {
-        "youngs_modulus": Range.of([one.youngs_modulus for one, _ in found]),
-        "poissons_ratio": Range.of([one.poissons_ratio for one, _ in found], logarithmic=False),
+        "youngs_modulus": Range.of([reading.youngs_modulus for reading, _ in elasticities]),
+        "poissons_ratio": Range.of(
+            [reading.poissons_ratio for reading, _ in elasticities], logarithmic=False
+        ),
     }
     nu = min(max(ranges["poissons_ratio"].value, 0.0), readings.LARGEST_POISSON)
     elastic = Elasticity(modulus or ranges["youngs_modulus"].value, nu)
-    linearity = min(one for _, one in found)
+    linearity = min(share for _, share in elasticities)
     if linearity < LINEAR:
         notes.append(f"the elastic phase is not linear (R2 {linearity:.2f}): E is doubtful")
     strengths = _read(curves, ISOTROPIC, readings.isotropic_yield, notes)
@@ -203,21 +205,21 @@ def _read_strengths(
     for (_, sample), (p, q) in strengths.items():
         own = own_p0.get(sample, p0)
         points.setdefault(sample, []).append((p / own, q / own))
-    found = fit_yield_surface(*np.array([one for some in points.values() for one in some]).T)
+    surface = fit_yield_surface(*np.array([point for some in points.values() for point in some]).T)
     each = [fit_yield_surface(*np.array(some).T) for some in points.values() if len(some) > 1]
-    slopes = Range.of([one.slope for one in each])
-    betas = Range.of([one.cohesion for one in each], logarithmic=False)
-    ranges["critical_state_slope"] = replace(slopes, value=found.slope)
-    ranges["cohesion"] = replace(betas, value=found.cohesion)
-    ranges["yield_residual"] = Range.of([found.residual])
-    if found.residual > MISSED:
+    slopes = Range.of([fit.slope for fit in each])
+    betas = Range.of([fit.cohesion for fit in each], logarithmic=False)
+    ranges["critical_state_slope"] = replace(slopes, value=surface.slope)
+    ranges["cohesion"] = replace(betas, value=surface.cohesion)
+    ranges["yield_residual"] = Range.of([surface.residual])
+    if surface.residual > MISSED:
         notes.append(
-            f"the law's yield surface misses the strengths by {100 * found.residual:.0f} % of "
+            f"the law's yield surface misses the strengths by {100 * surface.residual:.0f} % of "
             "their size"
         )
-    if found.cohesion in (0.0, 1.0):
+    if surface.cohesion in (0.0, 1.0):
         notes.append(
-            f"beta {found.cohesion:g} is at the limit of the law: its tensile strength differs "
+            f"beta {surface.cohesion:g} is at the limit of the law: its tensile strength differs "
             f"from that of the grains, {ranges['tension_pa'].value:.3g} Pa"
         )
 
@@ -231,10 +233,10 @@ def _read_hardening(
     curves: Curves, ranges: dict[str, Range], elastic: Elasticity, p0: float, notes: list[str]
 ) -> None:
     read = _read(curves, COMPACTION, lambda curve: readings.hardening(curve, elastic, p0), notes)
-    found = list(read.values())
-    ranges["hardening_factor"] = Range.of([one.factor for one in found])
-    ranges["hardening_residual"] = Range.of([one.residual for one in found])
-    excess = max(one.excess for one in found)
+    hardenings = list(read.values())
+    ranges["hardening_factor"] = Range.of([hardening.factor for hardening in hardenings])
+    ranges["hardening_residual"] = Range.of([hardening.residual for hardening in hardenings])
+    excess = max(hardening.excess for hardening in hardenings)
     if excess > POOR:
         notes.append(
             f"between its brittle peak and hardening the snow is up to {excess:.2g} times weaker "
@@ -248,10 +250,10 @@ def _check_confined(
     """Compare the peak of confined compression, to which nothing is fitted."""
     stress = law.confined_yield()
     peaks = _read(curves, CONFINED, readings.confined_peak, notes)
-    ranges["confined_yield_over_law"] = found = Range.of([peak / stress for peak in peaks.values()])
-    if not 1 / POOR <= found.value <= POOR:
+    ranges["confined_yield_over_law"] = ratio = Range.of([peak / stress for peak in peaks.values()])
+    if not 1 / POOR <= ratio.value <= POOR:
         notes.append(
-            f"in confined compression the grains' peak is {found.value:.2g} times the law's yield "
+            f"in confined compression the grains' peak is {ratio.value:.2g} times the law's yield "
             "stress, to which nothing is fitted"
         )
 

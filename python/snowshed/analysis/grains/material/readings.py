@@ -228,7 +228,7 @@ def hardening(curve: LoadingCurve, elastic: Elasticity, p0: float) -> Hardening:
             f"compacted by {compaction[-1]:.1%}: too little for a hardening factor; "
             f"{LEAST_ROWS * HARDENING_BIN:.0%} of plastic compaction at least"
         )
-    means = [[values[bins == one].mean() for one in used] for values in (plastic, pressure)]
+    means = [[values[bins == index].mean() for index in used] for values in (plastic, pressure)]
     x, y = np.array(means)
 
     def law(factor: float) -> Floats:
@@ -239,8 +239,8 @@ def hardening(curve: LoadingCurve, elastic: Elasticity, p0: float) -> Hardening:
     last = math.asinh(max(y[-1], 1.01 * p0) / elastic.bulk_modulus)
     guess = math.log(max((last - math.asinh(p0 / elastic.bulk_modulus)) / x[-1], 1e-6))
     ends = (math.log(1e-9), math.log(LARGEST_HARDENING))
-    found = least_squares(lambda log: (law(math.exp(log[0])) - y) / y.max(), [guess], bounds=ends)
-    factor = math.exp(float(found.x[0]))
+    optimum = least_squares(lambda log: (law(math.exp(log[0])) - y) / y.max(), [guess], bounds=ends)
+    factor = math.exp(float(optimum.x[0]))
     fitted = law(factor)
     residual = float(np.sqrt(np.sum((fitted - y) ** 2) / np.sum(y**2)))
     if residual > 1.0:

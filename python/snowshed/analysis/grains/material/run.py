@@ -106,9 +106,9 @@ def by_density(samples: Sequence[LabelledSample]) -> list[list[LabelledSample]]:
     1
     """
     groups: list[list[LabelledSample]] = []
-    for one in sorted(samples, key=lambda sample: sample.ice_fraction):
-        if groups and one.ice_fraction < APART * groups[-1][0].ice_fraction:
-            groups[-1].append(one)
+    for candidate in sorted(samples, key=lambda sample: sample.ice_fraction):
+        if groups and candidate.ice_fraction < APART * groups[-1][0].ice_fraction:
+            groups[-1].append(candidate)
         else:
-            groups.append([one])
+            groups.append([candidate])
     return groups

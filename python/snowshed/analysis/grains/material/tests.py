@@ -125,9 +125,9 @@ def read_curves(comparison: Comparison, runs: Path) -> Curves:
     """
     hashes = comparison.hashes()
     with Store.open(runs) as store:
-        kept = {key: store.particles(hash_) for key, hash_ in hashes.items()}
+        particles = {key: store.particles(hash_) for key, hash_ in hashes.items()}
     return {
-        key: LoadingCurve.parse(found[1].decode("utf-8"), f"{runs}: {key[0]}")
-        for key, found in kept.items()
-        if 1 in found
+        key: LoadingCurve.parse(stored[1].decode("utf-8"), f"{runs}: {key[0]}")
+        for key, stored in particles.items()
+        if 1 in stored
     }

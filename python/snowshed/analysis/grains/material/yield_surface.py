@@ -71,7 +71,9 @@ def fit_yield_surface(p: Floats, q: Floats) -> YieldSurface:
     fine = minimize_scalar(
         lambda beta: surface(beta).residual, bounds=tuple(around), options={"xatol": 1e-10}
     )
-    found = min(surface(float(COHESIONS[best])), surface(float(fine.x)), key=lambda s: s.residual)
-    if not found.slope > 0:
+    best_fit = min(
+        surface(float(COHESIONS[best])), surface(float(fine.x)), key=lambda s: s.residual
+    )
+    if not best_fit.slope > 0:
         raise InputError("no yield surface of the law has strength where the grains do")
-    return found
+    return best_fit
