@@ -1,4 +1,4 @@
-"""Where our settings deviate from the letter of the thesis, each with its reason.
+"""Deviations of the default settings from the thesis, each with its reason.
 
 All deviations undone are the preset ``thesis``; each can be undone alone. What the thesis leaves
 open, as the panel's friction, is none: the docs say what is taken there. The settings are those of
@@ -24,12 +24,12 @@ THESIS_DX = 0.01
 
 @dataclass(frozen=True)
 class Deviation:
-    """One thing that the thesis does in another way.
+    """A deviation from the thesis.
 
     Attributes
     ----------
     name
-        By which it is asked for.
+        Name of the deviation in options.
     thesis, here, reason
         What the thesis does, what is done here unless asked otherwise, and why; sentences.
     trimming
@@ -44,13 +44,13 @@ class Deviation:
 
     @property
     def simulated(self) -> bool:
-        """False if it changes the measuring alone, so that it needs no run of its own."""
+        """Whether the deviation changes the simulation, and not only the measuring."""
         return self.trimming is None
 
 
 DEVIATIONS: Mapping[str, Deviation] = {
-    one.name: one
-    for one in (
+    deviation.name: deviation
+    for deviation in (
         Deviation(
             "slip",
             "The panel is SLIP: the normal speed of snow on it is zero.",
@@ -67,7 +67,7 @@ DEVIATIONS: Mapping[str, Deviation] = {
         ),
         Deviation(
             "reseed",
-            "Between events the stack is turned into a solid and seeded anew.",
+            "Between events, the stack becomes a solid and is reseeded.",
             "The particles stay as they are.",
             "Seeding anew makes broken bonds whole, forgets compaction, and moves the stack.",
         ),
@@ -89,8 +89,8 @@ DEVIATIONS: Mapping[str, Deviation] = {
             "trimming",
             "A.4.2, its second sentence to the letter: both ends of a 2D stack step inward by the "
             "same increment.",
-            "The particle farthest from the centre of mass goes first, as the first sentence asks: "
-            "it is the principle of the 3D rule.",
+            "The particle farthest from the centre of mass is dropped first, as in the first "
+            "sentence and in the 3D rule.",
             "Where snow has rolled far off, steps at equal pace take the 3 % from the dense end; "
             "the length of a stack then scatters more from seeding to seeding.",
             trimming="equal_pace",
@@ -105,9 +105,9 @@ def deviating_settings(chapter: int, names: Sequence[str] = (ALL,)) -> dict[str,
     Parameters
     ----------
     chapter
-        Of the thesis: 3, 4 (with the laboratory of chapter 2) or 5.
+        Chapter of the thesis: 3, 4 (with the laboratory of chapter 2) or 5.
     names
-        Of the deviations.
+        Names of the deviations.
 
     Returns
     -------

@@ -159,7 +159,7 @@ def test_load_says_what_is_no_scene(tmp_path):
     with pytest.raises(InputError, match="/panel/hight: unknown key"):
         Scene.load(path)
     path.write_text('{"panel": {"tilt": null}}')
-    with pytest.raises(InputError, match=r"/panel/tilt: null is no value; leave the key out"):
+    with pytest.raises(InputError, match=r"/panel/tilt: null is not a value; leave the key out"):
         Scene.load(path)
     path.write_text('{"panel": 3}')
     with pytest.raises(InputError, match=r"scene\.json: /panel: 3 is not an object"):

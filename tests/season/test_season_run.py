@@ -208,7 +208,7 @@ def command(season_file, folder, *options):
 def test_the_command_says_what_came_of_it(season_file, tmp_path, capsys):
     assert command(season_file, tmp_path / "held", "--release-friction", "0.8") == 0
     shown = capsys.readouterr().out
-    assert "no snow let go: friction and adhesion held all of it" in shown
+    assert "no snow slid: friction and adhesion held it" in shown
     assert "2024-12-24" in shown
     assert (tmp_path / "held" / "season.png").is_file()
     assert not (tmp_path / "held" / "run").exists()

@@ -1,1 +1,1 @@
-"""What every room uses: records, arrays, texts, notes, the pool of processes."""
+"""Basics for every room: records, arrays, texts, notes, the pool of processes."""

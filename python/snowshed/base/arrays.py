@@ -1,4 +1,4 @@
-"""Types of arrays, and arrays that callers give: of one type, or an error that names them."""
+"""Arrays: their types, and the conversion of arguments with errors that name them."""
 
 from __future__ import annotations
 
@@ -28,23 +28,23 @@ def points(name: str, given: ArrayLike, dimension: int, count: Optional[int] = N
     Parameters
     ----------
     name
-        Of the argument, for messages.
+        Name of the argument in messages.
     given : (n, 3), or (n, 2) in 2D
-        Anything NumPy makes an array of. Two columns are x and z; y is then zero.
+        Anything that NumPy converts to an array. Two columns are x and z; y is then zero.
     dimension
         2 or 3.
     count
-        How many rows there must be; None: any number.
+        Required number of rows. [default: any]
 
     Returns
     -------
     (n, 3)
-        In double; a copy only where the type or the columns differ.
+        In double precision; a copy only if the type or the columns differ.
 
     Raises
     ------
     InputError
-        If there are other columns or rows, or anything but finite numbers.
+        If there are other columns or rows, or values that are not finite.
 
     Examples
     --------
@@ -69,7 +69,7 @@ def column(name: str, given: ArrayLike, count: int, *, non_negative: bool = Fals
     Raises
     ------
     InputError
-        If there are more or fewer, or some are not finite, or negative where they must not be.
+        If their number is wrong, or some are not finite, or negative where this is forbidden.
 
     Examples
     --------
@@ -171,7 +171,7 @@ def _wrong_shape(name: str, array: NDArray[Any], allowed: str) -> InputError:
 
 
 def whole_number(name: str, given: int, *, lowest: int) -> int:
-    """Return an argument that is to be a whole number, not below `lowest`; InputError if it is not.
+    """Return an argument that must be an integer, at least `lowest`; raises InputError.
 
     Examples
     --------
@@ -183,5 +183,5 @@ def whole_number(name: str, given: int, *, lowest: int) -> int:
     except TypeError:
         number = lowest - 1
     if number < lowest:
-        raise InputError(f"{name}: {given!r}; a whole number from {lowest} is needed")
+        raise InputError(f"{name}: {given!r}; an integer from {lowest} is needed")
     return number

@@ -4,7 +4,7 @@ import tokenize
 import zipfile
 import zlib
 
-#: By zipfile, zlib, NumPy's reader of headers, and whoever takes the contents for what they were.
+#: Raised by zipfile, zlib, NumPy's header reader, and code that parses the contents.
 DAMAGED = (
     ValueError,
     TypeError,

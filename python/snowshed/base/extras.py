@@ -1,4 +1,4 @@
-"""Libraries that not everyone needs: optional extras, imported where they are used."""
+"""Optional libraries, imported on first use."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ def require(module: str, extra: str, purpose: str) -> Any:
     Parameters
     ----------
     module
-        What to import.
+        Name of the module to import.
     extra
         The extra of snowshed that brings it.
     purpose
-        What needs it, for the message.
+        Purpose of the import, for the message.
 
     Raises
     ------

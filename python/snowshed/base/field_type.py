@@ -1,4 +1,4 @@
-"""Types of a record's fields: which values a field takes, and in what form it keeps them.
+"""Types of a record's fields: accepted values, and their stored form.
 
 A type is an annotation such as ``Optional[float]``; None means "not given" and is always allowed.
 """
@@ -14,7 +14,7 @@ from typing import Literal, Union
 from snowshed._core import InputError
 from snowshed.base.messages import shortened, suggestion
 
-#: What `convert` returns for a value of another type.
+#: Result of `convert` for a value of another type.
 MISMATCH = object()
 
 
@@ -27,11 +27,11 @@ def convert(value: object, hint: object, where: str) -> object:
     Parameters
     ----------
     value
-        What is to be kept.
+        The value to store.
     hint
         The field's annotation, evaluated.
     where
-        What to call the field in messages.
+        Name of the field in messages.
 
     Raises
     ------
@@ -52,9 +52,9 @@ def convert(value: object, hint: object, where: str) -> object:
         value = value.tolist()
     alternatives = alternatives_of(hint)
     for kind in alternatives:
-        kept = _as(kind, value, where)
-        if kept is not MISMATCH:
-            return kept
+        converted = _as(kind, value, where)
+        if converted is not MISMATCH:
+            return converted
     raise InputError(f"{where}: {shown(value)} is {_expected(alternatives, value)}")
 
 
@@ -109,10 +109,10 @@ def _as_sequence(origin: type, item: object, value: object, where: str) -> objec
     if not isinstance(value, (list, tuple)):
         return MISMATCH
     items = []
-    for i, one in enumerate(value):
-        if one is None:
-            raise InputError(f"{where}/{i}: None is {_expected((item,), one)}")
-        items.append(convert(one, item, f"{where}/{i}"))
+    for i, entry in enumerate(value):
+        if entry is None:
+            raise InputError(f"{where}/{i}: None is {_expected((item,), entry)}")
+        items.append(convert(entry, item, f"{where}/{i}"))
     return items if origin is list else tuple(items)
 
 
@@ -167,7 +167,7 @@ _WORDS: Mapping[object, str] = {
 
 
 def _expected(alternatives: Sequence[object], value: object) -> str:
-    """Return the end of the message that `value` is of none of the types."""
+    """Return the end of the message for a value of a wrong type."""
     choices = [name for kind in alternatives for name in _choices(kind)]
     if choices:
         near = suggestion(value, choices) if isinstance(value, str) else ""

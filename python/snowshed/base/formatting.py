@@ -1,4 +1,4 @@
-"""Numbers, parts and durations as people read and write them."""
+"""Numbers, shares and durations as text."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ import re
 from math import inf, isnan
 from typing import Optional
 
-#: What stands where there is no number.
+#: Text for a missing number.
 NOTHING = "\N{EN DASH}"
 TIMES = "\N{MULTIPLICATION SIGN}"
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-#: Parts below this are shown as they are, not in percent.
+#: Smaller shares are written as plain numbers, not in percent.
 SMALL = 1e-5
-#: Up to how many seconds an estimate is told in which unit, of how many seconds, to what digit.
+#: Units of an estimate: used below this number of seconds; seconds per unit; name; decimals.
 UNITS_OF_TIME = (
     (100, 1, "s", 0),
     (6000, 60, "min", 1),
@@ -57,7 +57,7 @@ def number(value: Optional[float], digits: int = 3) -> str:
 
 
 def percent(value: Optional[float], digits: int = 3) -> str:
-    """Return a part as a percentage; very small ones as they are.
+    """Return a share in percent; very small ones as plain numbers.
 
     Examples
     --------
@@ -121,9 +121,9 @@ def about(seconds: float) -> str:
 
 
 def number_in(text: str) -> float:
-    """Return the number that a text is; NaN where it is none, or none that is finite.
+    """Return the number in a text; NaN if the text is not a finite number.
 
-    Other than ``float`` it takes no digits of other scripts, no underscores and no words.
+    Unlike ``float``, it accepts no digits of other scripts, no underscores and no words.
 
     Examples
     --------

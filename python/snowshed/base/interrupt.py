@@ -1,4 +1,4 @@
-"""Interrupts that wait for a safe point instead of breaking off in the middle."""
+"""Interrupts that wait for a safe point."""
 
 from __future__ import annotations
 
@@ -36,12 +36,12 @@ class InterruptRequest:
 
 @contextmanager
 def deferred_interrupts() -> Iterator[InterruptRequest]:
-    """Turn Ctrl-C (SIGINT), SIGTERM and SIGHUP into a request; a second one acts at once.
+    """Turn Ctrl-C (SIGINT), SIGTERM and SIGHUP into a request; a second signal acts immediately.
 
-    A signal that is ignored stays so: SIGHUP of a command started with nohup. Where one block is
-    within another, both are requested to stop.
+    An ignored signal stays ignored: SIGHUP of a command started with nohup. If one block is within
+    another, both are asked to stop.
 
-    Outside the main thread, which alone may handle signals, nothing is changed.
+    Outside the main thread nothing changes, because only the main thread may handle signals.
     """
     request = InterruptRequest()
     if threading.current_thread() is not threading.main_thread():

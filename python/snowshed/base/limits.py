@@ -1,8 +1,8 @@
-"""What a file may cost. Every reader goes by these limits before it takes memory or time.
+"""Limits on the cost of files. Every reader checks them before it uses memory or time.
 
-A file of somebody else may be small and unpack to more than the memory holds, or never end. The
-limits are far above what people have, and low enough that a reader that meets one has taken no more
-than a gigabyte and some seconds.
+A file from elsewhere may be small and unpack to more than the memory, or never end. The limits are
+far above real files, and low enough that a reader needs at most a gigabyte and some seconds to meet
+one.
 """
 
 from __future__ import annotations
@@ -27,9 +27,9 @@ ROWS, WRITTEN_ROWS = 4_000_000, 300_000
 WEATHER_LINE, WEATHER_LINES = 64 * KB, 1_000_000
 #: Members or streams of a packed file; programs that pack in parallel write one per 64 KB and more.
 MEMBERS = 10_000
-#: Bytes that unpacking may need besides what it yields; the strongest level of xz has 65 MB.
+#: Memory that unpacking may need besides its output, bytes; the strongest level of xz needs 65 MB.
 UNPACKING = 80 * MB
-#: Days from one row of weather to the next; no station is silent for longer and goes on.
+#: Largest gap between rows of weather, days; no station is silent for longer and then continues.
 WEATHER_GAP = 50 * 366
 #: Cells of a raster, and bytes of one block of it, which GDAL takes as a whole: with all that is
 #: made of a raster while it is read, that is a gigabyte. The core has the same limit for cells.
@@ -49,14 +49,13 @@ SNOW_CELLS, RELEASE_CORNERS, CELLS_TIMES_CORNERS = 4_000_000, 5000, 200_000_000
 PAGES = 16_384
 #: Bytes of a tag of a TIFF file. The longest are lists of strips, and descriptions as XML.
 TAG = 16 * MB
-#: Numbers of an image that are read at once; they are held up to five times, in 8 bytes each.
+#: Numbers of an image to read in one block; they occupy up to five times 8 bytes each.
 VOXELS_AT_ONCE = 4 * MB
 #: Numbers as text, bytes: some 20 million voxels, whose numbers take eight times as much.
 VOXELS_AS_TEXT = 64 * MB
-#: How many times as large an image may become when it is unpacked, if it is larger than this then.
-#: Segmented snow shrinks to a tenth or a fiftieth; what shrinks more shows nothing.
+#: Largest ratio of an unpacked to a packed image, if the unpacked one is larger than this.
 UNPACKED_RATIO, UNPACKED_FREELY = 200, 256 * MB
-#: Polygons of a file, and corners of all of them, each of which costs some 0.15 ms in a slide.
+#: Largest number of polygons in a file, and of their corners; each costs some 0.15 ms in a slide.
 POLYGONS, CORNERS = 10_000, 50_000
 #: Rings of one polygon: GDAL compares every ring with every other.
 RINGS = 5_000

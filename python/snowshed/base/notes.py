@@ -1,4 +1,4 @@
-"""What a reader assumed, filled, left out or changed, said where the answer stands.
+"""Notes: what a reader assumed, filled, left out or changed.
 
 A note is a Python warning of its own class, so that scripts can filter it, turn it into an error or
 record it. The command line prints it as "note: …". What is stored with results is recorded by
@@ -15,7 +15,7 @@ from types import FrameType
 
 
 class SnowshedNote(UserWarning):
-    """Something that the reader of a result should know; nothing is wrong with the program."""
+    """A fact that the reader of a result should know; the program has no fault."""
 
 
 def tell(text: str) -> None:
@@ -54,7 +54,7 @@ def _package_of(frame: FrameType) -> str:
 
 @contextmanager
 def recorded() -> Iterator[list[str]]:
-    """Collect the notes that are said within the block, each once, and say them after it again."""
+    """Collect the notes of a block, each once, and issue them after it again."""
     notes: list[str] = []
     said: list[warnings.WarningMessage] = []
     try:

@@ -1,4 +1,4 @@
-"""What names a file."""
+"""Types of file names."""
 
 from __future__ import annotations
 

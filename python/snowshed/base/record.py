@@ -102,7 +102,11 @@ class Record(metaclass=_RecordClass):
     @classmethod
     def aliases(cls) -> dict[str, str]:
         """Return the other names of fields, as ``{name: field name}``."""
-        return {name: one.field for name, one in vars(cls).items() if isinstance(one, Alias)}
+        return {
+            name: attribute.field
+            for name, attribute in vars(cls).items()
+            if isinstance(attribute, Alias)
+        }
 
     @classmethod
     def from_data(cls: type[RecordType], data: Mapping[str, object], path: str = "") -> RecordType:

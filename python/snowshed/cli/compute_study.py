@@ -76,7 +76,7 @@ def print_outcome(folder: Path, names: list[str], quiet: bool) -> None:
 def announcement(progress: Progress) -> str:
     """Return the announcement before the first run starts."""
     left = progress.count - progress.done - progress.failed
-    earlier = f" ({progress.count - left} of {progress.count} are there already)"
+    earlier = f" ({progress.count - left} of {progress.count} are done already)"
     slow = _core.slow_kernels_note()
     return (
         f"{runs_text(left)} to compute{earlier if left < progress.count else ''}, "

@@ -1,4 +1,4 @@
-"""The output of ``--dry-run``: what a scene uses and costs, without a step of it."""
+"""The output of ``--dry-run``: the features and the cost of a scene, without a step."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ from click.core import ParameterSource
 def same_command(*more: str) -> str:
     """Return the command that runs now as a shell takes it, with further options.
 
-    Options that it has already are not repeated. Outside a command it is the program alone.
+    Options that it has already are not repeated. Outside a command, only the program is returned.
     """
     context = click.get_current_context(silent=True)
     if context is None:

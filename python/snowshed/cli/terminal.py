@@ -28,7 +28,7 @@ class PlainConsole(Console):
         raise BrokenPipeError(errno.EPIPE, os.strerror(errno.EPIPE))
 
     def render_str(self, text: str, **options: Any) -> Text:
-        """Return a text as it is shown."""
+        """Return a text without harmful characters."""
         return super().render_str(printable(text), **options)
 
     def note(self, text: str) -> None:

@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 #: Parameters of the snow that are named.
 ELASTIC = ("youngs_modulus", "poissons_ratio")
 PLASTIC = ("critical_state_slope", "preconsolidation_pressure", "cohesion", "hardening_factor")
-#: What becomes of the stack between events.
-BETWEEN = {"carry": "the stack stays", "reseed": "the stack is seeded anew"}
+#: Treatment of the stack between events.
+BETWEEN = {"carry": "the stack stays", "reseed": "the stack is reseeded"}
 MOST_LAYERS = 4  # whose thicknesses are named one by one
 
 
@@ -96,9 +96,9 @@ def _slab(slab: dict[str, Any]) -> str:
 def _span(scene: Mapping[str, Any], name: str) -> str:
     """Return a parameter of the snow with its unit; from where to where, if layers differ."""
     layers = (scene.get("slab") or {}).get("layers") or [{}]
-    found = [layer.get("snow", scene["snow"])[name] for layer in layers]
+    values = [layer.get("snow", scene["snow"])[name] for layer in layers]
     known = label(f"snow.{name}")
-    ends = sorted({min(found), max(found)})
+    ends = sorted({min(values), max(values)})
     return " to ".join([*map(known.value, ends[:-1]), known.quantity(ends[-1])])
 
 

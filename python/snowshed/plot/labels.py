@@ -10,7 +10,7 @@ import numpy as np
 
 from snowshed.scene.schema import parameter_units
 
-#: Units of the schema, as they are shown.
+#: Units of the schema, and their form on display.
 SHOWN_UNITS: Mapping[str, str] = {"degrees": "°", "kg/m3": "kg/m³", "m/s2": "m/s²"}
 
 
@@ -23,11 +23,11 @@ class Label:
     name
         In words.
     symbol
-        Short, as the thesis writes it; the name where there is none.
+        Short symbol, as in the thesis; otherwise the name.
     unit
-        Of the values as they are shown; empty for plain numbers.
+        Unit of the values on display; empty for plain numbers.
     scale
-        By how much values in SI units are divided to be shown.
+        Divisor from values in SI units to values on display.
     """
 
     name: str

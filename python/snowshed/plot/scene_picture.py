@@ -31,7 +31,7 @@ def scene_figure(scene: SceneLike) -> Figure:
     Parameters
     ----------
     scene
-        Anything that can be run.
+        Any scene that can run.
 
     Raises
     ------

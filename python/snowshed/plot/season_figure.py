@@ -69,11 +69,11 @@ def season_figure(
     panel
         The panel's upper and lower edge, (x, z) in m.
     contact
-        The first contact of the snow with the panel; None: there is none.
+        The first contact of the snow with the panel, if any.
     title
         Above the figure, before the key numbers of the scene.
     snow
-        How well the snow of the season is known, in a line.
+        A line on the quality of the snow data.
     """
     figure = blank(*SIZE)
     load, stack, side = figure.subplots(3, 1, height_ratios=(1.0, 1.1, 1.2))
@@ -98,7 +98,7 @@ def season_figure(
 
 
 def _draw_panel_snow(axes: Axes, dates: Floats, table: pd.DataFrame) -> None:
-    """Draw what pulls at the snow on the panel and what holds it, and when it lets go."""
+    """Draw the forces that pull and hold the snow on the panel, and its releases."""
     released = (table["released"] == "yes").to_numpy()
     axes.vlines(dates, 0.0, table["driving_pa"], color=STACK, linewidth=3.0, label="downslope pull")
     axes.plot(

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 LEAST_SHOWN = 0.01  # m of snow
-#: What can be drawn: the name of the map, its label, its colours.
+#: Available maps: name, label, colours.
 PEAKS = {
     "peak_speed": ("peak speed, m/s", "YlOrRd"),
     "peak_thickness": ("peak thickness, m", "YlGnBu"),
@@ -34,7 +34,7 @@ PEAKS = {
 def slide_figure(
     maps: SlideMaps, outlines: Sequence[Outline], quantity: str = "peak_speed", area: float = 45.0
 ) -> Figure:
-    """Return the map of a slide: hillshade, contours, a peak value, and what was released.
+    """Return the map of a slide: hillshade, contours, a peak value, and the release areas.
 
     Parameters
     ----------
@@ -43,9 +43,9 @@ def slide_figure(
     outlines
         Corners of the release areas, in map coordinates, m.
     quantity
-        One of `PEAKS`.
+        Name in `PEAKS`.
     area
-        Of the figure's map, square inches.
+        Area of the figure's map, square inches.
     """
     from matplotlib import rc_context
 

@@ -148,7 +148,7 @@ def _draw_particles(
 ) -> None:
     """Draw particles in the size they have, those that lie nearest in front.
 
-    Those that are no part of the stack, because something holds them, are grey.
+    Particles outside the stack, because something holds them, are grey.
     """
     positions, events = simulation.positions(), simulation.events()
     if len(positions) == 0:
@@ -166,7 +166,7 @@ def _draw_particles(
 
 
 def _spacing(scene: Mapping[str, Any]) -> float:
-    """Return the mean distance of particles as they are seeded, m."""
+    """Return the mean distance of particles after seeding, m."""
     count: float = scene.get("seeding", {}).get("particles_per_voxel", 1.0)
     return float(resolution_of(scene) / count ** (1 / scene["dimension"]))
 
@@ -178,7 +178,7 @@ def _points_per_metre(axes: Axes) -> float:
 
 
 def _name_events(axes: Axes, simulation: _core.Simulation, *, apart: bool) -> None:
-    """Say which colour is which event, where there is air: at the upper right."""
+    """Draw a legend of the events in free space, at the upper right."""
     count = max(simulation.event, 1)
     shades = _shades(count)
     named = [(f"event {i}", shades[i - 1]) for i in named_events(count)]
@@ -208,7 +208,7 @@ def _draw_ground(axes: Axes, tilt: float) -> None:
 
 
 def _draw_obstacles(axes: Axes, simulation: _core.Simulation) -> None:
-    """Draw what the scene's obstacles are in the plane y = 0."""
+    """Draw the section of the scene's obstacles at y = 0."""
     x = np.linspace(*axes.get_xlim(), 600)
     z = np.linspace(*axes.get_ylim(), 400)
     points = np.stack(np.meshgrid(x, 0.0, z, indexing="ij"), axis=-1).reshape(-1, 3)
@@ -262,7 +262,7 @@ def _length_ends(shown: Extent) -> Floats:
 
 
 def _frame(shown: Extent) -> Floats:
-    """Return the lower ends and the top of what is shown, on levelled ground."""
+    """Return the lower ends and the top of the plot, on levelled ground."""
     top = _ground_at_crest(shown) + shown.height
     return np.vstack([_length_ends(shown), [[shown.crest, top]], _profile(shown)])
 

@@ -1,4 +1,4 @@
-"""Scenes: what is to be simulated, as data.
+"""Scenes: simulations described as data.
 
 Examples
 --------

@@ -17,7 +17,7 @@ class Edge:
     x, z
         The edge.
     center
-        Of the sliding face.
+        Center of the sliding face.
     normal
         Outward from the face.
     """

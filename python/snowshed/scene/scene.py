@@ -1,7 +1,7 @@
-"""Scenes: what is to be simulated, set value by value and then resolved by the core.
+"""Scenes: values that are set one by one, and resolved by the core.
 
-This takes the place of the thesis's Lua remote controller (A.3.1): values may be set, appended
-and overridden, the last one wins, then the scene is resolved.
+This replaces the thesis's Lua remote controller (A.3.1): values may be set, appended and
+overridden; the last one wins, then the scene is resolved.
 """
 
 from __future__ import annotations
@@ -51,14 +51,14 @@ ALWAYS = ("snow", "seeding", SETTINGS_KEY, "events", "output")
 NOT_GIVEN: Any = None
 
 SLIP_CHANGED = (
-    'condition "slip" lets no snow leave the surface but over its edge; '
-    'what it did up to version 1 of scenes is "separate" now'
+    '"slip" now holds snow on the surface except at its edge; '
+    'for the behaviour of version 1, use "separate" now'
 )
 
 
 @dataclass
 class Scene(Record):
-    """A scene in the making; fields that are None take the core's defaults. SI units.
+    """A scene under construction; fields that are None use the core's defaults. SI units.
 
     Attributes
     ----------
@@ -269,14 +269,14 @@ class Scene(Record):
         Parameters
         ----------
         values
-            As of `update`: dotted paths, and nested mappings.
+            As for `update`: dotted paths, and nested mappings.
         **parts
             The same for names without a dot, such as ``panel={"tilt": 30}``.
 
         Raises
         ------
         InputError
-            As of `update`.
+            As for `update`.
 
         Examples
         --------
@@ -301,14 +301,14 @@ class Scene(Record):
     def set(self, path: str, value: object) -> Scene:
         """Set the value at a dotted path such as ``"snow.density"`` or ``"obstacles.0.friction"``.
 
-        Objects on the way that were not given are created. Returns the scene itself, which is
-        changed; `with_` returns a changed copy.
+        Missing objects along the path are created. Returns this scene, which is changed; `with_`
+        returns a changed copy.
 
         Raises
         ------
         InputError
-            If the path names nothing a scene has, or what is there takes no such value. The scene
-            is then as it was.
+            If the path does not exist, or the value is of a wrong type. The scene is then
+            unchanged.
         """
         with locate(self, path) as (record, key, where):
             record.assign(key, value, where)
@@ -320,23 +320,23 @@ class Scene(Record):
         Raises
         ------
         InputError
-            If the path names nothing a scene has, or something that is no list, or if the list
-            takes no such value. The scene is then as it was.
+            If the path does not exist, or is not a list, or the list does not accept the value. The
+            scene is then unchanged.
         """
         with locate(self, path) as (record, key, where):
             held = getattr(record, record.field_of(key, where))
             if not isinstance(held, (list, tuple, type(None))):
-                raise InputError(f"{where}/{key}: nothing can be appended to what is no list")
+                raise InputError(f"{where}/{key}: is not a list; cannot append")
             record.assign(key, [*(held or []), value], where)
         return self
 
     def update(self, values: Mapping[str, object]) -> Scene:
-        """Set several values; keys are dotted paths, and nested mappings go into what they name.
+        """Set several values; keys are dotted paths, values may be nested mappings.
 
         Raises
         ------
         InputError
-            As of `set`, or if the same is given by two names. The scene is then as it was.
+            As for `set`, or if a value is given by two names. The scene is then unchanged.
         """
         copy.deepcopy(self)._update(values, {})  # fails, if it must, before anything is changed
         self._update(values, {})
@@ -360,18 +360,18 @@ class Scene(Record):
                     record.assign(key, value, where)
 
     def resolve(self) -> ResolvedScene:
-        """Have the core validate the scene and fill its defaults.
+        """Validate the scene and fill its defaults, in the core.
 
         Raises
         ------
         InputError
-            Naming the JSON path, what is wrong with it, and what is allowed.
+            Naming the JSON path, the error, and the allowed values.
         """
         self._warn_of_slip()
         return ResolvedScene.parse(json.dumps(self.to_data()), self._base_dir)
 
     def _warn_of_slip(self) -> None:
-        """Say, for one version, that slip has another meaning; files tell it by their version."""
+        """Note, for one version, that slip has another meaning; files state it by their version."""
         parts = [self.panel, self.ground, *(self.obstacles or ())]
         if self.snowshed != 1 and any(part and part.condition == "slip" for part in parts):
             warnings.warn(SLIP_CHANGED, FutureWarning, stacklevel=3)
@@ -386,7 +386,7 @@ class Scene(Record):
 def _refuse_null(data: JsonValue, where: str) -> None:
     """Refuse null: in a file, as for the core, a key that is not given is left out."""
     if data is None:
-        raise InputError(f"{where or '/'}: null is no value; leave the key out")
+        raise InputError(f"{where or '/'}: null is not a value; leave the key out")
     if where.count("/") > 2 * DEEPEST:
         raise InputError(f"{where[:100]}...: nested more than {DEEPEST} deep")
     items = enumerate(data) if isinstance(data, list) else ()
@@ -399,7 +399,7 @@ SceneLike = Union[Scene, ResolvedScene, Mapping[str, JsonValue], PathLike]
 
 
 def resolve_scene(scene: SceneLike) -> ResolvedScene:
-    """Return the complete scene of whatever stands for one.
+    """Return the complete scene of a `Scene`, JSON data, or a file.
 
     Parameters
     ----------
@@ -409,7 +409,7 @@ def resolve_scene(scene: SceneLike) -> ResolvedScene:
     Raises
     ------
     InputError
-        If the scene is wrong, or `scene` is none of these.
+        If the scene is wrong, or `scene` is of another type.
     OSError
         If the file cannot be read.
 

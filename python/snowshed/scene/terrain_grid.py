@@ -22,9 +22,9 @@ def slide_terrain(scene: SceneLike) -> Raster:
         If the terrain cannot be read.
     """
     ready = resolve_scene(scene)
-    found = _core.Simulation(ready.core, ready.base_dir).slide_maps()
+    maps = _core.Simulation(ready.core, ready.base_dir).slide_maps()
     crs = str(ready.data["terrain"]["crs"])
-    return Raster(found["terrain"], found["west"], found["south"], found["cell"], crs=crs)
+    return Raster(maps["terrain"], maps["west"], maps["south"], maps["cell"], crs=crs)
 
 
 def release_outlines(scene: Mapping[str, Any]) -> list[Outline]:

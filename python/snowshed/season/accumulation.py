@@ -37,7 +37,7 @@ class Day:
         Number of the slide-off that follows, from 1; None if the snow stayed, or waits for that of
         later releases (`SeasonSettings.pool_below`).
     slab_load, slab_thickness
-        Of the snow of that slide-off, as `load` and `thickness`.
+        Load and thickness of the slab that slides, as `load` and `thickness`.
     """
 
     weather: Weather
@@ -69,7 +69,7 @@ def accumulate(
     tilt
         Phi, the tilt of the panel, degrees.
     gravity
-        m/s2.
+        Gravity, m/s2.
 
     Raises
     ------
@@ -105,7 +105,7 @@ def accumulate(
 def _slide_offs(days: Sequence[Day], pool_below: float) -> list[Day]:
     """Return the days with the slide-offs that the releases make.
 
-    Snow of thin releases waits until it makes a slab; what is left of it slides last.
+    Snow of thin releases waits until it makes a slab; the rest slides last.
     """
     releases = [number for number, day in enumerate(days) if day.released]
     made = list(days)
@@ -126,7 +126,7 @@ def pauses(days: Sequence[Day]) -> dict[int, list[Interval]]:
 
     The temperature of a row of the season file holds until the next row.
     """
-    found: dict[int, list[Interval]] = {}
+    intervals: dict[int, list[Interval]] = {}
     waiting: Optional[list[Interval]] = None
     for day, earlier in zip(days, [None, *days]):
         if earlier is not None and waiting is not None:
@@ -134,9 +134,9 @@ def pauses(days: Sequence[Day]) -> dict[int, list[Interval]]:
             waiting.append(Interval(elapsed, earlier.weather.temperature))
         if day.event is not None:
             if waiting is not None:
-                found[day.event] = waiting
+                intervals[day.event] = waiting
             waiting = []
-    return found
+    return intervals
 
 
 def stack_ageing(days: Sequence[Day], settings: SeasonSettings) -> Optional[Ageing]:

@@ -1,4 +1,4 @@
-"""Whether rows can be the weather of seasons: their order, gaps, and amounts of snow."""
+"""Plausibility of the rows of seasons: order, gaps, and amounts of snow."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ from snowshed.season.source import Source
 from snowshed.season.weather_row import MOST_SNOWFALL, Weather
 
 MOST_ROWS = 100_000  # daily data of the longest records, and hourly seasons
-#: Snowfalls of which half are deeper are not in metres.
+#: Median above which snowfalls cannot be in metres.
 TYPICAL_SNOWFALL = 0.7  # m
 DAY, YEAR = 86400.0, 366.0  # s, days
 YEARS = (1000, 9000)  # of weather, measured or made
-#: So few rows that a gap of so many days sets apart from all others have a year that is mistyped.
+#: Number of rows, and of days of a gap: so few rows so far from all others have a mistyped year.
 FEW, LONE = 3, 3 * YEAR
 NO_SNOW = "it never snows"
 HINT = "is it in cm, mm or inches?"
 
 
 def check_rows(
-    rows: Sequence[Weather], places: Sequence[Row], name: str, *, snowless: bool = False
+    rows: Sequence[Weather], table_rows: Sequence[Row], name: str, *, snowless: bool = False
 ) -> None:
     """Raise InputError if rows are no weather of seasons.
 
@@ -32,8 +32,8 @@ def check_rows(
     ----------
     rows
         The weather.
-    places
-        Where each row stands, for messages.
+    table_rows
+        Position of each row, for messages.
     name
         The file.
     snowless
@@ -43,14 +43,14 @@ def check_rows(
         raise InputError(f"{name}: no rows below the header")
     if len(rows) > MOST_ROWS:
         raise InputError(f"{name}: {len(rows)} rows; at most {MOST_ROWS} are allowed")
-    for earlier, later, before, row in zip(rows, rows[1:], places, places[1:]):
+    for earlier, later, before, row in zip(rows, rows[1:], table_rows, table_rows[1:]):
         if later.date <= earlier.date:
             raise InputError(
                 f"{row.where}, column date: {later.date.isoformat(' ')} is not after "
                 f"{before.place}, {earlier.date.isoformat(' ')}"
             )
-    _check_years(rows, places)
-    _check_amounts(rows, places, name)
+    _check_years(rows, table_rows)
+    _check_amounts(rows, table_rows, name)
     if not snowless and not any(row.snowfall for row in rows):
         raise InputError(f"{name}: {NO_SNOW}; the snowfall of every row is 0")
 
@@ -82,8 +82,8 @@ def _days(earlier: Weather, later: Weather) -> float:
     return (later.date - earlier.date).total_seconds() / DAY
 
 
-def _check_years(rows: Sequence[Weather], places: Sequence[Row]) -> None:
-    """Refuse years without weather stations, gaps of decades, and of years beside few rows."""
+def _check_years(rows: Sequence[Weather], table_rows: Sequence[Row]) -> None:
+    """Refuse implausible years, gaps of decades, and isolated years."""
     for number, (earlier, later) in enumerate(zip(rows, rows[1:]), 1):
         days = _days(earlier, later)
         if days <= YEAR:
@@ -91,11 +91,12 @@ def _check_years(rows: Sequence[Weather], places: Sequence[Row]) -> None:
         few = min(number, len(rows) - number) <= FEW
         if days > WEATHER_GAP or (few and days > LONE and later.source is Source.GIVEN):
             raise InputError(
-                f"{places[number].where}, column date: {later.date.date()} is {days / 365.25:.0f} "
-                f"years after {places[number - 1].place}, {earlier.date.date()}; is a year "
+                f"{table_rows[number].where}, column date: {later.date.date()} is "
+                f"{days / 365.25:.0f} "
+                f"years after {table_rows[number - 1].place}, {earlier.date.date()}; is a year "
                 "mistyped?"
             )
-    for row, place in ((rows[0], places[0]), (rows[-1], places[-1])):
+    for row, place in ((rows[0], table_rows[0]), (rows[-1], table_rows[-1])):
         if not YEARS[0] <= row.date.year <= YEARS[1]:
             raise InputError(
                 f"{place.where}, column date: {row.date.date()}; allowed: the years {YEARS[0]} to "
@@ -103,8 +104,8 @@ def _check_years(rows: Sequence[Weather], places: Sequence[Row]) -> None:
             )
 
 
-def _check_amounts(rows: Sequence[Weather], places: Sequence[Row], name: str) -> None:
-    """Refuse amounts of a day, or of a winter, that never were."""
+def _check_amounts(rows: Sequence[Weather], table_rows: Sequence[Row], name: str) -> None:
+    """Refuse record-breaking amounts of a day, or of a winter."""
     falls = _daily_sums(rows)
     for day, (total, first) in falls.items():
         whole = first > 0 and (rows[first].date - rows[first - 1].date).total_seconds() <= DAY
@@ -113,7 +114,8 @@ def _check_amounts(rows: Sequence[Weather], places: Sequence[Row], name: str) ->
         most = RECORD_DAY if whole or not single else MOST_SNOWFALL
         if total > most:
             raise InputError(
-                f"{places[first].where}, column snowfall_m: {total:.3g} m of snow on {day.date()}; "
+                f"{table_rows[first].where}, column snowfall_m: {total:.3g} m of snow on "
+                f"{day.date()}; "
                 f"{RECORD_WORDS}; {HINT}"
             )
     totals = sorted(total for total, _ in falls.values() if total)

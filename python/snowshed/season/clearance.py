@@ -45,9 +45,9 @@ def clearance(
     outline : (k, 2)
         Profile of the stack on levelled ground, m, as in outline.csv.
     height
-        Of the stack, m.
+        Height of the stack, m.
     cover
-        Depth of the natural snow cover, m, on top of which the stack lies.
+        Depth of the natural snow cover below the stack, m.
 
     Examples
     --------
@@ -81,8 +81,8 @@ def panel_ends(scene: Mapping[str, Any]) -> list[list[float]]:
     """Return the panel's upper and lower edge, [x, z], on levelled ground."""
     edge = panel_edge(scene)
     ends = np.array([[edge.upper[0], 0.0, edge.upper[1]], [edge.x, 0.0, edge.z]])
-    found: list[list[float]] = level(ends, _tilt(scene))[:, [0, 2]].tolist()
-    return found
+    levelled: list[list[float]] = level(ends, _tilt(scene))[:, [0, 2]].tolist()
+    return levelled
 
 
 def _tilt(scene: Mapping[str, Any]) -> float:
@@ -90,14 +90,14 @@ def _tilt(scene: Mapping[str, Any]) -> float:
 
 
 def _surface(outline: Floats, x: float) -> float:
-    """Return how high the snow lies at a place, m; none lies beyond the ends of the stack."""
+    """Return the height of the snow at x, m; zero beyond the ends of the stack."""
     if len(outline) == 0:
         return 0.0
-    places, heights = outline[:, 0], outline[:, 1]
-    return float(np.interp(x, places, heights, left=0.0, right=0.0))
+    positions, heights = outline[:, 0], outline[:, 1]
+    return float(np.interp(x, positions, heights, left=0.0, right=0.0))
 
 
-#: What may touch the panel first, by the columns of the table that tell it.
+#: Causes of a first contact, by the columns of the table that show it.
 CAUSES = (
     ("slab", "the snow on the panel and the stack touch"),
     ("below", "the snow below the lower edge reaches it"),
@@ -131,7 +131,7 @@ class Contact:
 
 
 def first_contact(table: pd.DataFrame, dx: float) -> Optional[Contact]:
-    """Return the first row of a season after which anything touches the panel; None: nothing does.
+    """Return the first row of a season after a contact with the panel, if any.
 
     Parameters
     ----------
@@ -162,7 +162,7 @@ def first_contact(table: pd.DataFrame, dx: float) -> Optional[Contact]:
 
 
 def first_reached(clearances: Sequence[float], dx: float) -> Optional[int]:
-    """Return the first event after which a clearance is gone, from 1; None: it never is.
+    """Return the first event after which a clearance is gone, from 1, if any.
 
     A clearance of `dx`, m, counts as none: the grid does not resolve a gap below one cell, and the
     particles' centres are half a spacing below the surface.

@@ -77,11 +77,11 @@ class SnowColumn:
         self.masses, self.densities = left[left > 0.0], self.densities[left > 0.0]
 
     def clear(self) -> None:
-        """Take all snow away."""
+        """Remove all snow."""
         self.masses, self.densities = np.zeros(0), np.zeros(0)
 
     def settle(self, law: Optional[SettlingLaw], seconds: float, temperature: float) -> None:
-        """Let the layers settle for some time at a temperature, degrees C; None: not at all."""
+        """Let the layers settle for some time at a temperature, degrees C; None: no settling."""
         if law is None or not len(self.masses):
             return
         stress = self.load_factor * (np.cumsum(self.masses[::-1])[::-1] - 0.5 * self.masses)

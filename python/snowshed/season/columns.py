@@ -1,4 +1,4 @@
-"""Which column of a station tells a winter's snow, where several do and contradict each other.
+"""Choice of a winter's column of snow, if several of a station contradict each other.
 
 New snow measured by hand goes first, then the gauge, then the depth of the cover. Two columns
 contradict each other where, on the days of a winter that both know, one has more than twice the
@@ -31,9 +31,9 @@ class Column:
     Attributes
     ----------
     source
-        Which.
+        Source of the column.
     snow : (n,)
-        m on each day; NaN: not known.
+        New snow of each day, m; NaN: unknown.
     filled : (n,)
         Whether its value is no observation of that day.
     """
@@ -55,13 +55,13 @@ class Choice:
     Attributes
     ----------
     observing
-        Columns of which a day takes the first that knows it.
+        Columns in order of preference; a day uses the first with a value.
     filling
-        The column that fills what none of them knows; None: none does.
+        The column that fills the remaining days, if any.
     sums
-        What each column has on the days that all of those compared know, m.
+        Sum of each column over the days that all compared columns cover, m.
     contradicted
-        Sources that were left out or put last, because another one contradicts them.
+        Sources that were left out or used last, because another contradicts them.
     """
 
     observing: Sequence[Source]
@@ -76,9 +76,9 @@ class Chooser:
     Parameters
     ----------
     columns
-        By their sources.
+        Columns by their sources.
     temperature : (n,)
-        Of every day, degrees C.
+        Temperature of every day, degrees C.
     only
         The one source that observes; None: by the rules of this module.
     """
@@ -94,7 +94,9 @@ class Chooser:
         }
         idle = {source for source in self._all if source is not only and self._idle(source)}
         self._idle_columns = idle
-        self.columns = {one: column for one, column in self._all.items() if one not in idle}
+        self.columns = {
+            source: column for source, column in self._all.items() if source not in idle
+        }
         self._gauge_fails = Source.DEPTH in self._against(Source.GAUGE, everything)
 
     def of(self, winter: Booleans) -> Choice:
@@ -125,7 +127,7 @@ class Chooser:
             return Choice([Source.GAUGE, *order], None, sums, frozenset({Source.HAND}))
         filling: Source | None = None
         if Source.GAUGE in there:
-            agrees = not any(self._contradict(Source.GAUGE, one, winter) for one in order)
+            agrees = not any(self._contradict(Source.GAUGE, source, winter) for source in order)
             filling = Source.GAUGE if agrees and not self._gauge_fails else None
         return Choice(order, filling, sums, frozenset(wrong))
 
@@ -140,7 +142,9 @@ class Chooser:
             return Choice([Source.DEPTH], None, sums)
         if self._gauge_fails:
             return Choice([], Source.GAUGE, sums)
-        return Choice([one for one in (Source.GAUGE, Source.DEPTH) if one in there], None, sums)
+        return Choice(
+            [source for source in (Source.GAUGE, Source.DEPTH) if source in there], None, sums
+        )
 
     def _against(self, source: Source, days: Booleans) -> set[Source]:
         """Return the other columns that contradict one with more snow than it has."""
@@ -153,15 +157,15 @@ class Chooser:
             and np.subtract(*self._pair(other, source, days)) > 0.0
         }
 
-    def _contradict(self, one: Source, other: Source, days: Booleans) -> bool:
-        if one not in self.columns or other not in self.columns:
+    def _contradict(self, first: Source, other: Source, days: Booleans) -> bool:
+        if first not in self.columns or other not in self.columns:
             return False
-        less, more = sorted(self._pair(one, other, days))
+        less, more = sorted(self._pair(first, other, days))
         return bool(more > CONTRADICTION * less and more - less > LEAST_DIFFERENCE)
 
-    def _pair(self, one: Source, other: Source, days: Booleans) -> tuple[float, float]:
+    def _pair(self, reference: Source, other: Source, days: Booleans) -> tuple[float, float]:
         """Return the sums of two columns on the days that both know."""
-        first, second = self.columns[one], self.columns[other]
+        first, second = self.columns[reference], self.columns[other]
         both = days & first.known & second.known
         return float(first.snow[both].sum()), float(second.snow[both].sum())
 
@@ -172,15 +176,17 @@ class Chooser:
 
     def _sums(self, winter: Booleans) -> dict[Source, float]:
         """Return the sum of each column on the days that all know which know any of the winter."""
-        there = [one for one in self._all.values() if one.known[winter].any()]
+        there = [column for column in self._all.values() if column.known[winter].any()]
         both = winter.copy()
         for column in there:
             both &= column.known
         days = both if both.any() else winter
-        return {one.source: float(np.nansum(one.snow[days & one.known])) for one in there}
+        return {
+            column.source: float(np.nansum(column.snow[days & column.known])) for column in there
+        }
 
     def _idle(self, source: Source) -> bool:
-        """Return whether a column is zero throughout the file, and another one tells of snow."""
+        """Return whether a column is zero throughout the file although another one has snow."""
         own = self._all[source]
         if np.nansum(own.snow) > 0.0:
             return False

@@ -1,4 +1,4 @@
-"""The natural snow cover on the ground during a season, on top of which the stack lies.
+"""The natural snow cover on the ground during a season, below the stack.
 
 It is as deep as the season file says, on a straight line between two readings. Before the first
 one, in gaps of more than two months, and when the readings end before the season does, it is a
@@ -39,10 +39,10 @@ def natural_cover(
     season
         The rows, in order.
     settings
-        Says where the depth comes from (`SeasonSettings.cover`), how snow settles, and the density
-        of new snow.
+        Settings: source of the depth (`SeasonSettings.cover`), law of settling, and density of new
+        snow.
     gravity
-        m/s2.
+        Gravity, m/s2.
 
     Examples
     --------
@@ -78,7 +78,7 @@ def natural_cover(
 
 
 def end_of_readings(season: Sequence[Weather]) -> Optional[Weather]:
-    """Return the row of the last reading of the depth, if the season goes on with snow on it.
+    """Return the row of the last reading of the depth if snow remains on the ground.
 
     Examples
     --------
@@ -97,7 +97,7 @@ def end_of_readings(season: Sequence[Weather]) -> Optional[Weather]:
 
 def _measured(season: Sequence[Weather]) -> list[Optional[float]]:
     """Return the depth that readings tell at each row, m; None where they do not."""
-    found: list[Optional[float]] = [row.snow_depth for row in season]
+    depths: list[Optional[float]] = [row.snow_depth for row in season]
     readings = [number for number, row in enumerate(season) if row.snow_depth is not None]
     for before, after in zip(readings, readings[1:]):
         first, last = season[before], season[after]
@@ -107,5 +107,5 @@ def _measured(season: Sequence[Weather]) -> list[Optional[float]]:
         low, high = first.snow_depth or 0.0, last.snow_depth or 0.0
         for number in range(before + 1, after):
             part = (season[number].date - first.date).total_seconds() / span
-            found[number] = low + part * (high - low)
-    return found
+            depths[number] = low + part * (high - low)
+    return depths

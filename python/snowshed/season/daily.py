@@ -1,4 +1,4 @@
-"""The days of a station: what each of its quantities is on each day, and where it is not known."""
+"""Daily quantities of a station, and their gaps."""
 
 from __future__ import annotations
 
@@ -26,22 +26,22 @@ FOLLOWING = 2.0  # hours between readings that are held against that rate
 
 @dataclass(frozen=True)
 class Days:
-    """Days of a station, in order; NaN: not known.
+    """Days of a station, in order; NaN: unknown.
 
     Attributes
     ----------
     dates
         The days (n).
     lines : (n,)
-        Where each is in the file; a day without a row has that of the next one.
+        Position of each day in the file; a day without a row has that of the next row.
     there : (n,)
         Whether the file has anything of the day.
     temperature, new_snow, water, depth : (n,)
         Mean, degrees C; sums, m and mm; depth of the snow cover, m: the median of its readings, so
         that neither noise nor a single wrong reading is snow.
     level : (n,)
-        The depth without the jumps that are no weather (seams, and what is faster than snow falls).
-        Only its differences mean anything.
+        The depth without jumps that are not weather (seams, and rises faster than snowfall). Only
+        its differences are meaningful.
     part_snow, part_water : (n,)
         Whether the sum is of a part of the day only.
     seams : (n,)
@@ -119,16 +119,16 @@ def _calendar(known: set[date]) -> list[date]:
 
 
 def _lines(dates: Sequence[date], lines: dict[date, int]) -> list[int]:
-    found: list[int] = []
+    indices: list[int] = []
     following = lines[max(lines)]
     for day in reversed(dates):
         following = lines.get(day, following)
-        found.append(following)
-    return found[::-1]
+        indices.append(following)
+    return indices[::-1]
 
 
 def _sums(rows: Sequence[Observation], name: str) -> tuple[dict[date, float], set[date]]:
-    """Return the sum of an amount on each day, and the days of which it covers only a part."""
+    """Return the sum of an amount on each day, and the days that it covers only partly."""
     total: dict[date, float] = {}
     hours: dict[date, float] = {}
     for row in rows:
@@ -157,7 +157,9 @@ def _disjoint(station: Station) -> Sequence[Observation]:
     clocks = Counter((row.time.hour, row.time.minute) for row in told)
     if not clocks:
         return ()
-    hour, minute = max(clocks, key=lambda one: (clocks[one], -abs(one[0] + one[1] / 60 - MORNING)))
+    hour, minute = max(
+        clocks, key=lambda clock: (clocks[clock], -abs(clock[0] + clock[1] / 60 - MORNING))
+    )
     return list(_read_at(told, hour, minute))
 
 
@@ -212,7 +214,7 @@ def _depths(
 def _is_continuous(rows: Sequence[Observation]) -> bool:
     """Return whether the depth changes several times a day, so that an hour's change is one.
 
-    Hourly files may repeat a depth that was read once a day; its change then is that of the day.
+    Hourly files may repeat a depth that is read once a day; then a change belongs to the whole day.
     """
     changes: Counter[date] = Counter()
     before: float | None = None

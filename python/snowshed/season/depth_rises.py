@@ -1,9 +1,8 @@
-"""New snow from the rises of the snow depth, and which readings of the depth are none.
+"""New snow from the rises of the snow depth, without invalid readings.
 
-A rise from one day to the next is new snow. Since snow settles at the same time, it is too little.
-A rise over some days without a reading is shared out among them. No snowfall are: a rise beyond the
-record of 24 hours, a spike or a drop-out that the next readings take back, and the joint of two
-series.
+A rise from one day to the next is new snow; it is too small, because snow settles meanwhile. A rise
+over some days without a reading is divided among them. These are not snowfall: a rise beyond the
+record of 24 hours, a spike or a drop-out that the next readings revert, and the seam of two series.
 """
 
 from __future__ import annotations
@@ -23,7 +22,7 @@ LONGEST_TOTAL = 4  # days from reading to reading whose rise is still an observa
 SPIKE = 0.3  # m; from there on a change may be a spike
 TAKEN_BACK = 0.8  # of a spike, by the reading that ends it
 NO_MELT = 1.0  # degrees C; below, so much new snow does not vanish within days
-#: How long a spike, a drop-out and an impossible change may last, days.
+#: Longest duration of a spike, a drop-out and an impossible change, days.
 SPIKE_DAYS, DROPOUT_DAYS, IMPOSSIBLE_DAYS = 2, 7, 60
 
 
@@ -34,9 +33,9 @@ class Total:
     Attributes
     ----------
     days
-        Their numbers.
+        Numbers of the days.
     rise
-        m.
+        Rise of the depth, m.
     """
 
     days: range
@@ -50,15 +49,15 @@ class DepthSnow:
     Attributes
     ----------
     snow : (n,)
-        m on each day; NaN: not known.
+        New snow of each day, m; NaN: unknown.
     filled : (n,)
-        Whether it is shared out over so many days that nobody observed it.
+        Whether a rise is spread over so many days that it counts as unobserved.
     depth : (n,)
         The depth without wrong readings, m.
     totals
         Rises over several days.
     notes
-        What was left out, and why.
+        Notes on left-out readings, with reasons.
     """
 
     snow: Floats
@@ -76,60 +75,60 @@ def snow_of_depth(days: Days, temperature: Floats) -> DepthSnow:
     days
         From `days_of_station`.
     temperature : (n,)
-        Of every day, degrees C.
+        Temperature of every day, degrees C.
     """
     ordinals = days.ordinals
     wrong = _wrong(ordinals, days.level, temperature, days.seams)
     wrong |= _wrong(ordinals, days.depth, temperature, days.seams)
     level = np.where(wrong, np.nan, days.level)
-    found = DepthSnow(
+    snow = DepthSnow(
         np.full(len(ordinals), np.nan),
         np.zeros(len(ordinals), dtype=bool),
         np.where(wrong, np.nan, days.depth),
     )
-    _tell_jumps(days, found)
+    _tell_jumps(days, snow)
     if wrong.any():
         numbers = np.flatnonzero(wrong)
-        found.notes.append(
+        snow.notes.append(
             f"{_times(len(numbers), 'reading')} of the snow depth "
             f"({_some(days.dates, numbers)}) went up or down by {SPIKE:g} m or more and was taken "
-            "back: a spike or a drop-out of the sensor, which is no snow"
+            "back: a spike or a drop-out of the sensor, not snow"
         )
     readings = np.flatnonzero(~np.isnan(level))
     if len(readings):
-        found.snow[readings[0]] = 0.0
+        snow.snow[readings[0]] = 0.0
     for before, after in zip(readings, readings[1:]):
-        _take_rise(days, found, int(before), int(after), float(level[after] - level[before]))
-    _tell_gaps(days, found)
-    return found
+        _take_rise(days, snow, int(before), int(after), float(level[after] - level[before]))
+    _tell_gaps(days, snow)
+    return snow
 
 
-def _take_rise(days: Days, found: DepthSnow, before: int, after: int, rise: float) -> None:
+def _take_rise(days: Days, snow: DepthSnow, before: int, after: int, rise: float) -> None:
     """Enter the rise from one reading to the next."""
     span = days.dates[after].toordinal() - days.dates[before].toordinal()
     own = slice(before + 1, after + 1)
     said = f"{rise:.2f} m from {days.dates[before]} to {days.dates[after]}"
     if rise > RECORD_DAY * span:
-        found.notes.append(f"the snow depth rises by {said}, which is no snowfall: {RECORD_WORDS}")
+        snow.notes.append(f"the snow depth rises by {said}, which is not snowfall: {RECORD_WORDS}")
         return
     if span > LONGEST_GAP + 1:
         if rise >= LEAST_RISE:
-            found.notes.append(f"the snow depth rises by {said}, over a gap; it is not counted")
-        found.snow[after] = 0.0
+            snow.notes.append(f"the snow depth rises by {said}, over a gap; it is not counted")
+        snow.snow[after] = 0.0
         return
     if span > LONGEST_TOTAL and rise < LEAST_RISE:
-        return  # the snow may have fallen and settled: nobody knows
+        return  # the snow may have fallen and settled: unknown
     share = rise / span if rise >= LEAST_RISE else 0.0
-    found.snow[own] = share
+    snow.snow[own] = share
     if span > 1 and share:
-        found.totals.append(Total(range(before + 1, after + 1), rise))
+        snow.totals.append(Total(range(before + 1, after + 1), rise))
     if span > LONGEST_TOTAL:
-        found.filled[own] = True
+        snow.filled[own] = True
 
 
-def _tell_gaps(days: Days, found: DepthSnow) -> None:
-    """Say which rises are shared out over days that nobody observed."""
-    gaps = [total for total in found.totals if len(total.days) > LONGEST_TOTAL]
+def _tell_gaps(days: Days, snow: DepthSnow) -> None:
+    """Note the rises that are spread over unobserved days."""
+    gaps = [total for total in snow.totals if len(total.days) > LONGEST_TOTAL]
     if not gaps:
         return
     most = max(gaps, key=lambda total: total.rise)
@@ -138,9 +137,9 @@ def _tell_gaps(days: Days, found: DepthSnow) -> None:
         f"which {len(most.days) - 1} have no reading"
     )
     among = f" over {len(gaps)} gaps without readings, the most" if len(gaps) > 1 else ""
-    found.notes.append(
-        f"the snow depth rises{among} {said}: that is no snowfall of a day, and is shared out "
-        "evenly among its days"
+    snow.notes.append(
+        f"the snow depth rises{among} {said}: this is not snowfall of a day, and is divided "
+        "evenly among the days"
     )
 
 
@@ -183,19 +182,19 @@ def _longest(change: float, days: int) -> int:
     return SPIKE_DAYS if change > 0.0 else DROPOUT_DAYS
 
 
-def _tell_jumps(days: Days, found: DepthSnow) -> None:
+def _tell_jumps(days: Days, snow: DepthSnow) -> None:
     seams = [(day, rise) for day, rise in days.jumps if day in _seam_dates(days)]
     others = [(day, rise) for day, rise in days.jumps if day not in _seam_dates(days)]
     rising = [(day, rise) for day, rise in seams if abs(rise) >= LEAST_RISE]
     if rising:
-        found.notes.append(
+        snow.notes.append(
             f"the snow depth jumps at {_times(len(rising), 'joint')} of two series "
-            f"({_sizes(rising)}), which is no snowfall"
+            f"({_sizes(rising)}), which is not snowfall"
         )
     if others:
-        found.notes.append(
+        snow.notes.append(
             f"the snow depth jumps {_times(len(others), 'time')} faster than snow falls "
-            f"({_sizes(others)}), which is no snowfall"
+            f"({_sizes(others)}), which is not snowfall"
         )
 
 
@@ -208,7 +207,7 @@ def _times(number: int, what: str) -> str:
 
 
 def _sizes(jumps: Sequence[tuple[date, float]]) -> str:
-    largest = sorted(jumps, key=lambda one: -abs(one[1]))[:3]
+    largest = sorted(jumps, key=lambda jump: -abs(jump[1]))[:3]
     said = ", ".join(f"{rise:+.2f} m on {day}" for day, rise in largest)
     return said if len(jumps) <= len(largest) else f"the largest: {said}"
 

@@ -44,18 +44,15 @@ class SeasonResult:
     releases, simulated
         Number of releases, and of those that were simulated.
     contact
-        The first contact of any kind between the snow below and the panel: the verdict. None if
-        there is none.
+        The first contact of any kind between the snow below and the panel, if any: the verdict.
     burial_event
-        First event after which the snow below the panel's lower edge reaches it; None if there is
-        none.
+        First event after which the snow below the panel's lower edge reaches it, if any.
     crest_event
-        First event after which the stack is anywhere as high as the lower edge; None if there is
-        none.
+        First event after which the stack is anywhere as high as the lower edge, if any.
     staying_event
-        First event after which snow stayed on the panel; None if there is none.
+        First event after which snow stayed on the panel, if any.
     winters
-        How well the snow of the season, or of each of its winters, is known.
+        Quality of the snow data of each winter of the season.
     notes
         Notes on the limits of the results.
     """
@@ -92,14 +89,14 @@ def run_season(
         A season file or a pandas DataFrame (see `read_season`), or rows of `Weather`.
     scene
         A scene, its JSON data, or the path of a scene file. Its panel, ground, obstacles, snow and
-        method hold; `season_scene` replaces its slab and its events. The panel's friction is that
-        of sliding snow.
+        method are used; `season_scene` replaces its slab and its events. The panel's friction is
+        that of sliding snow.
     out_dir
         The results folder (``snowshed.results.season_folder``); new or empty, unless resuming.
     settings
-        Release, density and settling; None: the defaults.
+        Settings of release, density and settling. [default: `SeasonSettings()`]
     resume
-        Whether to go on with an interrupted season in `out_dir`.
+        Whether to resume an interrupted season in `out_dir`.
     progress
         Called about twice a second while a slide-off runs.
     pictures

@@ -1,4 +1,4 @@
-"""The most snow that was ever measured; what is beyond it is an error of the file."""
+"""Record amounts of snow; larger values in a file are errors."""
 
 from __future__ import annotations
 

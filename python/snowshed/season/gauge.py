@@ -41,9 +41,9 @@ def snow_of_gauge(water: Floats, temperature: Floats) -> Floats:
     Parameters
     ----------
     water : (n,)
-        Precipitation, mm; NaN: not known.
+        Precipitation, mm; NaN: unknown.
     temperature : (n,)
-        Degrees C.
+        Temperature of the air, degrees C.
 
     Examples
     --------

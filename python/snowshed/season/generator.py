@@ -1,4 +1,4 @@
-"""Made winters: a stochastic generator of daily snowfall and temperature, fitted to a station.
+"""Synthetic winters: a stochastic generator of daily snowfall and temperature, fitted to a station.
 
 Snowfall days follow a Markov chain of two states, depths a gamma distribution, temperatures an
 autoregressive process of the first order about the mean of the month; all by month. This is the
@@ -33,11 +33,11 @@ class MonthClimate:
     after_dry, after_snow
         Probability of snow on a day after one without, and after one with snow.
     shape, scale
-        Of the gamma distribution of the depth of new snow on a day with snow; the scale in m.
+        Shape and scale (m) of the gamma distribution of new snow on a day with snow.
     temperature, deviation
         Mean and standard deviation of the daily temperature, degrees C.
     snow_shift
-        How much colder days with snow are, degrees C.
+        Temperature difference between days with snow and others, degrees C.
     """
 
     after_dry: float
@@ -56,7 +56,7 @@ class Climate:
     Attributes
     ----------
     months
-        By number, 1 for January; months that are missing have no snow and are left out.
+        Climate by number of the month, 1 for January; missing months have no snow and are left out.
     persistence
         Correlation of the temperature anomalies of one day and the next.
 
@@ -85,7 +85,7 @@ class Climate:
         months = np.array([day.date.month for day in days])
         falls = np.array([day.snowfall for day in days])
         before = np.append(False, snows[:-1])
-        found: dict[int, MonthClimate] = {}
+        climates: dict[int, MonthClimate] = {}
         anomalies = np.zeros(len(days))
         for month in range(1, 13):
             own = months == month
@@ -95,7 +95,7 @@ class Climate:
             mean, variance = amounts.mean(), max(amounts.var(), 1e-4 * amounts.mean() ** 2)
             warm = temperatures[own]
             anomalies[own] = warm - warm.mean()
-            found[month] = MonthClimate(
+            climates[month] = MonthClimate(
                 _share(snows[own & ~before]),
                 _share(snows[own & before]),
                 float(mean**2 / variance),  # by moments
@@ -104,13 +104,13 @@ class Climate:
                 float(warm.std()),
                 float(warm.mean() - temperatures[own & snows].mean()),
             )
-        if not found:
+        if not climates:
             raise InputError(
                 f"the weather: no month with snow has {LEAST_DAYS} days, to fit a generator to"
             )
         pairs = anomalies[:-1] * anomalies[1:]
         spread = float((anomalies**2).mean())
-        return cls(found, float(np.clip(pairs.mean() / spread, 0.0, 0.99)) if spread else 0.0)
+        return cls(climates, float(np.clip(pairs.mean() / spread, 0.0, 0.99)) if spread else 0.0)
 
     def winters(self, count: int, *, seed: int, first_year: int = 2001) -> list[Weather]:
         """Return daily rows of made winters; the same seed makes the same ones.
@@ -118,11 +118,11 @@ class Climate:
         Parameters
         ----------
         count
-            How many; each begins in the autumn of its own year.
+            Number of winters; each begins in the autumn of its own year.
         seed
-            Of the random numbers.
+            Random seed.
         first_year
-            Of the first autumn.
+            Year of the first autumn.
         """
         random = np.random.default_rng(seed)
         rows: list[Weather] = []

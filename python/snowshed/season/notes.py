@@ -27,14 +27,14 @@ def first_staying(events: pd.DataFrame) -> Optional[int]:
 def assumptions(
     table: pd.DataFrame, days: Sequence[Day], settings: SeasonSettings
 ) -> Iterator[str]:
-    """Yield what a season assumes of the ground, the settling and the strength of the snow.
+    """Yield the assumptions of a season on ground, settling and strength of the snow.
 
     Parameters
     ----------
     table
         As in season.csv.
     days, settings
-        Of the season.
+        Days and settings of the season.
     """
     deepest = table["cover_m"].max()
     if settings.cover == "none" or not deepest:
@@ -112,7 +112,7 @@ def _of_slabs(dx: float, days: Sequence[Day], settings: SeasonSettings) -> Itera
                 f"{1000 * dx:g} mm: its stack is coarse"
             )
     else:
-        yield "no snow let go: friction and adhesion held all of it"
+        yield "no snow slid: friction and adhesion held it"
 
 
 def _of_ageing(settings: SeasonSettings) -> Iterator[str]:

@@ -1,8 +1,8 @@
-"""From the observations of a station to the days of a season: the one place that decides.
+"""Days of a season from the observations of a station: the only place that decides.
 
-What a day's new snow is, for every format, and where it comes from: `Source`. Each day takes it
-from the first of the winter's columns (`columns`) that knows it; what none of them knows is filled
-by a stated rule, or is missing. Missing is not zero: such a day says so.
+`Source` names the origin of a day's new snow, for every format. Each day uses the first of the
+winter's columns (`columns`) with a value; days without a value are filled by a stated rule, or are
+missing. Missing is not zero: such a day says so.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ def record_of(station: Station, source: str, only: Optional[Source] = None) -> R
     Raises
     ------
     InputError
-        If there is no snow or no temperature in any row, or not the column that was asked for.
+        If no row has snow, no row has a temperature, or the requested column is missing.
     """
     _check_order(station, source)
     days = days_of_station(station)
@@ -103,7 +103,7 @@ def _check_order(station: Station, source: str) -> None:
 def _columns(
     days: Days, warm: Floats, far: Booleans, depth: DepthSnow, notes: list[str]
 ) -> dict[Source, Column]:
-    """Return the columns of a station that tell of snow; appends notes on what was left out."""
+    """Return the columns of a station with snow; appends notes on left-out values."""
     hand = days.new_snow.copy()
     beyond = hand > RECORD_DAY
     if beyond.any():
@@ -190,7 +190,7 @@ def _take(snow: _Snow, n: int, choice: Choice, columns: Mapping[Source, Column])
 
 
 def _share_out(snow: _Snow, total: Total) -> None:
-    """Take what other columns know of some of its days out of a rise over several days."""
+    """Take snow that other columns observed out of a rise over several days."""
     own, known = [], 0.0
     for n in total.days:
         if snow.source[n] is Source.DEPTH or snow.reason[n].endswith(Source.DEPTH.label):
@@ -204,7 +204,7 @@ def _share_out(snow: _Snow, total: Total) -> None:
 
 
 def _gaps(days: Days) -> list[str]:
-    """Return a note on the days of which the file has nothing."""
+    """Return a note on the days that are missing in the file."""
     ordinals = days.ordinals[days.there]
     spans = np.diff(ordinals)
     if not (spans > 1).any():
@@ -233,8 +233,8 @@ def _notes(snow: _Snow, days: Days, calendar: Calendar) -> Iterator[str]:
         yield RULE
     if Source.DEPTH in snow.source:
         yield (
-            f"new snow is the daily rise of the snow depth, from {100 * LEAST_RISE:g} cm; since "
-            "snow settles at the same time, it is too little"
+            f"new snow is the daily rise of the snow depth, from {100 * LEAST_RISE:g} cm; it is "
+            "too small, because snow settles meanwhile"
         )
     yield from _contradictions(snow, calendar)
     filled = [n for n, source in enumerate(snow.source) if source is Source.FILLED]
@@ -247,8 +247,8 @@ def _notes(snow: _Snow, days: Days, calendar: Calendar) -> Iterator[str]:
     missing = [n for n, source in enumerate(snow.source) if source is Source.MISSING]
     if missing:
         yield (
-            f"the snow of {some_days(days.dates, missing)} is not known; none is laid on the panel "
-            "then, and they count as not observed"
+            f"the snow of {some_days(days.dates, missing)} is unknown; no snow is laid on the "
+            "panel, and these days count as not observed"
         )
 
 
@@ -275,7 +275,7 @@ def _contradictions(snow: _Snow, calendar: Calendar) -> Iterator[str]:
         yield (
             f"columns contradict each other by more than a factor of {CONTRADICTION:g} ({named}"
             f"{more}); the {used.label} is used, not the "
-            f"{' or the '.join(sorted(one.label for one in wrong))}{_why(used, wrong)}"
+            f"{' or the '.join(sorted(source.label for source in wrong))}{_why(used, wrong)}"
         )
 
 
@@ -297,9 +297,9 @@ def _why(used: Source, wrong: frozenset[Source]) -> str:
     if used is Source.DEPTH and Source.GAUGE in wrong:
         return ": gauges catch too little snow in wind or stand still (WMO/TD-872, 1998)"
     if used is Source.DEPTH:
-        return ": no cover rises by more than what falls"
+        return ": a cover cannot rise by more than the snowfall"
     if used is Source.GAUGE and Source.DEPTH in wrong:
         return ": a cover settles, melts and drifts away while it snows"
     if used is Source.GAUGE:
-        return ": nobody entered any new snow all winter"
-    return ": new snow that was measured goes before what is derived"
+        return ": no new snow was entered all winter"
+    return ": measured new snow is preferred to derived"

@@ -1,8 +1,8 @@
-"""The quality of a winter: on how many of its days the snow was observed, and how.
+"""The quality of a winter's snow data: the share of observed days, and their sources.
 
-A winter counts if its snow was observed on a stated share of the days of the station's snow season.
-Days of a gap, and days that were filled, are no observed days. A season file that lists snowfalls
-and nothing else tells all of them, so that its days without a row count as days without snow.
+A winter counts if its snow was observed on a given share of the days of the station's snow season.
+Days in gaps, and filled days, do not count as observed. In a season file that only lists snowfalls,
+days without a row count as days without snow.
 """
 
 from __future__ import annotations
@@ -19,26 +19,26 @@ from snowshed.season.weather_row import Weather
 from snowshed.season.winter_years import Calendar, SnowSeason, snow_season_of
 
 COVERAGE = 0.9  # of the days of the snow season, on which snow must have been observed
-LONGEST_BRIDGED = 3  # days between two rows of a table, of which the later one tells
+LONGEST_BRIDGED = 3  # days between two rows of a table, covered by the later row
 LISTED = timedelta(days=1.5)  # from row to row, half of them more, in a list of snowfalls
 
 
 @dataclass(frozen=True)
 class WinterQuality:
-    """What a winter of a weather file is worth.
+    """The quality of the snow data of a winter.
 
     Attributes
     ----------
     name
-        Such as "2001/02", or "2001" in the south.
+        Name, such as "2001/02", or "2001" in the south.
     rows
-        Its rows, in order; none if the file has none.
+        Rows of the winter, in order; empty if the file has none.
     season
         The days that should be observed: those of the snow season.
     observed
-        How many of them are.
+        Number of days of the snow season with observed snow.
     sources
-        How many of all its days have which source.
+        Number of days by source, over the whole winter.
     filled_snow
         Depth of the snow that was filled, m.
     counts
@@ -46,7 +46,7 @@ class WinterQuality:
     listed
         Whether the file lists snowfalls, and tells nothing of other days.
     sums
-        What the columns of the file amount to, m, on days on which they can be compared.
+        Totals of the file's columns on comparable days, m.
     """
 
     name: str
@@ -71,7 +71,7 @@ class WinterQuality:
 
     @property
     def source_words(self) -> str:
-        """Where its snow comes from, the most frequent source first."""
+        """Sources of its snow, the most frequent source first."""
         observing = [
             source.label
             for source, _ in Counter(self.sources).most_common()
@@ -93,7 +93,7 @@ def qualities_of(
     coverage: float = COVERAGE,
     sums: Optional[Mapping[int, Mapping[Source, float]]] = None,
 ) -> tuple[list[WinterQuality], SnowSeason]:
-    """Return what each winter from the first to the last row is worth, and the snow season.
+    """Return the quality of each winter from the first to the last row, and the snow season.
 
     Parameters
     ----------
@@ -104,7 +104,7 @@ def qualities_of(
     coverage
         Share of the days of the snow season on which snow must have been observed.
     sums
-        What the columns of the file amount to, m, by the year in which a winter begins.
+        Totals of the file's columns, m, by the year in which a winter begins.
 
     Examples
     --------
@@ -119,13 +119,13 @@ def qualities_of(
     by_year: dict[int, list[Weather]] = {}
     for row in rows:
         by_year.setdefault(calendar.year(row.date.date()), []).append(row)
-    found = []
+    qualities = []
     for year in range(min(by_year), max(by_year) + 1):
         own = by_year.get(year, [])
         begin, after = season.span(year)
         days = (after - begin).days
         seen = days if listed and own else observed_days(own, begin, after)
-        found.append(
+        qualities.append(
             WinterQuality(
                 calendar.name(year),
                 own,
@@ -138,11 +138,11 @@ def qualities_of(
                 (sums or {}).get(year, {}),
             )
         )
-    return found, season
+    return qualities, season
 
 
 def is_list(rows: Sequence[Weather]) -> bool:
-    """Return whether rows are a list of snowfalls, of which most lie more than a day apart."""
+    """Return whether rows are a list of snowfalls: most lie more than a day apart."""
     if len(rows) < 2 or any(row.source is not Source.GIVEN for row in rows):
         return False
     spans = [later.date - earlier.date for earlier, later in zip(rows, rows[1:])]
@@ -150,7 +150,7 @@ def is_list(rows: Sequence[Weather]) -> bool:
 
 
 def observed_days(rows: Sequence[Weather], begin: date, after: date) -> int:
-    """Return on how many days from the first to before the second date snow was observed."""
+    """Return the number of days with observed snow from the first date to before the second."""
     days = sorted({row.date.date().toordinal() for row in rows if row.source.observed})
     first, last = begin.toordinal(), after.toordinal()
     number = sum(first <= day < last for day in days)
@@ -163,12 +163,12 @@ def observed_days(rows: Sequence[Weather], begin: date, after: date) -> int:
 
 
 def spans(named: Sequence[tuple[str, Optional[str]]]) -> str:
-    """Return winters with what is said of each, neighbours of which the same is said together.
+    """Return winters with a text for each; neighbours with the same text are joined.
 
     Parameters
     ----------
     named
-        All winters in order: the name of each, and what is said of it; None: nothing.
+        All winters in order: the name of each, and its text, if any.
 
     Examples
     --------

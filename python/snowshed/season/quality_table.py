@@ -1,4 +1,4 @@
-"""The table of the winters of a file, for consoles and pages: how well their snow is known."""
+"""The table of the winters of a file, for consoles and pages: the quality of their snow data."""
 
 from __future__ import annotations
 

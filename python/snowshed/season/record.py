@@ -1,4 +1,4 @@
-"""The weather that a file tells: its rows, what was assumed in reading it, and its winters."""
+"""The weather of a file: its rows, the assumptions made in reading, and its winters."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ class Record:
     Attributes
     ----------
     rows
-        In order.
+        Rows in order.
     notes
-        What was assumed in reading them, a sentence each.
+        Assumptions made in reading, a sentence each.
     latitude
-        Degrees; None: not known, so that temperatures tell which half of the year is winter.
+        Latitude, degrees; if unknown, temperatures decide which half of the year is winter.
     sums
-        What the columns of the file amount to, m, by the year in which a winter begins.
+        Totals of the file's columns, m, by the year in which a winter begins.
     """
 
     rows: Sequence[Weather]
@@ -36,7 +36,7 @@ class Record:
 
     @cached_property
     def calendar(self) -> Calendar:
-        """Where its winters begin, and their names."""
+        """Beginnings and names of the winters."""
         return calendar_of(self.rows, self.latitude)
 
     def winters(self, coverage: float = COVERAGE) -> WinterList:
@@ -60,8 +60,8 @@ class Record:
         >>> winters.counted_text, winters.excluded_text
         ('2 of 3 winters', '2003/04 (79 %)')
         """
-        found, season = qualities_of(self.rows, self.calendar, coverage, self.sums)
-        return WinterList(found, season, coverage)
+        qualities, season = qualities_of(self.rows, self.calendar, coverage, self.sums)
+        return WinterList(qualities, season, coverage)
 
 
 @dataclass(frozen=True)
@@ -71,11 +71,11 @@ class WinterList:
     Attributes
     ----------
     winters
-        All of them, in order.
+        All winters, in order.
     season
         The months in which snow must have been observed.
     coverage
-        On which share of their days.
+        Required share of observed days.
     """
 
     winters: Sequence[WinterQuality]
@@ -89,7 +89,7 @@ class WinterList:
 
     @property
     def counted_text(self) -> str:
-        """How many of them count, such as "2 of 20 winters"."""
+        """Number of winters that count, such as "2 of 20 winters"."""
         return f"{len(self.counted)} of {winters_text(len(self.winters))}"
 
     @property
@@ -99,7 +99,7 @@ class WinterList:
 
     @property
     def notes(self) -> list[str]:
-        """What to know of the winters that count, and of those that do not."""
+        """Notes on the winters that count, and on the others."""
         told = []
         if self.excluded_text:
             told.append(
@@ -114,10 +114,10 @@ class WinterList:
 
     @property
     def shortfalls(self) -> list[str]:
-        """What to know of the winters of a station whose snow was observed too seldom."""
+        """Notes on the winters with too few days of observed snow."""
         return [
             f"the snow of {winter.name} was observed on {winter.observed} of {winter.season} days "
-            f"{self.season.text} ({percent(winter.share)}); what fell on the others is not known"
+            f"{self.season.text} ({percent(winter.share)}); the snowfall of the others is unknown"
             for winter in self.winters
             if winter.rows and not winter.counts and Source.GIVEN not in winter.sources
         ]
@@ -130,9 +130,9 @@ class WinterList:
                 "days_of_snow_season": winter.season,
                 "observed_days": winter.observed,
                 "new_snow_m": round(winter.snowfall, 4),
-                "days_by_source": {one.label: days for one, days in winter.sources.items()},
+                "days_by_source": {source.label: days for source, days in winter.sources.items()},
                 "filled_snow_m": round(winter.filled_snow, 4),
-                "sums_m": {one.label: round(total, 4) for one, total in winter.sums.items()},
+                "sums_m": {source.label: round(total, 4) for source, total in winter.sums.items()},
                 "counts": winter.counts,
             }
             for winter in self.winters
@@ -152,5 +152,5 @@ def _shortfall(winter: WinterQuality) -> Optional[str]:
 
 
 def percent(share: float) -> str:
-    """Return a share in whole percent, never rounded up to what it does not reach."""
+    """Return a share in whole percent, rounded down."""
     return f"{int(100.0 * share + 1e-9)} %"

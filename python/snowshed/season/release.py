@@ -37,9 +37,9 @@ def balance(
     friction
         mu, static Coulomb coefficient between snow and panel.
     adhesion
-        a, Pa.
+        a, adhesion, Pa.
     gravity
-        m/s2.
+        Gravity, m/s2.
 
     Examples
     --------

@@ -33,23 +33,22 @@ class SeasonSettings:
     density
         Name of the relation (`NEW_SNOW_DENSITY`) for rows without a density.
     settling
-        Name of a law in `SETTLING_LAWS`, by which the snow on the panel, in the stack and on the
-        ground settles; None: it does not settle.
+        Name of a law in `SETTLING_LAWS` for the snow on the panel, in the stack and on the ground;
+        None: no settling.
     sintering
         Name of a law in `SINTERING_LAWS`, by which broken snow in the stack regains strength
-        between events; None: it does not sinter.
+        between events; None: no sintering.
     strength_age
         Age at which bonds have the strength of the sliding snow, hours.
     strength
-        Name of a relation in `TENSILE_STRENGTH`: a slab is as much weaker and softer than the
-        scene's snow as the relation says of their densities; None: all slabs have the strength of
-        the scene's snow, whatever their density.
+        Name of a relation in `TENSILE_STRENGTH`, which scales the strength and stiffness of a slab
+        with its density; None: all slabs have the strength of the scene's snow.
     cover
-        Natural snow cover on the ground, on top of which the stack lies: "weather" (as deep as the
-        season file says or its snowfalls make it), "none", or a depth in m all season.
+        Natural snow cover on the ground, below the stack: "weather" (depth of the season file, or
+        from its snowfalls), "none", or a constant depth in m.
     pool_below
-        Releases are gathered into one slide-off until their slab is at least so thick, m normal to
-        the panel; 0: each slides alone.
+        Releases are combined into one slide-off until their slab has at least this thickness, m
+        normal to the panel; 0: each slides alone.
 
     Raises
     ------

@@ -34,7 +34,7 @@ def season_scene(
     days
         From `accumulate`; at least one of them has an event.
     settings
-        How strong the snow of a slab is; None: the defaults.
+        Settings of the slab's strength. [default: `SeasonSettings()`]
 
     Raises
     ------
@@ -46,7 +46,7 @@ def season_scene(
     if len(released) > MOST_EVENTS:
         raise InputError(f"{len(released)} releases; a scene has at most {MOST_EVENTS} events")
     if scene.get("bodies"):
-        raise InputError("/bodies: a season lays its own snow; leave further bodies out")
+        raise InputError("/bodies: a season lays its own snow; remove further bodies")
     natural: dict[str, Any] = scene["snow"]
     slab = scene.pop("slab", None) or {}
     strength = (settings or SeasonSettings()).strength
@@ -69,18 +69,18 @@ def season_scene(
 
 
 def snow_of_density(base: Mapping[str, Any], density: float, strength: Optional[str]) -> Snow:
-    """Return snow that is as much weaker and softer than other snow as its density says.
+    """Return snow with strength and stiffness scaled to another density.
 
-    The strength of the snow scales with the relation named `strength`, its stiffness with
-    Young's modulus of sigrist-2006. Both only as ratios: loose snow has a fraction of the strength
-    and stiffness that they give.
+    The strength of the snow scales with the relation named `strength`, its stiffness with Young's
+    modulus of sigrist-2006. Only ratios are used, because loose snow has a fraction of the strength
+    and stiffness of these relations.
 
     Parameters
     ----------
     base
         The other snow, complete.
     density
-        kg/m3.
+        Density, kg/m3.
     strength
         A name in `TENSILE_STRENGTH`; None: no change but the density.
 
@@ -105,11 +105,11 @@ def snow_of_density(base: Mapping[str, Any], density: float, strength: Optional[
 
 
 def _densities(released: Sequence[Day]) -> list[float]:
-    """Return rounded densities of the slabs, kg/m3, of which there are few enough for a scene."""
+    """Return densities of the slabs, kg/m3, rounded so that a scene can hold all of them."""
     for step in (1.0, 10.0):
-        found = [
+        densities = [
             max(step * round(day.slab_load / day.slab_thickness / step), step) for day in released
         ]
-        if len(set(found)) <= MOST_SNOWS:
+        if len(set(densities)) <= MOST_SNOWS:
             break
-    return found
+    return densities

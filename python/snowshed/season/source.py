@@ -1,4 +1,4 @@
-"""Where a day's new snow comes from: the provenance of a day."""
+"""The origin of a day's new snow."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from enum import Enum
 
 
 class Source(Enum):
-    """Where the new snow of a day comes from.
+    """Origin of the new snow of a day.
 
     Examples
     --------
@@ -29,10 +29,10 @@ class Source(Enum):
 
     @property
     def observed(self) -> bool:
-        """Whether somebody or something observed the snow of such a day."""
+        """Whether the snow of such a day was observed."""
         return self not in (Source.FILLED, Source.MISSING)
 
 
-#: What may be asked for by name (`--snow-from`), and what it stands for.
+#: Names of the sources in options (`--snow-from`).
 CHOICES = {"new-snow": Source.HAND, "depth": Source.DEPTH, "gauge": Source.GAUGE}
 AUTO = "auto"

@@ -22,7 +22,7 @@ class SettlingStack:
     law
         The law of settling; None: it does not settle.
     gravity
-        m/s2.
+        Gravity, m/s2.
 
     Examples
     --------
@@ -39,7 +39,7 @@ class SettlingStack:
 
     @property
     def ratio(self) -> float:
-        """Settled over simulated height, at most 1."""
+        """Ratio of settled to simulated height, at most 1."""
         return min(self._column.thickness / self._height, 1.0) if self._height else 1.0
 
     def take(self, height: float, density: float) -> None:

@@ -28,7 +28,7 @@ def season_table(
     events: pd.DataFrame,
     outlines: pd.DataFrame,
 ) -> pd.DataFrame:
-    """Return one row per row of the season file, with the stack as it is after that row.
+    """Return one row per row of the season file, with the stack after it.
 
     Parameters
     ----------
@@ -92,7 +92,7 @@ class _Stack:
         self.outline = np.zeros((0, 2))
 
     def take(self, event: int) -> None:
-        """Set the stack to what an event left."""
+        """Set the stack to its state after an event."""
         row = self.events[event]
         self.height, self.length = float(row["height_m"]), float(row["length_m"])
         self.left = float(row["on_panel_kg"])

@@ -1,4 +1,4 @@
-"""Temperatures of days on which none was measured."""
+"""Temperatures of days without a measurement."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 from snowshed.base.arrays import Booleans, Floats, Integers
 
 LONGEST_BRIDGED = 3  # days without temperature, between which a straight line is drawn
-AROUND = 7  # days before and after a day of the year, of which the mean is taken
+AROUND = 7  # half width of the window of the mean, days of the year
 LEAST = 5  # measured days for such a mean
 YEAR = 366
 
@@ -21,16 +21,16 @@ def filled_temperatures(
 ) -> tuple[Floats, Booleans, list[str]]:
     """Return the temperature of every day, the days it is far from a measured one, and notes.
 
-    Gaps of up to three days are bridged by a straight line. In longer ones a day has the mean of
-    the file's temperatures within a week of the same day of the year, in all years. Where there is
-    none, the line goes on.
+    Gaps of up to three days are interpolated linearly. In longer ones, a day gets the mean of the
+    file's temperatures within a week of the same day of the year, in all years; without such
+    temperatures, it is interpolated, too.
 
     Parameters
     ----------
     dates
         Days, in order.
     measured : (n,)
-        Degrees C; NaN: not measured; at least one is.
+        Temperatures, degrees C; NaN: not measured; at least one is measured.
     told : (n,)
         The days that notes count; None: all.
 

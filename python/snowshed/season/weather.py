@@ -41,7 +41,7 @@ class _Column:
     unit: str
     required: bool = False  # the column
     filled: bool = False  # every cell of it
-    hint: str = ""  # what a number beyond the range may be
+    hint: str = ""  # likely meaning of a number beyond the range
 
 
 COLUMNS: Mapping[str, _Column] = {
@@ -80,8 +80,8 @@ def read_season(season: Season) -> list[Weather]:
     Raises
     ------
     InputError
-        Naming the file, the line (of a DataFrame the row) and the column, what is wrong there and
-        what is allowed.
+        Naming the file, the line (in a DataFrame the row) and the column, the error and the allowed
+        values.
     OSError
         If the file cannot be read.
 
@@ -102,7 +102,7 @@ def read_season(season: Season) -> list[Weather]:
 def read_weather(
     season: Season, temperature: Optional[PathLike] = None
 ) -> tuple[list[Weather], list[str]]:
-    """Return the rows of a season, as `read_season`, and notes on what was assumed in reading.
+    """Return the rows of a season, as `read_season`, and notes on assumptions made in reading.
 
     Parameters
     ----------
@@ -116,7 +116,7 @@ def read_weather(
 def read_record(
     season: Season, snow_from: str = AUTO, temperature: Optional[PathLike] = None
 ) -> Record:
-    """Return the weather of a season or of many winters, with all that is known of its quality.
+    """Return the weather of a season or of many winters, with its quality.
 
     Parameters
     ----------
@@ -134,7 +134,9 @@ def read_record(
         raise InputError(f"snow from: {quoted(snow_from)}; allowed: {allowed}")
     files = _files_of(season)
     if temperature is not None and not files:
-        raise InputError("a file of temperatures goes with weather files only, not with a table")
+        raise InputError(
+            "a file of temperatures is allowed with weather files only, not with a table"
+        )
     if len(files) > 1 or temperature is not None:
         joined = read_stations(files, None if temperature is None else Path(temperature))
         return _of_station(joined, " and ".join(map(str, files)), snow_from)
@@ -166,15 +168,15 @@ def _files_of(season: Season) -> list[Path]:
     if isinstance(season, (str, os.PathLike)):
         return [Path(season)]
     if isinstance(season, Sequence):
-        return [Path(one) for one in season if isinstance(one, (str, os.PathLike))]
+        return [Path(path) for path in season if isinstance(path, (str, os.PathLike))]
     return []
 
 
 def _of_station(station: Station, source: str, snow_from: str) -> Record:
     record = record_of(station, source, CHOICES.get(snow_from))
-    places = [Row(source, f"line {row.line}", row.line, {}) for row in record.rows]
+    table_rows = [Row(source, f"line {row.line}", row.line, {}) for row in record.rows]
     notes = [f"the weather is of a file in the format {station.format}", *record.notes]
-    check_rows(record.rows, places, source, snowless=True)
+    check_rows(record.rows, table_rows, source, snowless=True)
     if not any(row.snowfall for row in record.rows):
         notes.append(f"{NO_SNOW} in this file")
     return replace(record, notes=notes)

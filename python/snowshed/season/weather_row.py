@@ -29,13 +29,13 @@ class Weather:
     temperature
         Temperature of the air, degrees C, until the next row.
     friction, adhesion
-        Friction and adhesion (Pa) of the panel on that day; None: those of the settings.
+        Friction and adhesion (Pa) of the panel on that day. [default: those of the settings]
     snow_depth
         Depth of the natural snow cover, m; None: not measured.
     source
-        Where the snowfall comes from.
+        Origin of the snowfall.
     reason
-        Why it is not what the file holds for that day, in words; empty where it is.
+        Reason why the snowfall differs from the file's value of that day; empty if it does not.
     """
 
     line: int

@@ -1,9 +1,8 @@
-"""Winters by the calendar: where one ends and the next begins, its name, and its snow season.
+"""Winters by the calendar: limits, name, and snow season.
 
 Years are cut in the station's summer: on 1 July in the north, on 1 January in the south. The snow
-season of a station goes from the day of the year by which a hundredth of all its snow has fallen to
-the day by which all but a hundredth has, and holds December to February (in the south June to
-August) in any case.
+season of a station spans the days of the year between the first and the last hundredth of all its
+snowfall, and always contains December to February (in the south June to August).
 """
 
 from __future__ import annotations
@@ -84,7 +83,7 @@ class SnowSeason:
 
     @property
     def text(self) -> str:
-        """Such as "from 5 November to 20 April"."""
+        """Text such as "from 5 November to 20 April"."""
         ends = (f"{day} {month_name[month]}" for month, day in (self.first, self.last))
         return "from {} to {}".format(*ends)
 
@@ -98,14 +97,14 @@ class SnowSeason:
 
 
 def calendar_of(rows: Sequence[Weather], latitude: Optional[float] = None) -> Calendar:
-    """Return the winters of a place, by its latitude or else by when it is cold there.
+    """Return the calendar of a place, from its latitude or its temperatures.
 
     Parameters
     ----------
     rows
-        Its weather.
+        Weather of the place.
     latitude
-        Degrees, negative in the south; None: not known.
+        Latitude, degrees, negative in the south, if known.
 
     Examples
     --------

@@ -49,8 +49,8 @@ def test_rounds_repeat_an_experiment(tmp_path):
     [
         ("", "empty; `snowshed calibrate --template FILE`"),
         (b"\xff\xfe\x00", "line 1: not a table: not UTF-8 text"),
-        ("tilt_deg;event\n", "line 1: 'tilt_deg;event' is no column; allowed: tilt_deg, event"),
-        ("[" * 20_000, f"line 1: {'[' * 60!r}... is no column; allowed: tilt_deg"),
+        ("tilt_deg;event\n", "line 1: 'tilt_deg;event' is not a column; allowed: tilt_deg, event"),
+        ("[" * 20_000, f"line 1: {'[' * 60!r}... is not a column; allowed: tilt_deg"),
         ("tilt_deg,event,height_cm\n", "line 1: 'height_cm' is no column"),
         ("event,height_m,height_std_m\n", "line 1: no column tilt_deg"),
         ("tilt_deg,event\n", "line 1: no column of a measured value"),
@@ -58,7 +58,10 @@ def test_rounds_repeat_an_experiment(tmp_path):
         ("tilt_deg,event,event\n", "line 1: not a table: the column 'event' is there twice"),
         (f"{HEADER}\n40,1,0.05\n", "line 2: not a table: 3 cells in 6 columns"),
         (f"{HEADER}\n40,1,0.05,,,\n", "line 2: height_std_m: missing"),
-        (f"{HEADER}\n40,1,,0.1,,\n", "line 2: height_std_m: an uncertainty, but height_m is empty"),
+        (
+            f"{HEADER}\n40,1,,0.1,,\n",
+            "line 2: height_std_m: an uncertainty, although height_m is empty",
+        ),
         (f"{HEADER}\n40,1,0.05,0,,\n", "line 2: height_std_m: 0 is not positive"),
         (f"{HEADER}\n40,1,-0.05,0.01,,\n", "line 2: height_m: -0.05 is not positive"),
         (f"{HEADER}\n40,1,1000,0.01,,\n", "line 2: height_m: 1000 m; at most 100 m are allowed"),

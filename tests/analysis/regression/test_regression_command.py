@@ -178,4 +178,4 @@ def test_an_interrupt_ends_with_130_and_says_how_to_go_on(regressed, tmp_path, m
 
     monkeypatch.setattr(pipeline, "cross_validate", interrupted)
     assert run("regress", regressed / "rows.csv", "-o", tmp_path / "out", *FEW) == 130
-    assert "the same command goes on with what" in capsys.readouterr().err
+    assert "the same command resumes from" in capsys.readouterr().err

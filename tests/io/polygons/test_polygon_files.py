@@ -211,7 +211,7 @@ def test_a_file_without_a_coordinate_system_is_told(tmp_path, ending):
     file = write(tmp_path / f"a{ending}", [SQUARE], crs=None, thickness=[0.5])
     with recorded() as notes:
         assert read_areas(file)[0].crs == ""
-    assert notes == [f"{file}: has no coordinate system; it is taken to be that of the terrain"]
+    assert notes == [f"{file}: has no coordinate system; that of the terrain is assumed"]
 
 
 # --- thickness ----------------------------------------------------------------------------------
@@ -226,7 +226,7 @@ def test_a_file_without_a_coordinate_system_is_told(tmp_path, ending):
         ("d0", 0.5, 0.5, "its field 'd0', in m"),
         ("thickness_cm", 50, 0.5, "its field 'thickness_cm', in cm"),
         ("D0 [mm]", 500, 0.5, "its field 'D0 [mm]', in mm"),
-        ("depth", 0.5, None, "not read as a thickness: 'depth'"),
+        ("depth", 0.5, None, "ignored as a thickness: 'depth'"),
     ],
 )
 def test_the_field_of_the_thickness_is_told(tmp_path, ending, field, value, metres, note):

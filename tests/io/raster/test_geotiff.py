@@ -189,7 +189,7 @@ def test_the_place_on_the_map_is_that_of_gdal(tmp_path):
     assert_slope(read_raster(tmp_path / "up.tif"))
     tifffile = pytest.importorskip("tifffile")
     tifffile.imwrite(tmp_path / "w.tif", SLOPE)
-    with pytest.raises(InputError, match="has no place on the map"):
+    with pytest.raises(InputError, match="has no position on the map"):
         read_raster(tmp_path / "w.tif")
     middle = f"{WEST + CELL / 2}\n{NORTH - CELL / 2}\n"
     (tmp_path / "w.tfw").write_text(f"{CELL}\n0\n0\n-{CELL}\n{middle}")
@@ -212,12 +212,13 @@ TURN = rasterio.Affine(CELL, 0, WEST, 0, -CELL, NORTH)
     [
         ({"change": scaled(0.0)}, "a scale of 0 and an offset of 0 are none"),
         ({"change": scaled(float("nan"))}, "a scale of nan"),
-        ({"change": in_unit("degrees")}, "its values are in 'degrees', which is no unit of length"),
+        ({"change": in_unit("degrees")}, "its values are in 'degrees', which is not a unit of "
+                                         "length"),
         ({"change": in_unit("m"), "crs": "EPSG:26913+8228"}, "correct one of them"),
         ({"transform": TURN @ rasterio.Affine.rotation(9)}, "not on square cells with north up"),
         ({"transform": TURN @ rasterio.Affine.scale(-1, 1)}, "not on square cells with north up"),
         ({"transform": TURN @ rasterio.Affine.scale(1, 2)}, "not on square cells"),
-        ({"transform": rasterio.Affine.identity(), "crs": None}, "has no place on the map"),
+        ({"transform": rasterio.Affine.identity(), "crs": None}, "has no position on the map"),
         ({"crs": "EPSG:4979"}, "its map is in degrees"),
     ],
     ids=["zero", "nan", "unit", "contradiction", "turned", "mirrored", "oblong", "lost", "3d"],

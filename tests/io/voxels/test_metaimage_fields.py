@@ -155,7 +155,7 @@ def test_another_scale_of_the_numbers_is_told(tmp_path):
         ("BinaryData = maybe", "True or False is needed"),
         ("CompressedData = True\nBinaryData = False", "are not packed"),
         ("CompressedData = True\nHeaderSize = -1", "must be known where packed numbers begin"),
-        ("BinaryDataByteOrderMSB = True", "says something else"),
+        ("BinaryDataByteOrderMSB = True", "contradicts it"),
         ("ElementSpacing = 1 1 2", "must be cubes"),
         ("ElementSpacing = 1 1 1\nDistanceUnits = mile", "DistanceUnits 'mile'"),
         ("HeaderSize = -2", "a number of bytes is needed"),

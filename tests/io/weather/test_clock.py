@@ -183,7 +183,7 @@ def test_actual_years_stay_as_they_are(form, rows, station):
 
 def test_two_typical_years_in_a_file_are_refused_by_the_hour_that_is_there_twice(station):
     rows = typical(YEARS, DEPTHS)
-    with pytest.raises(InputError, match=r"07-01 05:59 is there twice, as in line [0-9]+"):
+    with pytest.raises(InputError, match=r"07-01 05:59 occurs twice, also in line [0-9]+"):
         station(epw(rows + rows))
 
 

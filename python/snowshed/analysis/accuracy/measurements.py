@@ -44,7 +44,7 @@ RESULTS = (
 )
 NUMBERS = RESULTS[: RESULTS.index("version")]
 
-#: The keys of a measurement in a file, and of what was measured by it.
+#: Keys of a measurement in a file, and of its results.
 FORM = {
     "case": str,
     "settings": dict,
@@ -68,7 +68,7 @@ class Measured:
 
 @dataclass(frozen=True)
 class Measurement:
-    """One way of solving a problem with a known answer, solved once.
+    """A solution of a problem with a known answer, by one choice of settings.
 
     Attributes
     ----------
@@ -78,11 +78,11 @@ class Measurement:
         Time of the solution alone (without seeding, imports or evaluation), s; particles times
         steps; steps; particles. 0 if the measurement failed.
     peak_memory_mb
-        The most memory its process held, that of Python and its libraries (20 to 100 MB) included.
+        Largest memory of its process, including Python and its libraries (20 to 100 MB).
     elapsed_s
-        Duration of all of it, with seeding and evaluation, s.
+        Duration including seeding and evaluation, s.
     failure
-        Why there is no result; empty if there is one.
+        Reason for a missing result; otherwise empty.
     """
 
     case: str
@@ -101,7 +101,7 @@ class Measurement:
 
     @property
     def key(self) -> str:
-        """Key of what was measured: the case and its settings.
+        """Key of a measurement: the case and its settings.
 
         Examples
         --------
@@ -115,7 +115,8 @@ class Measurement:
         data = asdict(self)
         data["settings"] = dict(self.settings)
         data["measured"] = [
-            {name: _finite(value) for name, value in asdict(one).items()} for one in self.measured
+            {name: _finite(value) for name, value in asdict(result).items()}
+            for result in self.measured
         ]
         return data
 
@@ -136,7 +137,8 @@ class Measurement:
             if not known or name in (*IDENTITY, *RESULTS):
                 raise InputError(f"{where}: damaged: /settings/{shortened(name)}: not a setting")
         measured = [
-            _measured(one, f"{where}: /measured/{i}") for i, one in enumerate(data["measured"])
+            _measured(result, f"{where}: /measured/{i}")
+            for i, result in enumerate(data["measured"])
         ]
         settings = {FORMER_NAMES.get(k, k): v for k, v in data["settings"].items()}
         return cls(**{**data, "settings": settings, "measured": measured})
@@ -170,10 +172,10 @@ def to_table(measurements: Iterable[Measurement]) -> pd.DataFrame:
     import pandas as pd
 
     listed = list(measurements)
-    settings = list(dict.fromkeys(name for one in listed for name in one.settings))
+    settings = list(dict.fromkeys(name for measurement in listed for name in measurement.settings))
     if taken := sorted({*IDENTITY, *RESULTS} & set(settings)):
         raise ValueError(f"settings may not be called {', '.join(taken)}: columns of the results")
-    rows = [row for one in listed for row in _rows(one)]
+    rows = [row for measurement in listed for row in _rows(measurement)]
     table = pd.DataFrame(rows, columns=[*IDENTITY, *settings, *RESULTS], dtype=object)
     table[settings] = table[settings].where(table[settings].notna(), None)
     return table.astype(dict.fromkeys(NUMBERS, float))
@@ -185,11 +187,15 @@ def settings_of(table: pd.DataFrame) -> list[str]:
     return [str(name) for name in table if name not in fixed and table[name].notna().any()]
 
 
-def _rows(one: Measurement) -> list[dict[str, Any]]:
-    facts = asdict(one)
+def _rows(measurement: Measurement) -> list[dict[str, Any]]:
+    facts = asdict(measurement)
     del facts["settings"], facts["measured"]
-    facts["updates_per_s"] = one.updates / one.wall_s if one.wall_s else math.nan
-    return [{**facts, **one.settings, **asdict(measured)} for measured in one.measured]
+    facts["updates_per_s"] = (
+        measurement.updates / measurement.wall_s if measurement.wall_s else math.nan
+    )
+    return [
+        {**facts, **measurement.settings, **asdict(measured)} for measured in measurement.measured
+    ]
 
 
 def _finite(value: Any) -> Any:

@@ -1,4 +1,4 @@
-"""Measurements that come with the package: what ``--accuracy`` chooses from.
+"""Recorded accuracy: measurements in the package from which ``--accuracy`` chooses.
 
 They were made by the full suite of the folder ``validation`` in the source of snowshed::
 
@@ -40,13 +40,13 @@ def load_recorded(path: Optional[Path] = None) -> list[Measurement]:
     data = read_object(path)
     check_values(data, {"measurements": list}, str(path))
     return [
-        Measurement.from_json(one, f"{path}: /measurements/{i}")
-        for i, one in enumerate(data["measurements"])
+        Measurement.from_json(measurement, f"{path}: /measurements/{i}")
+        for i, measurement in enumerate(data["measurements"])
     ]
 
 
 def record(measurements: Iterable[Measurement], path: Path) -> None:
-    """Keep measurements in a file; earlier ones of the same cases give way, others stay.
+    """Store measurements in a file; earlier ones of the same cases are replaced, others stay.
 
     Failed measurements are not kept.
 
@@ -60,8 +60,10 @@ def record(measurements: Iterable[Measurement], path: Path) -> None:
     ...     [one.key for one in load_recorded(path)]
     ['disc {"dx": 0.1}', 'bar {"dx": 0.1}']
     """
-    new = [one for one in measurements if not one.failure]
-    cases = {one.case for one in new}
-    kept = [one for one in load_recorded(path) if one.case not in cases]
-    lines = ",\n".join(json.dumps(one.to_json(), allow_nan=False) for one in kept + new)
+    new = [measurement for measurement in measurements if not measurement.failure]
+    cases = {measurement.case for measurement in new}
+    earlier = [measurement for measurement in load_recorded(path) if measurement.case not in cases]
+    lines = ",\n".join(
+        json.dumps(measurement.to_json(), allow_nan=False) for measurement in earlier + new
+    )
     write_text(path, f'{{"measurements": [\n{lines}\n]}}\n')

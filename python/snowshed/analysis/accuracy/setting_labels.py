@@ -1,4 +1,4 @@
-"""Settings as people read them."""
+"""Labels of settings."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def setting(name: str, value: Optional[Value]) -> str:
 
 
 def unset(name: str) -> str:
-    """Return what stands for a setting that is not given: a scene's settings have defaults.
+    """Return the label of a missing setting: a scene's settings have defaults.
 
     Examples
     --------
@@ -51,5 +51,5 @@ def settings(chosen: Mapping[str, Optional[Value]], names: Optional[Iterable[str
     >>> settings({"dx": 0.01, "transfer": "apic", "seed": 2}, ["transfer", "dx"])
     'apic, dx 0.01'
     """
-    kept = chosen if names is None else [name for name in names if name in chosen]
-    return ", ".join(setting(name, chosen[name]) for name in kept)
+    labelled = chosen if names is None else [name for name in names if name in chosen]
+    return ", ".join(setting(name, chosen[name]) for name in labelled)

@@ -1,7 +1,7 @@
-"""Ways of solving a problem, and how accurate and how quick each of them is.
+"""Solutions of a problem: accuracy and cost of each choice of settings.
 
-Errors count by their size. Random seedings of the same settings are one way of solving and are
-taken together.
+Errors count by their absolute value. Random seedings of the same settings are combined to one
+solution.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from snowshed.analysis.accuracy.measurements import Settings, settings_of
 if TYPE_CHECKING:
     import pandas as pd
 
-#: Settings that make no other way of solving, only another sample of it.
+#: Settings that only select another random sample.
 SAMPLING = ("seed", "seedings")
 
 
@@ -31,14 +31,14 @@ class Row(NamedTuple):
 
 @dataclass(frozen=True)
 class Solution:
-    """One way of solving, over all its random seedings.
+    """A solution with one choice of settings, over all its random seedings.
 
     Attributes
     ----------
     settings
-        All but those in `SAMPLING`.
+        All settings except those in `SAMPLING`.
     error
-        Root mean square.
+        Root mean square of the errors.
     wall_s
         Mean time of the solution, s.
     """
@@ -66,12 +66,12 @@ def records(rows: pd.DataFrame) -> list[Row]:
 
 
 def solutions(rows: pd.DataFrame) -> list[Solution]:
-    """Return the ways in which one quantity was solved for; failed measurements are left out.
+    """Return the solutions for one quantity; failed measurements are left out.
 
     Parameters
     ----------
     rows
-        Of one quantity of one case.
+        Rows of one quantity of one case.
     """
     groups: dict[Hashable, list[Row]] = {}
     for row in records(rows[rows["error"].notna()]):
@@ -80,7 +80,7 @@ def solutions(rows: pd.DataFrame) -> list[Solution]:
 
 
 def key_of(settings: Settings, *, without: Collection[str] = ()) -> Hashable:
-    """Return what equal settings have in common, whatever their order.
+    """Return a key that is equal for equal settings in any order.
 
     Examples
     --------
@@ -90,36 +90,37 @@ def key_of(settings: Settings, *, without: Collection[str] = ()) -> Hashable:
     return tuple(sorted((name, v) for name, v in settings.items() if name not in without))
 
 
-def alike(found: Iterable[Solution], order_in: str) -> list[list[Solution]]:
+def alike(solved: Iterable[Solution], order_in: str) -> list[list[Solution]]:
     """Return the solutions that differ in one setting only, from the coarsest to the finest."""
     groups: dict[Hashable, list[Solution]] = {}
-    for one in found:
-        if order_in in one.settings:
-            groups.setdefault(key_of(one.settings, without=(order_in,)), []).append(one)
+    for solution in solved:
+        if order_in in solution.settings:
+            groups.setdefault(key_of(solution.settings, without=(order_in,)), []).append(solution)
     return [
-        sorted(group, key=lambda one: -float(one.settings[order_in])) for group in groups.values()
+        sorted(group, key=lambda solution: -float(solution.settings[order_in]))
+        for group in groups.values()
     ]
 
 
-def assured_errors(found: Sequence[Solution], order_in: Optional[str]) -> list[float]:
-    """Return for each solution the largest error that it or any finer one like it has.
+def assured_errors(solved: Sequence[Solution], order_in: Optional[str]) -> list[float]:
+    """Return for each solution the largest error of it and of all finer ones.
 
-    A coarse solution may be right by chance. That does not count: an accuracy is reached where
-    every finer solution, all other settings equal, reaches it too.
+    A coarse solution may be right by chance, which does not count: an accuracy is reached only if
+    every finer solution with equal other settings reaches it, too.
 
     Parameters
     ----------
-    found
+    solved
         Solutions for one quantity.
     order_in
-        The setting that makes a solution finer as it falls; None: the errors stand as they are.
+        The setting that refines a solution as it falls; None: the errors are used directly.
     """
-    assured = {id(one): abs(one.error) for one in found}
-    for group in alike(found, order_in) if order_in else []:
+    assured = {id(solution): abs(solution.error) for solution in solved}
+    for group in alike(solved, order_in) if order_in else []:
         worst = 0.0
-        for one in reversed(group):
-            worst = assured[id(one)] = max(worst, abs(one.error))
-    return [assured[id(one)] for one in found]
+        for finer in reversed(group):
+            worst = assured[id(finer)] = max(worst, abs(finer.error))
+    return [assured[id(solution)] for solution in solved]
 
 
 def quickest(costs: Sequence[float], errors: Sequence[float], wanted: float) -> int:

@@ -49,11 +49,11 @@ def calibration_study(
         {
             "snow": Snow.preset("reference").to_data(),
             "dimension": 2 if quick else 3,
-            "events.count": max(one.event for one in measurements),
+            "events.count": max(measurement.event for measurement in measurements),
             "numerics.dx": 0.03 if quick else 0.01,
         }
     )
-    tilts = sorted({one.tilt for one in measurements})
+    tilts = sorted({measurement.tilt for measurement in measurements})
     study = Study.product(
         scene,
         {"panel.tilt": tilts, **(CORNERS if quick else GRID)},

@@ -106,7 +106,7 @@ def _bars(
 def _name_sets(axes: Axes, rows: pd.DataFrame, parameters: Sequence[str], best: Booleans) -> None:
     words = [label(path) for path in parameters]
     axes.set_xlabel(
-        " · ".join(f"{one.symbol} ({one.unit})" if one.unit else one.symbol for one in words)
+        " · ".join(f"{word.symbol} ({word.unit})" if word.unit else word.symbol for word in words)
     )
     if len(rows) > NAMED:
         axes.set_xticks([])

@@ -1,4 +1,4 @@
-"""Stresses of variants over those of the base, sample by sample, with their scatter."""
+"""Ratios of the stresses of variants to those of the base, sample by sample, with their scatter."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class LogMean:
     error
         NaN with fewer than two.
     count
-        Values that it is the mean of.
+        Number of values in the mean.
     """
 
     mean: float
@@ -136,11 +136,11 @@ def compare_variants(table: pd.DataFrame) -> pd.DataFrame:
 
 def paired_ratios(table: pd.DataFrame, variant: str, stress: str, base: str = BASE) -> Floats:
     """Return a stress of a variant over that of another, for each sample that has both, (n,)."""
-    one, other = (
+    first, other = (
         table[table["variant"] == name].set_index("sample")[stress].astype(float)
         for name in (variant, base)
     )
-    both = [sample for sample in one.index if sample in other.index]
-    top, bottom = one.loc[both].to_numpy(), other.loc[both].to_numpy()
+    both = [sample for sample in first.index if sample in other.index]
+    top, bottom = first.loc[both].to_numpy(), other.loc[both].to_numpy()
     positive = (top > 0) & (bottom > 0)
     return np.asarray(top[positive] / bottom[positive])

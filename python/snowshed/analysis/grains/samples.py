@@ -19,7 +19,7 @@ from snowshed.io.atomic import replacing
 from snowshed.io.voxels.array_files import open_npy
 from snowshed.methods.grains.sample_folder import LABELS, find_sample
 
-#: Voxels along an edge without which a sample is none.
+#: Least number of voxels of a sample along an edge.
 LEAST_VOXELS = 6
 LARGEST_LABEL = 2**31 - 1
 
@@ -31,13 +31,13 @@ class LabelledSample:
     Attributes
     ----------
     name
-        Of the sample; its file is called so.
+        Name of the sample and its file.
     labels : (nz, ny, nx)
         0 air, else a grain.
     voxel_size
         Edge of a voxel, m: the diameter of the spheres.
     source
-        How it was made, if it is synthetic and that is known; else empty.
+        Origin of a synthetic sample, if known.
     """
 
     name: str
@@ -64,24 +64,24 @@ class LabelledSample:
         Raises
         ------
         InputError
-            If there are no labels, or nothing says how large a voxel is, or its grains are not as
-            large as those of snow.
+            If there are no labels, the voxel size is unknown, or the grains are implausibly large
+            or small.
         OSError
             If the file cannot be read.
         """
-        found = find_sample(path, LABELS)
-        size = found.voxel_size if voxel_size is None else voxel_size
+        sample = find_sample(path, LABELS)
+        size = sample.voxel_size if voxel_size is None else voxel_size
         if size is None:
-            raise InputError(f"{found.file}: how large is a voxel? Give its edge in m (--voxel)")
+            raise InputError(f"{sample.file}: how large is a voxel? Give its edge in m (--voxel)")
         positive("voxel size", size)
-        opened = open_npy(found.file)
+        opened = open_npy(sample.file)
         if opened.dtype.kind not in "iu":
-            raise InputError(f"{found.file}: no labels; they are whole numbers (nz, ny, nx)")
+            raise InputError(f"{sample.file}: no labels; they are whole numbers (nz, ny, nx)")
         labels = opened.layers(0, opened.shape[0])
-        labels = _checked_labels(found.file, labels, split_labels)
-        _check_voxel_size(found.file, labels, size)
-        named = found.file.resolve().parent if found.file.name == LABELS else found.file
-        return cls(named.stem, labels, size, found.source)
+        labels = _checked_labels(sample.file, labels, split_labels)
+        _check_voxel_size(sample.file, labels, size)
+        named = sample.file.resolve().parent if sample.file.name == LABELS else sample.file
+        return cls(named.stem, labels, size, sample.source)
 
     @property
     def ice_fraction(self) -> float:
@@ -90,13 +90,14 @@ class LabelledSample:
 
     @property
     def grains(self) -> int:
-        """How many grains there are."""
+        """Number of grains."""
         return int(np.count_nonzero(np.unique(self.labels)))
 
     def coarser(self, factor: int) -> LabelledSample:
         """Return the sample with voxels `factor` times as large, and the same ice fraction.
 
-        Where there is ice, `downscaled` decides; it belongs to the grain that has most of it there.
+        `downscaled` decides which voxels are ice; a voxel belongs to the grain with the most ice in
+        it.
 
         Examples
         --------
@@ -194,7 +195,7 @@ def _checked_labels(file: Path, labels: AnyIntegers, split: bool) -> Labels:
 
 
 def _check_voxel_size(file: Path, labels: AnyIntegers, voxel_size: float) -> None:
-    """Raise InputError unless grains are as large as those of snow, as every test checks."""
+    """Raise InputError unless the grains have plausible sizes for snow."""
     voxels = np.unique(labels[labels > 0], return_counts=True)[1]
     if not len(voxels):
         raise InputError(f"{file}: no grain in the image: every voxel is 0, which is air")

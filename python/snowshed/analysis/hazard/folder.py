@@ -67,15 +67,19 @@ def write_hazard(
     Parameters
     ----------
     folder
-        Where the files go.
+        Folder of the files.
     store, study, reached, pressures
         As for `hazard_maps`, which raises the same errors.
     """
     place = Path(folder)
     maps = hazard_maps(store, study, reached=reached, pressures=pressures)
-    for one in maps.exceedances:
-        for ending, values in (("", one.probability), ("_low", one.lower), ("_high", one.upper)):
-            _write(place / "probability" / f"{one.name}{ending}.asc", maps, values)
+    for exceedance in maps.exceedances:
+        for ending, values in (
+            ("", exceedance.probability),
+            ("_low", exceedance.lower),
+            ("_high", exceedance.upper),
+        ):
+            _write(place / "probability" / f"{exceedance.name}{ending}.asc", maps, values)
     for (quantity, percentile), values in maps.percentiles.items():
         _write(place / "percentiles" / f"{QUANTITIES[quantity][1]}_p{percentile}.asc", maps, values)
     table = read_table(store, study)
@@ -108,22 +112,26 @@ def _page(maps: HazardMaps, scene: Mapping[str, Any], facts: Mapping[str, Any]) 
     percentiles: dict[int, dict[str, Floats]] = {}
     for (quantity, percentile), values in maps.percentiles.items():
         percentiles.setdefault(percentile, {})[quantity] = values
-    head = ("area, m², with a probability of", *(f"at least {100 * one:.0f} %" for one in LEVELS))
+    head = (
+        "area, m², with a probability of",
+        *(f"at least {100 * level:.0f} %" for level in LEVELS),
+    )
     rows = [
-        (one.label, *(f"{maps.area(one, level):,.0f}" for level in LEVELS))
-        for one in maps.exceedances
+        (exceedance.label, *(f"{maps.area(exceedance, level):,.0f}" for level in LEVELS))
+        for exceedance in maps.exceedances
     ]
     return HazardPage(
         title=scene.get("title") or "Snow slides",
         sentence=(
             f"Of {maps.runs} slides at least half reach {likely:,.0f} m², and at least one in "
-            f"twenty {possible:,.0f} m²; at every place 95\N{NO-BREAK SPACE}% of them stay below "
+            f"twenty {possible:,.0f} m²; at every position, 95\N{NO-BREAK SPACE}% of them stay "
+            "below "
             f"{speed:.1f} m/s and {pressure:.1f} kPa."
         ),
         uncertainty=uncertainty(maps.runs),
         ground=maps.terrain,
         outlines=release_outlines(scene),
-        probabilities={one.label: one.probability for one in maps.exceedances},
+        probabilities={exceedance.label: exceedance.probability for exceedance in maps.exceedances},
         percentiles=percentiles,
         areas=Grid(head, rows, "l" + "r" * len(LEVELS)),
         ranges=facts["ranges"],
@@ -135,7 +143,7 @@ def _page(maps: HazardMaps, scene: Mapping[str, Any], facts: Mapping[str, Any]) 
 
 
 def _notes(maps: HazardMaps, scene: Mapping[str, Any], table: pd.DataFrame) -> list[str]:
-    """Return where most slides leave what the method was made for, by their median figures."""
+    """Return warnings where most slides violate the method's assumptions, by their medians."""
     areas = release_areas(maps.terrain, scene["terrain"]["release"])
     medians = table.select_dtypes("number").median()
     figures = {
@@ -143,14 +151,14 @@ def _notes(maps: HazardMaps, scene: Mapping[str, Any], table: pd.DataFrame) -> l
         "ended": "rest",
         "bonds_broken": 0.0,
     }
-    found = validity_notes(areas, scene[SETTINGS_KEY], figures)
+    notes = validity_notes(areas, scene[SETTINGS_KEY], figures)
     counts = {
         "more than a tenth of the bonds broke: they did not move as a unit": (
             table["bonds_broken"] > AS_ONE * table["bonds_made"]
         ),
         "the slide had not come to rest at the time limit": table["ended"] == "time_limit",
     }
-    return found + [
+    return notes + [
         f"In {slides.sum()} of {maps.runs} runs {what}."
         for what, slides in counts.items()
         if slides.any()

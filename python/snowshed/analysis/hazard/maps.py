@@ -17,7 +17,7 @@ from snowshed.scene.scene import PathLike, ResolvedScene
 from snowshed.scene.terrain_grid import slide_terrain
 from snowshed.study.store import Store
 
-#: What is mapped, with the unit and the name that AvaFrame gives its raster.
+#: Mapped quantities, with their units and AvaFrame's names of the rasters.
 QUANTITIES: Mapping[str, tuple[str, str]] = {
     "thickness": ("m", "pft"),
     "speed": ("m/s", "pfv"),
@@ -33,7 +33,7 @@ BAND_BYTES = 100_000_000  # of the maps of all runs that are held at a time
 
 @dataclass(frozen=True)
 class Exceedance:
-    """How likely a quantity exceeds a value somewhere.
+    """Probability that a quantity exceeds a value, by position.
 
     Attributes
     ----------
@@ -57,25 +57,25 @@ class Exceedance:
 
     @property
     def label(self) -> str:
-        """What exceeds what, in words, such as "thickness above 0.1 m"."""
+        """Label of the exceedance, such as "thickness above 0.1 m"."""
         return f"{self.quantity} above {self.threshold:g} {QUANTITIES[self.quantity][0]}"
 
 
 @dataclass(frozen=True)
 class HazardMaps:
-    """What many slides on the same terrain come to, node by node, the southernmost row first.
+    """Results of many slides on the same terrain, node by node, the southernmost row first.
 
     Attributes
     ----------
     terrain
         Elevations with their place.
     runs, failed
-        How many slides the maps are of, and how many more could not be computed.
+        Number of slides in the maps, and number of failed ones.
     exceedances
-        The first is that of being reached.
+        Maps of exceedance; the first is that of being reached.
     percentiles
-        By quantity and percentile: values that this percentage of the runs stays below. Runs that
-        do not reach a node count there with 0.
+        Maps by quantity and percentile: this percentage of the runs stays below the values. Runs
+        that do not reach a node count there with 0.
     """
 
     terrain: Raster
@@ -104,7 +104,7 @@ def hazard_maps(
 ) -> HazardMaps:
     """Return the maps of a study of slides, as far as its runs are computed.
 
-    The maps of all runs are never held at once, but band by band of the terrain.
+    Maps are processed in row bands, so memory does not grow with the number of runs.
 
     Parameters
     ----------
@@ -116,12 +116,12 @@ def hazard_maps(
     pressures
         Pressures whose exceedance is mapped, kPa.
     percentiles
-        Which percentiles of peak thickness, speed and pressure to map, 0 to 100.
+        Percentiles of peak thickness, speed and pressure to map, 0 to 100.
 
     Raises
     ------
     InputError
-        If there is no such study, no slide in it is done, maps were not kept, or they are of
+        If there is no such study, none of its slides is done, maps are missing, or they have
         different grids.
     """
     _check(reached, pressures, percentiles)
@@ -182,25 +182,27 @@ class _Sums:
         thresholds = [("thickness", reached), *(("pressure", value) for value in pressures)]
         self.counts = {key: np.zeros(shape, dtype=np.int32) for key in thresholds}
         self.percentiles: dict[tuple[str, int], Floats] = {
-            (quantity, one): np.zeros(shape) for quantity in QUANTITIES for one in percentiles
+            (quantity, percentile): np.zeros(shape)
+            for quantity in QUANTITIES
+            for percentile in percentiles
         }
 
     def add(self, begin: int, end: int, maps: Iterator[PeakMaps]) -> None:
         """Fill the rows from `begin` to before `end` from the maps of all runs."""
         values = np.empty((len(QUANTITIES), self.runs, end - begin, self.shape[1]), np.float32)
-        for run, found in enumerate(maps):
-            if found.shape != self.shape:
+        for run, run_maps in enumerate(maps):
+            if run_maps.shape != self.shape:
                 raise InputError("the slides of the study are on different grids")
             for place, quantity in enumerate(QUANTITIES):
-                values[place, run] = found.window(quantity, begin, end)
+                values[place, run] = run_maps.window(quantity, begin, end)
         for place, quantity in enumerate(QUANTITIES):
             for key in self.counts:
                 if key[0] == quantity:
                     self.counts[key][begin:end] = (values[place] > key[1]).sum(axis=0)
-            wanted = [one for name, one in self.percentiles if name == quantity]
+            wanted = [percentile for name, percentile in self.percentiles if name == quantity]
             found_values = np.percentile(values[place], wanted, axis=0)
-            for one, cut in zip(wanted, found_values):
-                self.percentiles[quantity, one][begin:end] = cut
+            for share, cut in zip(wanted, found_values):
+                self.percentiles[quantity, share][begin:end] = cut
 
     def exceedances(self) -> list[Exceedance]:
         return [
@@ -229,10 +231,10 @@ def _maps_of(store: Store, hash_: str) -> PeakMaps:
 def _check(reached: float, pressures: Sequence[float], percentiles: Sequence[int]) -> None:
     for value in (reached, *pressures):
         if not 0.0 <= value < math.inf:
-            raise InputError(f"{value:g} is no threshold; it is not negative, and finite")
+            raise InputError(f"{value:g} is not a threshold; allowed: finite numbers from 0")
     for value in percentiles:
         if not 0 <= value <= 100:
-            raise InputError(f"{value:g} is no percentile; allowed are 0 to 100")
+            raise InputError(f"{value:g} is not a percentile; allowed: 0 to 100")
 
 
 def hazard_facts(maps: HazardMaps) -> dict[str, Any]:
@@ -243,13 +245,13 @@ def hazard_facts(maps: HazardMaps) -> dict[str, Any]:
         "cell_m": maps.terrain.cell,
         "exceedances": [
             {
-                "quantity": one.quantity,
-                "threshold": one.threshold,
-                "unit": QUANTITIES[one.quantity][0],
-                "largest_probability": float(one.probability.max()),
-                "area_m2": {f"{level:g}": maps.area(one, level) for level in LEVELS},
+                "quantity": exceedance.quantity,
+                "threshold": exceedance.threshold,
+                "unit": QUANTITIES[exceedance.quantity][0],
+                "largest_probability": float(exceedance.probability.max()),
+                "area_m2": {f"{level:g}": maps.area(exceedance, level) for level in LEVELS},
             }
-            for one in maps.exceedances
+            for exceedance in maps.exceedances
         ],
         "largest_values": {
             f"{quantity}_p{percentile}": float(values.max())

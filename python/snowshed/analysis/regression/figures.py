@@ -221,8 +221,8 @@ def _vary(
     questions = np.tile(here, (ALONG, 1))
     questions[:, number] = np.linspace(x.min(), x.max(), ALONG)
     scaled = Scaling.of(rows.inputs).scaled(questions)
-    found = member.ensemble.predict(scaled) * member.deviation + member.mean
-    mean, deviation = found.mean(axis=0), found.std(axis=0)
+    predicted = member.ensemble.predict(scaled) * member.deviation + member.mean
+    mean, deviation = predicted.mean(axis=0), predicted.std(axis=0)
     axes.plot(questions[:, number], mean, color=shade, linewidth=1.3)
     band = (mean - deviation, mean + deviation)
     axes.fill_between(questions[:, number], *band, color=shade, alpha=0.2, linewidth=0)

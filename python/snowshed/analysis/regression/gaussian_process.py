@@ -44,7 +44,7 @@ class GaussianProcess:
         return LikelihoodSearch()
 
     def estimator(self, parameters: Mapping[str, float]) -> GaussianProcessRegressor:
-        """Return the process with these hyper-parameters, which training leaves as they are."""
+        """Return the process with these hyper-parameters, which training does not change."""
         lengths = [value for name, value in parameters.items() if name.startswith("length_")]
         covariance = _covariance(parameters["amplitude"], np.array(lengths), parameters["noise"])
         return GaussianProcessRegressor(covariance, alpha=0.0, optimizer=None)

@@ -36,7 +36,7 @@ class RegressionInterrupted(KeyboardInterrupt):
     """A regression was interrupted; the folds that were done are kept in its folder."""
 
     def __init__(self, folder: Path) -> None:
-        super().__init__(f"interrupted; the same command goes on with what {folder} holds")
+        super().__init__(f"interrupted; the same command resumes from {folder}")
 
 
 def cross_validate(
@@ -56,9 +56,9 @@ def cross_validate(
     rows
         The data set.
     folder
-        Where each fold's result is kept as soon as it is done.
+        Folder for each fold's result, written as soon as it is done.
     targets, kinds
-        What to predict, with which kinds of model.
+        Quantities to predict, and kinds of model.
     scheme
         Rounds and folds.
     jobs
@@ -134,7 +134,7 @@ class _Tracker:
 
 
 def _claim(folder: Path, rows: StackRows, scheme: CrossValidation) -> None:
-    """Note what the folder's results belong to, or refuse a folder of others.
+    """Record the subject of the folder's results, or refuse a folder with other results.
 
     Each round splits the rows by itself, so that their number may grow.
     """
@@ -149,7 +149,7 @@ def _claim(folder: Path, rows: StackRows, scheme: CrossValidation) -> None:
                 "version of snowshed; take a new folder"
             )
         return
-    if folder.exists() and any(not LEFTOVER.match(one.name) for one in folder.iterdir()):
+    if folder.exists() and any(not LEFTOVER.match(file.name) for file in folder.iterdir()):
         raise InputError(f"{folder}: not empty, and holds no regression")
     folder.mkdir(parents=True, exist_ok=True)
     write_text(path, json.dumps(identity, indent=1) + "\n")
@@ -193,7 +193,7 @@ def _outcome(ended: Ended[Task, None]) -> Task:
 
 
 def _end(pool: Pool[Task, None], folder: Path) -> None:
-    """End the processes, whatever they do, and remove what they have half written."""
+    """End the processes immediately, and remove their unfinished files."""
     pool.close()
     remove_leftovers(folder)
 

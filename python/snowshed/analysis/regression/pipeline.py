@@ -1,4 +1,4 @@
-"""From a table of stacks to models, tables and figures: what ``snowshed regress`` does."""
+"""Models, tables and figures from a table of stacks, for ``snowshed regress``."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class TargetReport:
     quartiles, errors
         Tables 5.3.1 and 5.3.2; see `snowshed.analysis.regression.summary`.
     expression
-        The linear model as a formula; empty if there is none.
+        The linear model as a formula; otherwise empty.
     checks
         For the ratio, in words, whether the results agree with published ones.
     """
@@ -78,13 +78,13 @@ def regress(
     folder
         Results folder: new, empty, or one whose regression was interrupted.
     targets
-        Of "ratio", "height", "length"; none: all.
+        Some of "ratio", "height", "length". [default: all]
     models
-        Of "linear", "rbf", "gaussian-process", "gradient-boosting"; none: all.
+        Some of "linear", "rbf", "gaussian-process", "gradient-boosting". [default: all]
     scheme
-        Rounds and folds; None: those of section 5.2.3.
+        Rounds and folds. [default: those of section 5.2.3]
     jobs
-        Processes; None: as many as there are cores.
+        Number of processes. [default: the number of cores]
     title, measure
         What the data are, and what of the stack was measured; kept in the model file.
     figures
@@ -102,7 +102,7 @@ def regress(
     InputError
         If a name is unknown, there are too few rows, or the folder holds something else.
     RegressionInterrupted
-        On Ctrl-C; the same call goes on.
+        On Ctrl-C; the same call resumes.
     """
     if jobs is not None and jobs < 1:
         raise InputError(f"jobs: {jobs} is not positive")
@@ -169,13 +169,13 @@ class _Output:
         for task, result in self._results.items():
             if (task.target, task.kind) == (target, kind):
                 rounds.setdefault(task.round, []).append(result.parameters)
-        found = unseen_panels(self._kinds[kind], list(rounds.values()), self._rows, target)
+        errors = unseen_panels(self._kinds[kind], list(rounds.values()), self._rows, target)
         ensemble = Ensemble.of(results)
         values = self._rows.targets[target]
         unit = float(values.std()) or 1.0
         deviation = ensemble.predict(ensemble.points).std(axis=0) * unit
-        spread = stack_spread(self._rows, target, found, deviation)
-        return Member(ensemble, float(values.mean()), unit, spread), found - values
+        spread = stack_spread(self._rows, target, errors, deviation)
+        return Member(ensemble, float(values.mean()), unit, spread), errors - values
 
     def _report(
         self,

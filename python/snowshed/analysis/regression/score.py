@@ -1,4 +1,4 @@
-"""The score by which models are chosen and compared."""
+"""The score that chooses and compares models."""
 
 from __future__ import annotations
 

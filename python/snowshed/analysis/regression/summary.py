@@ -25,11 +25,11 @@ Elected = Mapping[str, Sequence[FoldResult]]
 
 def elected_models(results: Results, target: str) -> dict[str, list[FoldResult]]:
     """Return for each kind of model the results of its folds, in order."""
-    found: dict[str, list[FoldResult]] = {}
+    by_kind: dict[str, list[FoldResult]] = {}
     for task, result in results.items():
         if task.target == target:
-            found.setdefault(task.kind, []).append(result)
-    return found
+            by_kind.setdefault(task.kind, []).append(result)
+    return by_kind
 
 
 def score_table(results: Results) -> pd.DataFrame:
@@ -98,9 +98,9 @@ def error_table(
     Parameters
     ----------
     elected, data, target
-        The folds' results by kind of model, and what they are about.
+        The folds' results by kind of model, and their task.
     unseen
-        For kinds of model the errors on panels of which they saw no event.
+        Errors on unseen panels, by kind of model.
     """
     import pandas as pd
 

@@ -77,7 +77,8 @@ def sensitivity_study(
         "s": single-parameter variation (3.3); "fixation": single-parameter fixation (3.4);
         "sobol" or "morris": a sample of the same ranges.
     quick
-        Whether to use 2D, a coarse grid and two events, for a trial whose numbers mean little.
+        Whether to use 2D, a coarse grid and two events, for a trial whose numbers are not
+        meaningful.
     seeds
         Seedings of each point, for "s" and "fixation".
     samples

@@ -19,7 +19,7 @@ from snowshed.study.factors import SEED, Span
 
 EXTRA = "sensitivity"
 LEVELS = 4  # of Morris's grid
-RANDOM = 1  # seed of the samples: the same sample whenever it is asked for
+RANDOM = 1  # seed of the samples, so that they are reproducible
 #: Ranges of Table 3.2.1; the hardening factor spans a decade, and so is sampled by its logarithm.
 SPANS: Mapping[str, Span] = {
     path: Span(min(values), max(values), "log" if path == HARDENING else "linear")

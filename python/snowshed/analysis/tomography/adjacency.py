@@ -1,10 +1,9 @@
-"""Which labels touch, and with how much area.
+"""Contacts between labels, and their areas.
 
-The area of a contact is the length of the sum of its voxel faces as vectors. That is exact for a
-plane at any angle to the voxels, as nearly all contacts of grains are, and adds up when labels are
-merged.
-Of a curved contact it is the area of the plane across its rim. (Crofton's formula, by which the
-surface to air is measured, also counts lines past the rim of a neck.)
+The area of a contact is the length of the sum of its voxel faces as vectors. This is exact for a
+plane at any angle to the voxels, as for nearly all contacts of grains, and it is additive when
+labels are merged. For a curved contact it is the area of the plane across its rim. (Crofton's
+formula, which measures the surface to air, also counts lines past the rim of a neck.)
 """
 
 from __future__ import annotations
@@ -31,7 +30,7 @@ class Adjacency:
     normals : (m, 3)
         Sum of the faces of each contact as vectors (z, y, x), from the smaller label to the larger.
     faces : (m,)
-        How many faces of voxels lie between them.
+        Number of voxel faces between them.
     saddles : (m,)
         The largest distance from the air on a contact; zero if no distance was given.
     """
@@ -60,7 +59,7 @@ class Adjacency:
 
     @property
     def coordination(self) -> Integers:
-        """How many others each label touches, (n + 1,)."""
+        """Number of neighbours of each label, (n + 1,)."""
         return np.bincount(self.pairs.ravel(), minlength=len(self.air))
 
     def merged(self, new: AnyIntegers) -> Adjacency:
@@ -92,7 +91,7 @@ def find_adjacency(labels: Labels, distance: Optional[SingleFloats] = None) -> A
     labels : (nz, ny, nx)
         0 air, else 1 to n.
     distance : (nz, ny, nx)
-        Distance from the air in voxels, of which the saddles are found; None: they are zero.
+        Distance from the air in voxels, for the saddles. [default: all saddles are zero]
 
     Examples
     --------
@@ -142,7 +141,7 @@ class _PairValues:
         self.values.append(values)
 
     def adjacency(self, air: Floats) -> Adjacency:
-        """Return what was added."""
+        """Return the sums."""
         keys, values = _reduced(np.concatenate(self.keys), np.concatenate(self.values))
         pairs = np.stack(np.divmod(keys, self.count), axis=1)
         return Adjacency(air, pairs, values[:, :3], values[:, 3].astype(np.int64), values[:, 4])

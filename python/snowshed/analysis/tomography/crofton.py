@@ -58,7 +58,7 @@ def neighbours(
 
 
 def _overlap(step: int, count: int) -> tuple[slice, slice]:
-    """Return the voxels along an axis that have a neighbour a step away, and these neighbours."""
+    """Return the voxels along an axis with a neighbour at a distance, and these neighbours."""
     if step < 0:
         return slice(-step, count), slice(0, count + step)
     return slice(0, count - step), slice(step, count)
@@ -83,14 +83,14 @@ def surface_area(phase: Booleans, voxel_size: float = 1.0) -> float:
     >>> round(area / (4 * np.pi * 10.0**2), 2)
     1.0
     """
-    area = sum(weight(one) * _crossings(phase, one)[0] for one in DIRECTIONS)
+    area = sum(weight(direction) * _crossings(phase, direction)[0] for direction in DIRECTIONS)
     return area * voxel_size**2
 
 
 def surface_density(phase: Booleans, voxel_size: float = 1.0) -> float:
     """Return the surface between two phases per volume of an image that is part of a whole, 1/m.
 
-    Unlike in `surface_area`, a direction in which the sides cut more lines has no less weight.
+    Unlike in `surface_area`, directions with more lines cut at the sides do not have less weight.
 
     Examples
     --------
@@ -99,7 +99,7 @@ def surface_density(phase: Booleans, voxel_size: float = 1.0) -> float:
     >>> round(surface_density(layers), 2)  # 7 % too small: a plane along two axes
     0.93
     """
-    crossed = ((weight(one), *_crossings(phase, one)) for one in DIRECTIONS)
+    crossed = ((weight(direction), *_crossings(phase, direction)) for direction in DIRECTIONS)
     return sum(area * crossings / pairs for area, crossings, pairs in crossed) / voxel_size
 
 

@@ -5,8 +5,8 @@ curvature is negative the surface is concave in a direction, as around a neck. W
 surface falls apart into convex zones, a layer of voxels thick, whose voxels have common faces. Each
 labels the ice that is nearest to it.
 
-That grains are found by curvature and contiguity is published (Hagenmuller, Chambon and Naaim
-2015). How the zones are found and extended is inferred.
+The segmentation by curvature and contiguity is published (Hagenmuller, Chambon and Naaim 2015). The
+steps that find and extend the zones are inferred.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ def curvature_basins(
     Parameters
     ----------
     ice : (nz, ny, nx)
-        Where there is ice.
+        Mask of the ice.
     smoothing
         Standard deviation of the Gaussian that smooths the image, voxels.
     neck_curvature
@@ -70,8 +70,8 @@ def surface_voxels(ice: Booleans) -> tuple[Integers, ...]:
     """Return where ice has air at one of its faces: indices along z, y, x."""
     inner = ice.copy()
     for axis in range(3):
-        low = tuple(slice(None, -1) if one == axis else slice(None) for one in range(3))
-        high = tuple(slice(1, None) if one == axis else slice(None) for one in range(3))
+        low = tuple(slice(None, -1) if index == axis else slice(None) for index in range(3))
+        high = tuple(slice(1, None) if index == axis else slice(None) for index in range(3))
         inner[low] &= ice[high]
         inner[high] &= ice[low]
     return np.nonzero(ice & ~inner)
@@ -82,7 +82,7 @@ def principal_curvatures(
 ) -> tuple[SingleFloats, SingleFloats]:
     """Return the principal curvatures of the levels of a field, the smaller first, 1/voxel.
 
-    They are positive where what is above the level is convex. From the mean and the Gaussian
+    They are positive where the region above the level is convex. From the mean and the Gaussian
     curvature of an implicit surface: Goldman (2005, doi:10.1016/j.cagd.2005.06.005), section 4.
 
     Parameters
@@ -110,16 +110,16 @@ def _curvatures(smooth: SingleFloats, at: list[Integers]) -> tuple[Floats, Float
 
     def mixed(first: int, second: int) -> Floats:
         corners = [
-            (one, other, [one * (axis == first) + other * (axis == second) for axis in range(3)])
-            for one in (-1, 1)
+            (step, other, [step * (axis == first) + other * (axis == second) for axis in range(3)])
+            for step in (-1, 1)
             for other in (-1, 1)
         ]
-        total = np.sum([one * other * near(*steps) for one, other, steps in corners], axis=0)
+        total = np.sum([first * other * near(*steps) for first, other, steps in corners], axis=0)
         return np.asarray(0.25 * total)
 
     here = near(0, 0, 0)
-    ahead = [near(*(int(axis == one) for axis in range(3))) for one in range(3)]
-    behind = [near(*(-int(axis == one) for axis in range(3))) for one in range(3)]
+    ahead = [near(*(int(axis == index) for axis in range(3))) for index in range(3)]
+    behind = [near(*(-int(axis == index) for axis in range(3))) for index in range(3)]
     gz, gy, gx = (0.5 * (a - b) for a, b in zip(ahead, behind))
     hzz, hyy, hxx = (a - 2 * here + b for a, b in zip(ahead, behind))
     hzy, hzx, hyx = mixed(0, 1), mixed(0, 2), mixed(1, 2)

@@ -15,9 +15,9 @@ LARGEST_FACTOR = 16
 def downscaled(image: IceImage, factor: int) -> IceImage:
     """Return an image whose voxels are each `factor` times as long.
 
-    The coarse voxels with the most ice become ice, as many as the ice fraction asks for. A majority
-    in each would change it. Between equal ones their neighbours decide, then their order. What does
-    not fill whole voxels at the far sides is left out.
+    The coarse voxels with the most ice become ice, until the ice fraction is reached. A majority
+    rule in each voxel would change the fraction. Among equal voxels their neighbours decide, then
+    their order. Incomplete voxels at the far sides are left out.
 
     Raises
     ------

@@ -14,7 +14,7 @@ from snowshed.base.extras import require
 from snowshed.base.formatting import number
 
 BINS = 1024  # of a histogram of anything but small whole numbers
-MOST_VALUES = 1 << 16  # whole numbers of which each has a bin of its own
+MOST_VALUES = 1 << 16  # whole numbers with a bin each
 #: Labels of grains have at least so many numbers above 0, of which none has most of the ice, and
 #: this part of the neighbours in the ice have the same number. Of grey values, few have.
 LEAST_LABELS, MOST_OF_ONE, SAME_NEIGHBOURS = 8, 0.5, 0.75
@@ -23,12 +23,12 @@ Parts = Callable[[], Iterable[NDArray[Any]]]
 
 
 def found_threshold(name: str, parts: Parts) -> tuple[float, str]:
-    """Return what separates ice and air, and how it was found: "two values" or "Otsu".
+    """Return the threshold between ice and air, and its origin: "two values" or "Otsu".
 
     Parameters
     ----------
     name
-        Of the image, for messages.
+        Name of the image in messages.
     parts
         Returns the numbers of the image in parts along z, each time anew.
 
@@ -42,12 +42,12 @@ def found_threshold(name: str, parts: Parts) -> tuple[float, str]:
     >>> found_threshold("a", lambda: [np.array([[[0, 200], [200, 0]]], dtype=np.uint8)])
     (100.0, 'two values')
     """
-    found = [(part.min().item(), part.max().item()) for part in parts()]
-    lowest, highest = min(low for low, _ in found), max(high for _, high in found)
+    ends = [(part.min().item(), part.max().item()) for part in parts()]
+    lowest, highest = min(low for low, _ in ends), max(high for _, high in ends)
     if lowest == highest:
         raise InputError(
-            f"{name}: empty: every voxel has the value {number(float(lowest))}; there is no ice "
-            "among air"
+            f"{name}: empty: every voxel has the value {number(float(lowest))}; it shows only ice "
+            "or only air"
         )
     histogram = _Histogram.between(name, lowest, highest)
     neighbours = _Neighbours()
@@ -70,7 +70,7 @@ def found_threshold(name: str, parts: Parts) -> tuple[float, str]:
 
 @dataclass
 class _Histogram:
-    """How often values occur; whole numbers of a small range have a bin each."""
+    """Counts of values; whole numbers of a small range have a bin each."""
 
     lowest: Union[int, float]
     width: float  # of a bin
@@ -96,17 +96,17 @@ class _Histogram:
 
     def add(self, part: NDArray[Any]) -> None:
         if self.whole:
-            # Of 8 bytes the difference fits, of fewer it may not.
+            # Differences of 8 bytes fit, those of fewer bytes may overflow.
             wide = part if part.dtype.itemsize == 8 else part.astype(np.int64)
-            places = (wide - wide.dtype.type(self.lowest)).astype(np.int64)
+            bins = (wide - wide.dtype.type(self.lowest)).astype(np.int64)
         else:
             shifted = part.astype(np.float64) - float(self.lowest)
-            places = np.minimum((shifted / self.width).astype(np.int64), self.bins - 1)
-        self.counts += np.bincount(places.ravel(), minlength=self.bins)
+            bins = np.minimum((shifted / self.width).astype(np.int64), self.bins - 1)
+        self.counts += np.bincount(bins.ravel(), minlength=self.bins)
 
     @property
     def has_many_values(self) -> bool:
-        """Whether many values occur above 0, and none of them most of the time."""
+        """Whether many values occur above 0, and none of them dominates."""
         above = self.counts[1:] if self.whole else self.counts
         seen = int(np.count_nonzero(above))
         return seen >= LEAST_LABELS and above.max() < MOST_OF_ONE * above.sum()
@@ -120,16 +120,16 @@ class _Histogram:
 
 @dataclass
 class _Neighbours:
-    """How many voxels next to each other along y and x are ice, and have the same number."""
+    """Number of neighbouring voxels along y and x that are ice, and have the same value."""
 
     pairs: int = 0
     same: int = 0
 
     def add(self, part: NDArray[Any]) -> None:
-        for one, other in ((part[:, 1:], part[:, :-1]), (part[:, :, 1:], part[:, :, :-1])):
-            ice = (one > 0) & (other > 0)
+        for first, other in ((part[:, 1:], part[:, :-1]), (part[:, :, 1:], part[:, :, :-1])):
+            ice = (first > 0) & (other > 0)
             self.pairs += int(np.count_nonzero(ice))
-            self.same += int(np.count_nonzero(ice & (one == other)))
+            self.same += int(np.count_nonzero(ice & (first == other)))
 
     @property
     def are_same(self) -> bool:

@@ -24,7 +24,7 @@ from snowshed.analysis.tomography.request import asked_fraction, check_shape, on
 from snowshed.base.arrays import Booleans, SingleFloats, positive
 
 SHELL_WIDTH = 0.15  # standard deviation of the wave numbers over their mean
-#: How near the asked numbers the search ends, and after how many fields or cuts at the latest.
+#: Tolerance of the search, and its largest numbers of fields and of cuts.
 SURFACE_TOLERANCE, ICE_TOLERANCE, MOST_TRIES = 0.005, 1e-4, 12
 LARGEST_SURFACE_ERROR = 0.03  # of the best try
 
@@ -50,17 +50,17 @@ def gaussian_snow(
     voxel_size
         Edge of a voxel, m.
     ice_fraction, density
-        How much ice; give one of the two. 0 < fraction < 1, or kg/m3.
+        Amount of ice; give one of the two. 0 < fraction < 1, or kg/m3.
     correlation_length, specific_surface
-        How fine the ice is; give one of the two: the mean wavelength of the field in m, or the
-        surface of the ice per mass in m2/kg, for which the wavelength is sought.
+        Fineness of the ice; give one of the two: the mean wavelength of the field in m, or the
+        surface of the ice per mass in m2/kg, from which the wavelength is found.
     anisotropy
         Wavelength along z over that along x and y, whose geometric mean stays.
     connected
-        Whether only the largest connected part of the ice is kept. The ice fraction is that of
-        this part.
+        Whether to keep only the largest connected part of the ice. The ice fraction is that of this
+        part.
     seed
-        Of what is random; the same seed gives the same snow.
+        Random seed; the same seed gives the same snow.
 
     Raises
     ------
@@ -130,7 +130,8 @@ def _search(
     noise: _Noise, fraction: float, surface: float, voxel_size: float, connected: bool
 ) -> tuple[Booleans, float]:
     """Return ice of a specific surface, and the wavelength of its field in voxels."""
-    # Mean square of the shell's wave numbers, which are as many as k^2, over that of 2 pi/L.
+    # Mean square of the shell's wave numbers, whose number grows as k^2, relative to that of 2
+    # pi/L.
     spread = (1 + 6 * SHELL_WIDTH**2 + 3 * SHELL_WIDTH**4) / (1 + SHELL_WIDTH**2)
     per_length = 2 / np.pi * np.sqrt(spread / 3) * np.exp(-0.5 * ndtri(fraction) ** 2)
     target = surface * ICE_DENSITY * fraction * voxel_size  # per volume, in voxels
@@ -140,13 +141,13 @@ def _search(
     for attempt in range(MOST_TRIES):
         field = noise.field(_resolved(wavelength, voxel_size, noise.shape))
         ice = _cut(field, fraction, connected)
-        found = surface_density(ice) * ice.size * fraction / np.count_nonzero(ice)
-        if abs(found / target - 1) < least:
-            best, least = (ice, wavelength), abs(found / target - 1)
+        density = surface_density(ice) * ice.size * fraction / np.count_nonzero(ice)
+        if abs(density / target - 1) < least:
+            best, least = (ice, wavelength), abs(density / target - 1)
         if least < SURFACE_TOLERANCE:
             break
         # Parts that come loose or hold make the surface jump; smaller steps then get nearer.
-        wavelength *= float(found / target) ** (1.0 if attempt < MOST_TRIES // 3 else 0.4)
+        wavelength *= float(density / target) ** (1.0 if attempt < MOST_TRIES // 3 else 0.4)
     if best is not None:
         return best
     raise InputError(
@@ -184,7 +185,7 @@ def _cut(field: SingleFloats, fraction: float, connected: bool) -> Booleans:
     if best is None or least > 0.02 * target:
         raise InputError(
             f"ice fraction {fraction:.3g}: the largest connected part has {1 - least / target:.0%} "
-            "of it; so little ice is not connected in this field"
+            "of it; there is too little ice for a connected part"
         )
     return best
 

@@ -19,13 +19,13 @@ class GrainStatistics:
     Attributes
     ----------
     grains, contacts
-        How many.
+        Number of grains, and of contacts.
     mean_coordination
         Mean number of grains that a grain touches.
     mean_diameter_m, median_diameter_m
-        Of the spheres that have the volumes of the grains.
+        Mean and median diameter of spheres with the volumes of the grains.
     mean_contact_area_m2
-        Of all contacts.
+        Mean area of all contacts.
     bonded_surface
         Area of the contacts, counted at both sides, over the whole surface of the grains.
     """
@@ -39,7 +39,7 @@ class GrainStatistics:
     bonded_surface: float
 
 
-def grain_table(found: Segmentation) -> pd.DataFrame:
+def grain_table(segmentation: Segmentation) -> pd.DataFrame:
     """Return a row for each grain.
 
     Columns
@@ -57,8 +57,8 @@ def grain_table(found: Segmentation) -> pd.DataFrame:
     >>> bool(abs(table.volume_m3.sum() / snow.ice.sum() / 5e-5**3 - 1) < 1e-9)
     True
     """
-    size, touching = found.image.voxel_size, found.touching
-    voxels, centres = _centres(found.labels)
+    size, touching = segmentation.image.voxel_size, segmentation.touching
+    voxels, centres = _centres(segmentation.labels)
     volume = voxels[1:] * size**3
     x, y, z = (centres[1:] * size).T
     return pd.DataFrame(
@@ -72,12 +72,12 @@ def grain_table(found: Segmentation) -> pd.DataFrame:
             "x_m": x,
             "y_m": y,
             "z_m": z,
-            "at_side": _at_side(found.labels, len(voxels))[1:].astype(int),
+            "at_side": _at_side(segmentation.labels, len(voxels))[1:].astype(int),
         }
     )
 
 
-def contact_table(found: Segmentation) -> pd.DataFrame:
+def contact_table(segmentation: Segmentation) -> pd.DataFrame:
     """Return a row for each contact.
 
     Columns
@@ -85,14 +85,14 @@ def contact_table(found: Segmentation) -> pd.DataFrame:
         ``voxel_faces``, how many faces of voxels lie between them, which the bonds of the loading
         tests are made of; ``contiguity``, the area over the smaller whole surface of the two.
     """
-    touching = found.touching
+    touching = segmentation.touching
     first, second = touching.pairs.T
     surfaces = touching.surfaces
     return pd.DataFrame(
         {
             "grain": first,
             "other": second,
-            "area_m2": touching.areas * found.image.voxel_size**2,
+            "area_m2": touching.areas * segmentation.image.voxel_size**2,
             "voxel_faces": touching.faces,
             "contiguity": touching.areas / np.minimum(surfaces[first], surfaces[second]),
         }
@@ -100,7 +100,7 @@ def contact_table(found: Segmentation) -> pd.DataFrame:
 
 
 def grain_statistics(grains: pd.DataFrame, contacts: pd.DataFrame) -> GrainStatistics:
-    """Return what the tables of grains and contacts come to."""
+    """Return the summary of the tables of grains and contacts."""
     bonded = float(grains["contact_area_m2"].sum())
     return GrainStatistics(
         grains=len(grains),

@@ -24,11 +24,11 @@ class IceImage:
     voxel_size
         Edge of a voxel, m.
     source
-        What the image shows: a file, or how synthetic snow was made.
+        Source of the image: a file, or a description of synthetic snow.
     synthetic
         Whether a generator made it.
     labels : (nz, ny, nx)
-        The grains, if they are known as those of a sphere pack are: 0 air, else a grain.
+        Labels of known grains, as in a sphere pack: 0 air, else a grain.
 
     Raises
     ------
@@ -79,7 +79,7 @@ class IceImage:
 
 
 def check_phases(image: IceImage) -> None:
-    """Raise InputError if an image shows ice or air alone."""
+    """Raise InputError if an image shows only ice or only air."""
     if not image.ice.any():
         raise InputError(f"{image.source}: no ice; is the threshold too high, or ice dark?")
     if image.ice.all():

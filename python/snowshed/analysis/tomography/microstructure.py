@@ -32,15 +32,15 @@ class Microstructure:
     ice_fraction
         Volume of the ice over that of the sample.
     density_kg_m3
-        Of the sample, with ice of 917 kg/m3.
+        Density of the sample, with ice of 917 kg/m3.
     specific_surface_m2_kg
         Surface of the ice over its mass, by Crofton's formula in 13 directions: within 1 % for
         spheres 10 voxels wide, 7 % too small for layers along the voxels.
     optical_diameter_m
         Diameter of spheres with this specific surface, 6 / (917 kg/m3 times it).
     correlation_length_x_m, correlation_length_y_m, correlation_length_z_m
-        Where the two-point correlation has fallen to 1/e of its beginning; nan if it does not
-        within half the sample.
+        Distance at which the two-point correlation has fallen to 1/e of its initial value; nan if
+        this is beyond half the sample.
     ice_chord_x_m, ice_chord_y_m, ice_chord_z_m
         Mean length of the ice on lines.
     pore_chord_x_m, pore_chord_y_m, pore_chord_z_m
@@ -72,8 +72,8 @@ def measure(image: IceImage) -> Microstructure:
     Raises
     ------
     InputError
-        If there is no ice or no air, or the grains would be larger or smaller than any of snow, as
-        they are if the voxel size is in another unit than metres.
+        If there is no ice or no air, or the grains are larger or smaller than in any snow, which
+        points to a voxel size in another unit than metres.
 
     Examples
     --------
@@ -124,7 +124,7 @@ def covariances(ice: Booleans, axis: int) -> Floats:
 
 
 def correlation_length(ice: Booleans, axis: int) -> float:
-    """Return where the covariance along an axis has fallen to 1/e, in voxels; nan if it has not.
+    """Return the distance in voxels at which the covariance along an axis has fallen to 1/e.
 
     Examples
     --------

@@ -11,11 +11,11 @@ from snowshed.base.arrays import Floats, Integers
 
 
 def merge_shallow(touching: Adjacency, peaks: Floats, depth: float) -> Integers:
-    """Return new labels, in which maxima of the distance less deep than `depth` are no grain.
+    """Return new labels without grains at maxima of the distance less deep than `depth`.
 
-    The depth of a maximum is the way down from it to the saddle towards a higher one, its dynamics.
-    Basins merged so are those that the maxima of the h-maxima transform would have (Soille 2004,
-    Morphological Image Analysis, chapter 6).
+    The depth of a maximum is its height above the saddle towards a higher one, its dynamics. The
+    merged basins are those of the maxima of the h-maxima transform (Soille 2004, Morphological
+    Image Analysis, chapter 6).
 
     Parameters
     ----------
@@ -34,29 +34,29 @@ def merge_shallow(touching: Adjacency, peaks: Floats, depth: float) -> Integers:
     root = np.arange(len(peaks))
     height = peaks.copy()
     for edge in np.argsort(-touching.saddles, kind="stable"):
-        one, other = (_root(root, label) for label in touching.pairs[edge])
-        if one != other and min(height[one], height[other]) - touching.saddles[edge] < depth:
-            root[max(one, other)] = min(one, other)
-            height[min(one, other)] = max(height[one], height[other])
+        first, other = (_root(root, label) for label in touching.pairs[edge])
+        if first != other and min(height[first], height[other]) - touching.saddles[edge] < depth:
+            root[max(first, other)] = min(first, other)
+            height[min(first, other)] = max(height[first], height[other])
     return _consecutive(root)
 
 
 def merge_contiguous(
     touching: Adjacency, voxels: Integers, contiguity: float, smallest: int = 0
 ) -> Integers:
-    """Return new labels, in which what hangs together by more than a share of its surface is one.
+    """Return new labels, in which labels with a contact above a share of their surface are merged.
 
-    The contiguity of two labels is the area of their contact over the whole surface of that which
-    has less. The most contiguous pair is merged first, and what changes is computed anew.
-    Afterwards a label of fewer voxels than `smallest` joins that with which it shares the largest
-    contact.
+    The contiguity of two labels is the ratio of the area of their contact to the smaller of their
+    whole surfaces. The most contiguous pair is merged first, and its contiguities are computed
+    again. Afterwards, a label of fewer voxels than `smallest` joins the label with the largest
+    contact to it.
 
     Parameters
     ----------
     touching
         The labels.
     voxels : (n + 1,)
-        Of each.
+        Number of voxels of each region.
     contiguity
         The largest that two grains may have.
     smallest
@@ -74,32 +74,32 @@ def merge_contiguous(
 
 
 class _Graph:
-    """Labels and their contacts, which are merged one by one."""
+    """Labels and their contacts, merged one by one."""
 
     def __init__(self, touching: Adjacency, voxels: Integers) -> None:
         self.root = np.arange(len(touching.air))
         self.surface = touching.surfaces
         self.voxels = voxels.copy()
         self.areas: list[dict[int, float]] = [{} for _ in self.root]
-        for (one, other), area in zip(touching.pairs.tolist(), touching.areas.tolist()):
-            self.areas[one][other] = self.areas[other][one] = area
+        for (first, other), area in zip(touching.pairs.tolist(), touching.areas.tolist()):
+            self.areas[first][other] = self.areas[other][first] = area
 
     def merge_above(self, contiguity: float) -> None:
         """Merge pairs of a larger contiguity, the largest first."""
         queue = [
-            (-self._contiguity(one, other), one, other)
-            for one, touched in enumerate(self.areas)
+            (-self._contiguity(label, other), label, other)
+            for label, touched in enumerate(self.areas)
             for other in touched
-            if one < other
+            if label < other
         ]
         heapq.heapify(queue)
         while queue and -queue[0][0] > contiguity:
-            negative, one, other = heapq.heappop(queue)
-            if other not in self.areas[one] or -self._contiguity(one, other) != negative:
+            negative, first, other = heapq.heappop(queue)
+            if other not in self.areas[first] or -self._contiguity(first, other) != negative:
                 continue  # merged, or changed and queued anew
-            self._merge(one, other)
-            for third in self.areas[one]:
-                pair = (one, third) if one < third else (third, one)
+            self._merge(first, other)
+            for third in self.areas[first]:
+                pair = (first, third) if first < third else (third, first)
                 heapq.heappush(queue, (-self._contiguity(*pair), *pair))
 
     def merge_small(self, smallest: int) -> None:
@@ -110,32 +110,34 @@ class _Graph:
             count, label = heapq.heappop(queue)
             if self.root[label] != label or count != self.voxels[label] or not self.areas[label]:
                 continue
-            other = max(self.areas[label], key=lambda one: (self.areas[label][one], -one))
-            kept = min(label, other)
-            self._merge(kept, max(label, other))
-            if self.voxels[kept] < smallest:
-                heapq.heappush(queue, (int(self.voxels[kept]), kept))
+            other = max(
+                self.areas[label], key=lambda neighbour: (self.areas[label][neighbour], -neighbour)
+            )
+            remaining = min(label, other)
+            self._merge(remaining, max(label, other))
+            if self.voxels[remaining] < smallest:
+                heapq.heappush(queue, (int(self.voxels[remaining]), remaining))
 
-    def _contiguity(self, one: int, other: int) -> float:
-        surface = min(self.surface[one], self.surface[other])
-        return float(self.areas[one][other] / surface) if surface > 0 else np.inf
+    def _contiguity(self, first: int, other: int) -> float:
+        surface = min(self.surface[first], self.surface[other])
+        return float(self.areas[first][other] / surface) if surface > 0 else np.inf
 
-    def _merge(self, kept: int, gone: int) -> None:
+    def _merge(self, remaining: int, gone: int) -> None:
         """Merge a label into one with a smaller number."""
-        area = self.areas[kept].pop(gone)
-        self.areas[gone].pop(kept)
+        area = self.areas[remaining].pop(gone)
+        self.areas[gone].pop(remaining)
         for third, shared in self.areas[gone].items():
-            total = self.areas[kept].get(third, 0.0) + shared
+            total = self.areas[remaining].get(third, 0.0) + shared
             self.areas[third].pop(gone)
-            self.areas[kept][third] = self.areas[third][kept] = total
+            self.areas[remaining][third] = self.areas[third][remaining] = total
         self.areas[gone] = {}
-        self.surface[kept] += self.surface[gone] - 2 * area
-        self.voxels[kept] += self.voxels[gone]
-        self.root[gone] = kept
+        self.surface[remaining] += self.surface[gone] - 2 * area
+        self.voxels[remaining] += self.voxels[gone]
+        self.root[gone] = remaining
 
 
 def _root(root: Integers, label: int) -> int:
-    """Return the label into which one was merged, and make the way there short."""
+    """Return the label into which a label was merged, and shorten the path to it."""
     while root[label] != label:
         root[label] = root[root[label]]
         label = int(root[label])

@@ -1,4 +1,4 @@
-"""What is asked of synthetic snow."""
+"""Targets for synthetic snow (density, surface area)."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ MOST_VOXELS = 1 << 30
 
 
 def check_shape(shape: tuple[int, int, int]) -> None:
-    """Raise InputError unless a shape is that of a sample of synthetic snow.
+    """Raise InputError for an invalid shape of synthetic snow.
 
     Examples
     --------
@@ -29,7 +29,7 @@ def check_shape(shape: tuple[int, int, int]) -> None:
 
 
 def asked_fraction(ice_fraction: Optional[float], density: Optional[float]) -> float:
-    """Return the ice fraction, of which a density in kg/m3 is another name.
+    """Return the ice fraction, from the fraction or from a density in kg/m3.
 
     Examples
     --------

@@ -49,7 +49,7 @@ Fact = Union[str, float, int, bool, None, list[str]]
 
 @dataclass(frozen=True)
 class SampleNumbers:
-    """What is known of an image of snow.
+    """Numbers of an image of snow.
 
     Attributes
     ----------
@@ -78,9 +78,9 @@ def write_ice(folder: PathLike, image: IceImage, facts: Mapping[str, Fact]) -> S
     folder
         New or empty.
     image
-        What is written; of a sphere pack the known grains are written, too.
+        The image to write; for a sphere pack, its known grains are written, too.
     facts
-        How it was made, for ``microstructure.json``.
+        Facts about its making, for ``microstructure.json``.
 
     Raises
     ------
@@ -99,7 +99,11 @@ def write_ice(folder: PathLike, image: IceImage, facts: Mapping[str, Fact]) -> S
 
 
 def write_grains(
-    folder: PathLike, found: Segmentation, facts: Mapping[str, Fact], *, surface: bool = False
+    folder: PathLike,
+    segmentation: Segmentation,
+    facts: Mapping[str, Fact],
+    *,
+    surface: bool = False,
 ) -> SampleNumbers:
     """Write the grains of an image into a folder, and return their numbers.
 
@@ -107,10 +111,10 @@ def write_grains(
     ----------
     folder
         New or empty.
-    found
+    segmentation
         The grains.
     facts
-        How they were found, for ``microstructure.json``.
+        Facts about their segmentation, for ``microstructure.json``.
     surface
         Whether to write ``surface.vtp``.
 
@@ -133,21 +137,21 @@ def write_grains(
     from snowshed.analysis.tomography.slices import slices_figure
 
     check_new(folder)
-    image, path = found.image, Path(folder)
-    grains, contacts = grain_table(found), contact_table(found)
+    image, path = segmentation.image, Path(folder)
+    grains, contacts = grain_table(segmentation), contact_table(segmentation)
     numbers = SampleNumbers(measure(image), grain_statistics(grains, contacts))
     _check_sizes(image, numbers)
     path.mkdir(parents=True, exist_ok=True)
     _write_array(path / SNOW, image.ice.view(np.uint8))
-    _write_array(path / LABELS, found.labels)
+    _write_array(path / LABELS, segmentation.labels)
     write_csv(grains, path / "grains.csv", float_format="%.7g")
     write_csv(contacts, path / "contacts.csv", float_format="%.7g")
-    settings = {} if found.settings is None else asdict(found.settings)
+    settings = {} if segmentation.settings is None else asdict(segmentation.settings)
     settings.pop("threads", None)  # the grains do not depend on it
     _write_numbers(path, numbers, {**facts, **settings})
-    _save(slices_figure(found.labels, numbers.ice, numbers.grains), path)
+    _save(slices_figure(segmentation.labels, numbers.ice, numbers.grains), path)
     if surface:
-        write_surface(path / "surface.vtp", found.labels, image.voxel_size)
+        write_surface(path / "surface.vtp", segmentation.labels, image.voxel_size)
     return numbers
 
 
@@ -164,13 +168,13 @@ def _write_array(path: Path, array: AnyIntegers) -> None:
 
 
 def _write_numbers(path: Path, numbers: SampleNumbers, facts: Mapping[str, Fact]) -> None:
-    found = {**asdict(numbers.ice), **(asdict(numbers.grains) if numbers.grains else {}), **facts}
-    text = json.dumps({name: _rounded(value) for name, value in found.items()}, indent=2)
+    values = {**asdict(numbers.ice), **(asdict(numbers.grains) if numbers.grains else {}), **facts}
+    text = json.dumps({name: _rounded(value) for name, value in values.items()}, indent=2)
     write_text(path / NUMBERS, text + "\n")
 
 
 def _rounded(value: object) -> object:
-    """Return a value as it is written: numbers with nine digits, null for what is not finite."""
+    """Return a value for JSON: numbers with nine digits, null for values that are not finite."""
     if not isinstance(value, float):
         return value
     return float(f"{value:.9g}") if math.isfinite(value) else None

@@ -21,23 +21,24 @@ SegmentationMethod = Literal["watershed", "curvature"]
 
 @dataclass(frozen=True)
 class SegmentationSettings:
-    """How grains are told apart.
+    """Settings of the segmentation into grains.
 
     Attributes
     ----------
     method : {"watershed", "curvature"}
-        What cuts the ice: the watershed of the distance from the air, or the concave surface.
+        Method that cuts the ice: the watershed of the distance from the air, or the concave
+        surface.
     depth
-        A maximum of the distance is a grain only if it is this much higher than the neck towards a
-        higher one, voxels (watershed).
+        Height of a maximum of the distance above the neck towards a higher one, from which it is a
+        grain, voxels (watershed).
     smoothing
         Standard deviation of the Gaussian that smooths the surface, voxels (curvature).
     neck_curvature
         The surface is a neck where its smaller principal curvature is below this, 1/voxel
         (curvature).
     contiguity
-        Two pieces are one grain if their contact has more than this part of the surface of that
-        which has less surface. 0 < value <= 1; 1: none are merged.
+        Share of the smaller surface of two pieces above which their contact makes them one grain. 0
+        < value <= 1; 1: no pieces are merged.
     smallest
         A grain of fewer voxels joins the neighbour with the largest contact.
     threads
@@ -79,7 +80,7 @@ class Segmentation:
     image
         The ice.
     settings
-        How its grains were found; None: they were known.
+        Settings of the segmentation; None for known grains.
     labels : (nz, ny, nx)
         0 air, else a grain from 1.
     touching
@@ -107,11 +108,11 @@ def segment(
     Parameters
     ----------
     image
-        The ice. It should be connected; what is not is told apart as grains of their own.
+        The ice. It should be connected; disconnected parts become separate grains.
     settings
-        How grains are told apart; None: the defaults.
+        Settings of the segmentation. [default: `SegmentationSettings()`]
     progress
-        Called with the part that is done, and what is being done.
+        Called with the finished share, and the current step.
 
     Raises
     ------
@@ -175,4 +176,4 @@ def _basins(image: IceImage, settings: SegmentationSettings) -> Basins:
 
 
 def _silent(part: float, doing: str) -> None:
-    """Tell nobody."""
+    """Report nothing."""

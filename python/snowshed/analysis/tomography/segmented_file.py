@@ -1,4 +1,4 @@
-"""From a file with an image of snow to a folder with its grains."""
+"""A folder of grains from a file with an image of snow."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ from snowshed.base.paths import PathLike
 from snowshed.base.progress import Progress, Reporter
 from snowshed.io.voxels.voxel_file import VoxelFile
 
-#: Memory, bytes: of a voxel that is read, and of one in which grains are found.
+#: Memory, bytes: per voxel of the file, and per voxel of the segmentation.
 BYTES_READ, BYTES_SEGMENTED = 2, 45
-#: What it takes on one core of a desktop computer, s per voxel.
+#: Time on one core of a desktop computer, s per voxel.
 SECONDS_PER_VOXEL = 1e-6
 READ, FOUND = 0.1, 0.85  # parts of the work
 
@@ -37,13 +37,13 @@ def segmentation_plan(file: VoxelFile, settings: ImageSettings) -> tuple[int, fl
     InputError
         If the image has more voxels than fit into this machine's memory.
     """
-    kept = prod(cropped_shape(file, settings.crop))
-    coarse = kept // max(settings.downscale, 1) ** 3
-    needed = BYTES_READ * kept + BYTES_SEGMENTED * coarse
+    voxels = prod(cropped_shape(file, settings.crop))
+    coarse = voxels // max(settings.downscale, 1) ** 3
+    needed = BYTES_READ * voxels + BYTES_SEGMENTED * coarse
     there = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
     if needed > there:
         raise InputError(
-            f"{file.name}: {kept:,} voxels take some {number(needed / 1e9, 2)} GB; this machine "
+            f"{file.name}: {voxels:,} voxels take some {number(needed / 1e9, 2)} GB; this machine "
             f"has {number(there / 1e9, 2)} GB: crop or downscale the image"
         )
     return needed, SECONDS_PER_VOXEL * coarse
@@ -67,13 +67,13 @@ def segment_image(
     folder
         New or empty.
     image_settings
-        How ice is found in the image.
+        Settings that separate ice from air in the image.
     settings
-        How grains are told apart.
+        Settings of the segmentation.
     surface
         Whether to write the surface for ParaView.
     progress
-        Called as the work goes on.
+        Called during the work.
 
     Raises
     ------
@@ -92,7 +92,7 @@ def segment_image(
     with recorded() as told:
         read = read_ice(file, wanted)
     measure(read.image)  # what cannot be snow is refused before the long part
-    found = segment(
+    segmentation = segment(
         read.image, settings, lambda part, doing: report(READ + (FOUND - READ) * part, doing)
     )
     report(FOUND, "writing")
@@ -103,13 +103,13 @@ def segment_image(
         "downscale": wanted.downscale,
         "notes": [*file.notes, *told],
     }
-    numbers = write_grains(folder, found, facts, surface=surface)
+    numbers = write_grains(folder, segmentation, facts, surface=surface)
     report(1.0, "")
     return numbers, read
 
 
 def plan_text(file: VoxelFile, settings: ImageSettings) -> str:
-    """Return what finding the grains of an image takes, in words."""
+    """Return the announcement of a segmentation: its time and memory."""
     needed, seconds = segmentation_plan(file, settings)
     nz, ny, nx = cropped_shape(file, settings.crop)
     return (

@@ -33,9 +33,9 @@ def slices_figure(
     labels : (nz, ny, nx)
         0 air, else a grain; or 1 for all ice.
     numbers
-        Of the ice.
+        Numbers of the ice.
     grains
-        Of the grains; None: they are not told apart.
+        The grains; None if they are not separated.
     """
     from matplotlib import rc_context
 

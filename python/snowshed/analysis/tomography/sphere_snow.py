@@ -38,8 +38,9 @@ def sphere_snow(
     Parameters
     ----------
     shape, voxel_size, ice_fraction, density, seed
-        As of `snowshed.analysis.tomography.gaussian_snow.gaussian_snow`. No sphere is added after
-        the ice fraction is reached. Up to some 0.35 are possible, more with wider necks.
+        As for `snowshed.analysis.tomography.gaussian_snow.gaussian_snow`. No sphere is added after
+        the ice fraction is reached. Fractions up to some 0.35 are possible, and more with wider
+        necks.
     diameter
         Mean diameter of the spheres, m.
     neck_ratio
@@ -113,9 +114,9 @@ class _Pack:
             self._place(random.uniform(0.3, 0.7, 3) * self.shape, radius)
             return True
         other = int(random.integers(self.count))
-        way = random.normal(size=3)
+        direction = random.normal(size=3)
         apart = self._distance(radius, self.radii[other])
-        centre = self.centres[other] + way * (apart / np.linalg.norm(way))
+        centre = self.centres[other] + direction * (apart / np.linalg.norm(direction))
         if (centre < 0).any() or (centre >= self.shape).any():
             return False
         gaps = np.linalg.norm(self.centres[: self.count] - centre, axis=1) - self._distance(

@@ -53,12 +53,12 @@ def write_surface(path: Path, labels: Labels, voxel_size: float) -> int:
 def _grain_of(labels: Labels, centres: Floats) -> Labels:
     """Return the grain of triangles: that of the nearest voxel of ice around their centres."""
     low = np.floor(centres).astype(np.int64)
-    found = np.zeros(len(centres), dtype=np.int32)
+    grains = np.zeros(len(centres), dtype=np.int32)
     nearest = np.full(len(centres), np.inf)
     for step in np.ndindex(2, 2, 2):
         at = np.minimum(low + step, np.array(labels.shape) - 1)
         grain = labels[tuple(at.T)]
         distance = np.where(grain > 0, np.linalg.norm(centres - at, axis=1), np.inf)
         nearer = distance < nearest
-        found[nearer], nearest[nearer] = grain[nearer], distance[nearer]
-    return found
+        grains[nearer], nearest[nearer] = grain[nearer], distance[nearer]
+    return grains

@@ -1,4 +1,4 @@
-"""From the numbers of an image to ice and air, a few layers at a time."""
+"""Ice and air from the numbers of an image, a few layers at a time."""
 
 from __future__ import annotations
 
@@ -25,25 +25,25 @@ Crop = tuple[tuple[int, int], tuple[int, int], tuple[int, int]]
 
 @dataclass(frozen=True)
 class ImageSettings:
-    """How ice is found in an image.
+    """Settings that separate ice from air in an image.
 
     Attributes
     ----------
     voxel_size
         Edge of a voxel, m; None: as the file says.
     threshold
-        What is above is ice; None: in an image of two values the larger is, else Otsu's threshold
-        (1979, doi:10.1109/TSMC.1979.4310076).
+        Value above which a voxel is ice. Default: the midpoint of an image of two values, else
+        Otsu's threshold (1979, doi:10.1109/TSMC.1979.4310076).
     dark_ice
         Whether ice is below the threshold.
     crop
         First voxel, and the one after the last, along z, y and x; None: all.
     downscale
-        How many voxels along an edge become one. The ice fraction stays.
+        Number of voxels along an edge to merge. The ice fraction stays.
     connected
         Whether only the largest connected part of the ice is kept.
     synthetic_source
-        How the snow was made, if it is synthetic; else empty.
+        Origin of the snow, if it is synthetic; else empty.
     """
 
     voxel_size: Optional[float] = None
@@ -57,14 +57,14 @@ class ImageSettings:
 
 @dataclass(frozen=True)
 class ReadImage:
-    """Ice that was read from an image, and what was decided for it.
+    """Ice from an image, and the decisions on the way to it.
 
     Attributes
     ----------
     image
         The ice.
     threshold
-        What separates ice and air.
+        Threshold between ice and air.
     chosen
         Who chose the threshold: "given", "two values" or "Otsu".
     lost
@@ -85,12 +85,12 @@ def read_ice(file: VoxelFile, settings: Optional[ImageSettings] = None) -> ReadI
     file
         The image.
     settings
-        How ice is found in it; None: the defaults, with the voxel size of the file.
+        Settings that separate ice from air; None: the defaults, with the voxel size of the file.
 
     Raises
     ------
     InputError
-        If a value is out of range, the image has one value alone, or the voxel size is not known.
+        If a value is out of range, the image has only one value, or the voxel size is unknown.
 
     Examples
     --------
@@ -124,14 +124,14 @@ def read_ice(file: VoxelFile, settings: Optional[ImageSettings] = None) -> ReadI
     check_phases(image)
     lost = 0.0
     if wanted.connected:
-        kept = largest_part(image.ice)
-        lost = 1.0 - float(np.count_nonzero(kept) / np.count_nonzero(image.ice))
-        image = image.with_ice(kept)
+        largest = largest_part(image.ice)
+        lost = 1.0 - float(np.count_nonzero(largest) / np.count_nonzero(image.ice))
+        image = image.with_ice(largest)
     return ReadImage(image, threshold, chosen, lost)
 
 
 def _voxel_size(file: VoxelFile, given: Optional[float]) -> float:
-    """Return the edge of a voxel, m; tell where the file says something else."""
+    """Return the edge of a voxel, m; tell where the file contradicts it."""
     if given is None:
         if file.voxel_size is None:
             hint = ""

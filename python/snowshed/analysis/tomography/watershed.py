@@ -25,7 +25,7 @@ class Basins:
     labels : (nz, ny, nx)
         0 air, else 1 to n.
     distance : (nz, ny, nx)
-        From the air, in voxels.
+        Distance from the air, in voxels.
     peaks : (n + 1,)
         Largest distance in each.
     """

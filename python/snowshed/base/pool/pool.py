@@ -1,7 +1,7 @@
 """Local processes that compute tasks: studies, regressions, measurements and stress runs.
 
-The processes are started by a plain command instead of by `multiprocessing`, so that scripts need
-no main guard, and each has a socket of its own: if one dies, nobody else notices.
+A plain command starts the processes instead of `multiprocessing`, so that scripts need no main
+guard. Each process has its own socket: the death of one does not affect the others.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ from typing import Generic, Optional, TypeVar, cast
 
 from snowshed.base.pool.messages import Died, Done, Fraction, Raised, Ready
 
-STOP_S = 60.0  # s a process has to write its checkpoint
-END_S = 5.0  # s a process has to end once its socket is closed
-LAST_WORDS = 4096  # bytes of a process's errors of which the last line is told
+STOP_S = 60.0  # time for a process to write its checkpoint, s
+END_S = 5.0  # time for a process to end after its socket is closed, s
+LAST_WORDS = 4096  # bytes of a process's stderr whose last line is reported
 
 Task = TypeVar("Task")
 Result = TypeVar("Result")
-#: Computes a task; may call its second argument with the part that is done, 0 to 1.
+#: Computes a task; may call its second argument with the finished share, 0 to 1.
 Compute = Callable[[Task, Callable[[float], None]], Result]
 
 
@@ -40,16 +40,16 @@ def available_cores() -> int:
 
 @dataclass(frozen=True)
 class Isolation:
-    """Keeps the tasks of a `Pool` apart from each other, and ends those that hang.
+    """Isolates the tasks of a `Pool` from each other, and ends those that hang.
 
     Attributes
     ----------
     forked
-        Whether each task has a fork of its process, which never computes itself: a task then sees
-        no memory of another, and its process's peak memory is its own.
+        Whether each task runs in a fork of its process, which itself never computes: a task then
+        sees no memory of another, and the peak memory of its process is its own.
     limit_s
-        Wall time of a task in s, once its process is ready. A task that takes longer is killed with
-        its process.
+        Longest wall time of a task in s, from the moment when its process is ready. A longer task
+        is killed with its process.
     environment
         Variables of the environment that are set for the processes.
     """
@@ -71,11 +71,11 @@ class Ended(Generic[Task, Result]):
     task
         The task.
     result
-        What was computed; None otherwise.
+        Result of the task, if it was computed.
     error
-        What its computation raised; None otherwise.
+        Exception of the task, if it raised one.
     death
-        How its process ended, in words; empty otherwise.
+        Description of how its process ended, if it died.
     last_words
         The last line that a process that ended so wrote to stderr; may be empty.
     hung
@@ -96,18 +96,18 @@ class Ended(Generic[Task, Result]):
 class Pool(Generic[Task, Result]):
     """Up to `processes` processes that compute one task after another; a context manager.
 
-    A task runs in the main thread of its process, so that SIGTERM can ask it to stop where it can
-    go on later. Ctrl-C in a terminal does not reach the processes. They end with the pool, even
-    where the process that made it is killed.
+    A task runs in the main thread of its process, so that SIGTERM can ask it to stop at a safe
+    point. Ctrl-C in a terminal does not reach the processes. They end with the pool, even if the
+    parent process is killed.
 
     Parameters
     ----------
     processes
-        Tasks at once.
+        Number of tasks to run in parallel.
     compute
-        A function of a module, or a `functools.partial` of one; it is sent to each process once.
+        A function of a module, or a `functools.partial` of it; it is sent to each process once.
     isolation
-        How far tasks are kept apart; by default they share their process with those before.
+        Isolation of the tasks; by default, tasks share a process with earlier ones.
 
     Examples
     --------
@@ -139,7 +139,7 @@ class Pool(Generic[Task, Result]):
 
     @property
     def fractions(self) -> list[tuple[Task, float]]:
-        """Each task that is being computed, and how much of its work is done."""
+        """Tasks under way, each with its finished share."""
         return [(busy.task, busy.done) for busy in self._processes if busy.task is not None]
 
     def submit(self, task: Task) -> None:
@@ -154,7 +154,7 @@ class Pool(Generic[Task, Result]):
             self._discard(idle)  # it died while it was idle
 
     def collect(self, timeout: float) -> list[Ended[Task, Result]]:
-        """Wait until a task ends, no longer than `timeout` in s; return what has ended."""
+        """Wait until a task ends, at most `timeout` s; return the ended tasks."""
         give_up = time.monotonic() + timeout
         while True:
             ended = self._receive(max(0.0, give_up - time.monotonic()))
@@ -162,7 +162,7 @@ class Pool(Generic[Task, Result]):
                 return ended
 
     def stop(self) -> list[Ended[Task, Result]]:
-        """Ask all tasks to stop where they can go on later; return what ended meanwhile."""
+        """Ask all tasks to stop at a safe point; return the tasks that ended meanwhile."""
         for process in self._busy():
             process.interrupt()
         ended: list[Ended[Task, Result]] = []
@@ -173,7 +173,7 @@ class Pool(Generic[Task, Result]):
         return ended
 
     def close(self) -> None:
-        """End all processes, whatever they do."""
+        """End all processes immediately."""
         for process in self._processes:
             process.connection.close()
         while self._processes:
@@ -200,7 +200,7 @@ class Pool(Generic[Task, Result]):
 
 
 class _Process(Generic[Task, Result]):
-    """One process, and what it is doing."""
+    """A process and its current task."""
 
     def __init__(self, compute: Compute[Task, Result], isolation: Isolation) -> None:
         self._limit_s = isolation.limit_s
@@ -239,7 +239,7 @@ class _Process(Generic[Task, Result]):
 
     @property
     def left_s(self) -> float:
-        """The time that is left to its task, s; a process that only starts has no limit."""
+        """Remaining time of its task, s; a starting process has no limit."""
         return float("inf") if not self._ready else self._began + self._limit_s - time.monotonic()
 
     def start(self, task: Task) -> bool:
@@ -277,7 +277,7 @@ class _Process(Generic[Task, Result]):
         self._signal(signal.SIGTERM)
 
     def give_up(self) -> Ended[Task, Result]:
-        """Kill the process, whose task takes too long."""
+        """Kill the process after a timeout."""
         assert self.task is not None
         task, self.task, self.dead = self.task, None, True
         self._signal(signal.SIGKILL)
@@ -289,7 +289,7 @@ class _Process(Generic[Task, Result]):
         self._errors.close()
 
     def _wait(self) -> int:
-        """Close the socket, kill a process that goes on nevertheless, and return its code."""
+        """Close the socket, kill a process that does not end, and return its exit code."""
         self.connection.close()
         try:
             return self._process.wait(END_S)

@@ -1,7 +1,7 @@
 """A process of a `Pool`: ``python -m snowshed.base.pool.process SOCKET [forked]``.
 
-It ends as soon as the other end of its socket is closed, so it never outlives who started it, not
-even one that was killed.
+It ends as soon as the other end of its socket is closed, so that it never outlives its parent, not
+even a killed one.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ Compute = Callable[[object, Callable[[float], None]], object]
 def main(handle: int, forked: bool) -> None:
     """Compute the tasks that arrive on a socket, one after another, each in a fork if so asked."""
     connection = Connection(handle)
-    with suppress(EOFError, OSError):  # nobody listens any more
+    with suppress(EOFError, OSError):  # the parent has closed the socket
         compute: Compute = connection.recv()
         (_serve_in_forks if forked else _serve)(compute, connection)
 

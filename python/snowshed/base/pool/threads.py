@@ -1,4 +1,4 @@
-"""Keeping linear algebra on one thread."""
+"""Limiting linear algebra to one thread."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from snowshed.base.extras import require
 
 @contextmanager
 def one_thread() -> Iterator[None]:
-    """Keep libraries from using more than one thread: for small matrices they only get slower."""
+    """Limit libraries to one thread, because more threads only slow down small matrices."""
     threadpoolctl = require("threadpoolctl", "regression", "regression")
     # Each brings threads of its own, and only those of loaded libraries can be limited.
     require("sklearn.svm", "regression", "regression")

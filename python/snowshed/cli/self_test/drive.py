@@ -18,14 +18,14 @@ class Drive:
     Parameters
     ----------
     scene
-        What to simulate.
+        The scene to simulate.
 
     Attributes
     ----------
     core
         The simulation.
     masses
-        Of the particles, kg.
+        Masses of the particles, kg.
 
     Examples
     --------

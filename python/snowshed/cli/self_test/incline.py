@@ -66,11 +66,11 @@ class Incline(NamedTuple):
         Parameters
         ----------
         size
-            Of the block, m: length, width (in 3D) and thickness.
+            Length, width (in 3D) and thickness of the block, m.
         friction, condition
-            Of the plane.
+            Friction and condition of the plane.
         speed
-            Of the block at first, down the slope, m/s.
+            Initial speed of the block, down the slope, m/s.
         """
         box = Shape.transform(
             Shape.box([0.0] * self.dimension, size),

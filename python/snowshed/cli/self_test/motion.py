@@ -17,7 +17,8 @@ WINDOW = (0.1, 0.2)
 
 HEIGHT, WIDTH = 0.2, 0.08  # m, of the column
 DENSITY, YOUNGS_MODULUS, POISSONS_RATIO = 210.0, 1e5, 0.3  # kg/m3, Pa
-#: How long the column is damped, in radians of its slowest swing, and in how many steps at a time.
+#: Duration of the column's damping, in radians of its slowest oscillation, and steps between
+#: dampings.
 SETTLING, STEPS = 20.0, 4
 
 
@@ -46,8 +47,8 @@ def friction_error() -> float:
 def column_error() -> float:
     """Return the relative error of the mean pressure of a column that rests between walls.
 
-    Snow that cannot give way sideways carries the weight above it, rho g h, with the vertical
-    stress (lambda + 2 mu) e, of which K e is pressure. Strains are below a thousandth.
+    Laterally confined snow carries the weight above it, rho g h, with the vertical stress (lambda +
+    2 mu) e, of which K e is pressure. Strains are below a thousandth.
     """
     stretched = (1 + POISSONS_RATIO) * (1 - 2 * POISSONS_RATIO)
     vertical = YOUNGS_MODULUS * (1 - POISSONS_RATIO) / stretched  # lambda + 2 mu

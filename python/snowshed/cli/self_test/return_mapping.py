@@ -25,7 +25,7 @@ def calibrated() -> tuple[Constants, float]:
     return Constants(*(snow[name] for name in Constants._fields)), snow["preconsolidation_pressure"]
 
 
-#: Plastic volumetric strains by which snow is compressed or pulled beyond its strength.
+#: Plastic volumetric strains of snow beyond its strength, in compression and tension.
 STRAINS = (-0.01, -1e-4, 1e-5, 1e-4)
 
 
@@ -63,5 +63,5 @@ def critical_state_error() -> float:
     inside = law.return_map(centre, height / 2, initial)  # elastic: nothing may change
     p, q, plastic = law.return_map(centre, 3 * height, initial)
     errors = [(p - centre) / strength, (q - height) / strength, plastic / initial - 1]
-    errors += [(found - trial) / strength for found, trial in zip(inside, (centre, height / 2))]
+    errors += [(mapped - trial) / strength for mapped, trial in zip(inside, (centre, height / 2))]
     return max(map(abs, errors))

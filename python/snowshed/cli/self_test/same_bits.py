@@ -19,7 +19,7 @@ from snowshed.scene.scene import Scene
 #: Cells, m: enough particles for two threads; few of them.
 FINE, COARSE = 0.0025, 0.02
 STEPS = 200
-#: A run of the executable must end; this is far beyond what it takes, s.
+#: Limit on the run time of the executable, far beyond the usual time, s.
 LONGEST_S = 120.0
 
 
@@ -32,10 +32,10 @@ def panel_scene(dx: float, threads: int) -> Scene:
 
 def threads_error() -> float:
     """Return the part of the particles that two threads move otherwise than one."""
-    one, two = (Drive(panel_scene(FINE, threads)) for threads in (1, 2))
-    for drive in (one, two):
+    single, two = (Drive(panel_scene(FINE, threads)) for threads in (1, 2))
+    for drive in (single, two):
         drive.step(STEPS)
-    return different(one.core, two.core)
+    return different(single.core, two.core)
 
 
 def checkpoint_error() -> float:
@@ -86,23 +86,23 @@ def executable() -> str:
         If it is neither beside Python nor on the search path.
     """
     beside = sysconfig.get_path("scripts")
-    found = shutil.which("snowshed-run", path=beside) or shutil.which("snowshed-run")
-    if found is None:
+    program = shutil.which("snowshed-run", path=beside) or shutil.which("snowshed-run")
+    if program is None:
         raise _core.InputError(f"snowshed-run is neither in {beside} nor on the search path")
-    return found
+    return program
 
 
 def _go_on(report: object) -> bool:
     return True
 
 
-def different(one: _core.Simulation, other: _core.Simulation) -> float:
+def different(first: _core.Simulation, other: _core.Simulation) -> float:
     """Return the part of the particles whose positions or velocities differ in any bit."""
-    states = (np.hstack([core.positions(), core.velocities()]) for core in (one, other))
+    states = (np.hstack([core.positions(), core.velocities()]) for core in (first, other))
     return _different_rows(*states)
 
 
-def _different_rows(one: Floats, other: Floats) -> float:
-    if one.shape != other.shape:
+def _different_rows(first: Floats, other: Floats) -> float:
+    if first.shape != other.shape:
         return 1.0
-    return float((one != other).any(axis=1).mean())
+    return float((first != other).any(axis=1).mean())

@@ -35,7 +35,7 @@ def coulomb_error() -> float:
 def voellmy_error() -> float:
     """Return the relative error of a slab's speed with Voellmy's friction: U tanh(a t/U).
 
-    U^2 = a xi h/g, by which du/dt = a - g u^2/(xi h) is solved from rest.
+    U^2 = a xi h/g solves du/dt = a - g u^2/(xi h) from rest.
     """
     drive, speed = _slid("voellmy")
     a = _acceleration()

@@ -1,8 +1,8 @@
-"""GDAL without requests to other machines: a second fence behind readers of named formats only.
+"""GDAL without network requests, in addition to readers of named formats only.
 
-Every file is looked at before GDAL opens it, and opened as one format. Should a format still lead
-GDAL to another machine, these options let nothing out: no file of another machine has an ending
-that is allowed, and all requests go to a proxy that cannot be.
+Every file is checked before GDAL opens it, and opened in one format. If a format still leads GDAL
+to another machine, these options block it: no allowed suffix matches a remote file, and all
+requests go to an impossible proxy.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ OPTIONS = {
 
 @contextmanager
 def fenced_pyogrio() -> Iterator[None]:
-    """Let pyogrio make no request within the block; its options are afterwards as before."""
+    """Block requests of pyogrio within the block; its options are restored afterwards."""
     pyogrio: Any = importlib.import_module("pyogrio")
     before = {name: pyogrio.get_gdal_config_option(name) for name in OPTIONS}
     pyogrio.set_gdal_config_options(OPTIONS)
@@ -37,7 +37,7 @@ def fenced_pyogrio() -> Iterator[None]:
 
 @contextmanager
 def fenced_rasterio() -> Iterator[None]:
-    """Let rasterio make no request within the block; its options are afterwards as before."""
+    """Block requests of rasterio within the block; its options are restored afterwards."""
     rasterio: Any = importlib.import_module("rasterio")
     with rasterio.Env(**OPTIONS):
         yield

@@ -1,7 +1,7 @@
-"""Which descriptions of coordinate systems are read: those that need no other file and no request.
+"""Accepted descriptions of coordinate systems: those that need no other file and no request.
 
-Libraries take more for a coordinate system than its description: addresses, which they fetch, and
-names of files, which they open. A file of somebody else could have anything fetched or read.
+Libraries accept more than descriptions as coordinate systems: addresses, which they fetch, and
+names of files, which they open. A file from elsewhere could make them fetch or read anything.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from snowshed.base.limits import COORDINATE_SYSTEM
 
 #: Codes of PROJ's own data base, such as EPSG:25833 or EPSG:25833+5941.
 CODE = re.compile(r"(EPSG:\d{1,9}(\+\d{1,9})?|ESRI:\d{1,9}|OGC:CRS(84|27|83)h?)", re.IGNORECASE)
-#: The old way to write a code as a proj string.
+#: The old form of a code in a proj string.
 OLD_CODE = re.compile(r"\+init=(epsg:\d{1,9})(\s+\+(no_defs|type=crs))*", re.IGNORECASE)
 WKT = re.compile(
     r"(PROJCS|PROJCRS|PROJECTEDCRS|GEOGCS|GEOGCRS|GEOGRAPHICCRS|GEODCRS|GEODETICCRS|GEOCCS|COMPD_CS"
@@ -27,7 +27,7 @@ NO_FILE = re.compile(r"\+?(nadgrids|geoidgrids)=@null", re.IGNORECASE)
 
 
 def plain_system(words: str) -> str:
-    """Return the description of a coordinate system if it is one that is read, else "".
+    """Return the description of a coordinate system if it is accepted, else "".
 
     Those are WKT, codes such as "EPSG:31287", and proj strings without names of files.
 
@@ -48,7 +48,7 @@ def plain_system(words: str) -> str:
     if text.startswith("+"):
         return text if _names_no_file(text) else ""
     within = re.findall(r'"\s*(\+[^"]*)"', text)
-    return text if WKT.match(text) and all(_names_no_file(one) for one in within) else ""
+    return text if WKT.match(text) and all(_names_no_file(part) for part in within) else ""
 
 
 def _names_no_file(proj: str) -> bool:
@@ -63,7 +63,7 @@ def _names_no_file(proj: str) -> bool:
 
 
 def first_part(wkt: str) -> str:
-    """Return the horizontal system in the WKT of a compound one; other WKT as it is.
+    """Return the horizontal system in the WKT of a compound one; other WKT unchanged.
 
     Examples
     --------

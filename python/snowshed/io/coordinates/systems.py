@@ -1,7 +1,7 @@
-"""Coordinate systems of maps: read, compared, and handed on beside ASCII grids.
+"""Coordinate systems of maps: read, compared, and written beside ASCII grids.
 
-They are kept in words, such as "EPSG:31287" or WKT. What needs to know more than the words asks
-rasterio, of the extra snowshed[terrain]; it is given plain descriptions only
+A system is kept as text, such as "EPSG:31287" or WKT. Questions beyond the text go to rasterio, of
+the extra snowshed[terrain], which receives plain descriptions only
 (`snowshed.io.coordinates.plain_systems`).
 """
 
@@ -24,7 +24,7 @@ ALLOWED = "allowed: WKT, a code such as EPSG:31287, a proj string without files"
 
 
 def read_prj(raster: Path) -> str:
-    """Return the coordinate system of the .prj beside a raster, in words; empty without one.
+    """Return the coordinate system in the .prj beside a raster, as text; empty without a .prj.
 
     Raises
     ------
@@ -70,7 +70,7 @@ def write_prj(raster: Path, words: str) -> None:
     write_text(raster.with_suffix(".prj"), text + "\n")
 
 
-def are_same(one: str, other: str) -> bool:
+def are_same(left: str, other: str) -> bool:
     """Return whether two names are of the same coordinate system on the map.
 
     Compound systems are compared without their heights. National realisations of ETRS89, which
@@ -81,9 +81,9 @@ def are_same(one: str, other: str) -> bool:
     >>> are_same("EPSG:31287", "epsg:31287"), are_same("EPSG:31287", "EPSG:2056")
     (True, False)
     """
-    if one.casefold() == other.casefold():
+    if left.casefold() == other.casefold():
         return True
-    first, second = horizontal_system(one), horizontal_system(other)
+    first, second = horizontal_system(left), horizontal_system(other)
     if first is None or second is None:
         return False
     if first == second or _words(first) == _words(second):
@@ -125,9 +125,9 @@ def horizontal_system(words: str) -> Optional[Any]:
 
 
 def system_of(words: str) -> Optional[Any]:
-    """Return rasterio's view of a coordinate system; None if it is not there or knows none.
+    """Return rasterio's view of a coordinate system; None without rasterio, or if it knows none.
 
-    Descriptions that are not plain (`snowshed.io.coordinates.plain_systems`) are none.
+    Descriptions that are not plain are refused (`snowshed.io.coordinates.plain_systems`).
     """
     rasterio = _rasterio()
     plain = plain_system(words)

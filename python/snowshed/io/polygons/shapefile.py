@@ -52,7 +52,7 @@ def read_shapefile(path: Path) -> PolygonLayer:
             raise InputError(
                 f"{path}: not a file of polygons: {shortened(str(error), 300)}"
             ) from None
-    for warning in dict.fromkeys(shortened(str(one.message), 300) for one in said):
+    for warning in dict.fromkeys(shortened(str(caught.message), 300) for caught in said):
         tell(f"{path}: GDAL says: {warning}")
     rows = zip(*columns) if columns else [()] * len(shapes)
     names = [str(name) for name in meta["fields"]]
@@ -83,7 +83,7 @@ def _literally(name: str) -> str:
 
 
 def _check_sizes(path: Path, companions: dict[str, Path]) -> None:
-    """Refuse what holds no polygons, and too many, before GDAL reads them."""
+    """Refuse files without polygons, or with too many, before GDAL reads them."""
     content = np.memmap(path, dtype=np.uint8, mode="r")
     if len(content) < HEAD:
         raise InputError(f"{path}: not a file of polygons: cut off")
@@ -100,8 +100,8 @@ def _check_sizes(path: Path, companions: dict[str, Path]) -> None:
     begins = 2 * entries[::2].astype(np.int64)
     # The number of rings and that of corners stand 44 bytes into a record.
     whole = (begins >= HEAD) & (begins + 52 <= len(content))
-    places = begins[whole, None] + np.arange(44, 52)
-    rings, corners = content[places].view("<i4").astype(np.int64).T if len(places) else ([0], [0])
+    offsets = begins[whole, None] + np.arange(44, 52)
+    rings, corners = content[offsets].view("<i4").astype(np.int64).T if len(offsets) else ([0], [0])
     shapes = content[begins[whole, None] + np.arange(8, 12)].view("<i4").ravel()
     polygons = np.isin(shapes, OF_POLYGONS)
     if np.sum(np.asarray(corners)[polygons]) > CORNERS:

@@ -34,17 +34,17 @@ class MapArea:
     Attributes
     ----------
     name
-        As the file has it, or "area 1" and so on.
+        Name from the file, or "area 1" and so on.
     outline
-        Corners (x, y), m, the first not repeated.
+        Corners (x, y) of the outline, m, the first not repeated.
     holes
-        Rings within it that do not belong to it.
+        Rings of holes.
     thickness
-        Thickness of the snow, m; None where the file does not say it.
+        Thickness of the snow, m, if the file states it.
     crs
-        Coordinate system of the file in words, such as "EPSG:31287"; empty where it has none.
+        Coordinate system of the file as text, such as "EPSG:31287"; empty if it has none.
     file
-        Where it was read.
+        Source file.
     """
 
     name: str
@@ -71,32 +71,32 @@ def read_areas(
     layer
         Name of the layer of a GeoPackage; None: the only one.
     option
-        What names a layer, for the message where there are several.
+        Option that names a layer, for the message if there are several.
     with_thickness
         Whether the thickness of snow is read; else it is None.
 
     Raises
     ------
     InputError
-        If the file holds no polygons, has several layers, one polygon crosses itself, its
-        coordinates are in degrees, or the libraries that read it are missing.
+        If the file has no polygons or several layers, a polygon crosses itself, its coordinates are
+        in degrees, or the reading libraries are missing.
     OSError
         If there is no such file.
     """
     path = Path(path)
     shapely: Any = require("shapely", "terrain", "reading polygons")
-    found = read_layer(path, layer, option)
-    if is_in_degrees(found.crs):
+    features = read_layer(path, layer, option)
+    if is_in_degrees(features.crs):
         raise InputError(
-            f"{path}: its coordinates are in degrees ({found.crs}); project it to metres"
+            f"{path}: its coordinates are in degrees ({features.crs}); project it to metres"
         )
-    fields = thickness_fields(found.fields, str(path)) if with_thickness else []
-    _check_shapes(found.shapes, path, shapely)
-    areas = list(_areas(found, fields, path, shapely))
+    fields = thickness_fields(features.fields, str(path)) if with_thickness else []
+    _check_shapes(features.shapes, path, shapely)
+    areas = list(_areas(features, fields, path, shapely))
     if not areas:
         raise InputError(f"{path}: holds no polygon")
-    if not found.crs:
-        tell(f"{path}: has no coordinate system; it is taken to be that of the terrain")
+    if not features.crs:
+        tell(f"{path}: has no coordinate system; that of the terrain is assumed")
     return areas
 
 
@@ -133,16 +133,16 @@ def _rings(polygons: Any, shapely: Any) -> list[list[Ring]]:
     corners, of_ring = corners[~repeated], of_ring[~repeated]
     x, y = corners.T.tolist()
     points = list(zip(x, y))
-    found: list[list[Ring]] = [[] for _ in polygons]
+    holes: list[list[Ring]] = [[] for _ in polygons]
     end = 0
     for owner, count in zip(owners.tolist(), np.bincount(of_ring, minlength=len(rings)).tolist()):
-        found[owner].append(points[end : end + count - 1])
+        holes[owner].append(points[end : end + count - 1])
         end += count
-    return found
+    return holes
 
 
 def _check_shapes(shapes: Sequence[Any], path: Path, shapely: Any) -> None:
-    """Refuse what are no polygons, and polygons that cross themselves."""
+    """Refuse invalid polygons, and polygons that cross themselves."""
     kinds, valid = shapely.get_type_id(shapes), shapely.is_valid(shapes)
     for number, (kind, is_valid) in enumerate(zip(kinds, valid), 1):
         where = f"{path}, feature {number}"

@@ -1,7 +1,7 @@
-"""Rasters from GeoTIFF, read as GDAL reads them. They need the extra snowshed[terrain].
+"""Rasters from GeoTIFF, read by GDAL's rules. They need the extra snowshed[terrain].
 
-GDAL sees the content of the file and of the files beside it that are named here, in memory:
-whatever else lies in the folder is not opened, and no other format is tried.
+GDAL sees the file and the named files beside it as copies in memory: other files in the folder are
+not opened, and no other format is tried.
 """
 
 from __future__ import annotations
@@ -28,13 +28,13 @@ from snowshed.io.input_file import read_regular
 from snowshed.io.raster.sidecars import sidecar, small_file
 from snowshed.io.raster.vertical_units import metres_of, split_system
 
-#: What GDAL may see beside a GeoTIFF: facts, and world files, by which it finds its place.
+#: Files beside a GeoTIFF that GDAL may see: metadata, and world files with its position.
 FACTS = "a.tif.aux.xml"
 WORLD_FILES = (".tfw", ".tifw", ".tiffw", ".wld")
 
 
 class BandFacts(NamedTuple):
-    """What GDAL knows of a band beside its values."""
+    """GDAL's metadata of a band."""
 
     scale: float
     offset: float
@@ -56,19 +56,19 @@ class PlacedHeights(NamedTuple):
 
 
 def read_geotiff(path: Path, band: Optional[int] = None) -> PlacedHeights:
-    """Return a band of a GeoTIFF in metres, with what it says of scale, unit and missing values.
+    """Return a band of a GeoTIFF in metres, with its scale, unit and missing values applied.
 
     Parameters
     ----------
     path
         The file.
     band
-        Which band, from 1; needed where the file has several.
+        Band of the file, from 1; needed if there are several.
 
     Raises
     ------
     InputError
-        If it is no such file, has several bands or images, is turned, or is too large.
+        If it is not a GeoTIFF, has several bands or images, is rotated, or is too large.
     OSError
         If it cannot be read.
     """
@@ -95,7 +95,7 @@ def read_geotiff(path: Path, band: Optional[int] = None) -> PlacedHeights:
 
 @contextmanager
 def _opened(path: Path, content: bytes, extra: dict[str, bytes]) -> Iterator[Any]:
-    """Open the bytes of a GeoTIFF, beside which there are those of other files by their endings."""
+    """Open the bytes of a GeoTIFF and of files beside it, by their suffixes."""
     rasterio: Any = require("rasterio", "terrain", "reading a GeoTIFF")
     gdal: Any = require("rasterio._err", "terrain", "reading a GeoTIFF")  # not all are translated
     if not content:
@@ -120,12 +120,12 @@ def _opened(path: Path, content: bytes, extra: dict[str, bytes]) -> Iterator[Any
 
 @contextmanager
 def _without_words_of_gdal() -> Iterator[None]:
-    """Keep rasterio from printing a traceback where GDAL quotes bytes that are no text."""
+    """Prevent tracebacks of rasterio where GDAL quotes bytes that are not text."""
     unraisable, uncaught = sys.unraisablehook, sys.excepthook
 
-    def drop_or_tell(found: Any) -> None:
-        if not isinstance(found.exc_value, UnicodeDecodeError):
-            unraisable(found)
+    def drop_or_tell(event: Any) -> None:
+        if not isinstance(event.exc_value, UnicodeDecodeError):
+            unraisable(event)
 
     def drop_or_print(kind: Any, value: Any, trace: Any) -> None:
         if not isinstance(value, UnicodeDecodeError):
@@ -147,11 +147,11 @@ def _sidecars(path: Path) -> dict[str, bytes]:
             f"gdal_translate, or remove it"
         )
     facts = sidecar(path)
-    found = {FACTS: facts} if facts else {}
+    companions = {FACTS: facts} if facts else {}
     for file in (path.with_suffix(ending) for ending in WORLD_FILES):
-        if file.exists() and "a.tfw" not in found and (content := small_file(file)):
-            found["a.tfw"] = content
-    return found
+        if file.exists() and "a.tfw" not in companions and (content := small_file(file)):
+            companions["a.tfw"] = content
+    return companions
 
 
 def _checked_band(source: Any, path: Path, band: Optional[int]) -> int:
@@ -162,19 +162,19 @@ def _checked_band(source: Any, path: Path, band: Optional[int]) -> int:
             f"gdal_translate GTIFF_DIR:1:{path.name} one.tif"
         )
     alpha = [kind.name == "alpha" for kind in source.colorinterp]
-    bands = [number for number, one in enumerate(alpha, 1) if not one]
+    bands = [number for number, is_alpha in enumerate(alpha, 1) if not is_alpha]
     if band is not None and band not in bands:
         raise InputError(f"{path}: has no band {band}; allowed: {', '.join(map(str, bands))}")
     if band is None and len(bands) != 1:
         raise InputError(
             f"{path}: has {len(bands)} bands ({_named(source, bands)}); say which to read (--band; "
-            "of a raster of thickness --thickness-band)"
+            "for a raster of thickness --thickness-band)"
         )
     chosen = bands[0] if band is None else band
     if source.colorinterp[chosen - 1].name == "palette":
         raise InputError(f"{path}: its values are numbers of colours: a picture, not a raster")
     if np.dtype(source.dtypes[chosen - 1]).kind not in "iuf":
-        raise InputError(f"{path}: holds {source.dtypes[chosen - 1]} values, which are no heights")
+        raise InputError(f"{path}: holds {source.dtypes[chosen - 1]} values, which are not heights")
     if len(bands) > 1:
         tell(f"{path.name}: band {chosen} of {len(bands)} is read ({_named(source, [chosen])})")
     return chosen
@@ -189,7 +189,7 @@ def _named(source: Any, bands: list[int]) -> str:
 
 
 def _check_size(source: Any, path: Path, band: int) -> None:
-    """Refuse what would fill the memory before it is read."""
+    """Refuse rasters that would fill the memory, before reading them."""
     if source.width * source.height > RASTER_CELLS:
         raise InputError(
             f"{path}: {source.width} columns and {source.height} rows; at most {RASTER_CELLS} "
@@ -216,7 +216,7 @@ def _facts(source: Any, band: int) -> BandFacts:
 def _tell_of_sidecar(
     path: Path, content: bytes, extra: dict[str, bytes], band: int, facts: BandFacts
 ) -> None:
-    """Say what of a band's facts comes from the file .aux.xml beside it."""
+    """Print a note on facts about a band that come from the file .aux.xml beside it."""
     if FACTS not in extra:
         return
     without = {name: data for name, data in extra.items() if name != FACTS}
@@ -276,7 +276,7 @@ def _placed(
     """Return heights at their place on the map, the southernmost row first."""
     if transform.is_identity:
         how = "; gdalwarp makes a map of its control points" if has_points else ""
-        raise InputError(f"{path}: has no place on the map{how}")
+        raise InputError(f"{path}: has no position on the map{how}")
     square = math.isclose(transform.a, abs(transform.e), rel_tol=1e-6)
     if transform.b or transform.d or transform.a <= 0 or not square:
         raise InputError(f"{path}: not on square cells with north up; resample it first (gdalwarp)")

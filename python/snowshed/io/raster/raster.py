@@ -30,19 +30,19 @@ class Raster:
     Attributes
     ----------
     heights : (rows, columns)
-        m, the southernmost row first; NaN where there is none.
+        Elevations, m, the southernmost row first; NaN for missing values.
     east, north
-        Map coordinates of the middle of the cell [0, 0], m.
+        Map coordinates of the centre of the cell [0, 0], m.
     cell
         Size of a cell, m.
     name
-        For messages.
+        Name for messages.
     crs
-        Coordinate system of the map in words, such as "EPSG:31287"; empty where it is not known.
+        Coordinate system of the map as text, such as "EPSG:31287"; empty if unknown.
     plain
         Whether the file of this name is an ESRI ASCII grid that holds just these heights.
     numbers
-        Type of the numbers in the file, such as "int16"; empty where they are text.
+        Type of the numbers in the file, such as "int16"; empty for text.
     """
 
     heights: Floats
@@ -55,7 +55,7 @@ class Raster:
     numbers: str = ""
 
     def height_at(self, east: Floats, north: Floats) -> Floats:
-        """Return heights at map coordinates, m, interpolated between cell middles (bilinear).
+        """Return heights at map coordinates, m, interpolated between cell centres (bilinear).
 
         Raises
         ------
@@ -86,45 +86,44 @@ class Raster:
         a, b = u - i, v - j
         z = self.heights
         right, up = np.minimum(i + 1, columns - 1), np.minimum(j + 1, rows - 1)
-        found: Floats = (1 - b) * ((1 - a) * z[j, i] + a * z[j, right]) + b * (
+        heights: Floats = (1 - b) * ((1 - a) * z[j, i] + a * z[j, right]) + b * (
             (1 - a) * z[up, i] + a * z[up, right]
         )
-        if np.isnan(found).any():
-            first = np.flatnonzero(np.isnan(found))[0]
+        if np.isnan(heights).any():
+            first = np.flatnonzero(np.isnan(heights))[0]
             raise InputError(
                 f"{self.name}: no height at {east.flat[first]:.10g} east, "
                 f"{north.flat[first]:.10g} north"
             )
-        return found
+        return heights
 
 
 def read_raster(path: PathLike, band: Optional[int] = None) -> Raster:
     """Read heights in metres.
 
-    What a file says of scale, offset, unit and missing values is taken into account; a note says
-    what was changed.
+    Scale, offset, unit and missing values of the file are applied; a note reports changes.
 
     Parameters
     ----------
     path
-        An ESRI ASCII grid (any name, its coordinate system in a .prj beside it) or a GeoTIFF, told
-        apart by their contents, on a projected map.
+        An ESRI ASCII grid (any name, its coordinate system in a .prj beside it) or a GeoTIFF,
+        recognised by content, on a projected map.
     band
-        Which band of a GeoTIFF, from 1; needed where it has several.
+        Band of a GeoTIFF, from 1; needed if there are several.
 
     Raises
     ------
     InputError
-        If the file is not such a raster, saying where; for a GeoTIFF without the library that
-        reads it, what to install.
+        If the file is not such a raster, with the position; for a GeoTIFF without the library that
+        reads it, with the package to install.
     OSError
         If the file cannot be read.
     """
     path = Path(path)
     if path.suffix.lower() in GEOTIFF or first_bytes(path, 4) in TIFF_MARKS:
-        found = read_geotiff(path, band)
-        place = (found.east, found.north, found.cell)
-        return Raster(found.heights, *place, str(path), found.system, numbers=found.numbers)
+        raster = read_geotiff(path, band)
+        place = (raster.east, raster.north, raster.cell)
+        return Raster(raster.heights, *place, str(path), raster.system, numbers=raster.numbers)
     if band not in (None, 1):
         raise InputError(f"{path}: has no band {band}; an ESRI ASCII grid has one")
     return _read_ascii(path)
@@ -134,7 +133,7 @@ def _read_ascii(path: Path) -> Raster:
     heights, west, south, cell, missing, commas = read_ascii_grid(str(path))
     refuse_other_facts(path, heights)
     if missing:
-        tell(f"{path.name}: {missing} values of -9999 are missing ones; the header says none")
+        tell(f"{path.name}: {missing} values of -9999 are missing ones; the header declares none")
     if commas:
         tell(f"{path.name}: {commas} numbers have a decimal comma")
     raster = Raster(heights, west, south, cell, str(path), read_prj(path), plain=True)
@@ -160,8 +159,8 @@ def is_single(raster: Raster) -> bool:
 def write_ascii_grid(path: PathLike, raster: Raster, *, exact: bool = False) -> None:
     """Write a raster as an ESRI ASCII grid, whole or not at all; NaN becomes -9999.
 
-    Values have nine digits, from which single precision is recovered; with `exact` as many as
-    double precision needs. Single values need them, too, where a reader keeps double precision.
+    Values have nine digits, enough to recover single precision; with `exact`, enough for double
+    precision. Single values need them, too, if a reader uses double precision.
 
     Examples
     --------

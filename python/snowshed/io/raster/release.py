@@ -1,4 +1,4 @@
-"""Release areas from a raster of thickness: the cells that hold snow.
+"""Release areas from a raster of thickness: the cells with snow.
 
 They need the extra snowshed[terrain].
 """
@@ -17,14 +17,14 @@ from snowshed.base.limits import CELLS_TIMES_CORNERS, RELEASE_CORNERS, SNOW_CELL
 from snowshed.io.raster.areas import MapArea
 from snowshed.io.raster.raster import Raster
 
-#: Areas that touch at a corner are kept apart by this share of a cell.
+#: Areas that touch at a corner are separated by this share of a cell.
 GAP = 1e-7
-#: Thicknesses that are none of snow but stand for something else, m.
+#: Thicknesses that are codes and not snow, m.
 THICKEST = 100.0
 
 
 def snow_part(depth: Raster) -> Raster:
-    """Return the part of a raster of thickness that holds snow, with a row of cells around it.
+    """Return the part of a raster of thickness with snow, and a row of cells around it.
 
     Raises
     ------
@@ -54,8 +54,8 @@ def snow_part(depth: Raster) -> Raster:
 def areas_of_depth(depth: Raster) -> list[MapArea]:
     """Return the areas in which a raster of thickness holds snow, along the edges of its cells.
 
-    Cells of 0 and cells without a value hold none; but a cell without a value amid snow is a gap in
-    what is known.
+    Cells of 0 and cells without a value hold no snow; however, a cell without a value amid snow is
+    a gap in the data.
 
     Raises
     ------
@@ -87,15 +87,15 @@ def areas_of_depth(depth: Raster) -> list[MapArea]:
 
 
 def _outlines(depth: Raster, snow: Booleans, shapely: Any) -> list[Any]:
-    """Return the outlines of cells with snow that share an edge, a little apart from each other."""
+    """Return the outlines of connected cells with snow, slightly separated from each other."""
     features: Any = require("rasterio.features", "terrain", "reading a raster of thickness")
     affine: Any = require("rasterio", "terrain", "reading a raster of thickness").Affine
     west, south = depth.east - 0.5 * depth.cell, depth.north - 0.5 * depth.cell
     place = affine(depth.cell, 0.0, west, 0.0, depth.cell, south)
-    found = features.shapes(snow.astype(np.uint8), mask=snow, connectivity=4, transform=place)
+    shapes = features.shapes(snow.astype(np.uint8), mask=snow, connectivity=4, transform=place)
     inner = [
         shapely.Polygon(rings[0], rings[1:]).buffer(-GAP * depth.cell, join_style="mitre")
-        for rings in (shape["coordinates"] for shape, _ in found)
+        for rings in (shape["coordinates"] for shape, _ in shapes)
     ]
     return [area for shape in inner for area in shapely.get_parts(shape)]
 
@@ -118,7 +118,7 @@ def _refuse(depth: Raster, wrong: Booleans, what: str) -> None:
 def _refuse_gaps(depth: Raster, snow: Booleans) -> None:
     """Refuse cells without a value in the holes of areas.
 
-    Areas that meet at a corner are apart there, so that what is around them passes between.
+    Areas that meet at a corner are separate there, so that their surroundings connect between them.
     """
     from scipy import ndimage  # takes a tenth of a second, and most slides have polygons
 

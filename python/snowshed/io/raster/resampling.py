@@ -1,4 +1,4 @@
-"""Terrain on other cells, by the cubic resampling of GDAL. It needs the extra snowshed[terrain]."""
+"""Terrain on other cells, by GDAL's cubic resampling. It needs the extra snowshed[terrain]."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Files of facts that programs leave beside rasters: NAME.aux.xml, as GDAL and ArcGIS write it."""
+"""Metadata files beside rasters: NAME.aux.xml, from GDAL and ArcGIS."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ ENDING = ".aux.xml"
 
 
 def sidecar(raster: Path, ending: str = ENDING) -> Optional[bytes]:
-    """Return the content of a small file beside a raster; None where there is none.
+    """Return the content of a small file beside a raster, if it exists.
 
     Raises
     ------
@@ -33,7 +33,7 @@ def sidecar(raster: Path, ending: str = ENDING) -> Optional[bytes]:
 
 
 def small_file(file: Path) -> bytes:
-    """Return the content of a file of facts; errors are those of `sidecar`."""
+    """Return the content of a metadata file; errors are those of `sidecar`."""
     content = read_regular(file)
     if len(content) > SIDECAR:
         raise InputError(f"{file}: {len(content)} bytes; at most {SIDECAR} are read")
@@ -41,17 +41,17 @@ def small_file(file: Path) -> bytes:
 
 
 def refuse_other_facts(grid: Path, values: Floats) -> None:
-    """Refuse a file beside an ESRI ASCII grid by which GDAL would read other values.
+    """Refuse a file beside an ESRI ASCII grid that would change the values for GDAL.
 
-    The core, which reads the grid again when a scene runs, does not know such files. Statistics in
-    them do no harm.
+    The core, which reads the grid again when a scene runs, ignores such files. Statistics in them
+    are harmless.
 
     Parameters
     ----------
     grid
         The ASCII grid.
     values
-        Its values.
+        Values of the raster.
     """
     content = sidecar(grid)
     if content is None:
@@ -66,8 +66,8 @@ def refuse_other_facts(grid: Path, values: Floats) -> None:
 
 def _facts(text: str) -> Iterator[tuple[str, str]]:
     for fact in ("Scale", "Offset", "UnitType", "NoDataValue"):
-        for found in re.finditer(rf"<{fact}[^<>]*>([^<]*)<", text):
-            yield fact, found[1].strip()
+        for match in re.finditer(rf"<{fact}[^<>]*>([^<]*)<", text):
+            yield fact, match[1].strip()
 
 
 def _changes(fact: str, value: str, values: Floats, name: str) -> bool:

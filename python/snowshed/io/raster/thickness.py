@@ -1,4 +1,4 @@
-"""Which field of a file of polygons holds the thickness of the snow, and in what unit."""
+"""The field of a file of polygons that holds the thickness of snow, and its unit."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ NAMES = ("thickness", "d0")
 #: The same with a unit: thickness_cm, d0 (mm), "Thickness [m]".
 WITH_UNIT = re.compile(r"(thickness|d0)[\s_.\-]*[(\[]?\s*([a-z]+\d?)\s*[)\]]?", re.IGNORECASE)
 METRES = {"m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 0.001}
-#: Words in names of fields that may be meant as a thickness.
+#: Words in names of fields that may mean a thickness.
 ALIKE = ("thick", "depth", "height", "d0", "hoehe", "höhe", "dicke", "mächtig", "epaisseur")
 BLANK = ("", "none", "nan", "null")
 
@@ -30,9 +30,9 @@ class ThicknessField:
     Attributes
     ----------
     name
-        Of the field, as the file has it.
+        Name of the field in the file.
     metres
-        Of one unit.
+        Metres of a unit.
     """
 
     name: str
@@ -65,7 +65,7 @@ class ThicknessField:
 def thickness_fields(fields: Sequence[str], file: str) -> list[ThicknessField]:
     """Return the fields of a file that hold a thickness, the first before the others.
 
-    What is not plain from the names is told: another unit, and fields that are not read.
+    Notes report what the names do not show: another unit, and ignored fields.
 
     Raises
     ------
@@ -77,7 +77,9 @@ def thickness_fields(fields: Sequence[str], file: str) -> list[ThicknessField]:
     >>> thickness_fields(["fid", "Thickness"], "a.shp")
     [ThicknessField(name='Thickness', metres=1.0)]
     """
-    found = [ThicknessField(field, 1.0) for name in NAMES for field in fields if _is(field, name)]
+    candidates = [
+        ThicknessField(field, 1.0) for name in NAMES for field in fields if _is(field, name)
+    ]
     for field in fields:
         unit = WITH_UNIT.fullmatch(field.strip())
         if unit is None or any(_is(field, name) for name in NAMES):
@@ -99,18 +101,20 @@ def thickness_fields(fields: Sequence[str], file: str) -> list[ThicknessField]:
                     f"{', '.join(METRES)}"
                 )
             continue
-        found.append(ThicknessField(field, METRES[unit[2].lower()]))
-    if found and found[0].name != NAMES[0]:
-        in_unit = next(unit for unit, metres in METRES.items() if metres == found[0].metres)
-        tell(f"{file}: the thickness is that of its field {quoted(found[0].name)}, in {in_unit}")
-    if not found:
+        candidates.append(ThicknessField(field, METRES[unit[2].lower()]))
+    if candidates and candidates[0].name != NAMES[0]:
+        in_unit = next(unit for unit, metres in METRES.items() if metres == candidates[0].metres)
+        tell(
+            f"{file}: the thickness is that of its field {quoted(candidates[0].name)}, in {in_unit}"
+        )
+    if not candidates:
         alike = [field for field in fields if any(word in field.lower() for word in ALIKE)]
         if alike:
             tell(
-                f"{file}: no field is called thickness or d0; not read as a thickness: "
+                f"{file}: no field is called thickness or d0; ignored as a thickness: "
                 f"{', '.join(quoted(field) for field in alike[:5])}"
             )
-    return found
+    return candidates
 
 
 def thickness_of(

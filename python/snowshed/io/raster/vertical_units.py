@@ -35,14 +35,14 @@ def metres_of(unit: str, name: str) -> float:
     Parameters
     ----------
     unit
-        As a file names it, such as "ft" or "US survey foot".
+        Name of the unit in a file, such as "ft" or "US survey foot".
     name
-        Of the file, for the message.
+        Name of the file, for the message.
 
     Raises
     ------
     InputError
-        If it is none of length.
+        If the unit is not a length.
 
     Examples
     --------
@@ -54,7 +54,7 @@ def metres_of(unit: str, name: str) -> float:
         if text in METRES:
             return METRES[text]
     raise InputError(
-        f"{name}: its values are in {quoted(unit)}, which is no unit of length; give metres"
+        f"{name}: its values are in {quoted(unit)}, which is not a unit of length; give metres"
     )
 
 
@@ -64,15 +64,14 @@ def split_system(system: Any, name: str) -> tuple[str, Optional[float]]:
     Parameters
     ----------
     system
-        As rasterio has it.
+        The coordinate system from rasterio.
     name
-        Of the file, for the message.
+        Name of the file, for the message.
 
     Returns
     -------
     str, float or None
-        The system on the map in words, such as "EPSG:25833", and None where nothing is said of
-        heights.
+        The horizontal system as text, such as "EPSG:25833", and the vertical unit, if given.
 
     Raises
     ------
@@ -91,7 +90,7 @@ def split_system(system: Any, name: str) -> tuple[str, Optional[float]]:
 
 
 def split_words(words: str, name: str) -> tuple[str, Optional[float]]:
-    """Do the same for words that a .prj held, "EPSG:31287" or WKT; as they are without rasterio."""
+    """Do the same for the text of a .prj, "EPSG:31287" or WKT; unchanged without rasterio."""
     try:
         rasterio = importlib.import_module("rasterio")
     except ImportError:
@@ -109,8 +108,8 @@ def split_words(words: str, name: str) -> tuple[str, Optional[float]]:
 def _vertical_axis(part: dict[str, Any]) -> Optional[dict[str, Any]]:
     """Return the axis of heights of a part of a coordinate system, if it has one."""
     axes = part.get("coordinate_system", {}).get("axis", [])
-    found = [axis for axis in axes if axis.get("direction") in ("up", "down")]
-    return found[0] if found else None
+    vertical = [axis for axis in axes if axis.get("direction") in ("up", "down")]
+    return vertical[0] if vertical else None
 
 
 def _metres_of_axis(axis: dict[str, Any], name: str) -> float:

@@ -1,4 +1,4 @@
-"""Opening a three-dimensional image by its name."""
+"""Opening a three-dimensional image."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ RAW = ".raw"
 def open_voxels(
     path: PathLike, shape: Optional[tuple[int, int, int]] = None, kind: Optional[str] = None
 ) -> VoxelFile:
-    """Return an image, of which nothing but the size and the type has been read.
+    """Return an image, of which only the size and the type are read so far.
 
     Parameters
     ----------

@@ -51,7 +51,7 @@ def open_picture(path: Path, kind: str) -> Picture:
         orientation = image.getexif().get(ORIENTATION) if kind == "PNG" else None
         if orientation not in ORIENTATIONS:
             orientation = None
-        notes = ("the shades of its palette are taken for its numbers",)
+        notes = ("the shades of its palette are used as its numbers",)
         return Picture(
             str(path),
             (height, width),

@@ -11,7 +11,7 @@ from xml.etree import ElementTree
 from snowshed._core import InputError
 from snowshed.io.input_file import read_input
 
-#: How the comment behind the list begins that says its checksum, as the core writes it.
+#: Beginning of the comment with the list's checksum, as the core writes it.
 SEAL = b"<!-- checksum "
 
 
@@ -31,7 +31,7 @@ def read_series(path: Union[str, os.PathLike[str]]) -> list[tuple[float, Path]]:
     Raises
     ------
     InputError
-        If it is no such list, names files elsewhere, or says a checksum that is not its own.
+        If it is not such a list, names files elsewhere, or has a wrong checksum.
     OSError
         If it cannot be read.
 

@@ -28,7 +28,7 @@ TYPES = MappingProxyType(
     }
 )
 APPENDED = b'<AppendedData encoding="raw">\n_'
-#: How a file ends, with the checksum of what stands before; and without.
+#: End of a file, with and without a checksum of the content before.
 END = re.compile(rb"  <!-- crc32 ([0-9a-f]{8}) -->\n</VTKFile>\n\Z")
 OLD_END, LONGEST_END = b"\n  </AppendedData>\n</VTKFile>\n", 64
 LENGTH_BYTES = 8  # before each block
@@ -46,7 +46,7 @@ def read_particles(path: Union[str, os.PathLike[str]]) -> dict[str, NDArray[Any]
     -------
     dict
         ``position`` (n, 3), m, and the quantities of the particles, (n,) or (n, 3), in SI units;
-        all finite, ordered by ``id``. The arrays cannot be written to.
+        all finite, ordered by ``id``. The arrays are read-only.
 
     Raises
     ------
@@ -58,8 +58,8 @@ def read_particles(path: Union[str, os.PathLike[str]]) -> dict[str, NDArray[Any]
     content = read_regular(Path(path))
     try:
         _check_sum(content)
-        head, found, data = content.partition(APPENDED)
-        if not found:
+        head, separator, data = content.partition(APPENDED)
+        if not separator:
             raise ValueError("it has no appended raw data")
         piece = ElementTree.fromstring(head + b"</VTKFile>").find("PolyData/Piece")
         if piece is None:
@@ -82,7 +82,7 @@ def _check_sum(content: bytes) -> None:
 
 
 def _values(array: ElementTree.Element, data: bytes, count: int) -> NDArray[Any]:
-    """Return the values of one array; ValueError or KeyError where the file does not hold them."""
+    """Return the values of one array; raises ValueError or KeyError if the file lacks them."""
     components = int(array.attrib["NumberOfComponents"])
     if count < 0 or components not in (1, 3):
         raise ValueError(f"{count} points with {components} values each")
@@ -93,7 +93,7 @@ def _values(array: ElementTree.Element, data: bytes, count: int) -> NDArray[Any]
         int(array.attrib["offset"]) + LENGTH_BYTES,
     )
     if values.dtype.kind == "f" and not np.isfinite(values).all():
-        raise ValueError(f"{array.attrib['Name']} holds what is no finite number")
+        raise ValueError(f"{array.attrib['Name']} holds a number that is not finite")
     return values.reshape(count, components) if components > 1 else values
 
 
@@ -110,7 +110,7 @@ def write_triangles(
     path
         The file.
     points : (n, 3)
-        m.
+        Positions of the corners, m.
     triangles : (m, 3)
         The points of each.
     values

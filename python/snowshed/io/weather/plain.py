@@ -44,8 +44,8 @@ def read_plain(path: Path) -> Station:
             row.number,
             time_of(row.cells[DATE], f"{row.where}, column {DATE}"),
             [
-                one.read(row.cells[title], f"{row.where}, column {title}")
-                for _, title, one in columns
+                quantity.read(row.cells[title], f"{row.where}, column {title}")
+                for _, title, quantity in columns
             ],
         )
         for row in table.rows

@@ -1,7 +1,7 @@
-"""The files of an AvaFrame project: which are its own, and may be read and copied.
+"""The files of an AvaFrame project that may be read and copied.
 
-Projects are handed from person to person. A link in one could lead to any file of whoever runs it,
-whose content would then stand among the results.
+Projects are exchanged between people. A link in a project could lead to any file of the user, whose
+content would then be among the results.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ KNOWN = (
     *(".shp", ".shx", ".dbf", ".cpg", ".qpj", ".qix", ".sbn", ".sbx", ".gpkg", ".geojson"),
     *(".ini", ".csv"),
 )
-#: What AvaFrame keeps in Inputs for itself.
+#: Entries of Inputs for AvaFrame's own use.
 OWN_COPIES = "remeshedRasters"
 
 
@@ -36,7 +36,7 @@ class InputFile:
     Attributes
     ----------
     file
-        Where it is.
+        Folder of the project.
     place
         Its path from the project's folder Inputs.
     """
@@ -48,14 +48,13 @@ class InputFile:
 def project_inputs(root: Path) -> list[InputFile]:
     """Return the files in the folder Inputs of a project that may be read and copied.
 
-    Files with other endings than projects have are left out, which is told.
+    Files with other suffixes are left out, with a note.
 
     Raises
     ------
     InputError
-        If a file is none of the project: a link that leads out of it, to a folder or to nothing, a
-        device, a pipe; if a name holds what no name should; or if there are too many or too large
-        ones.
+        If a file is unsafe: a link that leads out of the project, to a folder or to nothing, a
+        device, a pipe; if a name has forbidden characters; or if files are too many or too large.
     """
     inputs = root / "Inputs"
     _check_own(inputs, root, folder=True)
@@ -113,16 +112,16 @@ def _files(folder: Path, root: Path, depth: int) -> Iterator[Path]:
 
 def _entries(folder: Path) -> list[os.DirEntry[str]]:
     with os.scandir(folder) as entries:
-        found = []
+        files = []
         for entry in entries:
-            found.append(entry)
-            if len(found) > PROJECT_FILES:
+            files.append(entry)
+            if len(files) > PROJECT_FILES:
                 raise InputError(f"{folder}: more than {PROJECT_FILES} files")
-        return found
+        return files
 
 
 def _check_own(path: Path, root: Path, *, folder: bool) -> None:
-    """Refuse what lies elsewhere, and what is no regular file, or folder."""
+    """Refuse files outside the project, and everything except regular files and folders."""
     try:
         inside = path.resolve(strict=True).is_relative_to(root.resolve())
     except (OSError, RuntimeError):  # there is nothing, or links lead in a circle

@@ -1,4 +1,4 @@
-"""Scenes of grains: a segmented image that is loaded."""
+"""Scenes of grains: loading tests of a segmented image."""
 
 from __future__ import annotations
 
@@ -41,20 +41,20 @@ def grains_scene(
     loading
         The stages, one after another.
     cone
-        What stages "penetrate" push in; None: the default cone.
+        The cone of stages "penetrate". [default: `Cone()`]
     settings
         Settings of the method; None: its defaults.
     output
-        What is written during the run.
+        The output of the run.
     title
-        What this scene is; empty: how the sample was made, if it is known to be synthetic.
+        Title of the scene. [default: the source of a synthetic sample]
     split_labels
         Whether each piece of a label that lies in several places is a grain; None: it is not.
 
     Raises
     ------
     InputError
-        If `labels` is no NPY file by its name, or nothing says how large a voxel is.
+        If `labels` is not an NPY file, or the voxel size is unknown.
 
     Examples
     --------

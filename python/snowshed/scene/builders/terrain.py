@@ -1,7 +1,7 @@
-"""Terrain as ground: a raster's heights turned into a grid of signed distances.
+"""Terrain as ground: elevations of a raster, converted to a grid of signed distances.
 
-The heights become a closed body of triangles, whose exact distances the core gives; sampled on a
-regular grid they make a shape that costs the same at every step however rough the terrain is.
+The elevations become a closed body of triangles. The core computes its exact distances on a regular
+grid, a shape whose cost per step does not depend on the roughness of the terrain.
 """
 
 from __future__ import annotations
@@ -155,7 +155,7 @@ def signed_distances(
         )
     zs = bottom + spacing * np.arange(count)
     points = np.stack(np.meshgrid(xs, ys, zs, indexing="ij"), axis=-1).reshape(-1, 3)
-    reach = spacing * (count + DEEP)  # nothing at the sides is nearer than what is below
+    reach = spacing * (count + DEEP)  # the sides are farther away than the bottom
     distances = _distances(_solid(heights, xs, ys, bottom - reach, reach), points, spacing)
     return distances.reshape(len(xs), len(ys), count), bottom
 

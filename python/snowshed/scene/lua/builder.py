@@ -1,4 +1,4 @@
-"""A scene under construction that knows which line of which script set each value."""
+"""A scene under construction that records the script line of each value."""
 
 from __future__ import annotations
 

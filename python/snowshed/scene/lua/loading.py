@@ -1,4 +1,4 @@
-"""From Lua scripts to scenes."""
+"""Scenes from Lua scripts."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def load_lua(
     echo
         Called with every line that the scripts print, also if they fail after that.
     limits
-        What the scripts may use; the defaults of `Limits` unless given.
+        Limits of the scripts. [default: `Limits()`]
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""The line of the script that set each value of a scene, for the errors of the core."""
+"""The script line of each value of a scene, for the errors of the core."""
 
 from __future__ import annotations
 

@@ -63,13 +63,13 @@ def run_sandboxed(
     Parameters
     ----------
     scripts
-        What to run; a later script sees the globals of those before it.
+        The scripts to run; a later script sees the globals of the earlier ones.
     words
         Names of the functions whose calls are recorded.
     shapes
         Functions that make shapes from tables, and the types of these shapes.
     limits
-        What the scripts may use; the defaults of `Limits` unless given.
+        Limits of the scripts. [default: `Limits()`]
     echo
         Called with every line that the scripts print, also if they fail after that.
 

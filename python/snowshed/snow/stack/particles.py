@@ -1,4 +1,4 @@
-"""Measuring the stack of a simulation: which of its snow has come down, and on what ground."""
+"""Measuring the stack of a simulation: its fallen snow, and the ground below."""
 
 from __future__ import annotations
 
@@ -20,13 +20,12 @@ MOST_STEPS = 200
 
 @dataclass(frozen=True)
 class Surroundings:
-    """What lies around particles; None where the scene has no such thing.
+    """Surroundings of particles; a field is None if the scene lacks the object.
 
     Attributes
     ----------
     structures : (n,)
-        Booleans: True for particles that touch the panel's board or an obstacle that is not the
-        ground.
+        Mask of particles that touch the panel's board or an obstacle other than the ground.
     ground : (n,)
         z of the ground below each particle, m, where it is not the scene's plane.
     """
@@ -48,7 +47,7 @@ def surroundings(
     simulation, scene
         A simulation of the complete scene, and the scene's data.
     positions : (n, 3)
-        m.
+        Positions of the particles, m.
     """
     if len(positions) == 0:
         return Surroundings()
@@ -78,7 +77,7 @@ def measure_particles(
     simulation, scene
         A simulation of the complete scene, and the scene's data.
     positions, masses, densities, on_panel : (n, 3) or (n,)
-        m, kg, kg/m3, and whether each lies on the panel.
+        Positions, m; masses, kg; densities, kg/m3; and mask of the particles on the panel.
     trimming
         As for `measure_stack`.
     """
@@ -114,7 +113,7 @@ def _board_distance(simulation: _core.Simulation, positions: Floats) -> Floats:
 
 
 def _ground_below(simulation: _core.Simulation, positions: Floats) -> Floats:
-    """Return z of the first solid below each particle, m; its own z where there is none.
+    """Return z of the first solid below each particle, m; its own z if there is no solid.
 
     A point goes down by its distance to the solid until it is there (sphere tracing, Hart 1996).
     """

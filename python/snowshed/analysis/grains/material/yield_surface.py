@@ -24,7 +24,7 @@ class YieldSurface:
     slope, cohesion
         M and beta.
     residual
-        Root mean square of what it misses of q, over that of q.
+        Root mean square of the residual of q, relative to that of q.
     """
 
     slope: float
@@ -40,7 +40,7 @@ def fit_yield_surface(p: Floats, q: Floats) -> YieldSurface:
     Parameters
     ----------
     p, q : (n,)
-        Of the strengths, over p0; p is negative in tension.
+        Stresses of the strengths, relative to p0; p is negative in tension.
 
     Raises
     ------
@@ -71,7 +71,9 @@ def fit_yield_surface(p: Floats, q: Floats) -> YieldSurface:
     fine = minimize_scalar(
         lambda beta: surface(beta).residual, bounds=tuple(around), options={"xatol": 1e-10}
     )
-    found = min(surface(float(COHESIONS[best])), surface(float(fine.x)), key=lambda s: s.residual)
-    if not found.slope > 0:
+    best_fit = min(
+        surface(float(COHESIONS[best])), surface(float(fine.x)), key=lambda s: s.residual
+    )
+    if not best_fit.slope > 0:
         raise InputError("no yield surface of the law has strength where the grains do")
-    return found
+    return best_fit
