@@ -1,7 +1,7 @@
 """The grid of the material point method at a moment, computed anew from the particles.
 
 The solver keeps no grid between steps that others could read. This is the same transfer from
-particles to grid, by the same B-splines at the same nodes (docs/methods/mpm.md), outside of the steps.
+particles to grid, by the same B-splines at the same nodes (docs/methods/mpm-step.md), outside of the steps.
 """
 
 from __future__ import annotations
