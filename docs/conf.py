@@ -25,3 +25,5 @@ napoleon_use_ivar = True
 autodoc_member_order = "bysource"
 html_theme = "furo"
 html_title = f"snowshed {release}"
+html_static_path = ["_static"]
+html_css_files = ["pages.css"]
