@@ -123,7 +123,7 @@ test-py: build $(VENV)/.dev-tools
 test-slow: build $(VENV)/.dev-tools
 	$(BIN)/python -m pytest -m slow
 
-# --- robustness, see docs/trust/robustness.md ----------------------------------------------------
+# --- robustness, see docs/trust/robustness.md ----------------------------------------------
 
 # Each sanitizer has its own tree; the second argument are tests that are left out. LongSlab takes
 # minutes and runs only code that shorter tests run, too. ThreadSanitizer's threads are those of the
@@ -209,7 +209,7 @@ $(VENV)/.cpp-tools: $(VENV)/.created
 
 # The pages name estimators, which are classes of scikit-learn.
 $(VENV)/.docs-tools: $(VENV)/.installed docs/conf.py
-	$(PIP) --quiet "snowshed[regression]" sphinx myst-nb ipykernel furo sphinx-mathjax-offline
+	$(PIP) --quiet "snowshed[regression]" sphinx myst-nb ipykernel furo sphinx-mathjax-offline sphinx-design
 	touch $@
 
 clean:

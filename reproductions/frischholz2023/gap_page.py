@@ -91,7 +91,7 @@ def _scatter_part(stacks: pd.DataFrame) -> list[str]:
     ours, theirs = (scatter(stacks, name, "length") for name in (DEFAULT_TRIMMING, other))
     return [
         "## The two readings of A.4.2",
-        "[Two readings](../methods/mpm.md#two-readings-of-a42) of the same stacks: "
+        "[Two readings](../methods/stack.md#two-readings-of-a42) of the same stacks: "
         f"{panels} panels up to "
         f"{stacks['panel.length'].max():g} m long, {seeds} seedings each, cells of {cells}. The "
         "columns are the deviation between seedings as a part of the mean (root mean square over "
@@ -204,7 +204,7 @@ def _regression_part(data: Path) -> list[str]:
     return [
         "## Tables 5.3.1 and 5.3.2",
         "The rows that come with snowshed "
-        "([their settings](../guides/regression.md#the-rows-that-come-with-snowshed)), "
+        "([their settings](prediction-record.md#the-rows-that-come-with-snowshed)), "
         f"by both readings of A.4.2, regressed in {times}. The thesis's table "
         "holds quartiles of predictions, and its rows are single stacks: our predictions from rows "
         "of one seed are their like.",

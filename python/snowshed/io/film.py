@@ -1,4 +1,4 @@
-"""Films of runs: the particles over time (docs/guides/view.md has the format)."""
+"""Films of runs: the particles over time (docs/reference/film.md has the format)."""
 
 from __future__ import annotations
 

@@ -31,5 +31,5 @@ def test_the_script_that_puts_a_panel_on_terrain(tmp_path, monkeypatch):
 
 
 def test_the_script_on_relations(capsys):
-    exec(scripts("season.md")[1], {})
+    exec(scripts("../methods/snow-relations.md")[0], {})
     assert "density 90 kg/m3 (110 to 363)" in capsys.readouterr().out

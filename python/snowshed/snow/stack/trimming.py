@@ -6,7 +6,7 @@ gives up only its outermost particles, so that never more than 3 % go.
 
 For 2D the text can be read in two ways (A.4.2: "the same principle as the 3D one, but doesn't need
 to rotate. Instead, it starts from the 2 ends of the stack and starts to integrate by a increment dx
-towards the center of mass"). Both are here by name; `docs/methods/mpm.md` explains the default.
+towards the center of mass"). Both are here by name; `docs/methods/stack.md` explains the default.
 
 ``outermost_first``
     As in 3D: whatever lies farthest from the centre of mass goes first, at either end.
