@@ -23,6 +23,7 @@ MODULES_OF = {
     "emcee": "emcee",
     "jinja2": "jinja2",
     "imageio-ffmpeg": "imageio_ffmpeg",
+    "lazy-loader": "lazy_loader",
     "lupa": "lupa",
     "matplotlib": "matplotlib",
     "pandas": "pandas",

@@ -5,7 +5,7 @@ import re
 import pytest
 from paths import ROOT
 
-FOLDERS = ("python", "validation", "reproduction", "thesis", "hagenmuller", "saito")
+FOLDERS = ("python", "validation", "reproductions")
 FILES = [file for name in FOLDERS for file in (ROOT / name).rglob("*.py") if file.is_file()]
 #: Few significant digits, of which 100 has one more than two.
 ROUNDED = re.compile(r"\{[^{}]*:\.[12]g\}\s?%")

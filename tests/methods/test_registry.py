@@ -36,6 +36,7 @@ NAME_METHODS = {
     "plot/slide_page.py": "shows maps, which slides alone have",
     "plot/loading_figure.py": "draws curves, which loading tests alone have",
     "plot/force_chains.py": "draws contacts of grains",
+    "running/slide.py": "runs a slide from files in one call",
     "results/avaframe.py": "writes the files of another program for slides",
     "analysis/": "an analysis may ask about the results of one method",
 }

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any, Optional
+from typing import Optional
 
 from snowshed.base.progress import Reporter
+from snowshed.methods.slide.settings import SlideSettings
 from snowshed.results.reader import Results
 from snowshed.running.run import run
 from snowshed.scene.builders.slides import slide_scene
@@ -15,14 +16,14 @@ from snowshed.scene.scene import PathLike
 
 def slide(
     terrain: PathLike,
-    release: Optional[PathLike],
+    release: PathLike,
     folder: PathLike,
     *,
     thickness: Optional[float] = None,
     max_time: Optional[float] = None,
     progress: Optional[Reporter] = None,
     pictures: bool = True,
-    **options: Any,
+    settings: Optional[SlideSettings] = None,
 ) -> Results:
     """Simulate a snow slide on terrain, and write a results folder.
 
@@ -31,8 +32,7 @@ def slide(
     terrain
         Elevations: an ESRI ASCII grid or a GeoTIFF, on a projected map.
     release
-        Polygons of the release areas: GeoPackage, shapefile or GeoJSON. None: the cells where the
-        option `thickness_raster` has snow.
+        Polygons of the release areas: GeoPackage, shapefile or GeoJSON.
     folder
         The results folder; new or empty. A copy of a GeoTIFF is written beside it.
     thickness
@@ -43,8 +43,11 @@ def slide(
         Called with a `Progress` about twice a second.
     pictures
         Whether to draw ``slide.png`` and write ``slide.html``.
-    **options
-        Further parameters of `snowshed.scene.builders.slide_scene`, such as `settings`.
+    settings
+        Settings of the method. [default: `SlideSettings()`]
+
+    Other inputs, such as entrainment, are parameters of `snowshed.scene.builders.slide_scene`,
+    whose scene `snowshed.run` simulates.
 
     Returns
     -------
@@ -62,23 +65,32 @@ def slide(
 
     Examples
     --------
-    >>> import numpy as np
+    >>> import json
     >>> from tempfile import TemporaryDirectory
+    >>> import numpy as np
     >>> from snowshed.io.raster.raster import Raster, write_ascii_grid
-    >>> ground = np.repeat([np.linspace(60.0, 0.0, 41)], 21, axis=0)
-    >>> area = '{"type": "Polygon", "coordinates": [[[20,30],[60,30],[60,70],[20,70],[20,30]]]}'
+    >>> hill = Raster(np.repeat([np.linspace(60.0, 0.0, 41)], 21, axis=0), 0.0, 0.0, 5.0)
+    >>> ring = [[20, 30], [60, 30], [60, 70], [20, 70], [20, 30]]
+    >>> area = {"type": "Feature", "properties": {},
+    ...         "geometry": {"type": "Polygon", "coordinates": [ring]}}
+    >>> areas = {"type": "FeatureCollection", "features": [area],
+    ...          "crs": {"type": "name", "properties": {"name": "EPSG:31287"}}}
     >>> with TemporaryDirectory() as folder:
-    ...     map_file, polygon = Path(folder) / "hill.asc", Path(folder) / "release.geojson"
-    ...     write_ascii_grid(map_file, Raster(ground, 0.0, 0.0, 5.0))
-    ...     _ = polygon.write_text(area)
-    ...     results = slide(map_file, polygon, f"{folder}/out", thickness=0.5, max_time=0.5)
+    ...     terrain, release = Path(folder) / "hill.asc", Path(folder) / "release.geojson"
+    ...     write_ascii_grid(terrain, hill)
+    ...     _ = release.write_text(json.dumps(areas))
+    ...     results = slide(terrain, release, f"{folder}/out", thickness=0.5, max_time=0.5)
     ...     results.summary.ended
     'time_limit'
     """
     target = Path(folder)
     with removing_copies(target):
         scene = slide_scene(
-            terrain, release, thickness=thickness, ascii_copy=terrain_copy(target), **options
+            terrain,
+            release,
+            thickness=thickness,
+            settings=settings,
+            ascii_copy=terrain_copy(target),
         )
         if max_time is not None:
             scene.set("events.max_time", max_time)

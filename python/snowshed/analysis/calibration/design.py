@@ -38,7 +38,6 @@ def calibration_study(
     Examples
     --------
     >>> from snowshed.analysis.calibration.measurements import Measurement
-    from snowshed.analysis.calibration.parameter_ranges import CORNERS, GRID
     >>> measured = [Measurement(tilt, 5, 1, "height", 0.1, 0.01) for tilt in (40, 50)]
     >>> len(calibration_study(measured).runs())  # 48 triplets, 2 tilts, 2 seedings
     192

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Optional
+from typing import TYPE_CHECKING, Optional
 
 from snowshed.analysis.clearance.answer import Answer, clearance_of
 from snowshed.analysis.clearance.design import Design, Ranges
@@ -17,6 +17,9 @@ from snowshed.season.quality import COVERAGE
 from snowshed.season.settings import SeasonSettings
 from snowshed.season.source import AUTO
 from snowshed.season.weather import Season, read_record
+
+if TYPE_CHECKING:
+    import pandas as pd  # noqa: F401 - of `Season`
 
 
 def clearance(

@@ -28,7 +28,7 @@ def grid(results: Path, output: Optional[Path], snapshots: bool, quiet: bool) ->
 
     The fields are computed from the stored particles of a run by the material point method.
     """
-    from snowshed.results.grid import export_grids
+    from snowshed.results.grid_export import export_grids
 
     for file in export_grids(results, output, snapshots=snapshots):
         if not quiet:
