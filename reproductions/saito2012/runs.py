@@ -58,16 +58,14 @@ class CaseStage:
 
     def state(self) -> State:
         """Return how far it is."""
-        failed = (self.folder / FAILURE).is_file()
+        reason = self._reason()
         done, count = len(self._kept()), len(self.case.times)
-        return State(done, count - done if failed else 0, count, "times")
+        return State(done, count - done if reason else 0, count, "times", reason)
 
     def failure(self) -> str:
         """Return why it failed, or nothing."""
-        file = self.folder / FAILURE
-        if not file.is_file():
-            return ""
-        return f"{self.case.name}: {file.read_text(encoding='utf-8').strip()}"
+        reason = self._reason()
+        return f"{self.case.name}: {reason}" if reason else ""
 
     def expected_s(self, jobs: Optional[int]) -> float:
         """Return about how long what is left takes, s."""
@@ -135,6 +133,11 @@ class CaseStage:
         simulation.save(self.folder / CHECKPOINT)
         with replacing(self.folder / f"{number:03d}.npz") as written:
             written.write_bytes(file.getvalue())
+
+    def _reason(self) -> str:
+        """Return the error that ended it, or nothing."""
+        file = self.folder / FAILURE
+        return file.read_text(encoding="utf-8").strip() if file.is_file() else ""
 
     def _kept(self) -> list[Path]:
         return sorted(self.folder.glob("[0-9][0-9][0-9].npz"))

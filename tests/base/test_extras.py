@@ -37,10 +37,10 @@ def test_an_installed_library_is_imported():
 def test_a_missing_library_is_named_with_what_needs_it_and_what_brings_it():
     message = (
         r"^counting sheep needs no_such_library, which cannot be imported \(No module named "
-        r"'no_such_library'\); install it with: pip install \"snowshed\[verify\]\"$"
+        r"'no_such_library'\); install it with: pip install \"snowshed\[study\]\"$"
     )
     with pytest.raises(InputError, match=message):
-        require("no_such_library.meadow", "verify", "counting sheep")
+        require("no_such_library.meadow", "study", "counting sheep")
 
 
 def calls_of_require(source):
