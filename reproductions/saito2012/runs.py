@@ -25,7 +25,7 @@ CHECKPOINT, FAILURE = "checkpoint.bin", "failed.txt"
 #: Particle steps a second, and the usual speed of snow over that of a fall, by which times are
 #: guessed.
 SPEED, USUAL = 1e5, 0.3
-TIMES = 64  # parts of the way to the next kept time, between which progress is told
+TIMES = 64  # parts of the time to the next kept one, between which progress is told
 
 
 @dataclass(frozen=True)
@@ -81,13 +81,13 @@ class CaseStage:
 
     def snow(self) -> list[Snow]:
         """Return the snow at all times that are kept."""
-        found = []
+        snow = []
         for file in self._kept():
             with np.load(file, allow_pickle=False) as data:
-                found.append(
+                snow.append(
                     Snow(float(data["time"]), data["positions"], data["velocities"], data["kinds"])
                 )
-        return found
+        return snow
 
     def compute(self, jobs: Optional[int], report: StageReporter) -> None:
         """Compute what is left; a case that fails says why in its folder."""

@@ -18,7 +18,8 @@ SEEDS = range(101, 125)
 ABOUT = (
     "Mean and standard deviation between seedings of the laboratory's stack after each event, in "
     "m: preset lab-50 in 2D, panel friction 0.3, all else as by default. Made by "
-    "python -m tests.running.laboratory; made again where a change of the method is meant to move them."
+    "python -m tests.running.laboratory; made again where a change of the method is meant to move "
+    "them."
 )
 
 
