@@ -67,10 +67,10 @@ def widening(freedom: float) -> float:
     return float(stats.t.ppf(stats.norm.cdf(SIGMAS), freedom)) / SIGMAS
 
 
-def mean_of(found: Sequence[Estimate]) -> Estimate:
+def mean_of(estimates: Sequence[Estimate]) -> Estimate:
     """Return the mean of numbers whose noises are independent."""
-    mean = math.fsum(one.value for one in found) / len(found)
-    return Estimate(mean, math.hypot(*(one.noise for one in found)) / len(found))
+    mean = math.fsum(one.value for one in estimates) / len(estimates)
+    return Estimate(mean, math.hypot(*(one.noise for one in estimates)) / len(estimates))
 
 
 @dataclass(frozen=True)
@@ -124,17 +124,17 @@ class Judged:
 
 def judge(claims: Sequence[Claim[Data]], data: Data) -> list[Judged]:
     """Test claims against the same data; missing data leave a claim undecided."""
-    return [Judged(one.source, one.text, one.rule, _found(one, data)) for one in claims]
+    return [Judged(one.source, one.text, one.rule, _finding(one, data)) for one in claims]
 
 
-def _found(claim: Claim[Data], data: Data) -> Finding:
+def _finding(claim: Claim[Data], data: Data) -> Finding:
     try:
         return claim.judge(data)
     except LookupError as missing:
         return Finding(UNDECIDED, f"the data do not hold what it needs: {missing}")
 
 
-def positive(found: Estimate, what: str, unit: str = "") -> Finding:
+def positive(estimate: Estimate, what: str, unit: str = "") -> Finding:
     """Test the claim that a number is above zero.
 
     Examples
@@ -144,15 +144,15 @@ def positive(found: Estimate, what: str, unit: str = "") -> Finding:
     >>> [positive(Estimate(x, 0.1), "").verdict for x in (-0.3, 0.1)]
     ['contradicted', 'undecided']
     """
-    return Finding(_sign(found.value, found.noise), _sentence(what, found, unit))
+    return Finding(_sign(estimate.value, estimate.noise), _sentence(what, estimate, unit))
 
 
-def negative(found: Estimate, what: str, unit: str = "") -> Finding:
+def negative(estimate: Estimate, what: str, unit: str = "") -> Finding:
     """Test the claim that a number is below zero."""
-    return Finding(_sign(-found.value, found.noise), _sentence(what, found, unit))
+    return Finding(_sign(-estimate.value, estimate.noise), _sentence(what, estimate, unit))
 
 
-def small(found: Estimate, bound: float, what: str, unit: str = "") -> Finding:
+def small(estimate: Estimate, bound: float, what: str, unit: str = "") -> Finding:
     """Test the claim that a number is hardly anything: not above a bound, whatever its sign.
 
     Examples
@@ -160,14 +160,14 @@ def small(found: Estimate, bound: float, what: str, unit: str = "") -> Finding:
     >>> [small(Estimate(x, 0.02), 0.1, "").verdict for x in (0.01, -0.2, 0.09)]
     ['confirmed', 'contradicted', 'undecided']
     """
-    verdict = _sign(bound - abs(found.value), found.noise)
-    return Finding(verdict, _sentence(what, found, unit))
+    verdict = _sign(bound - abs(estimate.value), estimate.noise)
+    return Finding(verdict, _sentence(what, estimate, unit))
 
 
-def near(found: Estimate, aim: float, bound: float, what: str, unit: str = "") -> Finding:
+def near(estimate: Estimate, aim: float, bound: float, what: str, unit: str = "") -> Finding:
     """Test the claim that a number is about another one: not farther from it than a bound."""
-    away = Estimate(found.value - aim, found.noise)
-    return Finding(small(away, bound, "").verdict, _sentence(what, found, unit))
+    away = Estimate(estimate.value - aim, estimate.noise)
+    return Finding(small(away, bound, "").verdict, _sentence(what, estimate, unit))
 
 
 def all_of(findings: Sequence[Finding]) -> Finding:
@@ -184,5 +184,5 @@ def _sign(value: float, noise: float) -> str:
     return CONFIRMED if value > 0 else CONTRADICTED
 
 
-def _sentence(what: str, found: Estimate, unit: str) -> str:
-    return f"{what}: {found.in_words(unit)}"
+def _sentence(what: str, estimate: Estimate, unit: str) -> str:
+    return f"{what}: {estimate.in_words(unit)}"

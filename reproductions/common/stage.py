@@ -28,12 +28,15 @@ class State:
         Units of work: simulations, or outer folds.
     unit
         What they are called.
+    reason
+        Why some failed, if that is one reason.
     """
 
     done: int
     failed: int
     count: int
     unit: str = "simulations"
+    reason: str = ""
 
     @property
     def finished(self) -> bool:
@@ -54,6 +57,7 @@ class State:
         '3 of 9 simulations done, 1 failed'
         """
         failed = f", {self.failed} failed" if self.failed else ""
+        failed += f" ({self.reason})" if self.reason else ""
         return f"{self.done} of {self.count} {self.unit} done{failed}"
 
 

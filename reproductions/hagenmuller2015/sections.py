@@ -29,26 +29,26 @@ COMPARED = (
 )
 
 
-def paper(found: GrainsComputation) -> Content:
+def paper(work: GrainsComputation) -> Content:
     """Return the paper's claims, and what the samples are."""
-    samples = [("Samples", sample_grid(found.tests.tables))]
-    return Content(tables=samples, claims=judge(PAPER, found.tests))
+    samples = [("Samples", sample_grid(work.tests.tables))]
+    return Content(tables=samples, claims=judge(PAPER, work.tests))
 
 
-def engine(found: GrainsComputation) -> Content:
+def engine(work: GrainsComputation) -> Content:
     """Return the stresses beside those of Yade."""
     tables = [
         (f"Stage {name}", stress_grid(compare_variants(table)))
-        for name, table in zip(reversed(list(MAKERS)), found.tests.tables)
+        for name, table in zip(reversed(list(MAKERS)), work.tests.tables)
         if BASE in set(table["variant"])
     ]
-    return Content(COMPARED, tables, claims=judge(ENGINE, found.tests))
+    return Content(COMPARED, tables, claims=judge(ENGINE, work.tests))
 
 
-def sensitivity(found: GrainsComputation) -> Content:
+def sensitivity(work: GrainsComputation) -> Content:
     """Return what the strength depends on."""
-    folder = found.folder.of_stage("sensitivity")
-    evaluate_sensitivity(found.comparisons["brittle"], found.folder.runs, folder)
+    folder = work.folder.of_stage("sensitivity")
+    evaluate_sensitivity(work.comparisons["brittle"], work.folder.runs, folder)
     caption = "As of `snowshed grains sensitivity`; the numbers are in sensitivity/sensitivity.csv."
     return Content(pictures=[Picture.read(folder / FIGURE, "Sensitivity", caption, dpi=160)])
 
@@ -57,9 +57,9 @@ def sample_grid(tables: Sequence[pd.DataFrame]) -> Grid:
     """Return what the samples of each variant are."""
     import pandas as pd
 
-    found = pd.concat([one for one in tables if len(one)])
+    tests = pd.concat([one for one in tables if len(one)])
     rows = []
-    for variant, own in found.drop_duplicates(["variant", "sample"]).groupby("variant", sort=False):
+    for variant, own in tests.drop_duplicates(["variant", "sample"]).groupby("variant", sort=False):
         numbers = [_span(own[name]) for name in ("final_particles", "spheres", "density_kg_m3")]
         rows.append([str(variant), str(len(own)), *numbers])
     return Grid(["variant", "samples", "grains", "spheres", "kg/m3"], rows, "lrrrr")

@@ -107,47 +107,47 @@ class Path:
     def along(self, positions: Floats) -> Floats:
         """Return how far down the ground points lie, m; 0 where the level ground begins."""
         xs = [x for x, _ in self.corners]
-        ways = [0.0]
+        distances = [0.0]
         for (x, z), (next_x, next_z) in zip(self.corners[-2::-1], self.corners[:0:-1]):
-            ways.insert(0, ways[0] - math.hypot(next_x - x, next_z - z))
-        found = np.interp(positions[:, 0], xs, ways)
+            distances.insert(0, distances[0] - math.hypot(next_x - x, next_z - z))
+        along = np.interp(positions[:, 0], xs, distances)
         beyond = positions[:, 0] > 0
-        found[beyond] = positions[beyond, 0]
-        return np.asarray(found)
+        along[beyond] = positions[beyond, 0]
+        return np.asarray(along)
 
-    def frame(self, way: float) -> tuple[Floats, Floats, Floats, float]:
-        """Return the point of the ground at a way, directions down it and off it, and its tilt."""
+    def frame(self, distance: float) -> tuple[Floats, Floats, Floats, float]:
+        """Return a point of the ground, the directions down it and off it, and its tilt."""
         for (x, z), (next_x, next_z) in zip(self.corners[-2::-1], self.corners[:0:-1]):
             length = math.hypot(next_x - x, next_z - z)
             down = np.array([next_x - x, 0.0, next_z - z]) / length
-            if way > -length or (x, z) == self.corners[0]:
-                point = np.array([next_x, 0.0, next_z]) + way * down
+            if distance > -length or (x, z) == self.corners[0]:
+                point = np.array([next_x, 0.0, next_z]) + distance * down
                 tilt = math.degrees(math.asin(-down[2]))
                 return point, down, np.array([-down[2], 0.0, down[0]]), tilt
-            way += length
+            distance += length
         raise AssertionError("unreachable")
 
     def ground(self) -> list[Obstacle]:
         """Return the ground as planes; where it bends, it must be hollow."""
-        found = [
+        planes = [
             Obstacle(name="ground", shape=Shape.plane((0, 0, 0), (0, 0, 1)), condition="sticky")
         ]
         for k, ((x, z), (next_x, next_z)) in enumerate(zip(self.corners, self.corners[1:])):
             normal = (z - next_z, 0.0, next_x - x)
             plane = Shape.plane((next_x, 0, next_z), normal)
-            found.append(Obstacle(name=f"slope {k + 1}", shape=plane, condition="sticky"))
-        return found
+            planes.append(Obstacle(name=f"slope {k + 1}", shape=plane, condition="sticky"))
+        return planes
 
     def box(
         self,
-        way: float,
+        distance: float,
         size: tuple[float, float, float],
         *,
         across: float = 0.0,
         above: float = 0.0,
     ) -> Shape:
-        """Return a box on the ground, or above it; its middle is at a way and at a y."""
-        point, _, normal, tilt = self.frame(way)
+        """Return a box on the ground, or above it, at a distance along the path and at a y."""
+        point, _, normal, tilt = self.frame(distance)
         centre = point + (0.5 * size[2] + above) * normal + np.array([0.0, across, 0.0])
         box = Shape.box((0, 0, 0), size)
         return Shape.transform(box, axis=(0, 1, 0), angle=tilt, translate=tuple(centre))

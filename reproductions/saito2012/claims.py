@@ -32,10 +32,10 @@ class Courses:
 
     def of(self, name: str) -> Course:
         """Return a case; raises LookupError if it is not complete."""
-        found = self.known.get(name)
-        if found is None:
+        course = self.known.get(name)
+        if course is None:
             raise LookupError(name)
-        return found
+        return course
 
     def wooden(self, obstacle: str) -> Course:
         """Return the wooden slope with an obstacle."""
@@ -67,7 +67,7 @@ def reaches_the_foot(data: Courses) -> Finding:
     return between(share, 0.5, 0.8, words)
 
 
-def kept(obstacle: str, data: Courses) -> tuple[float, str]:
+def held_share(obstacle: str, data: Courses) -> tuple[float, str]:
     """Return which share of the snow lies above an obstacle that would not without it, in words."""
     course, without = data.wooden(obstacle), data.wooden(NONE)
     held, free = course.held(course.at(4)), without.held(without.at(4))
@@ -76,7 +76,7 @@ def kept(obstacle: str, data: Courses) -> tuple[float, str]:
 
 def holds(obstacle: str, data: Courses) -> Finding:
     """Test whether an obstacle holds snow back that would pass without it."""
-    share, words = kept(obstacle, data)
+    share, words = held_share(obstacle, data)
     return between(share, HARDLY, MUCH, words)
 
 
@@ -90,7 +90,7 @@ def leaks(obstacle: str, data: Courses) -> Finding:
 
 def keeps_none(obstacle: str, data: Courses) -> Finding:
     """Test whether an obstacle holds back hardly any snow."""
-    share, words = kept(obstacle, data)
+    share, words = held_share(obstacle, data)
     return between(-share, -MUCH, -HARDLY, words)
 
 

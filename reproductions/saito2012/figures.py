@@ -23,7 +23,7 @@ def side_views(courses: Sequence[Course], times: Sequence[float]) -> Figure:
 
 
 def top_views(courses: Sequence[Course], times: Sequence[float]) -> Figure:
-    """Return the snow from above, over the way along the ground."""
+    """Return the snow from above, over the distance along the ground."""
 
     def plan(course: Course, positions: np.ndarray) -> np.ndarray:
         return np.stack([course.case.path.along(positions), positions[:, 1]], axis=1)
@@ -39,10 +39,10 @@ def _views(
     across: str,
     up: str,
 ) -> Figure:
-    found = blank(3.4 * len(courses), 0.6 + 1.5 * len(times))
+    figure = blank(3.4 * len(courses), 0.6 + 1.5 * len(times))
     one_path = len({tuple(one.case.path.corners) for one in courses}) == 1
     share: Literal["all", "col"] = "all" if one_path else "col"
-    axes = found.subplots(len(times), len(courses), sharex=share, sharey=share, squeeze=False)
+    axes = figure.subplots(len(times), len(courses), sharex=share, sharey=share, squeeze=False)
     fastest = max(
         float(np.linalg.norm(one.at(t).velocities, axis=1).max()) for one in courses for t in times
     )
@@ -62,20 +62,22 @@ def _views(
         column[0].set_title(course.case.name)
         column[-1].set_xlabel(across)
     if shown is not None:
-        found.colorbar(shown, ax=axes, label="speed (m/s); grey: deposited or erodible", shrink=0.7)
-    return found
+        figure.colorbar(
+            shown, ax=axes, label="speed (m/s); grey: deposited or erodible", shrink=0.7
+        )
+    return figure
 
 
 def fronts(courses: Sequence[Course]) -> Figure:
     """Return the position of the front over time."""
-    found = blank(5.5, 3.6)
-    axis = found.subplots()
+    figure = blank(5.5, 3.6)
+    axis = figure.subplots()
     for course in courses:
         axis.plot(course.times, course.fronts(), label=course.case.name)
     axis.set_xlabel("time (s)")
     axis.set_ylabel("front along the ground (m)")
     axis.legend()
-    return found
+    return figure
 
 
 def _ground(axis: Axes, course: Course) -> None:

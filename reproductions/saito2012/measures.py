@@ -53,13 +53,13 @@ class Course:
                 return one
         raise LookupError(f"{self.case.name} at {time:g} s")
 
-    def ways(self, snow: Snow) -> Floats:
+    def distances(self, snow: Snow) -> Floats:
         """Return how far down its path the released snow is, m."""
         return self.case.path.along(snow.positions[self.released].astype(float))
 
     def front(self, snow: Snow) -> float:
         """Return the position of the front along the path, m."""
-        return float(np.quantile(self.ways(snow), FRONT_QUANTILE))
+        return float(np.quantile(self.distances(snow), FRONT_QUANTILE))
 
     def fronts(self) -> Floats:
         """Return the position of the front at all times, m."""
@@ -77,20 +77,20 @@ class Course:
     def held(self, snow: Snow) -> float:
         """Return the share of the snow that lies slow above the obstacle."""
         assert self.case.obstacle is not None
-        ways = self.ways(snow)
-        near = (ways < self.case.obstacle) & (ways > self.case.obstacle - HELD_LENGTH)
+        distances = self.distances(snow)
+        near = (distances < self.case.obstacle) & (distances > self.case.obstacle - HELD_LENGTH)
         slow = np.linalg.norm(snow.velocities[self.released], axis=1) < HELD_SPEED
         return float((near & slow).mean())
 
     def passed(self, snow: Snow) -> float:
         """Return the share of the snow below the obstacle."""
         assert self.case.obstacle is not None
-        return float((self.ways(snow) > self.case.obstacle).mean())
+        return float((self.distances(snow) > self.case.obstacle).mean())
 
     def passed_at_edges(self, first: Snow, second: Snow, half_width: float) -> float:
         """Return of what passes the obstacle from one time to another, the share at its edges."""
         assert self.case.obstacle is not None
-        before, after = self.ways(first), self.ways(second)
+        before, after = self.distances(first), self.distances(second)
         through = (before <= self.case.obstacle) & (after > self.case.obstacle)
         if not through.any():
             raise LookupError("snow that passes")

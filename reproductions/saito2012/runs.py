@@ -25,7 +25,7 @@ CHECKPOINT, FAILURE = "checkpoint.bin", "failed.txt"
 #: Particle steps a second, and the usual speed of snow over that of a fall, by which times are
 #: guessed.
 SPEED, USUAL = 1e5, 0.3
-TIMES = 64  # parts of the way to the next kept time, between which progress is told
+TIMES = 64  # parts of the time to the next kept one, between which progress is told
 
 
 @dataclass(frozen=True)
@@ -58,16 +58,14 @@ class CaseStage:
 
     def state(self) -> State:
         """Return how far it is."""
-        failed = (self.folder / FAILURE).is_file()
+        reason = self._reason()
         done, count = len(self._kept()), len(self.case.times)
-        return State(done, count - done if failed else 0, count, "times")
+        return State(done, count - done if reason else 0, count, "times", reason)
 
     def failure(self) -> str:
         """Return why it failed, or nothing."""
-        file = self.folder / FAILURE
-        if not file.is_file():
-            return ""
-        return f"{self.case.name}: {file.read_text(encoding='utf-8').strip()}"
+        reason = self._reason()
+        return f"{self.case.name}: {reason}" if reason else ""
 
     def expected_s(self, jobs: Optional[int]) -> float:
         """Return about how long what is left takes, s."""
@@ -83,13 +81,13 @@ class CaseStage:
 
     def snow(self) -> list[Snow]:
         """Return the snow at all times that are kept."""
-        found = []
+        snow = []
         for file in self._kept():
             with np.load(file, allow_pickle=False) as data:
-                found.append(
+                snow.append(
                     Snow(float(data["time"]), data["positions"], data["velocities"], data["kinds"])
                 )
-        return found
+        return snow
 
     def compute(self, jobs: Optional[int], report: StageReporter) -> None:
         """Compute what is left; a case that fails says why in its folder."""
@@ -135,6 +133,11 @@ class CaseStage:
         simulation.save(self.folder / CHECKPOINT)
         with replacing(self.folder / f"{number:03d}.npz") as written:
             written.write_bytes(file.getvalue())
+
+    def _reason(self) -> str:
+        """Return the error that ended it, or nothing."""
+        file = self.folder / FAILURE
+        return file.read_text(encoding="utf-8").strip() if file.is_file() else ""
 
     def _kept(self) -> list[Path]:
         return sorted(self.folder.glob("[0-9][0-9][0-9].npz"))

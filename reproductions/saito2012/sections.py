@@ -19,25 +19,25 @@ WOODEN = [f"wooden slope, {name}" for name in OBSTACLES]
 SLOPES = [f"slope {n}, {model}" for n in (1, 2) for model in (BINGHAM, COMBINED)]
 
 
-def wooden(found: AvalancheComputation) -> Content:
+def wooden(work: AvalancheComputation) -> Content:
     """Return the content of the section on the wooden slope."""
-    courses = _known(found.courses, WOODEN)
+    courses = _known(work.courses, WOODEN)
     return Content(
         (),
         _tables(courses, WOODEN_TIMES),
         _pictures(courses, WOODEN_TIMES, "wooden"),
-        judge(WOODEN_CLAIMS, found.courses),
+        judge(WOODEN_CLAIMS, work.courses),
     )
 
 
-def slopes(found: AvalancheComputation) -> Content:
+def slopes(work: AvalancheComputation) -> Content:
     """Return the content of the section on slopes 1 and 2."""
-    courses = _known(found.courses, SLOPES)
+    courses = _known(work.courses, SLOPES)
     return Content(
         (),
         _tables(courses, SLOPE_TIMES),
         _pictures(courses, SLOPE_TIMES, "slopes"),
-        judge(SLOPE_CLAIMS, found.courses),
+        judge(SLOPE_CLAIMS, work.courses),
     )
 
 
@@ -48,23 +48,23 @@ def _known(courses: Courses, cases: Sequence[str]) -> list[Course]:
 def _pictures(courses: Sequence[Course], times: Sequence[float], name: str) -> list[Picture]:
     if not courses:
         return []
-    found = [
+    pictures = [
         Picture.drawn(
             figures.side_views(courses, times), f"{name}-side", "From the side",
             "All particles, seen along the slope's width.",
         ),
         Picture.drawn(
             figures.fronts(courses), f"{name}-fronts", "Fronts",
-            "The way along the ground that 99 % of the avalanche have not passed; 0 at the foot.",
+            "The distance along the ground that 99 % of the snow have not passed; 0 at the foot.",
         ),
     ]  # fmt: skip
     if all(one.width(one.snow[-1]) > 0 for one in courses):
         plan = Picture.drawn(
             figures.top_views(courses, times), f"{name}-plan", "From above",
-            "Over the way along the ground; the line is where the obstacle stands.",
+            "Over the distance along the ground; the line is where the obstacle stands.",
         )  # fmt: skip
-        found.insert(1, plan)
-    return found
+        pictures.insert(1, plan)
+    return pictures
 
 
 def _tables(courses: Sequence[Course], times: Sequence[float]) -> list[tuple[str, Grid]]:

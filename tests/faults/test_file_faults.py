@@ -30,7 +30,7 @@ REGRESS = (
     *("--kind", "linear", "--target", "ratio", "--rounds", "1", "--folds", "2"),
     *("--inner-folds", "2", "--jobs", "1", "-q"),
 )
-VERIFY = (sys.executable, "-m", "validation", "--case", "spin", "-q")
+VALIDATION = (sys.executable, "-m", "validation", "--case", "spin", "-q")
 CLEARANCE = (
     *("--slope-length", "0.4", "--tilt", "60", "--heights", "0.3", "--draws", "1"),
     *("--jobs", "1", "-q"),
@@ -46,7 +46,7 @@ PROGRAMS = {
     "grains": ([SNOWSHED, "run", "{inputs}/grains.json", "-q"], ["--resume"]),
     "mps": ([SNOWSHED, "run", "{inputs}/mps.json", "-q"], ["--resume"]),
     "regress": ([SNOWSHED, "regress", "{inputs}/rows.csv", *REGRESS], []),
-    "verify": ([*VERIFY], ["--resume"]),
+    "validation": ([*VALIDATION], ["--resume"]),
     "clearance": ([SNOWSHED, "clearance", "{inputs}/winter.csv", *CLEARANCE], []),
 }
 KINDS = ("kill", "full")

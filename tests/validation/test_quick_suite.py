@@ -10,7 +10,14 @@ from validation.framework.report import Validation, problems
 from snowshed.analysis.accuracy.measurements import to_table
 
 
-@pytest.mark.parametrize("module", case_modules())
+MODULES = case_modules()
+
+
+def test_modules_are_found():
+    assert len(MODULES) > 20 and len(set(MODULES.values())) == len(MODULES)
+
+
+@pytest.mark.parametrize("module", MODULES.values(), ids=MODULES)
 def test_bars_hold(module, tmp_path):
     cases = cases_of(module)
     measurements = measure_cases(cases, MeasurementFile(tmp_path / "measurements.jsonl"))

@@ -64,12 +64,12 @@ class Cantilever:
         slender = self.euler_frequency
         return float(brentq(self._misfit, 0.3 * slender, 1.001 * slender, xtol=1e-12 * slender))
 
-    def shape(self, places: Floats) -> tuple[Floats, Floats]:
+    def shape(self, points: Floats) -> tuple[Floats, Floats]:
         """Return deflection w and rotation psi of the slowest vibration along the beam.
 
         Parameters
         ----------
-        places
+        points
             Distances x from the clamp, m.
 
         Returns
@@ -83,7 +83,7 @@ class Cantilever:
         end = expm(rates * self.length)
         # M(L) = 0 fixes the ratio of M and Q at the clamp.
         start = np.array([0.0, 0.0, -end[2, 3], end[2, 2]])
-        states = np.array([expm(rates * x) @ start for x in places]) / (end @ start)[0]
+        states = np.array([expm(rates * x) @ start for x in points]) / (end @ start)[0]
         return states[:, 0], states[:, 1]
 
     @property

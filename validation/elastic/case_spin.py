@@ -122,8 +122,8 @@ class Spinning:
         core = self.drive.core
         while core.time_s < SETTLING * TURN:
             self.drive.step(STEPS)
-            places, speeds = in_plane(core.positions()), in_plane(core.velocities())
-            outwards = places / np.hypot(*places.T)[:, np.newaxis]
+            points, speeds = in_plane(core.positions()), in_plane(core.velocities())
+            outwards = points / np.hypot(*points.T)[:, np.newaxis]
             along = np.sum(outwards * speeds, axis=1)[:, np.newaxis]
             core.add_velocity(from_plane(-DAMPED * along * outwards))
 

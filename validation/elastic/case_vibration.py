@@ -193,14 +193,14 @@ def cantilever_scene(settings: Settings) -> Scene:
     return scene.set("misplaced_snow", "allow")  # the clamp holds what is within it
 
 
-def bending_mode(beam: Cantilever, places: Floats) -> Floats:
-    """Return the displacements (n, 2) of a beam's slowest vibration at places (n, 2).
+def bending_mode(beam: Cantilever, points: Floats) -> Floats:
+    """Return the displacements (n, 2) of a beam's slowest vibration at points (n, 2).
 
     Sections stay plane: a point at the height y above the axis moves by (-y psi, w).
     """
-    distances, at = np.unique(np.maximum(places[:, 0], 0.0).round(9), return_inverse=True)
+    distances, at = np.unique(np.maximum(points[:, 0], 0.0).round(9), return_inverse=True)
     deflection, rotation = (part[at] for part in beam.shape(distances))
-    return np.stack([-(places[:, 1] - beam.height / 2) * rotation, deflection], axis=1)
+    return np.stack([-(points[:, 1] - beam.height / 2) * rotation, deflection], axis=1)
 
 
 def measure_cantilever(settings: Settings) -> Outcome:

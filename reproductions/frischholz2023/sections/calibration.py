@@ -55,7 +55,7 @@ SCORES = {
 }
 
 
-def build(found: ThesisComputation) -> Content:
+def build(work: ThesisComputation) -> Content:
     """Return the content.
 
     Raises
@@ -63,13 +63,11 @@ def build(found: ThesisComputation) -> Content:
     InputError
         If not enough is computed, or a library of the extra ``calibration`` is missing.
     """
-    stage, folder = found.study_stages["calibration"], found.folder.of_stage("calibration")
+    stage, folder = work.study_stages["calibration"], work.folder.of_stage("calibration")
     if not stage.state().finished:
         raise InputError("the grid is ranked when all of it is computed")
-    measured = synthetic(read_table(found.folder.runs, TRUTH))
-    result = calibrate(
-        measured, read_simulated(found.folder.runs, GRID), steps=found.settings.steps
-    )
+    measured = synthetic(read_table(work.folder.runs, TRUTH))
+    result = calibrate(measured, read_simulated(work.folder.runs, GRID), steps=work.settings.steps)
     write(result, folder)
     tables = [
         ("Table 4.1.1: settings", settings_grid(printed.CALIBRATION, stage.scenes(GRID))),
@@ -107,20 +105,21 @@ def synthetic(truth: pd.DataFrame) -> list[Measurement]:
     return measured
 
 
-def statistics_grid(found: Calibration) -> Grid:
+def statistics_grid(calibration: Calibration) -> Grid:
     """Return Table 4.2.1, the thesis's beside the synthetic one."""
-    ours = statistics(found.ranked)
+    ours = statistics(calibration.ranked)
     rows = []
     for quantity, thesis in printed.RMSE_STATISTICS.items():
         rows.append([quantity, "thesis, 48 triplets, laboratory", *map(_metres, thesis.values())])
         synthetic_row = [_metres(ours[name][f"{quantity}_rmse_m"]) for name in thesis]
-        rows.append(["", f"here, {len(found.ranked)} triplets, synthetic truth", *synthetic_row])
+        here = f"here, {len(calibration.ranked)} triplets, synthetic truth"
+        rows.append(["", here, *synthetic_row])
     return Grid(["RMSE", "against", *thesis], rows, "ll" + "r" * len(thesis))
 
 
-def scores_grid(found: Calibration) -> Grid:
+def scores_grid(calibration: Calibration) -> Grid:
     """Return the scores of the calibrated snow, the thesis's beside the synthetic ones."""
-    row = found.ranked
+    row = calibration.ranked
     for path, value in CALIBRATED.items():
         row = row[np.isclose(row[path], value)]
     rows = [
@@ -129,7 +128,7 @@ def scores_grid(found: Calibration) -> Grid:
         if len(row)
     ]
     if len(row):
-        rank = f"{row['rank'].iloc[0]} of {len(found.ranked)} (synthetic)"
+        rank = f"{row['rank'].iloc[0]} of {len(calibration.ranked)} (synthetic)"
         rows.append(["rank by the rescaled mean", "1 of 48; " + printed.CALIBRATED_RANKS, rank])
     return Grid(["score", "thesis (laboratory)", "here (synthetic truth)"], rows, "lrr")
 

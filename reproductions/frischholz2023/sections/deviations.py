@@ -44,10 +44,10 @@ WORDS: Mapping[str, str] = {
 QUANTITIES = {"height": "height", "length": "length", "ratio": "H/L"}
 
 
-def build(found: ThesisComputation) -> Content:
+def build(work: ThesisComputation) -> Content:
     """Return the content; raises InputError if nothing of it is computed."""
-    stacks = read_variants(found.folder.runs)
-    folder = found.folder.of_stage("deviations")
+    stacks = read_variants(work.folder.runs)
+    folder = work.folder.of_stage("deviations")
     folder.mkdir(exist_ok=True)
     write_csv(stacks, folder / STACKS, float_format="%.6g")
     tables = [
@@ -106,8 +106,8 @@ def variations_grid(stacks: pd.DataFrame) -> Grid:
 
 
 def _changes(stacks: pd.DataFrame, name: str, trimming: Optional[str] = None) -> list[str]:
-    found = (change(stacks, name, quantity, trimming) for quantity in QUANTITIES)
-    return [change_in_words(one) for one in found]
+    estimates = (change(stacks, name, quantity, trimming) for quantity in QUANTITIES)
+    return [change_in_words(one) for one in estimates]
 
 
 def errors_grid(errors: pd.DataFrame, stacks: pd.DataFrame) -> Grid:
@@ -132,7 +132,7 @@ def errors_grid(errors: pd.DataFrame, stacks: pd.DataFrame) -> Grid:
     return Grid(head, rows, "lll" + "r" * 7)
 
 
-def change_in_words(found: Estimate) -> str:
+def change_in_words(change: Estimate) -> str:
     """Return a relative change with its noise.
 
     Examples
@@ -140,10 +140,10 @@ def change_in_words(found: Estimate) -> str:
     >>> change_in_words(Estimate(-0.081, 0.02)), change_in_words(Estimate(0.0, 0.0))
     ('-8 ± 2 %', 'none')
     """
-    if found.value == 0 and found.noise == 0:
+    if change.value == 0 and change.noise == 0:
         return "none"
-    noise = NOTHING if np.isnan(found.noise) else f"{100 * found.noise:.0f}"
-    return f"{100 * found.value:+.0f} ± {noise} %"
+    noise = NOTHING if np.isnan(change.noise) else f"{100 * change.noise:.0f}"
+    return f"{100 * change.value:+.0f} ± {noise} %"
 
 
 def quartiles_grid(stacks: pd.DataFrame) -> Grid:

@@ -44,14 +44,14 @@ BORROWED = (
 TITLES = {"yield": ("3.4.1 and 3.4.2", "yield"), "hardening": ("3.4.3 and 3.4.4", "hardening")}
 
 
-def build(found: ThesisComputation) -> Content:
+def build(work: ThesisComputation) -> Content:
     """Return the content; raises InputError if nothing of it is computed."""
-    runs, folder = found.folder.runs, found.folder.of_stage("fixation")
+    runs, folder = work.folder.runs, work.folder.of_stage("fixation")
     table = evaluate(runs, folder, "fixation", study=FIXATION)
     stored = read_stored(runs, FIXATION)
-    own = found.settings.fixation_seeds > 1
-    noise = seeding_noise(stored if own else _other(found))
-    table = with_noise(table, noise, found.settings.fixation_seeds)
+    own = work.settings.fixation_seeds > 1
+    noise = seeding_noise(stored if own else _other(work))
+    table = with_noise(table, noise, work.settings.fixation_seeds)
     pictures = [
         Picture.read(
             folder / f"fixation-{group}.png",
@@ -62,7 +62,7 @@ def build(found: ThesisComputation) -> Content:
         for group, (figures, words) in TITLES.items()
         if (folder / f"fixation-{group}.png").is_file()
     ]
-    scenes = found.study_stages["fixation"].scenes(FIXATION)
+    scenes = work.study_stages["fixation"].scenes(FIXATION)
     tables = [
         ("Table 3.2.1: settings", settings_grid(printed.SENSITIVITY, scenes)),
         ("Stacks at each value (mean ± deviation over the others, m)", fixation_grid(table)),
@@ -72,9 +72,9 @@ def build(found: ThesisComputation) -> Content:
     return Content(text, tables, pictures, claims)
 
 
-def _other(found: ThesisComputation) -> StoredRuns:
+def _other(work: ThesisComputation) -> StoredRuns:
     try:
-        return read_stored(found.folder.runs, INDEX)
+        return read_stored(work.folder.runs, INDEX)
     except InputError as error:
         raise InputError(f"its noise is that of the stage s-index: {error}") from None
 

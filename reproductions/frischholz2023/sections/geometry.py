@@ -28,13 +28,13 @@ TEXT = (
 CAPTION = "As Figure 5.1.1: each input in turn, the others at the reference panel."
 
 
-def build(found: ThesisComputation) -> Content:
+def build(work: ThesisComputation) -> Content:
     """Return the content; raises InputError if the rows are not there."""
-    rows = found.rows.read()
+    rows = work.rows.read()
     table = geometry_table(rows)
-    drawn = pd.concat([table, *_more_tilts(found)], ignore_index=True)
+    drawn = pd.concat([table, *_more_tilts(work)], ignore_index=True)
     picture = Picture.drawn(geometry_figure(drawn), "geometry", "Single variations", CAPTION)
-    source = f"Rows of the table {found.table.name}." if found.table is not None else ""
+    source = f"Rows of the table {work.table.name}." if work.table is not None else ""
     text = [*TEXT, *([source] if source else [])]
     if rows.moving or rows.left_out:
         text.append(
@@ -43,8 +43,8 @@ def build(found: ThesisComputation) -> Content:
         )
     tables = [
         ("Tables 5.1.1 and 5.2.1: the data set", inputs_grid(table)),
-        *_settings(found),
-        ("How it was computed", columns_grid(read_csv(found.rows.file))),
+        *_settings(work),
+        ("How it was computed", columns_grid(read_csv(work.rows.file))),
     ]
     claims = judge(GEOMETRY, table)
     return Content(text, tables, [picture], claims)
@@ -76,20 +76,20 @@ def columns_grid(table: pd.DataFrame) -> Grid:
     return Grid(["setting", "thesis", "here"], rows, "lll")
 
 
-def _settings(found: ThesisComputation) -> list[tuple[str, Grid]]:
+def _settings(work: ThesisComputation) -> list[tuple[str, Grid]]:
     """Return what all panels have in common, unless their table is somebody's own."""
-    if found.table is not None and found.table != shipped_rows():
+    if work.table is not None and work.table != shipped_rows():
         return []
-    scene = geometry(found.settings)[0].runs()[0].scene
+    scene = geometry(work.settings)[0].runs()[0].scene
     return [("Table 5.1.1: settings of all panels", settings_grid(printed.PANELS_SCENE, [scene]))]
 
 
-def _more_tilts(found: ThesisComputation) -> list[pd.DataFrame]:
+def _more_tilts(work: ThesisComputation) -> list[pd.DataFrame]:
     """Return the panels of Table 5.1.1 that are not in the data set, if they are computed."""
-    if found.table is not None:
+    if work.table is not None:
         return []
     try:
-        table = read_table(found.folder.runs, TILTS).dropna(subset=["height_m", "length_m"])
+        table = read_table(work.folder.runs, TILTS).dropna(subset=["height_m", "length_m"])
     except InputError:
         return []
     names = {"panel.height": "panel_height", "panel.length": "panel_length"}

@@ -43,11 +43,11 @@ CAPTION = (
 )
 
 
-def build(found: ThesisComputation) -> Content:
+def build(work: ThesisComputation) -> Content:
     """Return the content; raises InputError if nothing of it is computed."""
-    stage = found.study_stages["lab"]
-    rows = lab_rows(found)
-    released = release_rows(read_table(found.folder.runs, RELEASE))
+    stage = work.study_stages["lab"]
+    rows = lab_rows(work)
+    released = release_rows(read_table(work.folder.runs, RELEASE))
     scenes = [one for name in (LAB_2D, LAB_3D, RELEASE) for one in stage.scenes(name)]
     tables = [
         ("Tables 2.3.1, 4.1.1 and 4.3.1: settings", settings_grid(printed.LABORATORY, scenes)),
@@ -59,11 +59,11 @@ def build(found: ThesisComputation) -> Content:
     return Content(TEXT, tables, [picture], judged(rows, released))
 
 
-def lab_rows(found: ThesisComputation) -> pd.DataFrame:
+def lab_rows(work: ThesisComputation) -> pd.DataFrame:
     """Return the stacks at 40 and 50 degrees, one row per run and event."""
     import pandas as pd
 
-    tables = [read_table(found.folder.runs, name) for name in (LAB_2D, LAB_3D)]
+    tables = [read_table(work.folder.runs, name) for name in (LAB_2D, LAB_3D)]
     table = pd.concat(tables, ignore_index=True).rename(columns=COLUMNS)
     rows = table[["dimension", *COLUMNS.values(), "seed", "event"]].dropna()
     if rows.empty:

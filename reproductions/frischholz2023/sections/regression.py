@@ -50,12 +50,12 @@ FIGURES = {
 }
 
 
-def build(found: ThesisComputation) -> Content:
+def build(work: ThesisComputation) -> Content:
     """Return the content; raises InputError if the regression is not done."""
-    state = found.regression.state()
+    state = work.regression.state()
     if not state.finished:
         raise InputError(f"regression: {state.in_words()}")
-    parts = found.regression.parts()
+    parts = work.regression.parts()
     data = {rows_in_words(part.rows): _regressed(part) for part in parts}
     single, scheme = next(iter(data.values())), parts[0].scheme
     numbers = {"rounds": scheme.rounds, "folds": scheme.folds, "inner": scheme.inner_folds}
@@ -66,7 +66,7 @@ def build(found: ThesisComputation) -> Content:
     text.append(f"The mean linear model of the {next(iter(data))}: {formula}.")
     tables = [
         ("Table 5.3.1: quartiles of the predicted H/L", quartiles_grid(data)),
-        ("Quartiles of the rows' H/L, by what counts as the stack", rows_grid(found.rows.file)),
+        ("Quartiles of the rows' H/L, by what counts as the stack", rows_grid(work.rows.file)),
         ("Table 5.3.2: mean absolute error of H/L", errors_grid(data)),
     ]
     folder = parts[0].folder / TARGET
@@ -133,10 +133,10 @@ def rows_grid(file: Path) -> Grid:
         if measure.name == "stack":  # one of the two that name their reading of A.4.2
             continue
         try:
-            found = read_rows(file, measure.name)
+            measured = read_rows(file, measure.name)
         except InputError:  # a table from before there was this measure
             continue
-        for of_one in (found.of_one_seed(), *([found] if found.most_seeds > 1 else [])):
+        for of_one in (measured.of_one_seed(), *([measured] if measured.most_seeds > 1 else [])):
             numbers = _numbers(quartiles(of_one.targets[TARGET]))
             rows.append([measure.label, rows_in_words(of_one), *numbers])
     return Grid(["the stack is", "of", *QUARTILES], rows, "ll" + "r" * len(QUARTILES))

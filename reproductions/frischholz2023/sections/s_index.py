@@ -40,17 +40,17 @@ CAPTION = (
 )
 
 
-def build(found: ThesisComputation) -> Content:
+def build(work: ThesisComputation) -> Content:
     """Return the content; raises InputError if nothing of it is computed."""
-    folder = found.folder.of_stage("s-index")
-    table = evaluate(found.folder.runs, folder, "s", study=INDEX)
-    scenes = found.study_stages["s-index"].scenes(INDEX)
+    folder = work.folder.of_stage("s-index")
+    table = evaluate(work.folder.runs, folder, "s", study=INDEX)
+    scenes = work.study_stages["s-index"].scenes(INDEX)
     picture = Picture.read(folder / "s.png", "Index S", CAPTION, dpi=SAVED_DPI)
     tables = [
         ("Table 3.2.1: settings, and the values of Table 3.3.1", _settings(scenes)),
         ("Index S ± standard error by seeding noise", index_grid(table)),
     ]
-    noise = seeding_noise(read_stored(found.folder.runs, INDEX))
+    noise = seeding_noise(read_stored(work.folder.runs, INDEX))
     errors = table["standard_error"] * widenings(table, noise)
     claims = judge(S_INDEX, table.assign(standard_error=errors))
     return Content(TEXT, tables, [picture], claims)

@@ -141,6 +141,20 @@ def test_the_command_writes_a_report(tmp_path, capsys):
     assert main(["reproduce", "saito", "-o", str(folder), "--full", "--report-only"]) == 2
 
 
+def test_a_case_that_failed_says_why(tmp_path, capsys):
+    folder = tmp_path / "found"
+    case = folder / "cases" / "slope-1-Bingham"
+    ask = ["reproduce", "saito2012", "-o", str(folder), "--report-only", "-q"]
+    assert main(ask) == 0
+    case.mkdir(parents=True)
+    (case / "failed.txt").write_text("the pressure did not converge\n")
+    assert main(ask) == 3
+    said = "slope 1, Bingham: the pressure did not converge"
+    assert capsys.readouterr().err == f"error: simulations failed: {said}\n"
+    page = (folder / "saito.html").read_text(encoding="utf-8")
+    assert "0 of 21 times done, 21 failed (the pressure did not converge)" in page
+
+
 def test_the_page_of_all_cases_can_be_read_by_everyone(tmp_path, monkeypatch):
     monkeypatch.setattr(sections, "WOODEN_TIMES", (1.0, 4.0))
     monkeypatch.setattr(sections, "SLOPE_TIMES", (20.0,))
