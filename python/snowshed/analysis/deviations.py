@@ -36,7 +36,7 @@ class Deviation:
     change
         Scene values by dotted paths, for each chapter of the thesis.
     trimming
-        The reading of A.4.2 that it measures stacks by, if it is about that.
+        The trimming rule (A.4.2) for measuring stacks, if it is about that.
     """
 
     name: str
@@ -69,7 +69,7 @@ DEVIATIONS: Mapping[str, Deviation] = {
         ),
         Deviation(
             "damping",
-            "FLIP has a share of 0.99 in each step, whatever the step.",
+            "FLIP has a share of 0.99 per step, for any size of step.",
             "Panels of chapter 5 are damped at a rate, that of this share with the thesis's cells.",
             "A share in each step makes the damping depend on the step, and so on the cells: a "
             "shorter step damps more.",
