@@ -33,7 +33,7 @@ class Deviation:
     thesis, here, reason
         What the thesis does, what is done here unless asked otherwise, and why; sentences.
     trimming
-        The reading of A.4.2 that it measures stacks by, if it is about that.
+        The trimming rule (A.4.2) for measuring stacks, if it is about that.
     """
 
     name: str
@@ -60,7 +60,7 @@ DEVIATIONS: Mapping[str, Deviation] = {
         ),
         Deviation(
             "damping",
-            "FLIP has a share of 0.99 in each step, whatever the step.",
+            "FLIP has a share of 0.99 per step, for any size of step.",
             "Panels of chapter 5 are damped at a rate, that of this share with the thesis's cells.",
             "A share in each step makes the damping depend on the step, and so on the cells: a "
             "shorter step damps more.",

@@ -55,7 +55,7 @@ def refused(folder, capsys, message, files, **case):
         ({"thickness": 0.5, "options": ["--thickness", "nan"]}, "thickness"),
         ({"thickness": 0.001}, "0.001 m of snow; at least 0.01 m are needed"),
         ({"crs": "EPSG:4326"}, "its coordinates are in degrees"),
-        ({"raster": scaled(8.0)}, "are none of the Earth"),
+        ({"raster": scaled(8.0)}, "do not occur on Earth"),
         ({"raster": scaled(horizontal=1 / 0.6096)}, "are 1 m in feet"),
         ({"raster": scaled(horizontal=200.0)}, "cells of 400 m"),
         ({"raster": scaled(1 / 0.3048 / 2, degrees=60.0)}, "is steeper than 71 degrees"),

@@ -122,9 +122,9 @@ def test_lines_end_as_those_of_other_systems(tmp_path):
 def test_a_pipe_without_a_writer_ends(tmp_path, monkeypatch):
     monkeypatch.setattr("snowshed.io.input_file.PIPE_SILENCE", 0.05)
     os.mkfifo(tmp_path / "pipe")
-    with pytest.raises(InputError, match=r"pipe: a pipe or a device to which nobody writes"):
+    with pytest.raises(InputError, match=r"pipe: a pipe or a device without a writer"):
         read_input(tmp_path / "pipe")
-    with pytest.raises(InputError, match="nobody writes"):
+    with pytest.raises(InputError, match="without a writer"):
         read_station(tmp_path / "pipe")
 
 
@@ -156,7 +156,7 @@ def test_commands_refuse_a_silent_pipe(arguments, tmp_path):
     os.mkfifo(tmp_path / "pipe")
     code = [sys.executable, "-m", "snowshed", *arguments, "-o", "out"]
     done = subprocess.run(code, cwd=tmp_path, capture_output=True, text=True, timeout=120)
-    assert done.returncode == 2 and "nobody writes" in done.stderr
+    assert done.returncode == 2 and "without a writer" in done.stderr
     assert not (tmp_path / "out").exists()
 
 

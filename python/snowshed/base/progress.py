@@ -14,27 +14,27 @@ class Progress:
     Attributes
     ----------
     fraction
-        Part of the work that is done, 0 to 1.
+        Finished share of the work, 0 to 1.
     done, count
-        Units of work that are done, and how many there are in all.
+        Finished units of work, and their total number.
     unit
-        What the units are called: events of a run, runs of a study, folds of a regression.
+        Name of the units: events of a run, runs of a study, folds of a regression.
     doing
-        What is being done now, in words; may be empty.
+        Current step; may be empty.
     failed
-        Units that have failed; they are not among those that are done.
+        Failed units; they are not among the finished ones.
     running, elsewhere
-        Units that this process's workers compute now, and that other processes compute.
+        Units that this process's workers compute now, and those of other processes.
     at_once
-        Units that are computed at once.
+        Units that are computed in parallel.
     expected_s
-        Time that the work left at the start was expected to take, s; None: not known.
+        Expected time of the work that was left at the start, s, if known.
     left_s
-        Time that is expected to be left, s; None: not known.
+        Expected remaining time, s, if known.
     event, time
-        Of a run: the event that is running, from 1, and the simulated time in it, s.
+        Current event of a run, from 1, and its simulated time, s.
     updates_per_s
-        Of a run: particle updates per second; 0: not known yet.
+        Particle updates per second of a run; 0: not known yet.
 
     Examples
     --------
@@ -59,7 +59,7 @@ class Progress:
 
     @property
     def description(self) -> str:
-        """The counts and what is being done, in one line."""
+        """The counts and the current step, in one line."""
         parts = [f"{self.done}/{self.count} {self.unit}"]
         parts += [f"{self.failed} failed"] if self.failed else []
         parts += [f"{self.running} running"] if self.running else []
@@ -68,5 +68,5 @@ class Progress:
         return ", ".join(parts)
 
 
-#: Takes each `Progress`, a few times a second.
+#: Function that receives each `Progress`, a few times a second.
 Reporter = Callable[[Progress], None]

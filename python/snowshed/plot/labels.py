@@ -21,7 +21,7 @@ class Label:
     Attributes
     ----------
     name
-        In words.
+        Name of the parameter.
     symbol
         Short symbol, as in the thesis; otherwise the name.
     unit

@@ -116,7 +116,7 @@ def _draw_panel_snow(axes: Axes, dates: Floats, table: pd.DataFrame) -> None:
         "v",
         color=INK,
         markersize=6,
-        label="lets go",
+        label="released",
     )
     axes.set_title("Snow on the panel: stress at its base, Pa", loc="left", color=INK, fontsize=11)
     most = max(table["driving_pa"].max(), table["resisting_pa"].max())

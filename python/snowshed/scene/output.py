@@ -1,4 +1,4 @@
-"""What a run writes besides its tables."""
+"""The output of a run besides its tables."""
 
 from __future__ import annotations
 

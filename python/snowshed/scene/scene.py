@@ -52,7 +52,7 @@ NOT_GIVEN: Any = None
 
 SLIP_CHANGED = (
     '"slip" now holds snow on the surface except at its edge; '
-    'for the behaviour of version 1, use "separate" now'
+    'use "separate" for the behaviour of version 1'
 )
 
 

@@ -6,7 +6,8 @@ snow of the other and a decimetre more. Both of gauge and depth fail towards too
 carries it past gauges, which catch half of it and less (Goodison, Louie and Yang 1998, WMO/TD-872),
 unheated ones stand still, and a cover settles while it grows. The larger of the two is therefore
 used. New snow by hand gives way to the depth where the depth rises by more, because no cover rises
-by more than what falls; and to either where it has no snow all winter, which then nobody entered.
+by more than what falls; and to either where it has no snow all winter, which means that it was not
+entered.
 """
 
 from __future__ import annotations

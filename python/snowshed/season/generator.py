@@ -113,7 +113,7 @@ class Climate:
         return cls(climates, float(np.clip(pairs.mean() / spread, 0.0, 0.99)) if spread else 0.0)
 
     def winters(self, count: int, *, seed: int, first_year: int = 2001) -> list[Weather]:
-        """Return daily rows of made winters; the same seed makes the same ones.
+        """Return daily rows of synthetic winters; the same seed gives the same winters.
 
         Parameters
         ----------

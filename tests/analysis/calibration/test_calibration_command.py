@@ -134,8 +134,8 @@ def test_plan_and_errors(tmp_path, capsys):
         ((tmp_path / "none.csv", "-o", tmp_path), "none.csv: No such file"),
         ((bad, "-o", tmp_path), "bad.csv, line 2: event: 'one' is not a number"),
         ((*options, "--stored", tmp_path / "nowhere"), "nowhere"),
-        ((*options, "--stored", tmp_path, "--plan"), "--plan does nothing with --stored"),
-        ((*options, "--study", tmp_path / "x", "--seeds", 3), "--seeds does nothing with --study"),
+        ((*options, "--stored", tmp_path, "--plan"), "--dry-run has no effect with --stored"),
+        ((*options, "--study", tmp_path / "x", "--seeds", 3), "--seeds has no effect with --study"),
         ((*options, "--name", "grid"), "--name is of a study given with --stored"),
         ((*options, "--quantity", "width", "--study", tmp_path / "no.toml"), "no.toml"),
     ):

@@ -249,7 +249,7 @@ def test_bad_questions_are_refused(options, message, tmp_path, capsys):
 
 
 def test_too_short_weather_is_refused():
-    with pytest.raises(InputError, match=r"no winter whose snow .*: 2001/02 \(22 %\)"):
+    with pytest.raises(InputError, match=r"no winter has snow .*: 2001/02 \(22 %\)"):
         winters_of(SHORT.winters(1, seed=1)[:20])
 
 
@@ -264,7 +264,7 @@ def test_the_answer_says_from_how_many_winters_it_is(tmp_path, capsys):
     known = ["--range", "friction=0.4", "--range", "adhesion=500", "--range", "sliding=0.2"]
     assert main([*asked, *known, "--heights", "0.5,2", "-o", str(out)]) == 0
     shown = " ".join(capsys.readouterr().out.split())
-    assert "This follows from 1 of 3 winters of the file" in shown
+    assert "from 1 of 3 winters and the uncertain snow parameters" in shown
     assert "left out are the winters" in shown and "2001/02 to 2002/03 (0 %)" in shown
     assert "Where the snow comes from" in shown and "new snow" in shown
     summary = json.loads((out / "clearance.json").read_text())

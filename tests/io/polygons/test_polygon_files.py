@@ -155,9 +155,9 @@ def test_what_is_no_regular_file_is_refused_at_once(tmp_path):
     ("crs", "message"),
     [
         ({"type": "link", "properties": {"href": "ADDRESS", "type": "ogcwkt"}}, "crs: a link"),
-        ({"type": "name", "properties": {"name": "ADDRESS"}}, "is no code such as"),
-        ({"type": "name", "properties": {"name": "/etc/passwd"}}, "is no code such as"),
-        ({"type": "name", "properties": {"name": "+init=/tmp/a:1"}}, "is no code such as"),
+        ({"type": "name", "properties": {"name": "ADDRESS"}}, "is not a code such as"),
+        ({"type": "name", "properties": {"name": "/etc/passwd"}}, "is not a code such as"),
+        ({"type": "name", "properties": {"name": "+init=/tmp/a:1"}}, "is not a code such as"),
         ("EPSG:25833", "not as GeoJSON has it"),
     ],
 )

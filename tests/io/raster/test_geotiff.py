@@ -210,7 +210,7 @@ TURN = rasterio.Affine(CELL, 0, WEST, 0, -CELL, NORTH)
 @pytest.mark.parametrize(
     ("form", "message"),
     [
-        ({"change": scaled(0.0)}, "a scale of 0 and an offset of 0 are none"),
+        ({"change": scaled(0.0)}, "a scale of 0 and an offset of 0 are not allowed"),
         ({"change": scaled(float("nan"))}, "a scale of nan"),
         ({"change": in_unit("degrees")}, "its values are in 'degrees', which is not a unit of "
                                          "length"),

@@ -130,7 +130,7 @@ def test_what_goes_with_nothing_else_is_refused(written):
     with pytest.raises(InputError, match="201 weather files; at most 200"):
         read_stations([snow] * 201)
     frame = pd.DataFrame({"date": ["2024-01-01"], "snowfall_m": [0.1], "temperature_c": [-3.0]})
-    with pytest.raises(InputError, match="goes with weather files only"):
+    with pytest.raises(InputError, match="is allowed with weather files only"):
         read_weather(frame, temperature=snow)
 
 

@@ -22,7 +22,7 @@ PACKAGED = Path(__file__).with_name("recorded.json")
 
 
 def load_recorded(path: Optional[Path] = None) -> list[Measurement]:
-    """Return recorded measurements, those of the package by default; none if there is no file.
+    """Return recorded measurements, by default those of the package; empty without a file.
 
     Raises
     ------

@@ -2,7 +2,7 @@
 
 libsvm's decomposition changes two multipliers at a time. With a large C and few inputs it takes
 millions of such changes; here a dozen Newton steps suffice, each a Cholesky factorisation of a
-matrix of the size of the training set, whatever the parameters.
+matrix of the size of the training set, for any parameters.
 """
 
 from __future__ import annotations

@@ -149,7 +149,7 @@ def read_rows(
         A CSV file, or a Parquet file (.parquet); or the folder of a study's store.
     measure
         One of `snowshed.snow.stack.quantities.MEASURES`. "stack": height and length of 97 % of the
-        snow, as the thesis measures, by the reading of A.4.2 that the table names; "body": of the
+        snow, as the thesis measures, by the trimming rule that the table names; "body": of the
         largest connected body; "outermost_first" or "equal_pace": as "stack", by that reading.
     where
         Columns and the value they must have: only these rows are read.

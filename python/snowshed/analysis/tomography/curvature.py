@@ -1,7 +1,7 @@
 """Pieces of the ice by the curvature of its surface.
 
 The image is smoothed; the surface is a level of the smooth image. Where the smaller principal
-curvature is negative the surface is concave in a direction, as around a neck. What is left of the
+curvature is negative the surface is concave in a direction, as around a neck. The rest of the
 surface falls apart into convex zones, a layer of voxels thick, whose voxels have common faces. Each
 labels the ice that is nearest to it.
 

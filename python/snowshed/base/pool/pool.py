@@ -253,7 +253,7 @@ class _Process(Generic[Task, Result]):
         return True
 
     def receive(self) -> Optional[Ended[Task, Result]]:
-        """Take one message; return how the task ended if it says so."""
+        """Receive a message; return the end of the task if it reports one."""
         assert self.task is not None
         try:
             message = self.connection.recv()

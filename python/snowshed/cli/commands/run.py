@@ -1,4 +1,4 @@
-"""The commands ``snowshed run`` and ``snowshed plan``, the former name of its dry run."""
+"""The command ``snowshed run``, and ``plan``, the former name of its dry run."""
 
 from __future__ import annotations
 

@@ -257,7 +257,9 @@ def _in_metres(values: Any, facts: BandFacts, factor: float, path: Path) -> Floa
     """Return the values that a band's numbers stand for."""
     scale, offset = facts.scale, facts.offset
     if not (math.isfinite(scale) and math.isfinite(offset)) or scale == 0:
-        raise InputError(f"{path}: a scale of {scale:g} and an offset of {offset:g} are none")
+        raise InputError(
+            f"{path}: a scale of {scale:g} and an offset of {offset:g} are not allowed"
+        )
     heights: Floats = values.astype(np.float64)
     if (scale, offset) != (1.0, 0.0):
         heights *= scale

@@ -44,7 +44,7 @@ class ThicknessField:
         Raises
         ------
         InputError
-            If it is no number above 0.
+            If the value is not a number above 0.
         """
         value = record.get(self.name)
         if value is None or str(value).strip().lower() in BLANK:

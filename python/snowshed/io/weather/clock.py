@@ -94,8 +94,8 @@ def repeated_hour(earlier: datetime, later: datetime, step: float) -> str:
     Examples
     --------
     >>> time = datetime(2024, 10, 27, 2)
-    >>> repeated_hour(time, time, 1.0)[:27], repeated_hour(time, time, 24.0)
-    ('; this hour occurs twice, a', '')
+    >>> repeated_hour(time, time, 1.0)[:25], repeated_hour(time, time, 24.0)
+    ('; this hour occurs twice,', '')
     """
     back = (earlier - later) / HOUR
     if step < DAY and 0.0 <= back <= 1.0:

@@ -52,7 +52,7 @@ FORMATS: Mapping[str, Format] = {
 def read_station(path: Path) -> Optional[Station]:
     """Return the observations of a weather file; None if it matches none of `FORMATS`.
 
-    A file packed with gzip or xz, as GHCN-daily is published, is read like the file inside. Its
+    A file packed with gzip or xz, as GHCN-daily is published, is unpacked. Its
     times are on one clock, its amounts do not overlap, and its numbers can be in their units.
 
     Raises

@@ -105,7 +105,7 @@ def _check_elevations(terrain: Raster) -> None:
         row, column = np.unravel_index(at, z.shape)
         x, y = terrain.east + column * terrain.cell, terrain.north + row * terrain.cell
         raise InputError(
-            f"{terrain.name}: elevations from {low:g} to {high:g} m are none of the Earth "
+            f"{terrain.name}: elevations from {low:g} to {high:g} m do not occur on Earth "
             f"({LOWEST:g} to {HIGHEST:g} m), as that at ({x:.10g}, {y:.10g}); are they in feet, or "
             "is it a missing value that the file does not declare as NODATA?"
         )

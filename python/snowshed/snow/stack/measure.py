@@ -12,8 +12,8 @@ The steps, in this order:
 
 Steps 3 and 4 are repeated on the largest connected body alone (module ``connected_components``),
 because the lab measured a continuous body and left out what had rolled away. Mass and volume are
-those of all snow off the panel, outliers included; a particle that has flown apart counts with no
-more than a voxel, whatever its deformation says. In 2D the snow is a strip one metre wide.
+those of all snow off the panel, outliers included; a particle that has flown apart counts with at
+most a voxel, for any deformation. In 2D the snow is a strip one metre wide.
 """
 
 from __future__ import annotations

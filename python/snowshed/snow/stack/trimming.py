@@ -9,7 +9,7 @@ to rotate. Instead, it starts from the 2 ends of the stack and starts to integra
 towards the center of mass"). Both are here by name; `docs/methods/stack.md` explains the default.
 
 ``outermost_first``
-    As in 3D: whatever lies farthest from the centre of mass goes first, at either end.
+    As in 3D: the snow farthest from the centre of mass is dropped first, at either end.
 ``equal_pace``
     Both ends step inward together. When a chunk has rolled far off on one side, the steps from the
     other end take most of the 3 % from the stack.
