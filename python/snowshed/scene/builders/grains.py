@@ -59,6 +59,7 @@ def grains_scene(
     Examples
     --------
     >>> from tempfile import TemporaryDirectory
+    >>> from snowshed.analysis.tomography.example import example_grains
     >>> with TemporaryDirectory() as folder:
     ...     file = example_grains(folder).sample.file
     ...     scene = grains_scene(file, 1e-4, [LoadingStage(kind="compress", strain=0.1)])
