@@ -9,11 +9,15 @@ from grain_files import VOXEL, write_labels
 from paths import ROOT
 
 import snowshed
-from snowshed import InputError, Results
+from snowshed import InputError, Results, Simulation
 from snowshed.cli.main import main
+from snowshed.methods.grains.contacts import grain_contacts
+from snowshed.methods.grains.curve import loading_curve
 from snowshed.methods.method import Method, imported
 from snowshed.methods.mps.settings import MpsSettings
 from snowshed.methods.registry import FOLDERS, METHODS
+from snowshed.methods.slide.maps import slide_maps
+from snowshed.plot.stack_figures import stack_figure
 from snowshed.running.method_run import MethodRun
 from snowshed.scene.builders import example_slide
 from snowshed.scene.builders.grains import grains_scene
@@ -62,10 +66,11 @@ def docstrings(tree):
 
 def named_methods(tree):
     """Return the methods that a module names, as texts or by imports from their folders."""
+    examples = docstrings(tree)
     texts = [
         str(node.value)
         for node in ast.walk(tree)
-        if isinstance(node, ast.Constant) and node not in docstrings(tree)
+        if isinstance(node, ast.Constant) and node not in examples
     ]
     texts += [str(node.module) for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)]
     found = {text for text in texts if text in METHODS}
@@ -139,6 +144,9 @@ def test_results_have_what_the_method_has_and_say_so_otherwise(runs):
             has = ", ".join(METHODS[name].results)
             with pytest.raises(InputError, match=f'method "{name}" has no {result}; it has {has}'):
                 getattr(results, result)
+        if "stack" not in METHODS[name].results:
+            with pytest.raises(InputError, match=f'method "{name}" has no events; it has summary'):
+                _ = results.events
 
 
 def test_results_are_what_the_run_measured(runs):
@@ -150,6 +158,19 @@ def test_results_are_what_the_run_measured(runs):
     curve = runs["grains"].curve
     assert curve.top_stress_pa.iloc[-1] != 0.0 and curve.attrs["units"]["top_stress_pa"] == "Pa"
     assert runs["grains"].forces.attrs["units"]["force_x_n"] == "N"
+
+
+def test_functions_of_a_method_take_the_simulation_that_users_have(tmp_path):
+    slide = Simulation(example_slide(tmp_path))
+    slide.begin_event()
+    assert slide_maps(slide).thickness.max() > 0.0
+    test = Simulation(grains_scene(write_labels(tmp_path), VOXEL, [PRESSED]))
+    test.begin_event()
+    assert len(loading_curve(test)) == 1 and len(grain_contacts(test).grains) == 2
+    stack = Simulation(tiny_scene())
+    stack.run()
+    title = stack_figure(stack, stack.measure(), stack.scene.data).get_suptitle()
+    assert title.startswith("Stack after event 1")
 
 
 def test_snow_that_cannot_age_is_refused_before_anything_is_written(tmp_path):

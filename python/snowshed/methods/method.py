@@ -62,10 +62,10 @@ class Method:
         --------
         >>> Method("none", "", MethodSettings, "").read("maps", "out")
         Traceback (most recent call last):
-        snowshed._core.InputError: out: the method "none" has no maps; it has events, particles
+        snowshed._core.InputError: out: the method "none" has no maps; it has particles, film
         """
         if result not in self.results:
-            known = ", ".join(("events", "particles") if not self.results else self.results)
+            known = ", ".join((*self.results, "particles", "film"))
             raise InputError(f'{folder}: the method "{self.name}" has no {result}; it has {known}')
         return imported(self.results[result])(folder)
 

@@ -152,8 +152,8 @@ def maps_at(ready: ResolvedScene, steps: Sequence[int]) -> Iterator[tuple[int, S
 
 
 def _name(simulation: AvaFrameSimulation, ready: ResolvedScene) -> str:
-    content = {**ready.copied_data(), "title": ""}
-    content["terrain"]["file"] = ""
+    terrain = {**ready.data["terrain"], "file": ""}
+    content = {**ready.data, "title": "", "terrain": terrain}
     text = json.dumps(content, sort_keys=True) + simulation.release
     identity = hashlib.shake_256(text.encode()).hexdigest(5)
     release = simulation.release + ("_AF" if "_" in simulation.release else "")

@@ -99,7 +99,7 @@ EVENT_COLUMNS = (
 )
 #: Checksums of tables, by name: of the rows through an event, by its number.
 Checksums = Mapping[str, Mapping[str, str]]
-ENERGY = "energy.csv"
+EVENTS, ENERGY = "events.csv", "energy.csv"
 #: Columns that hold words.
 WORDS = ("ended", "trimming")
 
@@ -148,7 +148,7 @@ class RunFolder:
         self.ageing = self.folder / "ageing.json"
         self.stack_picture = self.folder / "stack.png"
         self.growth_picture = self.folder / "growth.png"
-        self.events = Table(self.folder / "events.csv", EVENT_COLUMNS)
+        self.events = Table(self.folder / EVENTS, EVENT_COLUMNS)
         self.outlines = Table(self.folder / "outline.csv", ("event", "x", "z"))
         self.conversions = Table(self.folder / "conversions.csv", CONVERSION_COLUMNS)
         self.ageings = Table(self.folder / "ageing.csv", AGEING_COLUMNS)
@@ -261,7 +261,7 @@ def read_events(folder: PathLike) -> pd.DataFrame:
         If the folder holds no events.csv, it is no table of events, or not the one that the run
         wrote.
     """
-    path = Path(folder) / "events.csv"
+    path = Path(folder) / EVENTS
     if not path.is_file():
         raise InputError(f"{folder}: no results; it holds no events.csv")
     check_run_file(path)

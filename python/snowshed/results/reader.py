@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Optional
+from typing import TYPE_CHECKING, Optional, cast
 
 import numpy as np
 
@@ -21,8 +21,9 @@ from snowshed.io.run_files import check_run_file, read_record
 from snowshed.io.vtk.pvd import read_series
 from snowshed.io.vtk.vtp import read_particles
 from snowshed.methods.registry import method_of
+from snowshed.methods.summary import Summary
 from snowshed.results.film import film_dataset, run_film
-from snowshed.results.folder import ENERGY, read_events
+from snowshed.results.folder import ENERGY, EVENTS, read_events
 from snowshed.results.grid import grid_dataset, stored_grid
 from snowshed.results.particle_dataset import particle_dataset
 from snowshed.scene.scene import PathLike, ResolvedScene
@@ -102,6 +103,8 @@ class Results:
     @property
     def events(self) -> pd.DataFrame:
         """One row per event: the stack after it, and how it went (events.csv)."""
+        if not (self.folder / EVENTS).is_file():
+            self._say_what_there_is()
         return _with_units(read_events(self.folder))
 
     @property
@@ -199,13 +202,12 @@ class Results:
     @property
     def stack(self) -> StackMeasure:
         """The measure of the stack after the last event, from the stored particles."""
-        stack: StackMeasure = self.result("stack")
-        return stack
+        return cast("StackMeasure", self.result("stack"))
 
     @property
-    def summary(self) -> Any:
-        """The figures of a slide or a loading test: its method's `Summary`."""
-        return self.result("summary")
+    def summary(self) -> Summary:
+        """The figures of a slide or a loading test, as attributes."""
+        return cast("Summary", self.result("summary"))
 
     @property
     def maps(self) -> xarray.Dataset:
@@ -213,24 +215,27 @@ class Results:
 
         Needs xarray (extra ``study``).
         """
-        maps: xarray.Dataset = self.result("maps")
-        return maps
+        return cast("xarray.Dataset", self.result("maps"))
 
     @property
     def curve(self) -> pd.DataFrame:
         """The curve of a loading test: strains, stresses, bonds and contacts over time."""
-        curve: pd.DataFrame = self.result("curve")
-        return curve
+        return cast("pd.DataFrame", self.result("curve"))
 
     @property
     def forces(self) -> pd.DataFrame:
         """The contacts between grains at the end of a loading test, with their forces, N."""
-        forces: pd.DataFrame = self.result("forces")
-        return forces
+        return cast("pd.DataFrame", self.result("forces"))
 
-    def result(self, name: str) -> Any:
+    def _say_what_there_is(self) -> None:
+        method = method_of(self.scene.data)
+        if "stack" not in method.results:
+            method.read("events", self.folder)
+
+    def result(self, name: str) -> object:
         """Return what the scene's method leaves under a name, such as "maps"."""
-        return method_of(self.scene.data).read(name, self.folder)
+        found: object = method_of(self.scene.data).read(name, self.folder)
+        return found
 
     @property
     def film(self) -> Film:

@@ -135,7 +135,7 @@ def extended_scene(
     >>> [(layer["event"], layer["thickness"]) for layer in layers]
     [(1, 0.02), (2, 0.02), (3, 0.03)]
     """
-    data = scene.copied_data()
+    data: dict[str, Any] = scene.copied_data()
     method = method_of(data)
     if "stack" not in method.results:
         raise InputError(f'/method: "{method.name}" has one event; no other can follow')

@@ -13,7 +13,7 @@ from typing import Any
 
 import snowshed._core as _core
 from snowshed._core import ParsedScene
-from snowshed.base.json_values import read_only
+from snowshed.base.json_values import JsonObject, JsonValue, read_only
 from snowshed.base.paths import PathLike
 from snowshed.io.atomic import write_text
 
@@ -42,7 +42,7 @@ class ResolvedScene:
         return cls._of(ParsedScene.parse(text, folder), folder)
 
     @classmethod
-    def from_data(cls, data: Mapping[str, Any], base_dir: PathLike = ".") -> ResolvedScene:
+    def from_data(cls, data: Mapping[str, JsonValue], base_dir: PathLike = ".") -> ResolvedScene:
         """Validate JSON data; raises InputError."""
         return cls.parse(json.dumps(data), base_dir)
 
@@ -68,7 +68,7 @@ class ResolvedScene:
         data: Mapping[str, Any] = read_only(json.loads(self.json))
         return data
 
-    def copied_data(self) -> dict[str, Any]:
+    def copied_data(self) -> JsonObject:
         """Return a copy of the data, which may be changed."""
         return copy.deepcopy(dict(self.data))
 

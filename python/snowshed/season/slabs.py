@@ -41,7 +41,7 @@ def season_scene(
     InputError
         If the scene has snow of its own, or there are too many releases.
     """
-    scene = base.copied_data()
+    scene: dict[str, Any] = base.copied_data()
     released = [day for day in days if day.event is not None]
     if len(released) > MOST_EVENTS:
         raise InputError(f"{len(released)} releases; a scene has at most {MOST_EVENTS} events")
