@@ -68,6 +68,31 @@ def test_no_method_knows_another():
     assert wrong == []
 
 
+def names_of_methods():
+    """Return the methods that the registry lists, a line each."""
+    registry = (CPP / "methods" / "registry.cpp").read_text()
+    return re.findall(r"^ +add\((\w+)\)", registry, re.MULTILINE)
+
+
+def test_no_method_is_named_outside_its_folder():
+    """Texts may speak of a slide or of grains; names, includes and values may not."""
+    names = "|".join(names_of_methods())
+    prefixes = "|".join(name.capitalize() for name in names_of_methods())
+    value = re.compile(rf'"(?:{names})"|#include ".*/(?:{names})[/.].*"')
+    identifier = re.compile(rf"\b(?:{prefixes})[A-Z]|(?<![a-zA-Z])(?:{names})(?![a-zA-Z])")
+    own = {ROOT / "cpp" / "bindings" / "methods" / f"{name}.cpp" for name in names_of_methods()}
+    wrong = []
+    for source in tracked("cpp/snowshed/*.?pp", "cpp/apps/*.?pp", "cpp/bindings/*.?pp"):
+        inside = source.is_relative_to(CPP / "methods") and source.parent != CPP / "methods"
+        if inside or source in own or source.name == "registry.cpp":
+            continue
+        code = re.sub(r"//.*", "", source.read_text())
+        found = value.findall(code) + identifier.findall(re.sub(r'"[^"\n]*"', "", code))
+        wrong += [f"{source.relative_to(ROOT)}: {name}" for name in found]
+    assert len(names_of_methods()) == 4
+    assert wrong == []
+
+
 def test_no_cpp_header_includes_itself_by_a_detour():
     graph = {f"snowshed/{path.relative_to(CPP)}": includes(path) for path in CPP.rglob("*.hpp")}
     done = set()

@@ -12,8 +12,8 @@
 
 #include "snowshed/core/errors.hpp"
 #include "snowshed/core/kernel_variant.hpp"
+#include "snowshed/core/message_format.hpp"
 #include "snowshed/run/event_sequence.hpp"
-#include "snowshed/scene/message_format.hpp"
 #include "snowshed/scene/scene_json.hpp"
 
 namespace {
@@ -159,7 +159,7 @@ int run(const Options& o) {
   setting_up = 0;
   if (const char* slow = snowshed::slow_kernels_note(); *slow && !o.quiet)
     std::fprintf(stderr, "note: %s\n", slow);
-  if (const std::string note = sequence.simulation().label_note(); !note.empty() && !o.quiet)
+  if (const std::string note = sequence.simulation().input_remark(); !note.empty() && !o.quiet)
     std::fprintf(stderr, "note: %s\n", note.c_str());
   if (!run_all(sequence, o.quiet)) {
     return fail(

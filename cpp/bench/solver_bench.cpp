@@ -42,26 +42,27 @@ ParticleBatch slab(const int (&cells)[3], double dx, double density) {
 struct Case {
   MpmOptions options;
   ParticleBatch batch;
-  std::vector<Obstacle> obstacles;
   int steps_before = 10;
 };
 
 Case slab_3d(const Vec3& velocity = Vec3::Zero()) {
   Case c;
-  c.options.numerics.dx = slab_dx;
-  c.options.numerics.sleep_speed = 0;
+  c.options.settings.dx = slab_dx;
+  c.options.settings.sleep_speed = 0;
   c.batch = slab(slab_cells, slab_dx, c.options.snows[0].density);
   c.batch.velocity = velocity;
-  c.obstacles = {{"ground", make_plane(Vec3::Zero(), Vec3::UnitZ()), {Condition::sticky, 0.0}, {}}};
+  c.options.obstacles = {
+      {"ground", make_plane(Vec3::Zero(), Vec3::UnitZ()), {Condition::sticky, 0.0}, {}}};
   return c;
 }
 
 Case slab_2d() {
   Case c;
   c.options.dimension = 2;
-  c.options.numerics.sleep_speed = 0;
-  c.batch = slab({200, 0, 25}, c.options.numerics.dx, c.options.snows[0].density);
-  c.obstacles = {{"ground", make_plane(Vec3::Zero(), Vec3::UnitZ()), {Condition::sticky, 0.0}, {}}};
+  c.options.settings.sleep_speed = 0;
+  c.batch = slab({200, 0, 25}, c.options.settings.dx, c.options.snows[0].density);
+  c.options.obstacles = {
+      {"ground", make_plane(Vec3::Zero(), Vec3::UnitZ()), {Condition::sticky, 0.0}, {}}};
   return c;
 }
 
@@ -72,8 +73,8 @@ void report(benchmark::State& state, std::size_t particles, double bytes) {
 
 void run(benchmark::State& state, const Case& c, int threads) {
   MpmOptions options = c.options;
-  options.numerics.threads = threads;
-  const auto solver = make_mpm(options, c.obstacles);
+  options.settings.threads = threads;
+  const auto solver = make_mpm(options);
   solver->add(c.batch);
   for (int i = 0; i < c.steps_before; ++i) solver->step();
   for (auto _ : state) solver->step();
@@ -113,7 +114,7 @@ Case slab_in_flow() {
 
 void add_slabs() {
   const auto unchanged = [](Case&) {};
-  const auto in_double = [](Case& c) { c.options.numerics.precision = Precision::float64; };
+  const auto in_double = [](Case& c) { c.options.settings.precision = Precision::float64; };
   add("slab_3d/float_at_rest", slab_3d(), unchanged, {1, 2});
   add("slab_3d/float_in_plastic_flow", slab_in_flow(), unchanged, {1, 2});
   add("slab_3d/double_at_rest", slab_3d(), in_double, {1, 2});
@@ -138,7 +139,7 @@ void add_slabs() {
 Case plain() {
   Case c = slab_3d(Vec3(0, 0, -1));
   c.options.snows[0].model = SnowModel::elastic;
-  c.obstacles.clear();
+  c.options.obstacles.clear();
   return c;
 }
 
@@ -150,7 +151,7 @@ Case on(Condition condition, bool moving = false) {
     motion.velocity = Vec3(0, 0, -0.1);
     ground.motion.emplace(motion);
   }
-  c.obstacles = {ground};
+  c.options.obstacles = {ground};
   return c;
 }
 
@@ -169,9 +170,9 @@ void add_prices() {
   price("ground_cam_clay_in_flow", slab_in_flow(), unchanged);
   price("ground_elastic_in_flow", slab_in_flow(),
         [](C& c) { c.options.snows[0].model = SnowModel::elastic; });
-  price("double", plain(), [](C& c) { c.options.numerics.precision = Precision::float64; });
-  price("cubic", plain(), [](C& c) { c.options.numerics.basis = Basis::cubic; });
-  price("apic", plain(), [](C& c) { c.options.numerics.transfer = Transfer::apic; });
+  price("double", plain(), [](C& c) { c.options.settings.precision = Precision::float64; });
+  price("cubic", plain(), [](C& c) { c.options.settings.basis = Basis::cubic; });
+  price("apic", plain(), [](C& c) { c.options.settings.transfer = Transfer::apic; });
   price("sticky_contact", on(Condition::sticky), unchanged);
   price("slip_contact", on(Condition::slip), unchanged);
   price("separate_contact", on(Condition::separate), unchanged);
@@ -181,10 +182,10 @@ void add_prices() {
     c.options.snows.assign(2, Snow());
     c.options.energy = true;
   });
-  price("sleep_of_awake_snow", plain(), [](C& c) { c.options.numerics.sleep_speed = 0.02; });
+  price("sleep_of_awake_snow", plain(), [](C& c) { c.options.settings.sleep_speed = 0.02; });
   // Without gravity the slab is at rest from the start.
   price("sleep_at_rest", slab_3d(), [](C& c) {
-    c.options.numerics.sleep_speed = 0.02;
+    c.options.settings.sleep_speed = 0.02;
     c.options.gravity = 0;
     c.steps_before = 1000;
   });
@@ -247,10 +248,10 @@ void add_matrix() {
             add(name,
                 [=] {
                   Case c = matrix_slab(dimension);
-                  c.options.numerics.precision =
+                  c.options.settings.precision =
                       in_double ? Precision::float64 : Precision::float32;
-                  c.options.numerics.transfer = transfer;
-                  c.options.numerics.basis = basis;
+                  c.options.settings.transfer = transfer;
+                  c.options.settings.basis = basis;
                   snow.choose(c.options);
                   return c;
                 },

@@ -3,6 +3,7 @@
 
 #include <pybind11/numpy.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,13 @@ pybind11::array_t<To> column(const std::vector<From>& values) {
   auto out = a.template mutable_unchecked<1>();
   for (pybind11::ssize_t i = 0; i < a.shape(0); ++i) out(i) = To(values[std::size_t(i)]);
   return a;
+}
+
+/// Values at the nodes of a grid, row by row from the south.
+inline pybind11::array_t<double> map_of(const std::vector<double>& values, int rows, int columns) {
+  pybind11::array_t<double> map({pybind11::ssize_t(rows), pybind11::ssize_t(columns)});
+  std::copy(values.begin(), values.end(), map.mutable_data());
+  return map;
 }
 
 /// The columns of a table that is held row by row, by their names.

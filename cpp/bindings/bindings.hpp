@@ -16,7 +16,6 @@ void bind_simulation(pybind11::module_&);
 void bind_event_sequence(pybind11::module_&);
 void bind_film(pybind11::module_&);
 void bind_material(pybind11::module_&);
-void bind_grain_sizes(pybind11::module_&);
 
 pybind11::object reseeding_dict(const std::optional<Reseeding>&);  ///< None where there is none
 pybind11::dict report_dict(const RunReport&);

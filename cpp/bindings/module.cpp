@@ -2,6 +2,7 @@
 #include <pybind11/pybind11.h>
 
 #include "bindings.hpp"
+#include "method_bindings.hpp"
 
 namespace py = pybind11;
 
@@ -14,5 +15,5 @@ PYBIND11_MODULE(_core, m) {
   snowshed::bind_event_sequence(m);
   snowshed::bind_film(m);
   snowshed::bind_material(m);
-  snowshed::bind_grain_sizes(m);
+  for (const snowshed::MethodBindings& method : snowshed::method_bindings()) method.module(m);
 }

@@ -36,8 +36,7 @@ py::dict plan_dict(const py::object& argument, const std::filesystem::path& base
   d["updates_per_s"] = report.updates_per_s;
   d["threads"] = report.threads;
   d["kernels"] = report.kernels;
-  d["scalar"] =
-      scene.uses<MpmSettings>() && scene.mpm().precision == Precision::float32 ? "float" : "double";
+  d["scalar"] = scene.numerics->scalar();
   return d;
 }
 

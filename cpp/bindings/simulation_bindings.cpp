@@ -4,13 +4,13 @@
 
 #include "array_copies.hpp"
 #include "bindings.hpp"
+#include "method_bindings.hpp"
 #include "scene_argument.hpp"
-#include "simulation_class.hpp"
 #include "snowshed/core/errors.hpp"
 #include "snowshed/geometry/cliffs.hpp"
 #include "snowshed/geometry/readers/ascii_grid.hpp"
-#include "snowshed/methods/slide/solver.hpp"
-#include "snowshed/particles/quantities.hpp"
+#include "snowshed/methods/capabilities.hpp"
+#include "snowshed/methods/quantities.hpp"
 #include "snowshed/run/energy_history.hpp"
 #include "snowshed/run/run_record.hpp"
 #include "snowshed/run/simulation.hpp"
@@ -65,68 +65,14 @@ std::string run(Simulation& sim, const py::function& callback, double interval) 
 
 py::dict energy(const Simulation& sim) {
   py::dict d;
-  for (const auto& [name, joules] : sim.solver().energy_table()) d[name.c_str()] = joules;
+  if (const auto* keeping = capability<KeepsEnergy>(sim.solver()))
+    for (const auto& [name, joules] : keeping->energies()) d[name.c_str()] = joules;
   return d;
 }
 
 py::dict energy_history(const Simulation& sim) {
   const EnergyHistory& history = sim.energy_history();
   return columns_of(history.columns(), history.values());
-}
-
-/// Values at the nodes of a grid, row by row from the south.
-py::array_t<double> map_of(const std::vector<double>& values, int rows, int columns) {
-  py::array_t<double> map({py::ssize_t(rows), py::ssize_t(columns)});
-  std::copy(values.begin(), values.end(), map.mutable_data());
-  return map;
-}
-
-py::dict slide_maps(const Simulation& sim) {
-  const SlideMethod& slide = sim.slide();
-  const Terrain& t = slide.terrain();
-  const auto map = [&](const std::vector<double>& values) {
-    return map_of(values, t.rows(), t.columns());
-  };
-  std::vector<double> heights;
-  for (int i = 0; i < t.rows() * t.columns(); ++i) heights.push_back(t.nodes()[i].height);
-  py::dict d;
-  d["terrain"] = map(heights);
-  d["peak_thickness"] = map(slide.peaks().thickness);
-  d["peak_speed"] = map(slide.peaks().speed);
-  d["thickness"] = map(slide.flow().thickness_everywhere(t));
-  d["speed"] = map(slide.flow().speed_everywhere(t));
-  d["west"] = t.west();
-  d["south"] = t.south();
-  d["cell"] = t.cell();
-  d["density"] = std::get<SlideSettings>(sim.scene().numerics).density;
-  return d;
-}
-
-py::dict slide_facts(const Simulation& sim) {
-  const SlideMethod& slide = sim.slide();
-  const MassBalance& m = slide.mass_balance();
-  py::dict d;
-  d["bonds_made"] = slide.bonds_made();
-  d["bonds"] = slide.bonds().size();
-  d["released_kg"] = m.released;
-  d["entrained_kg"] = m.entrained;
-  d["left_terrain_kg"] = m.left;
-  d["left_terrain"] = m.particles_left;
-  return d;
-}
-
-/// The bonds that hold: ids of their particles (n, 2), and rest lengths (n).
-py::tuple slide_bonds(const Simulation& sim) {
-  const SlideMethod& slide = sim.slide();
-  const Bonds& bonds = slide.bonds();
-  const FieldView ids = slide.field("id");
-  py::array_t<std::int64_t> pairs({py::ssize_t(bonds.size()), py::ssize_t(2)});
-  auto out = pairs.mutable_unchecked<2>();
-  for (std::size_t b = 0; b < bonds.size(); ++b) {
-    out(py::ssize_t(b), 0) = *ids.at<std::uint32_t>(bonds.first[b]);
-    out(py::ssize_t(b), 1) = *ids.at<std::uint32_t>(bonds.second[b]);
-  }
-  return py::make_tuple(pairs, column<double>(bonds.rest_length));
 }
 
 py::tuple ascii_grid(const std::filesystem::path& path) {
@@ -326,11 +272,9 @@ void bind_facts(SimulationClass& c) {
   c.reads("energy", &energy);
   c.reads("energy_history", &energy_history);
   c.reads("panel_frame", &frame);
-  c.reads("slide_maps", &slide_maps);
-  c.reads("slide_facts", &slide_facts);
-  c.reads("slide_bonds", &slide_bonds);
   c.reads("obstacle_distance", &distances_at<&Simulation::obstacle_distance>, "points"_a);
   c.reads("resolved_distance", &distances_at<&Simulation::resolved_distance>, "points"_a);
+  c.reads("label_note", [](const Simulation& s) { return s.input_remark(); });
   c.property("notes", [](const Simulation& s) { return s.notes(); });
   c.property("expected_particles", [](const Simulation& s) {
     const std::vector<double>& particles = s.cost().particles;
@@ -345,8 +289,7 @@ void bind_facts(SimulationClass& c) {
   c.property("rejected_steps", [](const Simulation& s) { return s.solver().counters().rejected; });
   c.property("particle_updates",
              [](const Simulation& s) { return s.solver().counters().particle_updates; });
-  c.property("slept_updates",
-             [](const Simulation& s) { return s.solver().counters().slept_updates; });
+  c.property("slept_updates", [](const Simulation& s) { return slept_updates(s.solver()); });
   c.property("sorts", [](const Simulation& s) { return s.solver().counters().sorts; });
   c.property("particle_count", [](const Simulation& s) { return s.solver().size(); });
   c.property("time_step_s", [](const Simulation& s) { return s.solver().time_step(); });
@@ -379,7 +322,7 @@ void bind_simulation(py::module_& m) {
   bind_files(c);
   bind_fields(c);
   bind_facts(c);
-  bind_grains(c);
+  for (const MethodBindings& method : method_bindings()) method.simulation(c);
 }
 
 }  // namespace snowshed

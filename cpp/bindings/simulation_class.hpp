@@ -52,7 +52,4 @@ class SimulationClass {
   pybind11::class_<Handle> class_;
 };
 
-/// What only a simulation of grains tells.
-void bind_grains(SimulationClass&);
-
 }  // namespace snowshed

@@ -15,8 +15,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     } catch (const InputError& error) {
       throw std::logic_error(std::string("a scene is refused once it is written: ") + error.what());
     }
-    if (scene.uses<MpmSettings>()) estimate_cost(scene);
-    if (scene.uses<MpsSettings>()) estimate_mps_cost(scene, {100});
+    if (scene.numerics.takes(Part::bodies)) estimate_cost(scene);
   });
   return 0;
 }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "snowshed/io/film_file.hpp"
+#include "snowshed/methods/mpm/settings.hpp"
 #include "snowshed/run/simulation.hpp"
 #include "snowshed/scene/presets.hpp"
 #include "snowshed/scene/scene_json.hpp"
@@ -346,8 +347,8 @@ Scene scene_of_checkpoint(int dimension, bool running) {
   scene.events.rest_time = 0.005;
   if (!running) return scene;
   scene.events.between = Between::reseed;
-  scene.mpm().precision = Precision::float64;
-  scene.mpm().transfer = Transfer::apic;
+  scene.numerics.as<MpmSettings>().precision = Precision::float64;
+  scene.numerics.as<MpmSettings>().transfer = Transfer::apic;
   scene.output.energy = true;
   scene.domain.emplace(Domain{Vec3(-1, -1, -1), Vec3(1, 1, 1)});
   ObstacleSpec plate;

@@ -24,6 +24,12 @@ struct EnergyBalance {
 /// Energies as tables have them: name with unit, J.
 using NamedEnergies = std::vector<std::pair<std::string, double>>;
 
+inline std::vector<std::string> names_of(const NamedEnergies& energies) {
+  std::vector<std::string> names;
+  for (const auto& energy : energies) names.push_back(energy.first);
+  return names;
+}
+
 /// Returns the balance as tables have it, names with units.
 inline NamedEnergies named_energies(const EnergyBalance& e) {
   return {

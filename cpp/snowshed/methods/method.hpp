@@ -1,5 +1,6 @@
 // The contract between a method and what runs it: particles are added and replaced, steps are
-// taken, fields and energies are read, and the state is saved and restored.
+// taken, fields are read, and the state is saved and restored. What only some methods can do, such
+// as to settle, is in capabilities.hpp.
 //
 // What a method promises:
 // - A call that throws leaves the snow, the time, the counters and the energies as they were, so
@@ -23,9 +24,10 @@
 #include <string>
 #include <vector>
 
+#include "snowshed/core/stop_request.hpp"
 #include "snowshed/core/vec.hpp"
-#include "snowshed/methods/energy_balance.hpp"
 #include "snowshed/methods/particle_batch.hpp"
+#include "snowshed/methods/point_cloud.hpp"
 #include "snowshed/particles/field_view.hpp"
 
 namespace snowshed {
@@ -33,19 +35,19 @@ namespace snowshed {
 class BinaryWriter;
 class BinaryReader;
 
-/// A copy of the particles for the outside, in double, ordered by id.
+/// A copy of the particles for the outside, in double, ordered by id. What a method does not know
+/// stays empty.
 struct ParticleState {
   std::vector<Vec3> positions, velocities;  // m, m/s
   std::vector<double> masses;               // kg
-  std::vector<double> volume_ratios;        // current over initial volume
   std::vector<double> densities;            // kg/m3, current
-  std::vector<double> plastic_strains;      // volumetric, compaction negative
   std::vector<double> pressures;            // Kirchhoff, Pa, compression positive
-  std::vector<Mat3> affine;                 // APIC's C, 1/s; empty with FLIP
+  std::vector<double> volume_ratios;        // current over initial volume
+  std::vector<double> plastic_strains;      // volumetric, compaction negative
+  std::vector<Mat3> affine;                 // C of APIC, 1/s
   std::vector<std::uint32_t> ids;
   std::vector<std::uint16_t> events;
-  std::vector<std::uint8_t>
-      material_ids;  // which of the snows each is; empty where there is only one
+  std::vector<std::uint8_t> material_ids;  // which of the snows each is, if there are several
 };
 
 /// How much the snow moves.
@@ -55,11 +57,10 @@ struct MotionSummary {
   double moving_mass = 0;  // kg faster than the given speed
 };
 
-/// Counters since the solver was made.
+/// Counters since the method was made.
 struct StepCounters {
   std::int64_t steps = 0, rejected = 0, sorts = 0;
-  std::int64_t particle_updates = 0;  // of particles that were awake
-  std::int64_t slept_updates = 0;     // that sleeping particles did not need
+  std::int64_t particle_updates = 0;  // of particles that took part in a step
   double smallest_dt = 0;             // s
 };
 
@@ -73,8 +74,10 @@ class Method {
 
   /// Adds the particles of all batches, or none. The energy balance counts what they bring as
   /// added. Throws InputError for a batch that the scene does not allow, SimulationError where a
-  /// position lies outside the space that the method can address.
-  virtual void add(const std::vector<ParticleBatch>& batches) = 0;
+  /// position lies outside the space that the method can address, and Stopped on request if it
+  /// takes long.
+  virtual void add(const std::vector<ParticleBatch>& batches, const StopRequest& stop) = 0;
+  void add(const std::vector<ParticleBatch>& batches) { add(batches, {}); }
   void add(const ParticleBatch& batch) { add(std::vector<ParticleBatch>{batch}); }
 
   /// Removes all particles and adds those of the batches, or leaves all as it is. New particles get
@@ -85,13 +88,6 @@ class Method {
   /// Adds to the velocity of each particle, ordered by id (m/s); the energy balance counts it as
   /// added. Throws InputError for another number of changes than particles, or if not finite.
   virtual void add_velocity(const std::vector<Vec3>& velocity_changes) = 0;
-
-  /// Lowers each particle, ordered by id, by a height (m) and adds to its volumetric plastic
-  /// strain, if its law has one. Elastic strains and velocities stay. The energy balance counts it
-  /// as added. Throws as `add_velocity`, and SimulationError where a particle would come to lie
-  /// outside the space that the method can address.
-  virtual void settle(const std::vector<double>& drops,
-                      const std::vector<double>& plastic_changes) = 0;
 
   // --- time ------------------------------------------------------------------------------------
 
@@ -110,6 +106,9 @@ class Method {
   /// leaves that to those who run it.
   virtual std::optional<bool> at_rest() const { return std::nullopt; }
 
+  /// The part of an event that is done, 0 to 1, if the method knows it better than the time tells.
+  virtual std::optional<double> progress() const { return std::nullopt; }
+
   virtual double time() const = 0;       ///< s
   virtual double time_step() const = 0;  ///< s, of the last step
   virtual const StepCounters& counters() const = 0;
@@ -127,11 +126,10 @@ class Method {
   virtual std::size_t size() const = 0;  ///< particles
   virtual ParticleState state() const = 0;
   virtual MotionSummary motion(double speed) const = 0;  ///< m/s, which counts as moving
-  /// The energy balance; all zero unless the method was made to keep it.
-  virtual EnergyBalance energy() const = 0;
-  /// The same as tables have it; a method may have parts of its own.
-  virtual NamedEnergies energy_table() const { return named_energies(energy()); }
   virtual std::size_t bytes() const = 0;  ///< held by the particles and what the steps need
+
+  /// What files of particles hold: by default the quantities of `state`, ordered by id.
+  virtual PointCloud snapshot() const;
 
   // --- checkpoints -----------------------------------------------------------------------------
 

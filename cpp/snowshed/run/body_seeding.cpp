@@ -6,13 +6,12 @@
 #include <utility>
 
 #include "snowshed/core/errors.hpp"
+#include "snowshed/core/message_format.hpp"
 #include "snowshed/run/cost_estimate.hpp"
-#include "snowshed/sampling/lattice.hpp"
 #include "snowshed/sampling/seeding.hpp"
 #include "snowshed/sampling/voxel_set.hpp"
 #include "snowshed/scene/assemble.hpp"
 #include "snowshed/scene/build_shape.hpp"
-#include "snowshed/scene/message_format.hpp"
 #include "snowshed/scene/shape_measure.hpp"
 
 namespace snowshed {
@@ -57,61 +56,29 @@ double body_volume(const BodySpec& body, const Scene& scene, const std::string& 
     Vec3 size = shape->bounds().max - shape->bounds().min;
     if (scene.dimension == 2) size.y() = 0;  // endless
     return measure(*shape, scene.dimension,
-                   std::max(resolution(scene.numerics), size.maxCoeff() / 64));
+                   std::max(scene.numerics->resolution(), size.maxCoeff() / 64));
   });
 }
 
-/// How many particles of a lattice fill a body; about, where they are too many for any machine.
-double lattice_particles_of(const BodySpec& body, const Scene& scene, double spacing,
-                            const std::string& path, const std::filesystem::path& base_dir) {
+/// How many particles the method fills a body with; about, where they are too many for any machine.
+double particles_of(const BodySpec& body, const Scene& scene, const std::string& path,
+                    const std::filesystem::path& base_dir) {
   const double told = shape_volume(body.shape, scene.dimension).value_or(0.0);
-  const double about = told / std::pow(spacing, scene.dimension);
+  const double about = told / std::pow(scene.numerics->resolution(), scene.dimension);
   if (about > 2 * max_particles) return about;  // and none are counted
   return with_path(path, [&] {
     const Shape shape = build_shape(body.shape, scene.dimension, path, base_dir);
-    return double(count_lattice(*shape, scene.dimension, spacing));
+    return double(scene.numerics->count_particles(*shape, scene.dimension));
   });
-}
-
-std::string in_millimetres(double metres) { return show_rounded(1000 * metres) + " mm"; }
-
-/// Says what becomes of a body that is too small for a lattice of particles of equal mass.
-void tell_of_coarse_lattice(const LevelSet& shape, const MpsSettings& settings, double mass_ratio,
-                            std::size_t particles, std::vector<std::string>& notes) {
-  constexpr double most_uneven = 0.02;
-  const double thickness = 2 * shape.inradius();
-  const std::string count =
-      std::to_string(particles) + (particles == 1 ? " particle" : " particles");
-  if (thickness < settings.spacing * (1 - 1e-6))
-    notes.push_back("is " + in_millimetres(thickness) + " thick, less than the spacing of " +
-                    in_millimetres(settings.spacing) + ": it becomes " + count +
-                    " that fill no layer, and neither pressure nor yield stress are resolved; "
-                    "give a smaller /numerics/spacing");
-  else if (std::abs(mass_ratio - 1) > most_uneven)
-    notes.push_back("becomes " + count + " of " + show_rounded(mass_ratio) +
-                    " times the mass that a cell of the spacing holds, so that its mass is right; "
-                    "give a smaller /numerics/spacing");
-}
-
-/// Fills a body with as many particles as its volume holds cells of the spacing. They share its
-/// mass, so that it is exact, and are as heavy as their cells, to half a particle.
-void seed_on_lattice(const LevelSet& shape, const Scene& scene, const StopRequest& stop,
-                     ParticleBatch& batch, std::vector<std::string>& notes) {
-  const MpsSettings& s = std::get<MpsSettings>(scene.numerics);
-  LatticeFilling filling = fill_lattice(shape, scene.dimension, s.spacing, stop);
-  const std::size_t count = filling.positions.size();
-  batch.positions = std::move(filling.positions);
-  batch.mass = s.density * filling.volume / double(count);
-  const double cell = std::pow(s.spacing, scene.dimension);
-  tell_of_coarse_lattice(shape, s, filling.volume / (cell * double(count)), count, notes);
 }
 
 /// Fills a body of snow with particles of equal mass. Notes on it are added without their place.
 void seed_body(const BodySpec& body, const Shape& shape, const Scene& scene, std::uint64_t seed,
                const StopRequest& stop, ParticleBatch& batch, std::vector<std::string>& notes) {
   batch.velocity = body.velocity;
-  if (scene.uses<MpsSettings>()) return seed_on_lattice(*shape, scene, stop, batch, notes);
-  const double dx = resolution(scene.numerics);
+  if (!scene.numerics.takes(Part::seeding))
+    return scene.numerics->fill(*shape, scene.dimension, stop, batch, notes);
+  const double dx = scene.numerics->resolution();
   const Snow& snow = snow_of(scene, body);
   batch.positions = snowshed::seed(*shape, scene.dimension, dx, scene.seeding.particles_per_voxel,
                                    scene.seeding.pattern, seed, stop);
@@ -161,26 +128,27 @@ double slab_mass(const Scene& scene, int event) {
   return mass;
 }
 
-std::vector<double> count_lattice_particles(const Scene& scene,
-                                            const std::filesystem::path& base_dir) {
-  const double spacing = resolution(scene.numerics);
+namespace {
+
+/// As many as `seed_event` will place.
+std::vector<double> count_exactly(const Scene& scene, const std::filesystem::path& base_dir) {
   std::vector<double> counts;
   for (int event = 1; event <= scene.events.count; ++event) {
     const std::vector<BodySpec> bodies = assemble_bodies(scene, event);
     const std::vector<std::string> paths = body_paths(scene, event);
     double& count = counts.emplace_back(0);
     for (std::size_t i = 0; i < bodies.size(); ++i)
-      count += lattice_particles_of(bodies[i], scene, spacing, paths[i], base_dir);
+      count += particles_of(bodies[i], scene, paths[i], base_dir);
   }
   return counts;
 }
 
-std::vector<double> count_particles(const Scene& scene, const std::filesystem::path& base_dir) {
+std::vector<double> count_by_volume(const Scene& scene, const std::filesystem::path& base_dir) {
   std::vector<double> counts = estimate_cost(scene).particles;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const BodySpec& body = scene.bodies[i];
     const double volume = body_volume(body, scene, body_path(i), base_dir);
-    const double count = volume / std::pow(resolution(scene.numerics), scene.dimension) *
+    const double count = volume / std::pow(scene.numerics->resolution(), scene.dimension) *
                          scene.seeding.particles_per_voxel;
     if (count < 0.5) throw InputError(body_path(i), "too small to hold a particle; reduce dx");
     if (shape_volume(body.shape, scene.dimension)) continue;  // counted already
@@ -188,6 +156,13 @@ std::vector<double> count_particles(const Scene& scene, const std::filesystem::p
       if (is_added_in(body, event)) counts[std::size_t(event - 1)] += count;
   }
   return counts;
+}
+
+}  // namespace
+
+std::vector<double> count_particles(const Scene& scene, const std::filesystem::path& base_dir) {
+  return scene.numerics.takes(Part::seeding) ? count_by_volume(scene, base_dir)
+                                             : count_exactly(scene, base_dir);
 }
 
 }  // namespace snowshed

@@ -41,13 +41,9 @@ SeededSnow seeded(std::vector<ParticleBatch>);
 /// Returns the mass of the slab laid at the start of an event, kg.
 double slab_mass(const Scene& scene, int event);
 
-/// Returns how many particles each event will bring, by the volumes of its snow; reads the files
-/// of bodies. Throws InputError where a body cannot be built or is too small for a particle.
+/// Returns how many particles each event will bring, by the volumes of its snow, or exactly where
+/// the method fills bodies itself; reads the files of bodies. Throws InputError where a body cannot
+/// be built or is too small for a particle.
 std::vector<double> count_particles(const Scene& scene, const std::filesystem::path& base_dir);
-
-/// The particles that each event adds where they stand on a lattice: exactly those that
-/// `seed_event` will place. Throws InputError as it does.
-std::vector<double> count_lattice_particles(const Scene& scene,
-                                            const std::filesystem::path& base_dir);
 
 }  // namespace snowshed

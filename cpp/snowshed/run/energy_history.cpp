@@ -4,6 +4,7 @@
 
 #include "snowshed/core/errors.hpp"
 #include "snowshed/io/binary_archive.hpp"
+#include "snowshed/methods/capabilities.hpp"
 #include "snowshed/run/record_times.hpp"
 
 namespace snowshed {
@@ -13,9 +14,9 @@ constexpr double never = -std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-EnergyHistory::EnergyHistory(const NamedEnergies& energies, double interval)
+EnergyHistory::EnergyHistory(const std::vector<std::string>& energies, double interval)
     : columns_{"event", "time_s"}, interval_(interval) {
-  for (const auto& energy : energies) columns_.push_back(energy.first);
+  columns_.insert(columns_.end(), energies.begin(), energies.end());
 }
 
 /// When the event was recorded last, s.
@@ -40,7 +41,8 @@ void EnergyHistory::record_end(const Method& method, int event) {
 
 void EnergyHistory::add_row(const Method& method, int event) {
   std::vector<double> row{double(event), method.time()};
-  for (const auto& energy : method.energy_table()) row.push_back(energy.second);
+  for (const auto& energy : capability<KeepsEnergy>(method)->energies())
+    row.push_back(energy.second);
   values_.insert(values_.end(), row.begin(), row.end());
 }
 

@@ -17,7 +17,7 @@ class BinaryWriter;
 class EnergyHistory {
  public:
   /// Of energies with these names; `interval` is that between rows, s.
-  EnergyHistory(const NamedEnergies& energies, double interval);
+  EnergyHistory(const std::vector<std::string>& energies, double interval);
 
   /// Adds the row that is due, if one is.
   void record(const Method&, int event);

@@ -4,7 +4,7 @@
 #include <exception>
 #include <utility>
 
-#include "snowshed/methods/energy_balance.hpp"
+#include "snowshed/methods/capabilities.hpp"
 
 namespace fs = std::filesystem;
 
@@ -22,7 +22,7 @@ EventSequence EventSequence::create(const Scene& scene, const fs::path& base_dir
 EventSequence EventSequence::resume(const Scene& scene, const fs::path& base_dir,
                                     const fs::path& folder) {
   ResultsFolder results = ResultsFolder::reopen(folder, scene);
-  RunRecord record = RunRecord::read(results.record());
+  RunRecord record = RunRecord::read(results.record(), scene.numerics->facts().energies);
   auto sim = fs::exists(results.checkpoint()) ? results.load_checkpoint(scene)
                                               : std::make_unique<Simulation>(scene, base_dir);
   record.keep_through(sim->event() - int(sim->event_running()));
@@ -116,8 +116,9 @@ void EventSequence::end_event(EventObserver& observer, RunEnd end) {
   facts.wall = std::max(wall() - wall_before_, 0.0);
   facts.ended = name_of(end);
   facts.laid_height = sim_->laid_height();
-  facts.damping_rate = mean_damping_rate(sim_->scene().numerics, facts.steps, facts.sim_time);
-  if (sim_->scene().output.energy) facts.energy = sim_->solver().energy_table();
+  const Scene& scene = sim_->scene();
+  facts.damping_rate = scene.numerics->damping_rate(facts.steps, facts.sim_time);
+  if (scene.output.energy) facts.energy = capability<KeepsEnergy>(sim_->solver())->energies();
   folder_.write_particles(*sim_);
   observer.event_ended(*sim_, facts);
   steps_before_ += facts.steps;

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "snowshed/core/errors.hpp"
-#include "snowshed/particles/quantities.hpp"
+#include "snowshed/methods/quantities.hpp"
 #include "snowshed/run/record_times.hpp"
 
 namespace snowshed {
@@ -14,14 +14,14 @@ namespace {
 constexpr double coarsest_quantum = 1.0 / 1024;  // m
 constexpr double most_quanta = 1 << 30;
 
-/// The smallest length that matters in a picture, m: a part of a grain's radius, or the resolution;
-/// zero where a slide leaves it to its raster, which is coarse.
+/// The smallest length that matters in a picture, m: a part of a radius, or the resolution; zero
+/// where the method leaves it to a raster, which is coarse.
 double smallest_length(const Scene& scene, const Method& solver, bool has_radius) {
-  if (!has_radius || solver.size() == 0) return resolution(scene.numerics);
+  if (!has_radius || solver.size() == 0) return scene.numerics->resolution();
   const FieldView radii = solver.field("equivalent_radius");
   double smallest = *radii.at<double>(0);
   for (std::size_t i = 1; i < radii.count; ++i) smallest = std::min(smallest, *radii.at<double>(i));
-  return smallest / 8;  // grains move little
+  return smallest / 8;  // such particles move little
 }
 
 /// A power of two, so that positions in single precision are exact.

@@ -18,7 +18,7 @@ struct RunPlace {
 };
 
 /// Chooses what a film holds of a run: of at most about `most_particles` particles, some, chosen by
-/// their ids; positions to a 16th of the resolution (grains: to a 128th of the smallest radius),
+/// their ids; positions to a 16th of the resolution (with radii: to a 128th of the smallest),
 /// and to half a millimetre at least; frames at the `record_interval`.
 FilmHeader film_header(const Scene&, const Method&, const CostEstimate&);
 

@@ -7,7 +7,7 @@
 namespace snowshed {
 
 PanelRegion::PanelRegion(const Scene& scene)
-    : dimension_(scene.dimension), dx_(resolution(scene.numerics)) {
+    : dimension_(scene.dimension), dx_(scene.numerics->resolution()) {
   if (scene.panel) frame_ = panel_frame(scene);
 }
 

@@ -57,7 +57,7 @@ std::vector<double> share_masses(const ParticleState& old, const std::vector<std
 std::vector<Vec3> fill_stack(const Scene& scene, const std::vector<Vec3>& stack, int event,
                              const StopRequest& stop) {
   const Seeding& s = scene.seeding;
-  const double dx = resolution(scene.numerics);
+  const double dx = scene.numerics->resolution();
   const Shape solid = particles_to_level_set(
       stack, scene.dimension, dx, particle_radius(scene.dimension, dx, s.particles_per_voxel));
   return seed(*solid, scene.dimension, dx, s.particles_per_voxel, s.pattern,
@@ -92,7 +92,7 @@ Reseeding reseed_stack(const Scene& scene, const PanelRegion& panel, ParticleSta
   Reseeding r;
   r.after.positions = fill_stack(scene, old.positions, event, stop);
   const auto old_of =
-      nearest_particles(r.after.positions, old.positions, 1.5 * resolution(scene.numerics));
+      nearest_particles(r.after.positions, old.positions, 1.5 * scene.numerics->resolution());
   r.after.masses = share_masses(old, old_of, snows.size());
   for (const std::size_t i : old_of) r.after.densities.push_back(initial_density(i));
   r.after.on_panel = panel.contains(r.after.positions, laid_height);

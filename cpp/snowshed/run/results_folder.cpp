@@ -89,7 +89,7 @@ ResultsFolder::ResultsFolder(fs::path folder) : folder_(std::move(folder)), lock
 }
 
 std::unique_ptr<Simulation> ResultsFolder::load_checkpoint(const Scene& scene) const {
-  auto sim = Simulation::load(checkpoint(), wanted_threads(scene.numerics));
+  auto sim = Simulation::load(checkpoint(), scene.numerics->threads());
   const std::string paths = differences(sim->scene(), scene);
   if (!paths.empty())
     throw InputError(checkpoint().string(),

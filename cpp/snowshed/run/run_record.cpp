@@ -6,20 +6,15 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "snowshed/core/compensated_sum.hpp"
+#include "snowshed/core/kernel_variant.hpp"
 #include "snowshed/core/memory.hpp"
+#include "snowshed/core/message_format.hpp"
 #include "snowshed/io/atomic_file.hpp"
 #include "snowshed/io/checksum.hpp"
 #include "snowshed/io/file_bytes.hpp"
-#include "snowshed/methods/grains/energy.hpp"
-#include "snowshed/methods/mpm/kernel_api.hpp"
-#include "snowshed/methods/mps/solver.hpp"
-#include "snowshed/methods/slide/energy.hpp"
-#include "snowshed/methods/slide/solver.hpp"
-#include "snowshed/scene/enum_names.hpp"
+#include "snowshed/methods/capabilities.hpp"
 #include "snowshed/scene/json_text.hpp"
 #include "snowshed/scene/json_value.hpp"
-#include "snowshed/scene/message_format.hpp"
 
 namespace snowshed {
 namespace {
@@ -48,17 +43,8 @@ const json& require(const json& object, const char* key, const std::string& path
   return object[key];
 }
 
-/// The energies of the method that has such, in the order of tables.
-NamedEnergies energies_like(const json& given) {
-  for (const NamedEnergies& own : {named_energies(SlideEnergy{}), named_energies(GrainsEnergy{})})
-    if (given.is_object() && given.size() == own.size() &&
-        std::all_of(own.begin(), own.end(),
-                    [&](const auto& energy) { return given.contains(energy.first); }))
-      return own;
-  return named_energies(EnergyBalance{});
-}
-
-EventFacts event_facts(const json& j, const std::string& path) {
+EventFacts event_facts(const json& j, const std::vector<std::string>& energies,
+                       const std::string& path) {
   const auto number = [&](const char* key) {
     return to_number(require(j, key, path), path + "/" + key, "a number");
   };
@@ -72,35 +58,18 @@ EventFacts event_facts(const json& j, const std::string& path) {
   const char* const damping = "damping_rate_per_s";
   if (j.contains(damping) && !j[damping].is_null()) facts.damping_rate = number(damping);
   if (!j.contains("energy")) return facts;
-  for (const auto& [name, _] : energies_like(j["energy"]))
+  for (const std::string& name : energies)
     facts.energy.emplace_back(name, to_number(require(j["energy"], name.c_str(), path + "/energy"),
                                               path + "/energy/" + name, "a number"));
   return facts;
 }
 
-/// What was released and taken up, and where it is: the sums differ by rounding alone.
-ordered_json balance_of(const SlideMethod& slide) {
-  const MassBalance& m = slide.mass_balance();
-  const FieldView masses = slide.field("mass");
-  const double on_terrain = compensated_sum(masses.at<double>(0), slide.size());
-  return {{"released_kg", m.released},
-          {"entrained_kg", m.entrained},
-          {"left_terrain_kg", m.left},
-          {"on_terrain_kg", on_terrain},
-          {"residual_kg", m.released + m.entrained - m.left - on_terrain}};
-}
-
-/// How well the equations were solved, in the last step and on average, and how dense the snow is.
-ordered_json equations_of(const MpsMethod& mps) {
-  const MpsReport r = mps.report();
-  return {{"pressure_iterations", r.pressure_iterations},
-          {"pressure_residual", r.pressure_residual},
-          {"mean_pressure_iterations", r.mean_pressure_iterations},
-          {"viscosity_iterations", r.viscosity_iterations},
-          {"viscosity_residual", r.viscosity_residual},
-          {"mean_viscosity_iterations", r.mean_viscosity_iterations},
-          {"density_error", r.density_error},
-          {"largest_density", r.largest_density}};
+/// What a method tells of itself.
+ordered_json to_json(const ReportsRun::Section& section) {
+  ordered_json j = ordered_json::object();
+  for (const auto& [name, value] : section.facts)
+    std::visit([&, name = name](const auto& number) { j[name] = number; }, value);
+  return j;
 }
 
 std::map<std::string, std::map<std::string, std::string>> table_checksums(const json& j) {
@@ -150,7 +119,8 @@ std::optional<double> EventFacts::energy_residual() const {
 
 std::string name_of(RunEnd end) { return end == RunEnd::rest ? "rest" : "time_limit"; }
 
-RunRecord RunRecord::read(const std::filesystem::path& file) try {
+RunRecord RunRecord::read(const std::filesystem::path& file,
+                          const std::vector<std::string>& energies) try {
   RunRecord record;
   if (!std::filesystem::is_regular_file(file)) return record;
   const std::string text = read_bytes(file);
@@ -166,7 +136,8 @@ RunRecord RunRecord::read(const std::filesystem::path& file) try {
   const json& events = j["finished_events"];
   if (!events.is_array()) throw wrong_type("/finished_events", events, "an array");
   for (std::size_t i = 0; i < events.size(); ++i)
-    record.finished.push_back(event_facts(events[i], "/finished_events/" + std::to_string(i)));
+    record.finished.push_back(
+        event_facts(events[i], energies, "/finished_events/" + std::to_string(i)));
   return record;
 } catch (const InputError& error) {
   throw InputError(file.string(), std::string("damaged: ") + error.what());
@@ -179,8 +150,7 @@ void RunRecord::write(const std::filesystem::path& file, const Simulation& sim,
   ordered_json j{{"version", SNOWSHED_VERSION}, {"kernels", kernel_variant()}};
   for (const auto& [key, fact] : machine) j[key] = fact;
   j["threads"] = sim.threads();
-  const Scene& s = sim.scene();
-  j["scalar"] = name_of(s.uses<MpmSettings>() ? s.mpm().precision : Precision::float64);
+  j["scalar"] = sim.scene().numerics->scalar();
   j["dimension"] = sim.scene().dimension;
   j["events"] = sim.event() - int(sim.event_running());
   j["particles"] = method.size();
@@ -188,14 +158,14 @@ void RunRecord::write(const std::filesystem::path& file, const Simulation& sim,
   j["rejected_steps"] = c.rejected;
   j["damping_rate_per_s"] = or_null(sim.damping_rate());
   j["particle_updates"] = c.particle_updates;
-  j["slept_updates"] = c.slept_updates;
+  j["slept_updates"] = slept_updates(method);
   j["updates_per_s"] = wall > 0 ? double(c.particle_updates) / wall : 0.0;
   j["peak_memory_mb"] = double(peak_resident_bytes()) / 1e6;
   j["wall_s"] = wall;
-  if (const auto* slide = dynamic_cast<const SlideMethod*>(&method))
-    j["mass_balance"] = balance_of(*slide);
-  if (const auto* mps = dynamic_cast<const MpsMethod*>(&method))
-    j["equations"] = equations_of(*mps);
+  if (const auto* reporting = capability<ReportsRun>(method)) {
+    const ReportsRun::Section section = reporting->run_section();
+    j[section.name] = to_json(section);
+  }
   j["notes"] = notes;
   j["finished_events"] = ordered_json::array();
   for (const EventFacts& facts : finished) j["finished_events"].push_back(to_json(facts));

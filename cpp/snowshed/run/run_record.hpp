@@ -21,7 +21,7 @@ struct EventFacts {
   double wall = 0;                     // s
   std::string ended;                   // "rest" or "time_limit"
   double laid_height = 0;              // m, see Simulation::laid_height
-  std::optional<double> damping_rate;  // 1/s, its mean, see MpmSettings::mean_damping_rate
+  std::optional<double> damping_rate;  // 1/s, its mean, see MethodDescriptor::damping_rate
   std::vector<std::pair<std::string, double>>
       energy;  // J, by name; empty without the energy balance
 
@@ -46,7 +46,9 @@ std::string name_of(RunEnd);
 class RunRecord {
  public:
   /// Reads run.json; an empty record where there is none. Throws InputError where it is damaged.
-  static RunRecord read(const std::filesystem::path& file);
+  /// `energies` names those that events have, in order, if they have any.
+  static RunRecord read(const std::filesystem::path& file,
+                        const std::vector<std::string>& energies);
 
   /// Writes run.json. `status` is running, interrupted, failed (then with an `error`) or finished.
   void write(const std::filesystem::path& file, const Simulation&, const std::string& status,

@@ -6,22 +6,19 @@
 #include <utility>
 
 #include "snowshed/core/errors.hpp"
+#include "snowshed/core/message_format.hpp"
 #include "snowshed/core/parallel.hpp"
 #include "snowshed/core/timer.hpp"
-#include "snowshed/methods/grains/solver.hpp"
-#include "snowshed/methods/slide/solver.hpp"
+#include "snowshed/methods/capabilities.hpp"
 #include "snowshed/run/energy_history.hpp"
 #include "snowshed/run/film_recorder.hpp"
-#include "snowshed/run/fingerprint.hpp"
-#include "snowshed/run/grains_cost.hpp"
-#include "snowshed/run/loading_curve.hpp"
-#include "snowshed/run/mps_cost.hpp"
 #include "snowshed/run/record_times.hpp"
-#include "snowshed/run/slide_cost.hpp"
+#include "snowshed/run/shape_prints.hpp"
 #include "snowshed/run/snapshot_series.hpp"
 #include "snowshed/run/snow_placement.hpp"
 #include "snowshed/scene/assemble.hpp"
 #include "snowshed/scene/build_obstacles.hpp"
+#include "snowshed/scene/build_surroundings.hpp"
 #include "snowshed/scene/scene_json.hpp"
 
 namespace snowshed {
@@ -29,8 +26,9 @@ namespace {
 
 /// The mean distance of particles as they are seeded, m.
 double particle_distance(const Scene& scene) {
-  const double per_voxel = scene.uses<MpsSettings>() ? 1 : scene.seeding.particles_per_voxel;
-  return resolution(scene.numerics) / std::pow(per_voxel, 1.0 / scene.dimension);
+  const double per_voxel =
+      scene.numerics.takes(Part::seeding) ? scene.seeding.particles_per_voxel : 1;
+  return scene.numerics->resolution() / std::pow(per_voxel, 1.0 / scene.dimension);
 }
 
 }  // namespace
@@ -38,16 +36,12 @@ double particle_distance(const Scene& scene) {
 Simulation::Simulation(const Scene& scene, const std::filesystem::path& base_dir)
     : scene_(resolve(scene)),
       scene_text_(write_scene(scene_)),
-      snows_(assemble_snows(scene_)),
       base_dir_(base_dir),
       panel_(scene_),
       rest_(scene.events.rest_speed, scene.events.rest_time) {
-  if (scene_.uses<MpmSettings>()) {  // told by the scene: before anything is built
+  const bool takes_bodies = scene_.numerics.takes(Part::bodies);
+  if (takes_bodies) {  // told by the scene: before anything is built
     cost_ = estimate_cost(scene_, count_particles(scene_, base_dir));
-    check_cost();
-  }
-  if (scene_.uses<MpsSettings>()) {
-    cost_ = estimate_mps_cost(scene_, count_lattice_particles(scene_, base_dir));
     check_cost();
   }
   shape_prints_ = fingerprints_of_shapes(scene_, base_dir_);
@@ -56,28 +50,16 @@ Simulation::Simulation(const Scene& scene, const std::filesystem::path& base_dir
   listed_obstacles_ = listed_obstacles(scene_, surroundings_.obstacles);
   resolved_obstacles_ = listed_obstacles(scene_, surroundings_.resolved);
   solver_ = empty_method();
-  if (scene_.uses<SlideSettings>()) {
-    cost_ = estimate_slide_cost(scene_, slide().terrain(), surroundings_.areas.release.front(),
-                                slide().count_seeds());
+  if (!takes_bodies) {
+    const SceneView view = view_of(scene_);
+    cost_ = scene_.numerics->cost({view, nullptr, {}, &surroundings_, solver_.get()});
     check_cost();
   }
-  if (scene_.uses<GrainsSettings>()) {
-    check_loading_time(scene_, surroundings_.sample.box.z());
-    const std::unique_ptr<Method> filled = empty_method();  // its first step is not known before
-    try {
-      filled->add(grains().seed());
-    } catch (const SimulationError& error) {  // its step is too short
-      throw InputError("/numerics/courant_factor", error.what());
-    }
-    cost_ = estimate_grains_cost(scene_, surroundings_.sample, *filled);
-    check_cost();
-    curve_ = std::make_unique<LoadingCurve>(
-        scene_.loading, surroundings_.sample.box.z(),
-        scene_.output.energy ? grains().energy_table() : NamedEnergies{});
-  } else if (scene_.output.energy) {
-    energies_ =
-        std::make_unique<EnergyHistory>(solver_->energy_table(), record_interval(scene_, cost_));
-  }
+  if (const auto* measured = capability<HasCurve>(std::as_const(*solver_)))
+    curve_ = measured->empty_curve();
+  else if (scene_.output.energy)
+    energies_ = std::make_unique<EnergyHistory>(scene_.numerics->facts().energies,
+                                                record_interval(scene_, cost_));
 }
 
 Simulation::~Simulation() = default;
@@ -89,39 +71,21 @@ void Simulation::check_cost() const {
 
 /// The scene's method with its obstacles, before any snow.
 std::unique_ptr<Method> Simulation::empty_method() const {
-  return build_method(scene_, snows_, surroundings_);
+  return scene_.numerics->build(view_of(scene_), surroundings_);
 }
 
-const SlideMethod& Simulation::slide() const {
-  if (!scene_.uses<SlideSettings>())
-    throw InputError("/method", "is not \"slide\", and has no maps");
-  return static_cast<const SlideMethod&>(*solver_);
-}
-
-const GrainsMethod& Simulation::grains() const {
-  if (!scene_.uses<GrainsSettings>())
-    throw InputError("/method", "is not \"grains\", and loads no sample");
-  return static_cast<const GrainsMethod&>(*solver_);
-}
-
-const LoadingCurve& Simulation::loading_curve() const {
-  grains();  // or throws
-  return *curve_;
-}
-
-std::string Simulation::label_note() const {
-  if (!scene_.sample) return "";
-  return snowshed::label_note(surroundings_.sample.pieces, scene_.sample->split_labels);
+std::string Simulation::input_remark() const {
+  return surroundings_.input ? surroundings_.input->remark() : "";
 }
 
 const EnergyHistory& Simulation::energy_history() const {
   if (!energies_)
-    throw InputError("/output/energy", curve_ ? "the energies of grains stand in their curve"
+    throw InputError("/output/energy", curve_ ? "the energies stand in the curve of this method"
                                               : "false; energies are kept only where true");
   return *energies_;
 }
 
-int Simulation::threads() const { return threads_to_use(wanted_threads(scene_.numerics)); }
+int Simulation::threads() const { return threads_to_use(scene_.numerics->threads()); }
 
 std::optional<Reseeding> Simulation::begin_event(const StopRequest& stop) {
   if (running_) throw SimulationError("the present event has not ended yet");
@@ -139,13 +103,13 @@ std::optional<Reseeding> Simulation::begin_event(const StopRequest& stop) {
   running_ = true;
   event_start_ = solver_->time();
   rest_.start_event(event_start_);
-  if (curve_) curve_->record(grains());
+  if (curve_) curve_->record(*solver_);
   return reseeding;
 }
 
 SeededSnow Simulation::seed_next_event(double lift, const StopRequest& stop) const {
-  if (scene_.uses<SlideSettings>()) return seeded(slide().seed(stop));
-  if (scene_.uses<GrainsSettings>()) return seeded(grains().seed());
+  if (const auto* seeding = capability<SeedsItself>(std::as_const(*solver_)))
+    return seeded(seeding->seed(stop));
   return seed_event(scene_, base_dir_, panel_, event_ + 1, lift, stop);
 }
 
@@ -192,15 +156,13 @@ void Simulation::advance() {
   if (!(solver_->time() > before))
     throw SimulationError("the time stays at " + show(before) + " s: a step of " +
                           show(solver_->time_step()) + " s is too short to add to it");
-  if (curve_) curve_->record(grains());
+  if (curve_) curve_->record(*solver_);
 }
 
 /// The only change that beginning an event makes to the particles, so that it is all or nothing.
 void Simulation::change_snow(const std::optional<Reseeding>& reseeding,
                              std::vector<ParticleBatch> added, const StopRequest& stop) try {
-  if (!reseeding && scene_.uses<SlideSettings>())
-    return static_cast<SlideMethod&>(*solver_).release(added, stop);
-  if (!reseeding) return solver_->add(added);
+  if (!reseeding) return solver_->add(added, stop);
   added.insert(added.begin(), reseeding->batches.begin(), reseeding->batches.end());
   solver_->replace(added);
 } catch (const SimulationError& error) {  // beyond the addressable grid
@@ -210,7 +172,7 @@ void Simulation::change_snow(const std::optional<Reseeding>& reseeding,
 void Simulation::add_snow(ParticleBatch batch) {
   batch.event = std::max(event_, 1);
   std::vector<std::string> notes;
-  if (scene_.uses<MpmSettings>() || scene_.uses<MpsSettings>())
+  if (scene_.numerics.takes(Part::bodies))
     notes = check_placement(scene_, {{"positions", &batch.positions}},
                             {surroundings_.obstacles, surroundings_.resolved, solver_->time(),
                              positions(), particle_distance(scene_), event_});
@@ -240,7 +202,11 @@ ParticleState Simulation::as_held(const std::vector<ParticleBatch>& batches) con
 void Simulation::settle(const std::vector<double>& drops,
                         const std::vector<double>& plastic_changes) {
   if (running_) throw InputError("settling", "an event is running; snow settles between events");
-  solver_->settle(drops, plastic_changes);
+  if (auto* settling = capability<Settles>(*solver_))
+    return settling->settle(drops, plastic_changes);
+  for (const auto* changes : {&drops, &plastic_changes})
+    if (std::any_of(changes->begin(), changes->end(), [](double change) { return change != 0; }))
+      throw InputError("settling", "snow of this method does not settle between events");
 }
 
 /// Signed distance to the nearest of obstacles where they are at a time, m.
@@ -323,9 +289,8 @@ RunReport Simulation::report(double rms_speed) const {
   r.rms_speed = rms_speed;
   r.steps = solver_->counters().steps;
   r.particles = solver_->size();
-  r.progress = curve_ ? loading_progress(scene_.loading, grains().measures())
-                      : r.time / std::max(cost_.event_time, 1e-9);
-  r.progress = std::min(0.99, r.progress);
+  const double progress = solver_->progress().value_or(r.time / std::max(cost_.event_time, 1e-9));
+  r.progress = std::min(0.99, progress);
   return r;
 }
 

@@ -11,23 +11,20 @@
 
 #include "snowshed/io/film_file.hpp"
 #include "snowshed/methods/method.hpp"
-#include "snowshed/methods/obstacle.hpp"
+#include "snowshed/methods/surroundings.hpp"
 #include "snowshed/run/body_seeding.hpp"
 #include "snowshed/run/cost_estimate.hpp"
 #include "snowshed/run/panel_region.hpp"
 #include "snowshed/run/reseeding.hpp"
 #include "snowshed/run/rest_detector.hpp"
-#include "snowshed/scene/build_method.hpp"
 #include "snowshed/scene/scene.hpp"
 
 namespace snowshed {
 
 class BinaryReader;
+class Curve;
 class EnergyHistory;
 class FilmRecorder;
-class GrainsMethod;
-class LoadingCurve;
-class SlideMethod;
 class SnapshotSeries;
 
 /// How `Simulation::run` came back.
@@ -77,8 +74,8 @@ class Simulation {
     solver_->add_velocity(velocity_changes);
   }
 
-  /// What time does to the snow between two events, see Method::settle. Throws InputError while an
-  /// event runs.
+  /// What time does to the snow between two events, see Settles. Throws InputError while an event
+  /// runs, and where snow of the method does not settle, but should.
   void settle(const std::vector<double>& drops, const std::vector<double>& plastic_changes);
 
   /// Writes a snapshot to `folder` every `interval` seconds of simulated time from now on.
@@ -108,18 +105,15 @@ class Simulation {
                                                const std::filesystem::path& checkpoint);
 
   const Scene& scene() const { return scene_; }
-  const std::vector<Snow>& snows() const { return snows_; }  ///< by ParticleState::material_ids
+  const std::vector<Snow>& snows() const { return surroundings_.snows; }  ///< by material_id
   const CostEstimate& cost() const { return cost_; }
   const Method& solver() const { return *solver_; }
-  /// The solver as a slide; throws InputError where the scene's method is another.
-  const SlideMethod& slide() const;
-  /// The same of grains, and what their loading has measured so far.
-  const GrainsMethod& grains() const;
-  const LoadingCurve& loading_curve() const;
-  /// What should be known of the labels of their image; empty where there is nothing.
-  std::string label_note() const;
+  /// What is measured after each step, so far; null for methods that have no such curve.
+  const Curve* curve() const { return curve_.get(); }
+  /// A remark on the files that the method reads; empty if there is none.
+  std::string input_remark() const;
   /// The energies over time while `run` ran; throws InputError where the scene does not keep them,
-  /// and of grains, whose curve has them.
+  /// and where a curve has them.
   const EnergyHistory& energy_history() const;
   int event() const { return event_; }
   /// What readers of the results should know of the snow that was laid since this object was made,
@@ -130,11 +124,11 @@ class Simulation {
   int threads() const;
 
   /// The smallest length that is resolved, m.
-  double resolution() const { return snowshed::resolution(scene_.numerics); }
+  double resolution() const { return scene_.numerics->resolution(); }
 
-  /// Mean rate of the damping by PIC so far, 1/s.
+  /// Mean rate of numerical damping so far, 1/s.
   std::optional<double> damping_rate() const {
-    return mean_damping_rate(scene_.numerics, solver_->counters().steps, solver_->time());
+    return scene_.numerics->damping_rate(solver_->counters().steps, solver_->time());
   }
 
   /// How high all snow laid so far would lie on the panel had none of it left, m.
@@ -183,7 +177,6 @@ class Simulation {
   Scene scene_;
   // As checkpoints hold it, written ahead: lack of memory amid JSON would end the process.
   std::string scene_text_;
-  std::vector<Snow> snows_;                 // by material_id
   std::vector<std::int64_t> shape_prints_;  // of the files that shapes are read from
   std::filesystem::path base_dir_;
   CostEstimate cost_;
@@ -195,7 +188,7 @@ class Simulation {
   std::unique_ptr<SnapshotSeries> snapshots_;
   std::unique_ptr<FilmRecorder> film_;
   std::optional<FilmMark> film_mark_;        // in the checkpoint that was loaded
-  std::unique_ptr<LoadingCurve> curve_;      // of grains only
+  std::unique_ptr<Curve> curve_;             // of methods that have one
   std::unique_ptr<EnergyHistory> energies_;  // of all others, with output.energy
   RestDetector rest_;
   std::vector<std::string> notes_;

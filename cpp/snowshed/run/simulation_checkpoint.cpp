@@ -2,35 +2,18 @@
 #include "snowshed/core/errors.hpp"
 #include "snowshed/core/kernel_variant.hpp"
 #include "snowshed/core/memory.hpp"
+#include "snowshed/core/message_format.hpp"
 #include "snowshed/io/binary_archive.hpp"
-#include "snowshed/methods/method.hpp"
+#include "snowshed/methods/capabilities.hpp"
 #include "snowshed/run/energy_history.hpp"
-#include "snowshed/run/fingerprint.hpp"
-#include "snowshed/run/loading_curve.hpp"
+#include "snowshed/run/shape_prints.hpp"
 #include "snowshed/run/simulation.hpp"
 #include "snowshed/run/snapshot_series.hpp"
 #include "snowshed/scene/assemble.hpp"
-#include "snowshed/scene/message_format.hpp"
 #include "snowshed/scene/scene_json.hpp"
 
 namespace snowshed {
 namespace {
-
-/// Of the files that a slide's terrain and thickness are read from, which a scene only names.
-std::vector<std::int64_t> ground_of(const Surroundings& surroundings) {
-  Fingerprint terrain, thickness;
-  terrain.add(surroundings.terrain);
-  if (!surroundings.areas.release.empty() && surroundings.areas.release.front().map)
-    thickness.add(*surroundings.areas.release.front().map);
-  return {terrain.value(), thickness.value()};
-}
-
-/// Of the file of grains.
-std::int64_t sample_of(const Surroundings& surroundings) {
-  Fingerprint sample;
-  sample.add(surroundings.sample);
-  return sample.value();
-}
 
 void check_file(const BinaryReader& in, const std::string& file, std::int64_t then,
                 std::int64_t now) {
@@ -41,16 +24,19 @@ void check_file(const BinaryReader& in, const std::string& file, std::int64_t th
                              " was made; bring back the file, or start anew");
 }
 
-/// Throws InputError where a file is another than when the checkpoint was made.
-void check_files(const BinaryReader& in, const Scene& scene, const Surroundings& surroundings) {
-  if (scene.terrain) {
-    const auto then = in.get<std::int64_t>("ground", 2);
-    const auto now = ground_of(surroundings);
-    check_file(in, scene.terrain->file, then[0], now[0]);
-    check_file(in, scene.terrain->thickness_file, then[1], now[1]);
-  }
-  if (scene.sample)
-    check_file(in, scene.sample->file, in.value<std::int64_t>("sample"), sample_of(surroundings));
+/// Throws InputError where a file that the method read is another than when the checkpoint was
+/// made.
+void check_files(const BinaryReader& in, const Surroundings& surroundings) {
+  if (!surroundings.input) return;
+  const std::vector<FilePrint> now = surroundings.input->files();
+  const auto then = in.get<std::int64_t>(surroundings.input->section(), now.size());
+  for (std::size_t i = 0; i < now.size(); ++i) check_file(in, now[i].file, then[i], now[i].print);
+}
+
+std::vector<std::int64_t> prints_of(const MethodInput& input) {
+  std::vector<std::int64_t> prints;
+  for (const FilePrint& file : input.files()) prints.push_back(file.print);
+  return prints;
 }
 
 /// The same of the files that shapes are read from; a checkpoint of an earlier version does not
@@ -91,8 +77,7 @@ void Simulation::save(const std::filesystem::path& checkpoint) const {
   out.add_text("base_dir", std::filesystem::absolute(base_dir_).string());
   out.add_text("kernels", kernel_variant());
   if (!shape_prints_.empty()) out.add("shape_files", shape_prints_);
-  if (scene_.terrain) out.add("ground", ground_of(surroundings_));
-  if (scene_.sample) out.add_value("sample", sample_of(surroundings_));
+  if (surroundings_.input) out.add(surroundings_.input->section(), prints_of(*surroundings_.input));
   if (curve_) curve_->save(out);
   if (energies_) energies_->save(out);
   if (const auto film = film_mark())
@@ -144,7 +129,7 @@ std::unique_ptr<Simulation> Simulation::restored(const BinaryReader& in, const S
                                                  const std::filesystem::path& base_dir) {
   auto sim = std::make_unique<Simulation>(scene, base_dir);
   check_kernels(in);
-  check_files(in, sim->scene_, sim->surroundings_);
+  check_files(in, sim->surroundings_);
   check_shape_files(in, sim->scene_, sim->shape_prints_);
   const auto event = in.get<std::int64_t>("event", 2);
   if (event[0] < 0 || event[0] > sim->scene_.events.count)

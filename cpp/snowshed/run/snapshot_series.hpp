@@ -8,10 +8,7 @@
 
 namespace snowshed {
 
-/// Writes all of a solver's particles with velocity, mass (kg), event, density (kg/m3), pressure
-/// (Pa), volumetric plastic strain, id and, where there are several, which snow it is. The material
-/// point method adds the deviatoric stress and, of snow that yields, the preconsolidation pressure
-/// (Pa); a slide adds thickness (m), speed (m/s) and the number of bonds, and its bonds as lines.
+/// Writes what the method shows of its particles, in SI units: at least the velocity.
 void write_particles(const std::filesystem::path& file, const Method&);
 
 class SnapshotSeries {

@@ -8,7 +8,6 @@
 #include <optional>
 
 #include "snowshed/core/errors.hpp"
-#include "snowshed/methods/mpm/boundary.hpp"
 #include "snowshed/particles/point_grid.hpp"
 
 namespace snowshed {
@@ -186,7 +185,7 @@ std::string place(const Vec3& x, int dimension) {
 class Obstacles {
  public:
   Obstacles(const Scene& scene, const OccupiedSpace& space)
-      : scene_(scene), space_(space), depth_(depth_over_resolution * resolution(scene.numerics)) {
+      : scene_(scene), space_(space), depth_(depth_over_resolution * scene.numerics->resolution()) {
     const std::size_t standing = std::size_t(scene.ground.has_value()) + scene.panel.has_value();
     for (std::size_t k = 0; k < space.obstacles.size(); ++k) {
       const Obstacle& o = space.obstacles[k];
@@ -213,7 +212,7 @@ class Obstacles {
 
   /// Adds what is to be told of particles that lie only where obstacles are made thicker.
   void find_in_thickening(const Particles& snow, std::vector<std::string>& sentences) const {
-    for_each_near(snow, resolution(scene_.numerics), [&](std::size_t k, const auto& to_body) {
+    for_each_near(snow, scene_.numerics->resolution(), [&](std::size_t k, const auto& to_body) {
       const Shape& seen = space_.resolved[k].shape;
       if (seen == space_.obstacles[k].shape) return;
       const std::size_t count = snow.count_others_within(
@@ -290,7 +289,7 @@ std::string percent(double share) {
 std::vector<std::string> check_placement(const Scene& scene, const std::vector<PlacedBody>& bodies,
                                          const OccupiedSpace& space) {
   const Obstacles obstacles(scene, space);
-  const double depth = depth_over_resolution * resolution(scene.numerics);
+  const double depth = depth_over_resolution * scene.numerics->resolution();
   std::vector<Bounds> bounds;
   for (const PlacedBody& body : bodies)
     bounds.push_back(body.shape ? body.shape->bounds() : Bounds{});

@@ -89,7 +89,7 @@ PanelFrame panel_frame(const Scene& scene) {
   // The grid cannot see a board thinner than a few cells: snow would pass through it, or be
   // felt from the other side. The face stays where it is; the board grows downward.
   constexpr double least_cells = 3.0;
-  frame.board = std::max(panel.thickness, least_cells * resolution(scene.numerics));
+  frame.board = std::max(panel.thickness, least_cells * scene.numerics->resolution());
   frame.center.z() = panel.height - height_above_ground(scene, frame.lower_edge());
   return frame;
 }

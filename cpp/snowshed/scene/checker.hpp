@@ -39,10 +39,9 @@ class Checker : public PathVisitor<Checker> {
       throw InputError(at(key), quote(value) + " is not the name of a file");
   }
 
-  template <class E>
-  void choice(const char* key, E& value, const char*) {
-    if (!name_of(value))
-      throw InputError(at(key), std::to_string(static_cast<int>(value)) + " is no known choice");
+  void choice(const char* key, const Choice& value, const char*) {
+    if (!value.name())
+      throw InputError(at(key), std::to_string(value.number()) + " is no known choice");
   }
 
   void vector(const char* key, Vec3& value, const char* unit, const Range& range, const char*) {

@@ -22,18 +22,23 @@
 //                                            the name of a method, and the settings of that method
 //   method_ahead(key, member)                before parts that only some methods take
 //   shows(member, part)                      whether to go on to a part: does the method take it?
-//   taken_by(part)                           before a part that may be left out: which methods take
-//   it alias(key, other)                        before a field: another key that is read for it
+//   taken_by(part)                           before a part that may be left out: who takes it
+//   alias(key, other)                        before a field: another key that is read for it
 //   accuracy({key...})                       before fields: those that trade accuracy for time
 #pragma once
 
-#include "snowshed/scene/allowed.hpp"
-#include "snowshed/scene/describe_grains.hpp"
-#include "snowshed/scene/describe_mps.hpp"
-#include "snowshed/scene/enum_names.hpp"
+#include "snowshed/methods/allowed.hpp"
+#include "snowshed/methods/enum_names.hpp"
+#include "snowshed/methods/settings_visitor.hpp"
 #include "snowshed/scene/scene.hpp"
 
 namespace snowshed {
+
+template <>
+struct EnumNames<MisplacedSnow> {
+  static constexpr Named<MisplacedSnow> list[] = {{MisplacedSnow::refuse, "refuse"},
+                                                  {MisplacedSnow::allow, "allow"}};
+};
 
 inline constexpr const char* condition_doc =
     "What snow that touches it may do: stay (sticky), slide in the surface (slip), slide and leave "
@@ -235,6 +240,41 @@ void describe(V& v, TerrainSpec& t) {
   v.list("resistance", t.resistance, between(0, 10000), "Where forest or the like holds it back");
 }
 
+/// Of a loading, so that its curve fits into memory.
+inline constexpr int most_stages = 100;
+
+template <class V>
+void describe(V& v, SampleSpec& s) {
+  v.file("file", s.file,
+         "Segmented image: an NPY file of integers (nz, ny, nx), 0 air and any other number a "
+         "grain; relative to the scene file");
+  v.number("voxel_size", s.voxel_size, "m", between(1e-9, 1.0).required(), "Edge of a voxel");
+  v.flag("split_labels", s.split_labels,
+         "Whether each piece of a label that lies in several places is a grain; else all of them "
+         "are one rigid grain");
+}
+
+template <class V>
+void describe(V& v, LoadingStage& s) {
+  v.choice("kind", s.kind,
+           "What moves: the top plate down (compress), up until the stress has fallen (unload), up "
+           "(stretch) or along x (shear); all sides inward (isotropic); a cone down (penetrate); "
+           "nothing, until the snow rests (hold)");
+  v.number("speed", s.speed, "m/s", positive.up_to(1e3), "Speed of what moves");
+  v.number("strain", s.strain, "", positive.up_to(10.0),
+           "Way over the sample's initial height at which the stage ends");
+  v.number("stress", s.stress, "Pa", non_negative.up_to(1e12),
+           "Stress that ends the stage (compress, isotropic; 0: none; unload), or is kept on the "
+           "top plate (shear; 0: constant height)");
+}
+
+template <class V>
+void describe(V& v, Cone& c) {
+  v.number("radius", c.radius, "m", between(1e-9, 1.0), "Of the cone's base and the shaft");
+  v.number("half_angle", c.half_angle, "degrees", positive.up_to(90.0),
+           "Between the axis and the cone's side");
+}
+
 template <class V>
 void describe(V& v, Domain& d) {
   v.vector("min", d.min, "m", allowed::coordinate.required(), "Lowest corner");
@@ -249,72 +289,6 @@ void describe(V& v, Seeding& s) {
   v.choice("pattern", s.pattern, "How particles are placed");
   v.integer("seed", s.seed, non_negative, "Seed of the random numbers");
   v.flag("allow_sparse", s.allow_sparse, "Accept fewer particles per voxel");
-}
-
-template <class V>
-void describe(V& v, MpmSettings& n) {
-  v.accuracy({"dx", "precision", "transfer", "flip_ratio", "damping_rate", "basis",
-              "courant_factor", "strain_limit", "sleep_speed", "sleep_time"});
-  v.alias("courant_factor", "step_factor");  // its name up to version 0.1
-  v.number("dx", n.dx, "m", allowed::size, "Size of grid cells and voxels");
-  v.choice("precision", n.precision, "Floating-point type of the particles and the grid");
-  v.choice("transfer", n.transfer, "How velocities move between particles and grid");
-  v.number(
-      "flip_ratio", n.flip_ratio, "", fraction,
-      "Share of FLIP in FLIP/PIC in each step, so that shorter steps damp more; 0 is pure PIC");
-  v.number_instead("damping_rate", n.damping_rate, "flip_ratio", "1/s", non_negative.up_to(1e9),
-                   "In place of flip_ratio: rate of the damping by PIC, whatever the step");
-  v.choice("basis", n.basis, "B-spline of the grid");
-  v.number("courant_factor", n.courant_factor, "", positive.up_to(1.0),
-           "Time step over the largest stable one");
-  v.number("strain_limit", n.strain_limit, "", positive.up_to(0.5),
-           "Largest |dt grad v| that a step may impose on a particle");
-  v.number("sleep_speed", n.sleep_speed, "m/s", non_negative.up_to(1e4),
-           "Snow slower than this drops out of the steps until something moves it; 0: never");
-  v.number("sleep_time", n.sleep_time, "s", allowed::time,
-           "How long it must have been slower, and not have grown faster");
-  v.integer("threads", n.threads, non_negative.up_to(4096), "Threads; 0: all");
-}
-
-template <class V>
-void describe(V& v, SlideSettings& s) {
-  v.accuracy({"cell", "time_step", "layer_thickness"});
-  v.choice("mode", s.mode,
-           "Without the known faults of com5SnowSlide, or step by step as AvaFrame 2.1 does it");
-  v.number("cell", s.cell, "m", allowed::size_or_zero,
-           "Cells of the computing grid; 0: those of the terrain's raster");
-  v.number("time_step", s.time_step, "s", positive.up_to(1.0), "Length of a step");
-  v.number("density", s.density, "kg/m3", positive.up_to(1000.0), "Density of the sliding snow");
-  v.number("layer_thickness", s.layer_thickness, "m", positive.up_to(100.0),
-           "Snow of this thickness over a whole cell makes one particle");
-  v.choice("friction_law", s.friction_law, "Friction with the ground");
-  v.number("friction", s.friction, "", allowed::coefficient, "Coulomb coefficient mu");
-  v.number("turbulence", s.turbulence, "m/s2", positive.up_to(1e6), "Voellmy's xi");
-  v.flag("explicit_friction", s.explicit_friction,
-         "Friction from the speed before the step; in the compatible mode only");
-  v.number("resistance", s.resistance, "", non_negative.up_to(1e9),
-           "Coefficient within the areas of resistance");
-  v.number("artificial_viscosity", s.artificial_viscosity, "", non_negative.up_to(1e6),
-           "How strongly particles are drawn to the velocity of the snow around");
-  v.flag("bonds", s.bonds, "Cohesive bonds; without them a plain depth-averaged avalanche");
-  v.number("max_strain", s.max_strain, "", positive.up_to(10.0), "Strain at which a bond breaks");
-  v.number("bond_modulus", s.bond_modulus, "Pa", non_negative.up_to(1e12),
-           "Stiffness of the bonds (cohesive surface tension)");
-  v.number("min_bond_length", s.min_bond_length, "m", allowed::size_or_zero,
-           "Length below which a bond exerts no force");
-  v.number("entrained_density", s.entrained_density, "kg/m3", positive.up_to(1000.0),
-           "Density of the snow that is taken up");
-  v.number("erosion_energy", s.erosion_energy, "J/kg", non_negative.up_to(1e12),
-           "Friction work that takes up a kilogram of snow; 0: all that the slide sweeps over");
-  v.number("entrainment_shear", s.entrainment_shear, "Pa", non_negative.up_to(1e12),
-           "Shear strength of the snow that is taken up");
-  v.number("entrainment_work", s.entrainment_work, "J/kg", non_negative.up_to(1e12),
-           "Work that breaks up the snow that is taken up");
-  v.number("split_ratio", s.split_ratio, "", Range{1.0, 1e6, true, false, Need::optional},
-           "Mass over that of a fresh particle beyond which a particle splits");
-  v.number("stop_ratio", s.stop_ratio, "", fraction,
-           "The slide stops at this share of its largest kinetic energy");
-  v.integer("threads", s.threads, non_negative.up_to(4096), "Threads; 0: all");
 }
 
 template <class V>
@@ -340,6 +314,40 @@ void describe(V& v, Output& o) {
            "Wall time between checkpoints; 0: none");
 }
 
+/// Hands on to a visitor what a method describes of its settings.
+template <class V>
+class SettingsAdapter final : public SettingsVisitor {
+ public:
+  explicit SettingsAdapter(V& v) : v_(v) {}
+
+  void number(const char* key, double& value, const char* unit, const Range& range,
+              const char* doc) override {
+    v_.number(key, value, unit, range, doc);
+  }
+  void number_instead(const char* key, std::optional<double>& value, const char* other,
+                      const char* unit, const Range& range, const char* doc) override {
+    v_.number_instead(key, value, other, unit, range, doc);
+  }
+  void integer(const char* key, int& value, const Range& range, const char* doc) override {
+    v_.integer(key, value, range, doc);
+  }
+  void flag(const char* key, bool& value, const char* doc) override { v_.flag(key, value, doc); }
+  void choice(const char* key, const Choice& value, const char* doc) override {
+    v_.choice(key, value, doc);
+  }
+  void alias(const char* key, const char* other) override { v_.alias(key, other); }
+  void accuracy(std::initializer_list<const char*> keys) override { v_.accuracy(keys); }
+
+ private:
+  V& v_;
+};
+
+template <class V>
+void describe(V& v, MethodChoice& m) {
+  SettingsAdapter<V> adapter(v);
+  m->describe(adapter);
+}
+
 template <class V>
 void describe(V& v, Scene& s) {
   v.version("snowshed", scene_version, "Version of this form");
@@ -351,31 +359,30 @@ void describe(V& v, Scene& s) {
            "What becomes of a scene that seeds more than 1 % of a body of snow inside an obstacle, "
            "below the ground, outside the domain, or within other snow");
   v.method_ahead("method", s.numerics);
-  if (v.shows(s.numerics, &TakenParts::snow))
-    v.object("snow", s.snow, Need::optional, "The material");
-  v.taken_by(&TakenParts::panel);
+  if (v.shows(s.numerics, Part::snow)) v.object("snow", s.snow, Need::optional, "The material");
+  v.taken_by(Part::panel);
   v.optional("panel", s.panel,
              "The panel; its centre is the origin of x, which points down the slide direction");
-  v.taken_by(&TakenParts::slab);
+  v.taken_by(Part::slab);
   v.optional("slab", s.slab, "The slab laid on the panel, centred, at the start of every event");
-  v.taken_by(&TakenParts::ground);
+  v.taken_by(Part::ground);
   v.optional("ground", s.ground, "An inclined plane through the origin");
-  v.taken_by(&TakenParts::terrain);
+  v.taken_by(Part::terrain);
   v.optional("terrain", s.terrain, "Ground from a raster of elevations, and where snow lies on it");
-  v.taken_by(&TakenParts::sample);
+  v.taken_by(Part::sample);
   v.optional("sample", s.sample, "Segmented snow to be loaded");
-  if (v.shows(s.numerics, &TakenParts::sample))  // other scenes, and their hashes, lack the list
+  if (v.shows(s.numerics, Part::sample))  // other scenes, and their hashes, lack the list
     v.list("loading", s.loading, between(0, most_stages),
            "How the sample is loaded, stage by stage");
-  v.taken_by(&TakenParts::sample);
+  v.taken_by(Part::sample);
   v.optional("cone", s.cone, "The tip that stages \"penetrate\" push in");
-  v.taken_by(&TakenParts::obstacles);
+  v.taken_by(Part::obstacles);
   v.list("obstacles", s.obstacles, between(0, 10000), "Further solids that snow collides with");
-  v.taken_by(&TakenParts::bodies);
+  v.taken_by(Part::bodies);
   v.list("bodies", s.bodies, between(0, 10000), "Further bodies of snow");
-  v.taken_by(&TakenParts::domain);
+  v.taken_by(Part::domain);
   v.optional("domain", s.domain, "A box with sticky sides; unbounded without it");
-  if (v.shows(s.numerics, &TakenParts::seeding))
+  if (v.shows(s.numerics, Part::seeding))
     v.object("seeding", s.seeding, Need::optional, "How snow is filled with particles");
   v.method("method", "numerics", s.numerics, "The numerical method", "The method's settings");
   v.object("events", s.events, Need::optional, "How many events, and when one ends");

@@ -73,7 +73,7 @@ std::string metres(double value) {
 void add_notes_on_files(const Scene& scene, const std::filesystem::path& base_dir,
                         const std::vector<Obstacle>& obstacles, std::vector<std::string>& notes) {
   const std::vector<Solid> solids = solids_of(scene, base_dir, obstacles, notes);
-  const double cell = resolution(scene.numerics);
+  const double cell = scene.numerics->resolution();
   for (const Solid& solid : solids) {
     if (solid.file.empty() || !std::isfinite(solid.size)) continue;
     const std::string size = solid.file + ": the solid is " + metres(solid.size) + " large, ";

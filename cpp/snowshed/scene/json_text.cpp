@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "snowshed/core/errors.hpp"
+#include "snowshed/core/message_format.hpp"
 #include "snowshed/io/checksum.hpp"
-#include "snowshed/scene/message_format.hpp"
 
 namespace snowshed {
 namespace {

@@ -9,11 +9,10 @@
 #include <vector>
 
 #include "snowshed/core/errors.hpp"
+#include "snowshed/core/message_format.hpp"
 #include "snowshed/core/vec.hpp"
 #include "snowshed/geometry/polygon.hpp"
-#include "snowshed/scene/enum_names.hpp"
-#include "snowshed/scene/message_format.hpp"
-#include "snowshed/scene/range.hpp"
+#include "snowshed/methods/range.hpp"
 
 namespace snowshed {
 
@@ -57,12 +56,5 @@ Int to_integer(const nlohmann::json& value, const std::string& path, const Range
 /// Where among `names` the value is.
 std::size_t to_place(const nlohmann::json& value, const std::string& path,
                      const std::vector<std::string>& names);
-
-template <class E>
-E to_choice(const nlohmann::json& value, const std::string& path) {
-  std::vector<std::string> names;
-  for (const auto& named : EnumNames<E>::list) names.push_back(named.name);
-  return EnumNames<E>::list[to_place(value, path, names)].value;
-}
 
 }  // namespace snowshed

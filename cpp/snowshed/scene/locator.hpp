@@ -38,9 +38,8 @@ class Locator : public PathVisitor<Locator> {
   void flag(const char* key, bool& value, const char*) { compare(at(key), value); }
   void text(const char* key, std::string& value, const char*) { compare(at(key), value); }
   void file(const char* key, std::string& value, const char*) { compare(at(key), value); }
-  template <class E>
-  void choice(const char* key, E& value, const char*) {
-    compare(at(key), value);
+  void choice(const char* key, const Choice& value, const char*) {
+    if (value.is_at(target_, type_)) found_ = at(key);
   }
   void direction(const char* key, Vec3& value, const char*) { compare(at(key), value); }
   void outline(const char* key, Ring& ring, const char*) { compare(at(key), ring); }
@@ -57,10 +56,10 @@ class Locator : public PathVisitor<Locator> {
     if (value) compare(at(key), *value);
     PathVisitor::optional(key, value, doc);
   }
-  void method(const char* key, const char* settings_key, MethodSettings& settings, const char* doc,
+  void method(const char* key, const char* settings_key, MethodChoice& method, const char* doc,
               const char* settings_doc) {
-    compare(at(settings_key), settings);
-    PathVisitor::method(key, settings_key, settings, doc, settings_doc);
+    compare(at(settings_key), method);
+    PathVisitor::method(key, settings_key, method, doc, settings_doc);
   }
   template <class T>
   void list(const char* key, std::vector<T>& items, const Range& count, const char* doc) {

@@ -5,12 +5,11 @@
 #include <initializer_list>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "snowshed/core/errors.hpp"
+#include "snowshed/core/message_format.hpp"
 #include "snowshed/scene/describe.hpp"
-#include "snowshed/scene/message_format.hpp"
 
 namespace snowshed {
 
@@ -41,15 +40,13 @@ class PathVisitor {
       visit(pointer(at(key), std::to_string(i)), items[i]);
   }
 
-  void method_ahead(const char*, MethodSettings&) {}
-  bool shows(const MethodSettings& settings, bool TakenParts::* part) const {
-    return info_of(settings).takes.*part;
-  }
-  void taken_by(bool TakenParts::*) {}
+  void method_ahead(const char*, MethodChoice&) {}
+  bool shows(const MethodChoice& method, Part part) const { return method.takes(part); }
+  void taken_by(Part) {}
 
-  void method(const char*, const char* settings_key, MethodSettings& settings, const char*,
+  void method(const char*, const char* settings_key, MethodChoice& method, const char*,
               const char*) {
-    std::visit([&](auto& own) { visit(at(settings_key), own); }, settings);
+    visit(at(settings_key), method);
   }
 
   void alias(const char*, const char*) {}

@@ -3,7 +3,7 @@
 #include <functional>
 
 #include "snowshed/core/errors.hpp"
-#include "snowshed/scene/message_format.hpp"
+#include "snowshed/core/message_format.hpp"
 
 namespace snowshed {
 namespace {
@@ -38,7 +38,6 @@ Scene lab_scene(double tilt) {
   slab.thickness = 0.02;  // its length stays 0: as long as the panel, also if that is changed
   slab.width = 0.142;
   scene.ground.emplace().condition = Condition::sticky;
-  scene.mpm().dx = 0.01;
   scene.events.count = 5;
   return scene;
 }

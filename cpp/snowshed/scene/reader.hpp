@@ -5,6 +5,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "snowshed/methods/registry.hpp"
 #include "snowshed/scene/checker.hpp"
 #include "snowshed/scene/json_value.hpp"
 
@@ -78,9 +79,8 @@ class Reader : public Checker {
     }
   }
 
-  template <class E>
-  void choice(const char* key, E& value, const char*) {
-    if (const json* given = take(key)) value = to_choice<E>(*given, at(key));
+  void choice(const char* key, const Choice& value, const char*) {
+    if (const json* given = take(key)) value.choose(to_place(*given, at(key), value.names()));
   }
 
   void vector(const char* key, Vec3& value, const char* unit, const Range& range, const char* doc) {
@@ -138,16 +138,16 @@ class Reader : public Checker {
       read((*given)[i], at(key) + "/" + std::to_string(i), dimension_, items[i]);
   }
 
-  void method_ahead(const char* key, MethodSettings& settings) {
+  void method_ahead(const char* key, MethodChoice& method) {
     const auto given = object_.find(key);
-    if (given != object_.end()) settings = all_methods()[to_place(*given, at(key), method_names())];
+    if (given != object_.end())
+      method = MethodChoice(*all_methods()[to_place(*given, at(key), method_names())]);
   }
 
-  void method(const char* key, const char* settings_key, MethodSettings& settings, const char*,
+  void method(const char* key, const char* settings_key, MethodChoice& method, const char*,
               const char* settings_doc) {
     take(key);  // read ahead
-    std::visit([&](auto& own) { object(settings_key, own, Need::optional, settings_doc); },
-               settings);
+    object(settings_key, method, Need::optional, settings_doc);
   }
 
   void alias(const char* key, const char* other) {

@@ -2,24 +2,8 @@
 
 #include <sstream>
 
-#include "snowshed/methods/mpm/boundary.hpp"
-#include "snowshed/methods/mps/boundary.hpp"
-
 namespace snowshed {
 namespace {
-
-ThickSolid as_seen(const MpmSettings& settings, const Shape& shape, int dimension) {
-  return as_grid_sees(shape, settings.dx, dimension);
-}
-
-ThickSolid as_seen(const MpsSettings& settings, const Shape& shape, int dimension) {
-  return as_particles_see(shape, settings.spacing, dimension);
-}
-
-template <class Settings>
-ThickSolid as_seen(const Settings&, const Shape& shape, int) {
-  return {shape, std::nullopt};
-}
 
 std::string millimetres(double metres) {
   std::ostringstream text;
@@ -42,10 +26,10 @@ std::string place_of(const Vec3& x, int dimension) {
 }
 
 std::string note_on(const Thickening& t, const Obstacle& obstacle, const Scene& scene) {
-  const std::string unit = scene.uses<MpsSettings>() ? "spacings" : "cells";
+  const std::string unit = scene.numerics->facts().length_unit;
   const std::string name =
       obstacle.name.empty() ? "an obstacle" : "obstacle '" + obstacle.name + "'";
-  const std::string least = millimetres(2 * resolution(scene.numerics));
+  const std::string least = millimetres(2 * scene.numerics->resolution());
   if (t.whole)
     return name + " is " + millimetres(t.thickness) + " thick, less than two " + unit +
            ": it is made " + least + " thick, " + millimetres(t.outward) + " more on each side";
@@ -60,9 +44,7 @@ std::vector<Obstacle> resolve_obstacles(const Scene& scene, const std::vector<Ob
                                         std::vector<std::string>& notes) {
   std::vector<Obstacle> resolved = given;
   for (Obstacle& obstacle : resolved) {
-    ThickSolid solid = std::visit(
-        [&](const auto& settings) { return as_seen(settings, obstacle.shape, scene.dimension); },
-        scene.numerics);
+    ThickSolid solid = scene.numerics->as_seen(obstacle.shape, scene.dimension);
     if (solid.thickening) notes.push_back(note_on(*solid.thickening, obstacle, scene));
     obstacle.shape = std::move(solid.shape);
   }

@@ -9,13 +9,11 @@
 #include <vector>
 
 #include "snowshed/core/vec.hpp"
-#include "snowshed/geometry/polygon.hpp"
 #include "snowshed/geometry/rigid_motion.hpp"
 #include "snowshed/material/snow.hpp"
 #include "snowshed/methods/contact_law.hpp"
-#include "snowshed/methods/grains/loading.hpp"
-#include "snowshed/sampling/seeding.hpp"
-#include "snowshed/scene/method_settings.hpp"
+#include "snowshed/methods/method_choice.hpp"
+#include "snowshed/methods/scene_parts.hpp"
 
 namespace snowshed {
 
@@ -99,73 +97,6 @@ struct Ground {
   double friction = 0.3;
 };
 
-/// A part of an area that does not belong to it.
-struct HoleSpec {
-  Ring outline;  // m, in the terrain's coordinates
-};
-
-/// An area on the map.
-struct AreaSpec {
-  std::string name;
-  Ring outline;  // m, in the terrain's coordinates
-  std::vector<HoleSpec> holes;
-  double thickness = 0.0;  // m of snow, normal to the ground
-};
-
-/// An area that holds snow back.
-struct ResistanceSpec {
-  std::string name;
-  Ring outline;
-  std::vector<HoleSpec> holes;
-};
-
-/// Ground from a raster of elevations, and what lies on it.
-struct TerrainSpec {
-  std::string file;              // ESRI ASCII grid
-  std::string crs;               // of the raster and the areas, in words; handed on to the results
-  bool single_precision = true;  // of elevations in compatible mode
-  std::string thickness_file;    // of the release, in place of the areas' thickness; an ASCII grid
-  double max_thickness = 10;     // m, of the snow in the areas
-  double max_slope = 70;         // degrees, of cliffs under a release
-  std::string notes;             // what was assumed of the files, for the results
-  std::vector<AreaSpec> release, entrainment;
-  std::vector<ResistanceSpec> resistance;
-};
-
-/// Segmented snow to be loaded.
-struct SampleSpec {
-  std::string file;           // NPY, integers (nz, ny, nx): 0 air, any other number a grain
-  double voxel_size = 0;      // m
-  bool split_labels = false;  // whether each piece of a label is a grain
-};
-
-struct Seeding {
-  double particles_per_voxel = 0.0;  // 0: 6 in 2D, 8 in 3D
-  SeedPattern pattern = SeedPattern::poisson;
-  std::uint64_t seed = 1;
-  bool allow_sparse = false;  // fewer than 4 (2D) or 6 (3D) per voxel
-};
-
-/// What happens to the stack between two events.
-enum class Between { carry, reseed };
-
-/// When an event ends.
-struct Events {
-  int count = 1;
-  Between between = Between::carry;
-  double max_time = 10.0;    // s, per event
-  double rest_speed = 0.02;  // m/s
-  double rest_time = 0.05;   // s
-};
-
-struct Output {
-  double snapshot_interval = 0.0;  // s between particle snapshots; 0: only at the end of an event
-  bool film = true;                // record the run, so that it can be viewed
-  double film_interval = 0.0;      // s between its frames; 0: chosen by how long events last
-  bool energy = false;             // keep the energy balance
-  double checkpoint_interval = 60.0;  // s of wall time between checkpoints; 0: none
-};
-
 /// What becomes of a scene that seeds more than 1 % of a body of snow where none may be.
 enum class MisplacedSnow { refuse, allow };
 
@@ -191,19 +122,14 @@ struct Scene {
   std::vector<BodySpec> bodies;
   std::optional<Domain> domain;  // its sides are sticky walls; none: unbounded
   Seeding seeding;
-  MethodSettings numerics;  // of the method that the scene chooses
+  MethodChoice numerics;  // the method that the scene chooses, with its settings
   Events events;
   Output output;
-
-  /// The settings of the material point method, which the scene must have chosen.
-  MpmSettings& mpm() { return std::get<MpmSettings>(numerics); }
-  const MpmSettings& mpm() const { return std::get<MpmSettings>(numerics); }
-
-  /// Whether it has chosen the method with such settings.
-  template <class Settings>
-  bool uses() const {
-    return std::holds_alternative<Settings>(numerics);
-  }
 };
+
+/// What methods may know of a scene, to which it refers.
+inline SceneView view_of(const Scene& s) {
+  return {s.dimension, s.gravity, s.terrain, s.sample, s.loading, s.cone, s.events, s.output};
+}
 
 }  // namespace snowshed

@@ -124,7 +124,7 @@ std::string write_scene(const Scene& scene) {
 }
 
 Scene with_threads(Scene scene, int threads) {
-  std::visit([threads](auto& own) { own.threads = threads; }, scene.numerics);
+  scene.numerics->threads() = threads;
   return scene;
 }
 

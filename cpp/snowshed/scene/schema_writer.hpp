@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "snowshed/methods/registry.hpp"
 #include "snowshed/scene/describe.hpp"
 
 namespace snowshed {
@@ -22,9 +23,8 @@ class SchemaWriter {
 
   /// The schema of T; its defaults are those of a new T.
   template <class T>
-  static json write(json& definitions) {
+  static json write(json& definitions, T defaults = {}) {
     SchemaWriter writer(definitions);
-    T defaults;
     describe(writer, defaults);
     return writer.finish();
   }
@@ -63,11 +63,8 @@ class SchemaWriter {
     add(key, {{"type", "string"}, {"minLength", 1}}, doc, Need::required);
   }
 
-  template <class E>
-  void choice(const char* key, E& value, const char* doc) {
-    json names = json::array();
-    for (const auto& named : EnumNames<E>::list) names.push_back(named.name);
-    add(key, {{"enum", names}, {"default", name_of(value)}}, doc);
+  void choice(const char* key, const Choice& value, const char* doc) {
+    add(key, {{"enum", value.names()}, {"default", value.name()}}, doc);
   }
 
   void vector(const char* key, Vec3& value, const char* unit, const Range& range, const char* doc) {
@@ -123,30 +120,27 @@ class SchemaWriter {
         doc, count.need);
   }
 
-  void method_ahead(const char*, MethodSettings&) {}
+  void method_ahead(const char*, MethodChoice&) {}
   /// Every part is described.
-  bool shows(const MethodSettings&, bool TakenParts::* part) {
+  bool shows(const MethodChoice&, Part part) {
     taken_by(part);
     return true;
   }
-  void taken_by(bool TakenParts::* part) {
+  void taken_by(Part part) {
     methods_ = json::array();
-    for_each_method([&](const auto& settings) {
-      const MethodInfo& info = info_of(settings);
-      if (info.takes.*part) methods_.push_back(info.name);
-    });
+    for (const MethodDescriptor* method : all_methods())
+      if (method->facts().takes.has(part)) methods_.push_back(method->facts().name);
   }
 
-  void method(const char* key, const char* settings_key, MethodSettings&, const char* doc,
+  void method(const char* key, const char* settings_key, MethodChoice&, const char* doc,
               const char* settings_doc) {
     json names = json::array(), alternatives = json::array();
-    for_each_method([&](const auto& settings) {
-      const MethodInfo& info = info_of(settings);
-      json schema = {{"title", info.name}, {"description", info.doc}};
-      schema.update(write<std::decay_t<decltype(settings)>>(definitions_));
-      names.push_back(info.name);
+    for (const MethodDescriptor* method : all_methods()) {
+      json schema = {{"title", method->facts().name}, {"description", method->facts().doc}};
+      schema.update(write(definitions_, MethodChoice(*method)));
+      names.push_back(method->facts().name);
       alternatives.push_back(std::move(schema));
-    });
+    }
     add(key, {{"enum", names}, {"default", names[0]}}, doc);
     add(settings_key, {{"anyOf", std::move(alternatives)}}, settings_doc);
   }

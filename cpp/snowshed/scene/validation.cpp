@@ -17,7 +17,7 @@ class SceneRules {
   explicit SceneRules(const Scene& scene) : scene_(scene) {}
 
   void check() const {
-    check_parts(scene_, info_of(scene_.numerics));
+    check_parts(scene_, scene_.numerics->facts());
     if (scene_.domain) check_domain(*scene_.domain);
     if (scene_.panel) check_panel(*scene_.panel);
     if (scene_.slab) check_slab(*scene_.slab);
@@ -27,15 +27,13 @@ class SceneRules {
     for (const auto& body : scene_.bodies) check_body(body);
     check_snows();
     check_seeding(scene_.seeding);
-    if (scene_.uses<MpmSettings>()) check_damping(scene_.mpm());
-    if (scene_.uses<MpsSettings>()) check_mps();
+    check_snow_and_events();
     if (scene_.events.rest_time > scene_.events.max_time)
       fail(scene_.events.rest_time, show(scene_.events.rest_time) + " s is longer than an event (" +
                                         path_and_value(scene_.events.max_time) + " s)");
     if (scene_.terrain) check_terrain(*scene_.terrain);
-    if (scene_.uses<SlideSettings>()) return check_slide();
-    if (scene_.uses<GrainsSettings>()) return check_grains();
-    if (!scene_.slab && scene_.bodies.empty())
+    scene_.numerics->validate(view_of(scene_));
+    if (scene_.numerics.takes(Part::bodies) && !scene_.slab && scene_.bodies.empty())
       fail(scene_, "nothing holds snow: give " + path_of(scene_, scene_.slab) + " or " +
                        path_of(scene_, scene_.bodies));
   }
@@ -170,94 +168,22 @@ class SceneRules {
     check_event(body.event);
   }
 
-  void check_slide() const {
-    const SlideSettings& s = std::get<SlideSettings>(scene_.numerics);
-    if (!scene_.terrain) fail(scene_, "a slide needs a " + path_of(scene_, scene_.terrain));
-    if (!in_3d()) fail(scene_.dimension, "a slide moves over ground in space; allowed: 3");
-    if (scene_.events.count != 1)
-      fail(scene_.events.count, show(scene_.events.count) + " events; a slide has 1");
-    if (scene_.terrain && !scene_.terrain->thickness_file.empty() &&
-        s.mode == SlideMode::compatible)
-      fail(scene_.terrain->thickness_file, "AvaFrame's com5SnowSlide takes no such raster");
-    if (s.explicit_friction && s.mode != SlideMode::compatible)
-      fail(s.explicit_friction, "only in the mode \"compatible\"");
-  }
-
-  void check_grains() const {
-    if (!scene_.sample) fail(scene_, "grains need a " + path_of(scene_, scene_.sample));
-    if (scene_.loading.empty())
-      fail(scene_.loading,
-           "a sample is loaded in at least one stage, such as {\"kind\": "
-           "\"compress\"}");
-    if (!in_3d()) fail(scene_.dimension, "grains move in space; allowed: 3");
-    if (scene_.events.count != 1)
-      fail(scene_.events.count, show(scene_.events.count) + " events; a loading is 1");
-    check_loading();
-    const auto pushed_in = [](const LoadingStage& s) { return s.kind == LoadingKind::penetrate; };
-    if (scene_.cone && std::none_of(scene_.loading.begin(), scene_.loading.end(), pushed_in))
-      fail(*scene_.cone, "no stage pushes it in; give one of the kind \"penetrate\"");
-  }
-
-  /// The snow of MPS is that of its settings.
-  void check_mps() const {
-    const MpsSettings& s = std::get<MpsSettings>(scene_.numerics);
-    const auto refuse = [&](const auto& part) {
-      if (part.snow) fail(*part.snow, "the method \"mps\" takes the snow of its settings");
+  /// Whether the method can do what the scene's snow, events and output ask for.
+  void check_snow_and_events() const {
+    const MethodFacts& method = scene_.numerics->facts();
+    const std::string name = "the method " + quote(method.name);
+    const auto refuse_own = [&](const auto& part) {
+      if (part.snow && !method.takes.has(Part::snow))
+        fail(*part.snow, name + " takes the snow of its settings");
     };
-    for (const BodySpec& body : scene_.bodies) refuse(body);
+    for (const BodySpec& body : scene_.bodies) refuse_own(body);
     if (scene_.slab)
-      for (const Layer& layer : scene_.slab->layers) refuse(layer);
-    if (scene_.events.between == Between::reseed && scene_.events.count > 1)
-      fail(scene_.events.between, "snow of the method \"mps\" can only be carried on");
-    if (s.erosion && s.deposition_pressure >= s.erosion_pressure)
-      fail(s.deposition_pressure, show(s.deposition_pressure) + " Pa must be less than " +
-                                      path_and_value(s.erosion_pressure));
-    if (s.erosion && s.deposition_speed >= s.erosion_speed)
-      fail(s.deposition_speed,
-           show(s.deposition_speed) + " m/s must be less than " + path_and_value(s.erosion_speed));
-    if (s.order == MpsOrder::published && s.splitting == MpsSplitting::pressure_first)
-      fail(s.splitting, "with " + path_of(scene_, s.order) +
-                            " \"published\" particles move before the pressure is known; allowed: "
-                            "viscosity_first");
-    if (scene_.output.energy && s.order == MpsOrder::published)
-      fail(scene_.output.energy,
-           "the balance is kept with " + path_of(scene_, s.order) + " \"single_move\" only");
-  }
-
-  /// Stages follow on each other: what a stage undoes must have been done.
-  void check_loading() const {
-    constexpr double most_shortening = 0.95;  // or nothing is left between the plates
-    double shortening = 0;
-    bool loaded = false, open = false;
-    for (const LoadingStage& stage : scene_.loading) {
-      const bool compresses =
-          stage.kind == LoadingKind::compress || stage.kind == LoadingKind::isotropic;
-      if (compresses) shortening += stage.strain;
-      if (shortening > most_shortening)
-        fail(stage.strain, "the sample would be compressed by " + show_rounded(shortening) +
-                               " of its height in all; allowed: up to " + show(most_shortening));
-      if (stage.kind == LoadingKind::unload && !loaded)
-        fail(stage.kind, "there is nothing to unload; compress the sample before");
-      if (open && stage.kind != LoadingKind::penetrate && stage.kind != LoadingKind::hold)
-        fail(stage.kind,
-             "the top plate is away since the stage \"penetrate\"; allowed: penetrate, "
-             "hold");
-      check_stage(stage);
-      loaded = loaded || compresses;
-      open = open || stage.kind == LoadingKind::penetrate;
-    }
-  }
-
-  void check_stage(const LoadingStage& stage) const {
-    const GrainsSettings& settings = std::get<GrainsSettings>(scene_.numerics);
-    const std::string kind = quote(name_of(stage.kind));
-    if (stage.kind == LoadingKind::stretch && !settings.bonded_plates)
-      fail(stage.kind,
-           kind + " pulls at the plates; set " + path_of(scene_, settings.bonded_plates));
-    const bool takes_stress = stage.kind != LoadingKind::stretch &&
-                              stage.kind != LoadingKind::penetrate &&
-                              stage.kind != LoadingKind::hold;
-    if (stage.stress > 0 && !takes_stress) fail(stage.stress, kind + " takes no stress");
+      for (const Layer& layer : scene_.slab->layers) refuse_own(layer);
+    const bool reseeds = scene_.events.between == Between::reseed && scene_.events.count > 1;
+    if (reseeds && method.takes.has(Part::bodies) && !method.takes.has(Part::seeding))
+      fail(scene_.events.between, "snow of " + name + " can only be carried on");
+    if (scene_.output.energy && method.energies.empty())
+      fail(scene_.output.energy, name + " keeps no balance of energy");
   }
 
   void check_terrain(const TerrainSpec& terrain) const {
@@ -296,7 +222,7 @@ class SceneRules {
   void check_in_domain(const T& member, const ShapeSpec& shape) const {
     const auto bounds = shape_bounds(shape);
     if (!scene_.domain || !bounds) return;
-    const double rounding = 1e-6 * resolution(scene_.numerics);
+    const double rounding = 1e-6 * scene_.numerics->resolution();
     for (const int i : {0, 1, 2}) {
       if (i == 1 && !in_3d()) continue;
       const double low = scene_.domain->min[i], high = scene_.domain->max[i];
@@ -329,33 +255,27 @@ class SceneRules {
                                             path_of(scene_, seeding.allow_sparse));
   }
 
-  void check_damping(const MpmSettings& settings) const {
-    if (settings.damping_rate && settings.transfer != Transfer::flip)
-      fail(settings.damping_rate, "the transfer \"" + std::string(name_of(settings.transfer)) +
-                                      "\" has no PIC that damps; leave it out");
-  }
-
   const Scene& scene_;
 };
 
 }  // namespace
 
-void check_parts(const Scene& scene, const MethodInfo& method) {
+void check_parts(const Scene& scene, const MethodFacts& method) {
   const auto check = [&](const auto& part, bool given, bool taken) {
     if (given && !taken)
       throw InputError(path_of(scene, part),
                        "the method " + quote(method.name) + " takes no such part");
   };
-  check(scene.panel, scene.panel.has_value(), method.takes.panel);
-  check(scene.slab, scene.slab.has_value(), method.takes.slab);
-  check(scene.ground, scene.ground.has_value(), method.takes.ground);
-  check(scene.obstacles, !scene.obstacles.empty(), method.takes.obstacles);
-  check(scene.bodies, !scene.bodies.empty(), method.takes.bodies);
-  check(scene.domain, scene.domain.has_value(), method.takes.domain);
-  check(scene.terrain, scene.terrain.has_value(), method.takes.terrain);
-  check(scene.sample, scene.sample.has_value(), method.takes.sample);
-  check(scene.loading, !scene.loading.empty(), method.takes.sample);
-  check(scene.cone, scene.cone.has_value(), method.takes.sample);
+  check(scene.panel, scene.panel.has_value(), method.takes.has(Part::panel));
+  check(scene.slab, scene.slab.has_value(), method.takes.has(Part::slab));
+  check(scene.ground, scene.ground.has_value(), method.takes.has(Part::ground));
+  check(scene.obstacles, !scene.obstacles.empty(), method.takes.has(Part::obstacles));
+  check(scene.bodies, !scene.bodies.empty(), method.takes.has(Part::bodies));
+  check(scene.domain, scene.domain.has_value(), method.takes.has(Part::domain));
+  check(scene.terrain, scene.terrain.has_value(), method.takes.has(Part::terrain));
+  check(scene.sample, scene.sample.has_value(), method.takes.has(Part::sample));
+  check(scene.loading, !scene.loading.empty(), method.takes.has(Part::sample));
+  check(scene.cone, scene.cone.has_value(), method.takes.has(Part::sample));
 }
 
 void check_rules(const Scene& scene) { SceneRules(scene).check(); }

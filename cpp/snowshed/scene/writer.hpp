@@ -3,7 +3,6 @@
 
 #include <initializer_list>
 #include <nlohmann/json.hpp>
-#include <variant>
 
 #include "snowshed/scene/describe.hpp"
 
@@ -37,10 +36,7 @@ class Writer {
   void flag(const char* key, bool& value, const char*) { json_[key] = value; }
   void text(const char* key, std::string& value, const char*) { json_[key] = value; }
   void file(const char* key, std::string& value, const char*) { json_[key] = value; }
-  template <class E>
-  void choice(const char* key, E& value, const char*) {
-    json_[key] = name_of(value);
-  }
+  void choice(const char* key, const Choice& value, const char*) { json_[key] = value.name(); }
 
   void vector(const char* key, Vec3& v, const char*, const Range&, const char*) { put(key, v); }
   void direction(const char* key, Vec3& v, const char*) { put(key, v); }
@@ -73,18 +69,16 @@ class Writer {
     for (auto& item : items) array.push_back(write(item, dimension_));
   }
 
-  void method_ahead(const char*, MethodSettings&) {}
-  bool shows(const MethodSettings& settings, bool TakenParts::* part) const {
-    return info_of(settings).takes.*part;
-  }
-  void taken_by(bool TakenParts::*) {}
+  void method_ahead(const char*, MethodChoice&) {}
+  bool shows(const MethodChoice& method, Part part) const { return method.takes(part); }
+  void taken_by(Part) {}
 
   /// The default method is left out: its scenes, and their hashes, stay as they were before there
   /// was a choice.
-  void method(const char* key, const char* settings_key, MethodSettings& settings, const char*,
+  void method(const char* key, const char* settings_key, MethodChoice& method, const char*,
               const char*) {
-    if (settings.index() > 0) json_[key] = info_of(settings).name;
-    json_[settings_key] = std::visit([&](auto& own) { return write(own, dimension_); }, settings);
+    if (!method.is_default()) json_[key] = method->facts().name;
+    json_[settings_key] = write(method, dimension_);
   }
 
   void alias(const char*, const char*) {}

@@ -79,13 +79,13 @@ TEST_F(EventSequenceTest, GoesOnWhereItWasStopped) {
 TEST_F(EventSequenceTest, GoesOnWithAnotherNumberOfThreadsToTheSameBits) {
   Witness whole, first(20), second;
   Scene one = two_events(), two = two_events();
-  one.mpm().threads = 1;
-  two.mpm().threads = 2;
+  one.numerics.as<MpmSettings>().threads = 1;
+  two.numerics.as<MpmSettings>().threads = 2;
   EventSequence uninterrupted = EventSequence::create(one, ".", path("a"));
   EXPECT_TRUE(uninterrupted.run(whole, 0));
   EXPECT_FALSE(EventSequence::create(one, ".", path("b")).run(first, 0));
   EventSequence resumed = EventSequence::resume(two, ".", path("b"));
-  EXPECT_EQ(resumed.simulation().scene().mpm().threads, 2);
+  EXPECT_EQ(resumed.simulation().scene().numerics.as<MpmSettings>().threads, 2);
   EXPECT_TRUE(resumed.run(second, 0));
   expect_same_bits(resumed.simulation(), uninterrupted.simulation());
   EXPECT_EQ(content(path("a") / "film.bin"), content(path("b") / "film.bin"));

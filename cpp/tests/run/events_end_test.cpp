@@ -21,9 +21,9 @@ Scene drift(std::vector<BodySpec> bodies) {
   scene.dimension = 2;
   scene.gravity = 0;
   scene.snow.youngs_modulus = 1e5;
-  scene.mpm().dx = 0.02;
-  scene.mpm().sleep_speed = 0;
-  scene.mpm().threads = 1;
+  scene.numerics.as<MpmSettings>().dx = 0.02;
+  scene.numerics.as<MpmSettings>().sleep_speed = 0;
+  scene.numerics.as<MpmSettings>().threads = 1;
   scene.bodies = std::move(bodies);
   scene.events.count = 2;
   scene.events.rest_speed = 0.02;
@@ -79,7 +79,7 @@ TEST(EventsEnd, WithinAMillionMillionSteps) {
   Scene scene = drift({drifting_box(0, 0.1, 0.01, 1)});
   EXPECT_EQ(refused_at(scene), "");
   for (const double factor : {1e-300, 1e-15, 1e-11}) {
-    scene.mpm().courant_factor = factor;
+    scene.numerics.as<MpmSettings>().courant_factor = factor;
     EXPECT_EQ(refused_at(scene), "/numerics/courant_factor") << factor;
   }
 }

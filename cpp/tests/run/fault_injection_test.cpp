@@ -17,7 +17,7 @@ class Story {
  public:
   explicit Story(const std::filesystem::path& checkpoint) : checkpoint_(checkpoint) {
     Scene scene = small_scene();
-    scene.mpm().dx = 0.02;
+    scene.numerics.as<MpmSettings>().dx = 0.02;
     scene.events.count = 2;
     scene.events.between = Between::reseed;
     sim = std::make_unique<Simulation>(scene);

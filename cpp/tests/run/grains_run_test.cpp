@@ -8,9 +8,9 @@
 #include "io/temporary_folder.hpp"
 #include "snowshed/core/errors.hpp"
 #include "snowshed/io/binary_archive.hpp"
+#include "snowshed/methods/grains/cost.hpp"
+#include "snowshed/methods/grains/loading_curve.hpp"
 #include "snowshed/methods/grains/solver.hpp"
-#include "snowshed/run/grains_cost.hpp"
-#include "snowshed/run/loading_curve.hpp"
 #include "snowshed/run/simulation.hpp"
 
 namespace snowshed {
@@ -52,10 +52,14 @@ class GrainsRun : public TemporaryFolder {
   }
 };
 
+const GrainsMethod& grains_of(const Simulation& sim) {
+  return dynamic_cast<const GrainsMethod&>(sim.solver());
+}
+
 const auto to_the_end = [](const RunReport&) { return true; };
 
 std::vector<double> column(const Simulation& sim, const std::string& name) {
-  const LoadingCurve& curve = sim.loading_curve();
+  const Curve& curve = *sim.curve();
   const auto& names = curve.columns();
   const auto place = std::find(names.begin(), names.end(), name) - names.begin();
   std::vector<double> values;
@@ -93,7 +97,7 @@ TEST_F(GrainsRun, AResumedRunHasTheSameBitsAndTheSameCurve) {
   first.save(path("checkpoint"));
   const auto second = Simulation::load(path("checkpoint"));
   EXPECT_EQ(second->run(to_the_end, 1.0), RunEnd::rest);
-  EXPECT_EQ(second->loading_curve().values(), whole.loading_curve().values());
+  EXPECT_EQ(second->curve()->values(), whole.curve()->values());
   EXPECT_TRUE(second->solver().state().positions == whole.solver().state().positions);
   EXPECT_TRUE(second->solver().state().velocities == whole.solver().state().velocities);
 }
@@ -108,12 +112,12 @@ TEST_F(GrainsRun, PeaksAreThoseOfAllStepsBetweenTwoRows) {
   s.numerics = settings;
   Simulation sim(s);
   sim.begin_event();
-  std::vector<double> largest{carried(sim.grains().stresses())};  // by row, of each step
+  std::vector<double> largest{carried(grains_of(sim).stresses())};  // by row, of each step
   std::size_t rows = 1;
   while (!*sim.solver().at_rest()) {
     if (largest.size() == rows) largest.push_back(-1e300);
     sim.step();
-    largest.back() = std::max(largest.back(), carried(sim.grains().stresses()));
+    largest.back() = std::max(largest.back(), carried(grains_of(sim).stresses()));
     rows = column(sim, "time_s").size();
   }
   const auto top = column(sim, "peak_top_stress_pa"), bottom = column(sim, "peak_bottom_stress_pa");
@@ -195,7 +199,7 @@ TEST_F(GrainsRun, LabelsInSeveralPlacesAreToldOrSplit) {
   Simulation whole(s);
   whole.begin_event();
   EXPECT_EQ(whole.solver().size(), 2u);
-  EXPECT_NE(whole.label_note().find("2 of 2 labels lie in several places, 4 pieces"),
+  EXPECT_NE(whole.input_remark().find("2 of 2 labels lie in several places, 4 pieces"),
             std::string::npos);
   s.sample->split_labels = true;
   Simulation split(s);
@@ -239,7 +243,7 @@ TEST_F(GrainsRun, OnlyGrainsHaveACurve) {
   s.bodies.emplace_back().shape.type = "sphere";
   s.bodies.back().shape.radius = 0.1;
   s.bodies.back().shape.center = {0, 0, 0.2};
-  EXPECT_THROW(Simulation(s).loading_curve(), InputError);
+  EXPECT_EQ(Simulation(s).curve(), nullptr);
 }
 
 TEST(LoadingProgress, IsThatOfTheStrainWeightedWithTime) {
@@ -247,16 +251,10 @@ TEST(LoadingProgress, IsThatOfTheStrainWeightedWithTime) {
                                             {LoadingKind::hold, 0.1, 0.3, 0},
                                             {LoadingKind::shear, 0.2, 0.2, 0}};
   EXPECT_DOUBLE_EQ(loading_time(stages, 0.01), 0.01 * (3 + 1));
-  LoadingMeasures now;
-  now.strain = 0.15;
-  EXPECT_DOUBLE_EQ(loading_progress(stages, now), 1.5 / 4);
-  now.stage = 1;
-  EXPECT_DOUBLE_EQ(loading_progress(stages, now), 3.0 / 4);
-  now.stage = 2;
-  now.strain = 0.1;
-  EXPECT_DOUBLE_EQ(loading_progress(stages, now), 3.5 / 4);
-  now.stage = 3;
-  EXPECT_DOUBLE_EQ(loading_progress(stages, now), 1.0);
+  EXPECT_DOUBLE_EQ(loading_progress(stages, 0, 0.15), 1.5 / 4);
+  EXPECT_DOUBLE_EQ(loading_progress(stages, 1, 0.15), 3.0 / 4);
+  EXPECT_DOUBLE_EQ(loading_progress(stages, 2, 0.1), 3.5 / 4);
+  EXPECT_DOUBLE_EQ(loading_progress(stages, 3, 0.1), 1.0);
 }
 
 }  // namespace

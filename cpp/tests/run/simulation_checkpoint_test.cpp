@@ -8,6 +8,7 @@
 #include "io/temporary_folder.hpp"
 #include "snowshed/core/errors.hpp"
 #include "snowshed/io/binary_archive.hpp"
+#include "snowshed/methods/mpm/settings.hpp"
 #include "snowshed/run/simulation.hpp"
 
 namespace snowshed {
@@ -23,8 +24,8 @@ Scene drop(double dx) {
   body.shape.radius = 0.05;
   body.shape.center = {0, 0, 0.06};
   scene.bodies.push_back(body);
-  scene.mpm().dx = dx;
-  scene.mpm().threads = 1;
+  scene.numerics.as<MpmSettings>().dx = dx;
+  scene.numerics.as<MpmSettings>().threads = 1;
   return scene;
 }
 
@@ -66,7 +67,7 @@ TEST_F(SimulationCheckpoint, IsTheSameOnAnyNumberOfThreads) {
   scene.output.energy = true;
   std::string first;
   for (const int threads : {1, 2, 3}) {
-    scene.mpm().threads = threads;
+    scene.numerics.as<MpmSettings>().threads = threads;
     Simulation sim(scene);
     sim.begin_event();
     ASSERT_GT(sim.solver().size(), 4000u);

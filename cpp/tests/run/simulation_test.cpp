@@ -36,7 +36,7 @@ TEST_F(SimulationTest, ThreadsDoNotChangeTheBits) {
   Simulation one(scene);
   one.begin_event();
   one.run(go_on, never);
-  scene.mpm().threads = 2;
+  scene.numerics.as<MpmSettings>().threads = 2;
   Simulation two(scene);
   two.begin_event();
   two.run(go_on, never);
@@ -57,7 +57,8 @@ TEST_F(SimulationTest, EventsBringTheirSnowAndKeepTheOld) {
   const ParticleState s = sim.solver().state();
   EXPECT_EQ(s.events.front(), 1);
   EXPECT_EQ(s.events.back(), 3);
-  for (const Vec3& x : s.positions) EXPECT_GT(x.z(), -scene.mpm().dx);  // none in the ground
+  for (const Vec3& x : s.positions)
+    EXPECT_GT(x.z(), -scene.numerics.as<MpmSettings>().dx);  // none in the ground
 }
 
 TEST_F(SimulationTest, ReseedingKeepsTheMass) {

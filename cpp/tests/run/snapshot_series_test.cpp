@@ -11,7 +11,7 @@ namespace {
 using SnapshotSeriesTest = TemporaryFolder;
 
 std::unique_ptr<Method> falling_snow() {
-  auto solver = make_mpm(options_for({2, Precision::float32}), {});
+  auto solver = make_solver(options_for({2, Precision::float32}), {});
   solver->add(filled_box(2, Vec3::Zero(), Vec3(0.02, 0, 0.02), 0.005));
   return solver;
 }

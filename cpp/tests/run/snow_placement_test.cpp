@@ -8,6 +8,7 @@
 #include "run/simulation_testing.hpp"
 #include "snowshed/core/angles.hpp"
 #include "snowshed/core/errors.hpp"
+#include "snowshed/methods/mps/settings.hpp"
 #include "snowshed/run/event_sequence.hpp"
 #include "snowshed/scene/scene_json.hpp"
 
@@ -290,11 +291,11 @@ TEST(MassOfBodies, IsDensityTimesVolumeWhateverTheResolution) {
           Scene scene = with_bodies(dimension, method, R"({"shape": )" + solid.shape + "}");
           double density = scene.snow.density;
           if (method == "mps") {
-            MpsSettings& s = std::get<MpsSettings>(scene.numerics);
+            MpsSettings& s = scene.numerics.as<MpsSettings>();
             s.spacing = size;
             density = s.density;
           } else {
-            scene.mpm().dx = size;
+            scene.numerics.as<MpmSettings>().dx = size;
           }
           Simulation sim(scene);
           sim.begin_event();
@@ -312,7 +313,7 @@ Scene mps_slab(double thickness, double spacing) {
       R"({"snowshed": 2, "dimension": 2, "method": "mps", "ground": {}, "numerics": {"threads": 1},
           "panel": {"height": 0.5, "length": 1.0, "tilt": 45}, "slab": {"thickness": 0.05}})");
   scene.slab->thickness = thickness;
-  std::get<MpsSettings>(scene.numerics).spacing = spacing;
+  scene.numerics.as<MpsSettings>().spacing = spacing;
   return scene;
 }
 
@@ -321,7 +322,7 @@ TEST(MassOfBodies, IsThatOfTheSlabByMps) {
     for (const double spacing : {0.01, 0.02, 0.03}) {
       Simulation sim(mps_slab(thickness, spacing));
       sim.begin_event();
-      const double density = std::get<MpsSettings>(sim.scene().numerics).density;
+      const double density = sim.scene().numerics.as<MpsSettings>().density;
       EXPECT_NEAR(total_mass(sim.solver().state()), density * thickness, 1e-9);
       EXPECT_EQ(double(sim.solver().size()), sim.cost().particles.front());
       EXPECT_NEAR(double(sim.solver().size()), thickness / (spacing * spacing), 0.5 + 1e-9);
@@ -342,7 +343,7 @@ TEST(MassOfBodies, IsThatOfTheLayersByMps) {
   scene.slab->layers = {{0.03, {}, 0}, {0.025, {}, 0}};
   Simulation sim(scene);
   sim.begin_event();
-  const double density = std::get<MpsSettings>(sim.scene().numerics).density;
+  const double density = sim.scene().numerics.as<MpsSettings>().density;
   EXPECT_NEAR(total_mass(sim.solver().state()), density * 0.055, 1e-9);
   EXPECT_TRUE(sim.notes().empty()) << sim.notes().front();
 }
@@ -362,11 +363,11 @@ TEST_F(NotesOfRuns, StandInTheRecordOnceAlsoWhenTheRunGoesOn) {
   Heard heard, again;
   EventSequence::create(scene, ".", path("run")).run(heard, never);
   ASSERT_EQ(heard.notes.size(), 1u);
-  EXPECT_EQ(RunRecord::read(path("run") / "run.json").notes, heard.notes);
+  EXPECT_EQ(RunRecord::read(path("run") / "run.json", {}).notes, heard.notes);
   EventSequence resumed = EventSequence::resume(scene, ".", path("run"));
   resumed.record().add_note(heard.notes.front());
   resumed.run(again, never);
-  EXPECT_EQ(RunRecord::read(path("run") / "run.json").notes, heard.notes);
+  EXPECT_EQ(RunRecord::read(path("run") / "run.json", {}).notes, heard.notes);
 }
 
 }  // namespace

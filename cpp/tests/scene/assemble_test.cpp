@@ -6,6 +6,7 @@
 
 #include "snowshed/core/angles.hpp"
 #include "snowshed/core/errors.hpp"
+#include "snowshed/methods/mpm/settings.hpp"
 #include "snowshed/scene/scene_json.hpp"
 #include "snowshed/scene/shape_measure.hpp"
 
@@ -21,7 +22,7 @@ Scene panel_scene(double tilt, double ground_tilt = 0.0) {
   panel.tilt = tilt;
   scene.slab.emplace().thickness = 0.1;
   scene.ground.emplace().tilt = ground_tilt;
-  scene.mpm().dx = 0.01;
+  scene.numerics.as<MpmSettings>().dx = 0.01;
   return scene;
 }
 

@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "snowshed/core/errors.hpp"
+#include "snowshed/methods/grains/settings.hpp"
 #include "snowshed/scene/scene_json.hpp"
 #include "snowshed/scene/validation.hpp"
 
@@ -18,7 +19,7 @@ Scene good_scene() {
     "cone": {"radius": 0.001}})");
 }
 
-GrainsSettings& settings(Scene& scene) { return std::get<GrainsSettings>(scene.numerics); }
+GrainsSettings& settings(Scene& scene) { return scene.numerics.as<GrainsSettings>(); }
 
 struct Break {
   const char* where;

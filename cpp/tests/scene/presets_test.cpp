@@ -5,6 +5,7 @@
 
 #include "scene/scene_equal.hpp"
 #include "snowshed/core/errors.hpp"
+#include "snowshed/methods/mpm/settings.hpp"
 #include "snowshed/scene/scene_json.hpp"
 
 namespace snowshed {
@@ -25,7 +26,7 @@ void expect_conditions(const Scene& scene) {
   EXPECT_EQ(scene.panel->condition, Condition::separate);
   EXPECT_EQ(scene.ground->condition, Condition::sticky);
   EXPECT_EQ(scene.ground->tilt, 0.0);
-  EXPECT_EQ(scene.mpm().dx, 0.01);
+  EXPECT_EQ(scene.numerics.as<MpmSettings>().dx, 0.01);
   EXPECT_EQ(scene.gravity, 9.81);
 }
 

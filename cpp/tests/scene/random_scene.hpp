@@ -4,6 +4,10 @@
 #include <cmath>
 #include <random>
 
+#include "snowshed/methods/grains/settings.hpp"
+#include "snowshed/methods/mpm/settings.hpp"
+#include "snowshed/methods/mps/settings.hpp"
+#include "snowshed/methods/slide/settings.hpp"
 #include "snowshed/scene/describe.hpp"
 
 namespace snowshed {
@@ -31,10 +35,8 @@ class Randomizer {
     value = "Name \"\\\n\t\x01 \xc3\xa9 \xf0\x9f\x8f\x94 / ~ " + std::to_string(random_());
   }
   void file(const char*, std::string& value, const char*) { value = "meshes/roof of 1.stl"; }
-  template <class E>
-  void choice(const char*, E& value, const char*) {
-    const auto& list = EnumNames<E>::list;
-    value = list[random_() % std::size(list)].value;
+  void choice(const char*, const Choice& value, const char*) {
+    value.choose(random_() % value.names().size());
   }
   void vector(const char*, Vec3& value, const char*, const Range& range, const char*) {
     value = {draw(range), dimension_ == 3 ? draw(range) : 0.0, draw(range)};
@@ -71,19 +73,17 @@ class Randomizer {
   }
   bool variant(const char* name, const char*) { return type_ == name; }
   void end_variants() {}
-  void method(const char*, const char*, MethodSettings& settings, const char*, const char*) {
-    std::visit([&](auto& own) { fill(own); }, settings);
+  void method(const char*, const char*, MethodChoice& settings, const char*, const char*) {
+    fill(settings);
   }
-  void method_ahead(const char*, MethodSettings& settings) {
+  void method_ahead(const char*, MethodChoice& settings) {
     if (chance(0.2)) settings = MpsSettings();
     if (dimension_ != 3) return;
     if (chance(0.3)) settings = SlideSettings();
     if (chance(0.2)) settings = GrainsSettings();
   }
-  bool shows(const MethodSettings& settings, bool TakenParts::* part) {
-    return info_of(settings).takes.*part;
-  }
-  void taken_by(bool TakenParts::*) {}
+  bool shows(const MethodChoice& settings, Part part) { return settings.takes(part); }
+  void taken_by(Part) {}
   void outline(const char*, Ring& ring, const char*) {
     const double x = draw(between(0, 1e3)), y = draw(between(0, 1e3));
     ring = {{x, y}, {x + 30, y}, {x + 30, y + 20.5}, {x, y + 20}};
@@ -125,7 +125,7 @@ inline void mend_slide(Randomizer& randomizer, Scene& scene) {
   scene.terrain->max_thickness = 100;  // as thick as an area may be
   scene.events.count = 1;
   scene.output.energy = false;
-  SlideSettings& settings = std::get<SlideSettings>(scene.numerics);
+  SlideSettings& settings = scene.numerics.as<SlideSettings>();
   settings.explicit_friction = false;
   if (settings.mode == SlideMode::compatible) scene.terrain->thickness_file.clear();
 }
@@ -142,7 +142,7 @@ inline void mend_grains(Randomizer& randomizer, Scene& scene) {
   scene.seeding = {};
   if (!scene.sample) describe(randomizer, scene.sample.emplace());
   scene.events.count = 1;
-  std::get<GrainsSettings>(scene.numerics).bonded_plates = true;
+  scene.numerics.as<GrainsSettings>().bonded_plates = true;
   scene.loading.insert(scene.loading.begin(), LoadingStage{});
   for (LoadingStage& stage : scene.loading) {
     stage.strain = std::min(stage.strain, 0.1);
@@ -160,7 +160,7 @@ inline void mend_mps(Scene& scene) {
   for (auto& body : scene.bodies) body.snow.reset();
   if (scene.slab)
     for (auto& layer : scene.slab->layers) layer.snow.reset();
-  MpsSettings& settings = std::get<MpsSettings>(scene.numerics);
+  MpsSettings& settings = scene.numerics.as<MpsSettings>();
   settings.erosion = false;
   settings.order = MpsOrder::single_move;
 }
@@ -176,15 +176,15 @@ inline Scene random_scene(std::uint64_t seed) {
   scene.domain.reset();
   scene.seeding.allow_sparse = true;
   scene.events.rest_time = std::min(scene.events.rest_time, scene.events.max_time);
-  if (!scene.uses<GrainsSettings>()) {
+  if (!scene.numerics.is<GrainsSettings>()) {
     scene.sample.reset();
     scene.cone.reset();
   }
-  if (scene.uses<SlideSettings>()) {
+  if (scene.numerics.is<SlideSettings>()) {
     mend_slide(randomizer, scene);
     return scene;
   }
-  if (scene.uses<GrainsSettings>()) {
+  if (scene.numerics.is<GrainsSettings>()) {
     mend_grains(randomizer, scene);
     return scene;
   }
@@ -201,10 +201,10 @@ inline Scene random_scene(std::uint64_t seed) {
       scene.slab->thickness = 0.1;
   }
   if (!scene.slab) describe(randomizer, scene.bodies.emplace_back());
-  if (scene.uses<MpsSettings>()) {
+  if (scene.numerics.is<MpsSettings>()) {
     mend_mps(scene);
   } else {
-    MpmSettings& numerics = scene.mpm();
+    MpmSettings& numerics = scene.numerics.as<MpmSettings>();
     if (numerics.transfer != Transfer::flip) numerics.damping_rate.reset();
     if (numerics.damping_rate) numerics.flip_ratio = MpmSettings{}.flip_ratio;
   }

@@ -1,8 +1,8 @@
 #include "snowshed/scene/resolve_obstacles.hpp"
 
 #include "geometry/mesh_testing.hpp"
-#include "snowshed/scene/build_method.hpp"
 #include "snowshed/scene/build_obstacles.hpp"
+#include "snowshed/scene/build_surroundings.hpp"
 
 namespace snowshed {
 namespace {
@@ -32,7 +32,7 @@ ObstacleSpec obstacle(const std::string& name, const ShapeSpec& shape) {
 }
 
 /// A bin cut from a block, a thin shelf and a thick post.
-Scene scene_with(MethodSettings numerics, int dimension) {
+Scene scene_with(const MethodChoice& numerics, int dimension) {
   Scene scene;
   scene.dimension = dimension;
   scene.numerics = std::move(numerics);

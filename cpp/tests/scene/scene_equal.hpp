@@ -5,6 +5,10 @@
 #include <algorithm>
 #include <tuple>
 
+#include "snowshed/methods/grains/settings.hpp"
+#include "snowshed/methods/mpm/settings.hpp"
+#include "snowshed/methods/mps/settings.hpp"
+#include "snowshed/methods/slide/settings.hpp"
 #include "snowshed/scene/scene.hpp"
 
 namespace snowshed {
@@ -114,6 +118,16 @@ inline auto tied(const Scene& s) {
 template <class T, class = decltype(tied(std::declval<const T&>()))>
 bool operator==(const T& a, const T& b) {
   return tied(a) == tied(b);
+}
+
+/// Whether both are settings of this type, and the same.
+template <class Settings>
+bool have_same(const MethodChoice& a, const MethodChoice& b) {
+  return a.is<Settings>() && b.is<Settings>() && a.as<Settings>() == b.as<Settings>();
+}
+inline bool operator==(const MethodChoice& a, const MethodChoice& b) {
+  return have_same<MpmSettings>(a, b) || have_same<SlideSettings>(a, b) ||
+         have_same<GrainsSettings>(a, b) || have_same<MpsSettings>(a, b);
 }
 
 }  // namespace snowshed

@@ -6,6 +6,7 @@
 
 #include "io/temporary_folder.hpp"
 #include "snowshed/core/errors.hpp"
+#include "snowshed/methods/mpm/settings.hpp"
 #include "snowshed/scene/scene_json.hpp"
 
 namespace snowshed {
@@ -398,9 +399,9 @@ TEST(SceneErrorsText, ScenesMadeInCodeAreHeldAgainstTheSameRanges) {
   scene.bodies[0].shape.type = "transform";
   EXPECT_EQ(where(), "/bodies/0/shape/shapes");
   scene.bodies[0].shape.type = "sphere";
-  scene.mpm().basis = static_cast<Basis>(17);
+  scene.numerics.as<MpmSettings>().basis = static_cast<Basis>(17);
   EXPECT_EQ(where(), "/numerics/basis");
-  scene.mpm().basis = Basis::cubic;
+  scene.numerics.as<MpmSettings>().basis = Basis::cubic;
   scene.dimension = 5;
   EXPECT_EQ(where(), "/dimension");
 }

@@ -8,6 +8,7 @@
 #include "scene/random_scene.hpp"
 #include "scene/scene_equal.hpp"
 #include "snowshed/core/errors.hpp"
+#include "snowshed/methods/mpm/settings.hpp"
 
 namespace snowshed {
 namespace {
@@ -86,8 +87,9 @@ TEST(SceneJson, EveryFieldIsRead) {
   EXPECT_TRUE(*scene.ground == (Ground{-5, Condition::slip, 0.4}));
   EXPECT_TRUE(*scene.domain == (Domain{Vec3(-5, -4, -3), Vec3(6, 5, 4)}));
   EXPECT_TRUE(scene.seeding == (Seeding{3, SeedPattern::regular, 18446744073709551615u, true}));
-  EXPECT_TRUE(scene.mpm() == (MpmSettings{0.02, Precision::float64, Transfer::apic, 0.5,
-                                          std::nullopt, Basis::cubic, 0.3, 0.1, 0.4, 0.7, 3}));
+  EXPECT_TRUE(scene.numerics.as<MpmSettings>() ==
+              (MpmSettings{0.02, Precision::float64, Transfer::apic, 0.5, std::nullopt,
+                           Basis::cubic, 0.3, 0.1, 0.4, 0.7, 3}));
   EXPECT_TRUE(scene.events == (Events{4, Between::reseed, 3, 0.1, 0.2}));
   EXPECT_TRUE(scene.output == (Output{0.25, false, 0.5, true, 30}));
 
@@ -248,7 +250,7 @@ TEST(SceneJson, TheMethodIsAChoiceAndTheDefaultGoesWithoutSaying) {
   const std::string base =
       R"({"snowshed": 2, "bodies": [{"shape": {"type": "sphere", "radius": 1}}])";
   const Scene scene = parse_scene(base + R"(, "numerics": {"dx": 0.02}, "method": "mpm"})");
-  EXPECT_EQ(scene.mpm().dx, 0.02);
+  EXPECT_EQ(scene.numerics.as<MpmSettings>().dx, 0.02);
   EXPECT_EQ(write_scene(scene), write_scene(parse_scene(base + R"(, "numerics": {"dx": 0.02}})")));
   EXPECT_FALSE(nlohmann::json::parse(write_scene(scene)).contains("method"));
 }
@@ -283,7 +285,7 @@ TEST(SceneJson, SlipOfVersion1IsSeparate) {
 TEST(SceneJson, ADampingRateTakesThePlaceOfTheFlipRatio) {
   const Scene scene = parse_scene(R"({"snowshed": 2, "numerics": {"damping_rate": 50},
     "bodies": [{"shape": {"type": "sphere", "radius": 1}}]})");
-  EXPECT_EQ(scene.mpm().damping_rate, 50.0);
+  EXPECT_EQ(scene.numerics.as<MpmSettings>().damping_rate, 50.0);
   const auto written = nlohmann::json::parse(write_scene(scene));
   EXPECT_EQ(written["numerics"]["damping_rate"], 50.0);
   EXPECT_FALSE(written["numerics"].contains("flip_ratio"));
@@ -295,7 +297,7 @@ TEST(SceneJson, OtherNamesOfAKeyAreRead) {
     "panel": {"lower_edge_height": 1, "slant_height": 2, "width": 3, "surface_tilt": 45},
     "numerics": {"step_factor": 0.5}})");
   EXPECT_TRUE(*scene.panel == (Panel{1, 2, 3, 45, 0, Condition::separate, 0.3}));
-  EXPECT_EQ(scene.mpm().courant_factor, 0.5);
+  EXPECT_EQ(scene.numerics.as<MpmSettings>().courant_factor, 0.5);
   const auto written = nlohmann::json::parse(write_scene(scene));
   EXPECT_EQ(written["numerics"]["courant_factor"], 0.5);
   EXPECT_FALSE(written["numerics"].contains("step_factor"));

@@ -141,7 +141,7 @@ TEST(SceneRulesBase, PlaneScenesHaveNoWidth) {
 
 TEST(SceneParts, AreRefusedByAMethodThatDoesNotTakeThem) {
   const Scene scene = good_scene();
-  const auto refused = [&](TakenParts parts) {
+  const auto refused = [&](const Parts& parts) {
     try {
       check_parts(scene, {"slide", "", parts});
     } catch (const InputError& error) {
@@ -150,13 +150,21 @@ TEST(SceneParts, AreRefusedByAMethodThatDoesNotTakeThem) {
     return std::string("nothing");
   };
   const std::string end = R"(: the method "slide" takes no such part)";
-  EXPECT_EQ(refused({true, true, true, true, true, true}), "nothing");
-  EXPECT_EQ(refused({false, true, true, true, true, true}), "/panel" + end);
-  EXPECT_EQ(refused({true, false, true, true, true, true}), "/slab" + end);
-  EXPECT_EQ(refused({true, true, false, true, true, true}), "/ground" + end);
-  EXPECT_EQ(refused({true, true, true, false, true, true}), "/obstacles" + end);
-  EXPECT_EQ(refused({true, true, true, true, false, true}), "/bodies" + end);
-  EXPECT_EQ(refused({true, true, true, true, true, false}), "/domain" + end);
+  EXPECT_EQ(
+      refused({Part::panel, Part::slab, Part::ground, Part::obstacles, Part::bodies, Part::domain}),
+      "nothing");
+  EXPECT_EQ(refused({Part::slab, Part::ground, Part::obstacles, Part::bodies, Part::domain}),
+            "/panel" + end);
+  EXPECT_EQ(refused({Part::panel, Part::ground, Part::obstacles, Part::bodies, Part::domain}),
+            "/slab" + end);
+  EXPECT_EQ(refused({Part::panel, Part::slab, Part::obstacles, Part::bodies, Part::domain}),
+            "/ground" + end);
+  EXPECT_EQ(refused({Part::panel, Part::slab, Part::ground, Part::bodies, Part::domain}),
+            "/obstacles" + end);
+  EXPECT_EQ(refused({Part::panel, Part::slab, Part::ground, Part::obstacles, Part::domain}),
+            "/bodies" + end);
+  EXPECT_EQ(refused({Part::panel, Part::slab, Part::ground, Part::obstacles, Part::bodies}),
+            "/domain" + end);
 }
 
 }  // namespace

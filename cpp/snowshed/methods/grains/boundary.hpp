@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "snowshed/core/vec.hpp"
-#include "snowshed/methods/grains/loading.hpp"
+#include "snowshed/methods/scene_parts.hpp"
 
 namespace snowshed {
 

@@ -22,12 +22,6 @@ struct GrainsEnergy {
   double stored() const { return kinetic + potential + normal + shear; }
   double spent() const { return friction + damping + broken; }
   double residual() const { return stored() + spent() - boundary - added; }
-
-  /// Calls visit(value) for each of the sums over steps.
-  template <class Self, class Visit>
-  static void for_each_sum(Self& e, const Visit& visit) {
-    for (auto* sum : {&e.friction, &e.damping, &e.broken, &e.boundary, &e.added}) visit(*sum);
-  }
 };
 
 /// Returns the balance as tables have it, names with units.

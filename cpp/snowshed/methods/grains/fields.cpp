@@ -1,8 +1,8 @@
 // What the solver tells of its grains.
 #include <cmath>
 
+#include "snowshed/methods/field_sources.hpp"
 #include "snowshed/methods/grains/solver_impl.hpp"
-#include "snowshed/particles/field_sources.hpp"
 
 namespace snowshed {
 
@@ -58,9 +58,7 @@ ParticleState GrainsSolver::state() const {
     s.positions.push_back(state_.bodies[i].position);
     s.velocities.push_back(state_.bodies[i].velocity);
     s.masses.push_back(model_.settings.density * model_.grains[i].volume);
-    s.volume_ratios.push_back(1.0);
     s.densities.push_back(model_.settings.density);
-    s.plastic_strains.push_back(0.0);
     s.pressures.push_back(0.0);
     s.ids.push_back(state_.first_id + std::uint32_t(i));
     s.events.push_back(state_.events[i]);
@@ -69,20 +67,13 @@ ParticleState GrainsSolver::state() const {
 }
 
 MotionSummary GrainsSolver::motion(double limit) const {
-  MotionSummary m;
-  double twice_kinetic = 0;
-  for (std::size_t i = 0; i < size(); ++i) {
-    const double mass = model_.settings.density * model_.grains[i].volume;
-    const double square = state_.bodies[i].velocity.squaredNorm();
-    m.mass += mass;
-    twice_kinetic += mass * square;
-    if (square > limit * limit) m.moving_mass += mass;
-  }
-  m.rms_speed = m.mass > 0 ? std::sqrt(twice_kinetic / m.mass) : 0;
-  return m;
+  return motion_of(
+      size(), limit,
+      [this](std::size_t i) { return model_.settings.density * model_.grains[i].volume; },
+      [this](std::size_t i) { return state_.bodies[i].velocity.squaredNorm(); });
 }
 
-NamedEnergies GrainsSolver::energy_table() const {
+NamedEnergies GrainsSolver::energies() const {
   if (!model_.keeps_energy) return named_energies(GrainsEnergy{});
   GrainsEnergy energy = state_.energy;
   store_energy(model_, state_, energy);
@@ -90,25 +81,11 @@ NamedEnergies GrainsSolver::energy_table() const {
 }
 
 std::size_t GrainsSolver::bytes() const {
-  std::size_t total = state_.pairs.bytes();
-  const auto count = [&total](const auto& vector) {
-    total += vector.capacity() * sizeof(vector[0]);
-  };
-  count(model_.grains);
-  count(model_.spheres.offsets);
-  count(model_.spheres.grain);
-  count(model_.bonds);
-  count(state_.bodies);
-  count(state_.events);
-  count(state_.listed);
-  count(work_.next);
-  count(work_.frames);
-  count(work_.results);
-  count(work_.groups_of.begin);
-  count(work_.groups_of.entry);
-  count(work_.damped);
-  count(order_);
-  return total;
+  return state_.pairs.bytes() + bytes_of(model_.grains, model_.spheres.offsets,
+                                         model_.spheres.grain, model_.bonds, state_.bodies,
+                                         state_.events, state_.listed, work_.next, work_.frames,
+                                         work_.results, work_.groups_of.begin,
+                                         work_.groups_of.entry, work_.damped, order_);
 }
 
 }  // namespace snowshed

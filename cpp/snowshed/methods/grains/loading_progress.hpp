@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "snowshed/methods/grains/boundary.hpp"
-#include "snowshed/methods/grains/loading.hpp"
+#include "snowshed/methods/scene_parts.hpp"
 
 namespace snowshed {
 

@@ -1,7 +1,9 @@
-// What a loading test measures, and the contacts between grains.
+// What a loading test measures, the contacts between grains, and what is shown of their spheres.
 #include <algorithm>
 
 #include "snowshed/methods/grains/contacts.hpp"
+#include "snowshed/methods/grains/cost.hpp"
+#include "snowshed/methods/grains/loading_curve.hpp"
 #include "snowshed/methods/grains/solver_impl.hpp"
 
 namespace snowshed {
@@ -66,6 +68,45 @@ std::vector<GrainContact> GrainsSolver::grain_contacts() const {
                     });
   for (std::size_t i = 0; i < contacts.size(); ++i) contacts[i].point /= pairs[i];
   return contacts;
+}
+
+std::optional<double> GrainsSolver::progress() const {
+  return loading_progress(model_.loading, state_.loading.stage,
+                          state_.loading.displacement / model_.box.z());
+}
+
+std::unique_ptr<Curve> GrainsSolver::empty_curve() const {
+  return std::make_unique<LoadingCurve>(model_.loading, model_.box.z(),
+                                        model_.keeps_energy ? energies() : NamedEnergies{});
+}
+
+/// The spheres, with what is known of the grain that each belongs to: its number, its velocity, how
+/// many grains it touches and is bonded to, and half the sum of its contact forces.
+PointCloud GrainsSolver::snapshot() const {
+  const std::vector<std::uint32_t>& of = model_.spheres.grain;
+  std::vector<std::int32_t> touching(size(), 0), bonded(size(), 0);
+  std::vector<float> force(size(), 0);
+  for (const GrainContact& contact : grain_contacts())
+    for (const std::uint32_t grain : {contact.first, contact.second}) {
+      ++touching[grain];
+      bonded[grain] += contact.bonded;
+      force[grain] += 0.5f * float(contact.force.norm());
+    }
+  const std::vector<Vec3> positions = sphere_positions();
+  std::vector<Vec3> velocities;
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    velocities.push_back(state_.bodies[of[i]].velocity);
+  PointCloud cloud = PointCloud::moving(positions, velocities);
+  const auto add = [&](const char* name, const auto& of_grains) {
+    std::decay_t<decltype(of_grains)> each;
+    for (std::size_t i = 0; i < positions.size(); ++i) each.push_back(of_grains[of[i]]);
+    cloud.arrays.push_back({name, 1, std::move(each)});
+  };
+  cloud.add<std::int32_t>("grain", of);
+  add("touching_grains", touching);
+  add("bonded_grains", bonded);
+  add("contact_force", force);
+  return cloud;
 }
 
 std::vector<Vec3> GrainsSolver::sphere_positions() const {

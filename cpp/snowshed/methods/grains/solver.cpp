@@ -61,15 +61,11 @@ double boundary_work(const GrainsBoundary& b, double half_step) {
 
 GrainsSolver::GrainsSolver(GrainsOptions o) : model_(std::move(o)), state_(empty_state(model_)) {}
 
-void GrainsSolver::require_sound() const {
-  if (broken_) throw SimulationError("the grains have failed; load a checkpoint to go on");
-}
-
 void GrainsSolver::require_grains() const {
   if (state_.bodies.empty()) throw SimulationError("there are no grains");
 }
 
-std::vector<ParticleBatch> GrainsSolver::seed() const {
+std::vector<ParticleBatch> GrainsSolver::seed(const StopRequest&) const {
   ParticleBatch batch;
   for (const GrainConstants& grain : model_.grains) {
     batch.positions.push_back(grain.initial_position);
@@ -134,8 +130,8 @@ void GrainsSolver::accept(GrainsState next, GrainsWork work) {
   order_ = std::move(order);
 }
 
-void GrainsSolver::add(const std::vector<ParticleBatch>& batches) {
-  require_sound();
+void GrainsSolver::add(const std::vector<ParticleBatch>& batches, const StopRequest&) {
+  soundness_.require();
   if (std::all_of(batches.begin(), batches.end(),
                   [](const ParticleBatch& b) { return b.positions.empty(); }))
     return;
@@ -146,7 +142,7 @@ void GrainsSolver::add(const std::vector<ParticleBatch>& batches) {
 }
 
 void GrainsSolver::replace(const std::vector<ParticleBatch>& batches) {
-  require_sound();
+  soundness_.require();
   GrainsState next = with_batches(batches);
   next.time = state_.time;
   next.counters = state_.counters;
@@ -157,24 +153,16 @@ void GrainsSolver::replace(const std::vector<ParticleBatch>& batches) {
 }
 
 void GrainsSolver::add_velocity(const std::vector<Vec3>& changes) {
-  require_sound();
-  if (changes.size() != size())
-    throw InputError("velocity_changes", std::to_string(changes.size()) + " given for " +
-                                             std::to_string(size()) + " grains");
+  soundness_.require();
+  check_velocity_changes(changes, size());
   double added = 0;
   for (std::size_t i = 0; i < size(); ++i) {
-    if (!changes[i].allFinite()) throw InputError("velocity_changes", "not finite");
     const Vec3& v = state_.bodies[i].velocity;
     added += 0.5 * model_.grains[i].inertial_mass * changes[i].dot(2 * v + changes[i]);
   }
-  if (!std::isfinite(added)) throw InputError("velocity_changes", "too large");
+  if (!std::isfinite(added)) throw InputError("velocity changes", "too large");
   for (std::size_t i = 0; i < size(); ++i) state_.bodies[i].velocity += changes[i];
   state_.energy.added += added;
-}
-
-void GrainsSolver::settle(const std::vector<double>&, const std::vector<double>&) {
-  throw InputError("settling",
-                   "grains move as their forces say; they do not settle between events");
 }
 
 /// Half a step's forces, then a step's motion, into the workspace.
@@ -243,7 +231,7 @@ void GrainsSolver::relist(const GrainsBoundary& moved) {
 }
 
 void GrainsSolver::step() {
-  require_sound();
+  soundness_.require();
   require_grains();
   const double dt = choose_step(model_, state_, work_.longest_step);
   GrainsBoundary moved = state_.boundary;
@@ -290,8 +278,8 @@ void GrainsSolver::end_step(const GrainsBoundary& moved, double dt) {
   c.particle_updates += std::int64_t(size());
   c.smallest_dt = std::min(c.smallest_dt, dt);
   if (sound) return;
-  broken_ = true;
-  throw SimulationError("the forces on a grain are not finite");
+  soundness_.lose();
+  soundness_.fail("the forces on a grain are not finite");
 }
 
 }  // namespace snowshed

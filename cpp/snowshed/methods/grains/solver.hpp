@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "snowshed/core/vec.hpp"
+#include "snowshed/methods/capabilities.hpp"
 #include "snowshed/methods/grains/clumps.hpp"
-#include "snowshed/methods/grains/loading.hpp"
 #include "snowshed/methods/grains/settings.hpp"
-#include "snowshed/methods/method.hpp"
+#include "snowshed/methods/scene_parts.hpp"
 
 namespace snowshed {
 
@@ -53,11 +53,10 @@ struct GrainContact {
   bool bonded;
 };
 
-/// Grains as a method, and what only they have. Its particles are the grains.
-class GrainsMethod : public Method {
+/// Grains as a method, and what only they have. Its particles are the grains; `seed` gives those of
+/// the sample, at rest, and `add` takes these and no other.
+class GrainsMethod : public Method, public SeedsItself, public KeepsEnergy, public HasCurve {
  public:
-  /// The grains of the sample, at rest; `add` takes these and no other.
-  virtual std::vector<ParticleBatch> seed() const = 0;
   virtual std::size_t count_spheres() const = 0;
   virtual LoadingMeasures measures() const = 0;
   virtual LoadingStresses stresses() const = 0;                  ///< of measures(), at once

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "snowshed/methods/grains/state.hpp"
+#include "snowshed/methods/particle_method.hpp"
 
 namespace snowshed {
 
@@ -10,16 +11,16 @@ class GrainsSolver final : public GrainsMethod {
   explicit GrainsSolver(GrainsOptions);
 
   using Method::add;
-  void add(const std::vector<ParticleBatch>&) override;
+  void add(const std::vector<ParticleBatch>&, const StopRequest&) override;
   void replace(const std::vector<ParticleBatch>&) override;
   void add_velocity(const std::vector<Vec3>&) override;
-  void settle(const std::vector<double>& drops, const std::vector<double>& plastic) override;
 
   void step() override;
   bool at_safe_point() const override { return true; }
   std::optional<bool> at_rest() const override {
     return state_.loading.stage >= int(model_.loading.size());
   }
+  std::optional<double> progress() const override;
   double time() const override { return state_.time; }
   double time_step() const override { return state_.dt; }
   const StepCounters& counters() const override { return state_.counters; }
@@ -31,15 +32,17 @@ class GrainsSolver final : public GrainsMethod {
   std::size_t size() const override { return state_.bodies.size(); }
   ParticleState state() const override;
   MotionSummary motion(double speed) const override;
-  EnergyBalance energy() const override { return {}; }
-  NamedEnergies energy_table() const override;
+  NamedEnergies energies() const override;
+  PointCloud snapshot() const override;
   std::size_t bytes() const override;
 
   void save(BinaryWriter&) const override;
   void load(const BinaryReader&) override;
   void check(const BinaryReader&) const override;
 
-  std::vector<ParticleBatch> seed() const override;
+  using SeedsItself::seed;
+  std::vector<ParticleBatch> seed(const StopRequest&) const override;
+  std::unique_ptr<Curve> empty_curve() const override;
   std::size_t count_spheres() const override { return model_.spheres.offsets.size(); }
   LoadingMeasures measures() const override;
   LoadingStresses stresses() const override;
@@ -59,7 +62,6 @@ class GrainsSolver final : public GrainsMethod {
   GrainsState with_batches(const std::vector<ParticleBatch>&) const;
   void accept(GrainsState, GrainsWork);
   double shortened_by() const;
-  void require_sound() const;
   void require_grains() const;
   void drift(double dt);
   void check_places() const;
@@ -72,7 +74,7 @@ class GrainsSolver final : public GrainsMethod {
   GrainsModel model_;
   GrainsState state_;
   GrainsWork work_;
-  bool broken_ = false;  // a step has ended in a state that is not sound
+  Soundness soundness_;
   std::vector<std::uint32_t> order_;
 };
 

@@ -8,12 +8,6 @@
 namespace snowshed {
 namespace {
 
-void check_count(const char* what, std::size_t given, std::size_t particles) {
-  if (given != particles)
-    throw InputError(
-        what, std::to_string(given) + " given for " + std::to_string(particles) + " particles");
-}
-
 /// Appends the batches to a state and makes all else follow.
 template <class T, int D>
 void add_to(MpmState<T, D>& state, const MpmModel<T, D>& model,
@@ -36,8 +30,8 @@ void MpmSolver<T, D>::accept(MpmState<T, D> next) noexcept {
 }
 
 template <class T, int D>
-void MpmSolver<T, D>::add(const std::vector<ParticleBatch>& batches) {
-  require_sound();
+void MpmSolver<T, D>::add(const std::vector<ParticleBatch>& batches, const StopRequest&) {
+  soundness_.require();
   MpmState<T, D> next = state_;
   add_to(next, model_, batches);
   accept(std::move(next));
@@ -45,7 +39,7 @@ void MpmSolver<T, D>::add(const std::vector<ParticleBatch>& batches) {
 
 template <class T, int D>
 void MpmSolver<T, D>::replace(const std::vector<ParticleBatch>& batches) {
-  require_sound();
+  soundness_.require();
   MpmState<T, D> next(model_);
   next.progress = state_.progress;
   if (model_.options.energy) {
@@ -59,11 +53,9 @@ void MpmSolver<T, D>::replace(const std::vector<ParticleBatch>& batches) {
 
 template <class T, int D>
 void MpmSolver<T, D>::add_velocity(const std::vector<Vec3>& velocity_changes) {
-  require_sound();
+  soundness_.require();
   const std::vector<std::uint32_t>& at = order_by_id();
-  check_count("velocity changes", velocity_changes.size(), at.size());
-  for (const Vec3& change : velocity_changes)
-    if (!change.allFinite()) throw InputError("velocity changes", "not finite");
+  check_velocity_changes(velocity_changes, at.size());
   // Nothing from here on fails.
   const double before = model_.options.energy ? state_.kinetic_energy(model_) : 0.0;
   double fastest = 0;
@@ -90,14 +82,14 @@ void MpmSolver<T, D>::add_velocity(const std::vector<Vec3>& velocity_changes) {
 template <class T, int D>
 void MpmSolver<T, D>::settle(const std::vector<double>& drops,
                              const std::vector<double>& plastic_changes) {
-  require_sound();
+  soundness_.require();
   const std::vector<std::uint32_t>& at = order_by_id();
   check_count("drops", drops.size(), at.size());
   check_count("plastic changes", plastic_changes.size(), at.size());
   for (std::size_t k = 0; k < at.size(); ++k)
     if (!std::isfinite(drops[k]) || !std::isfinite(plastic_changes[k]))
       throw InputError("settling", "not finite");
-  const MpmSettings& n = model_.options.numerics;
+  const MpmSettings& n = model_.options.settings;
   const double stored = model_.options.energy ? energy().stored() : 0.0;
   MpmState<T, D> next = state_;
   std::vector<BlockKey> blocks = blocks_of_particles(next.layout);

@@ -2,8 +2,8 @@
 #include <array>
 #include <cmath>
 
+#include "snowshed/methods/field_sources.hpp"
 #include "snowshed/methods/mpm/solver_impl.hpp"
-#include "snowshed/particles/field_sources.hpp"
 
 namespace snowshed {
 namespace {
@@ -95,7 +95,7 @@ std::vector<double> MpmSolver<T, D>::positions() const {
                  for (std::int32_t i = state_.layout.first[b]; i < state_.layout.first[b + 1]; ++i)
                    Vec3::Map(&values[3 * std::size_t(i)]) = embed(position_of(
                        state_.particles, std::size_t(i), state_.layout.particle_blocks[b],
-                       model_.options.numerics.dx, model_.options.numerics.basis));
+                       model_.options.settings.dx, model_.options.settings.basis));
                });
   return values;
 }

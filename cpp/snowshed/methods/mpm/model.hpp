@@ -16,8 +16,7 @@ inline constexpr int particles_per_thread = 2000;
 
 template <class T, int D>
 struct MpmModel {
-  MpmModel(const MpmOptions& options, std::vector<Obstacle> obstacles)
-      : MpmModel(options, std::move(obstacles), choice_of(options)) {}
+  explicit MpmModel(MpmOptions o) : MpmModel(std::move(o), choice_of(o)) {}
 
   MpmOptions options;
   bool material_per_particle;
@@ -27,7 +26,7 @@ struct MpmModel {
   std::vector<Material> materials;              // of options.snows
   std::vector<MaterialConstants<T>> constants;  // the same for the kernels
 
-  bool has_affine() const { return options.numerics.transfer == Transfer::apic; }
+  bool has_affine() const { return options.settings.transfer == Transfer::apic; }
   bool has_plastic() const {
     return material_per_particle || options.snows.front().model == SnowModel::cam_clay;
   }
@@ -39,19 +38,19 @@ struct MpmModel {
 
  private:
   static KernelChoice choice_of(const MpmOptions& options) {
-    const MpmSettings& n = options.numerics;
+    const MpmSettings& n = options.settings;
     return {options.dimension,        n.transfer,    n.basis, options.snows.front().model,
             options.snows.size() > 1, options.energy};
   }
 
-  MpmModel(const MpmOptions& o, std::vector<Obstacle> obstacles, const KernelChoice& choice)
-      : options(o),
+  MpmModel(MpmOptions&& o, const KernelChoice& choice)
+      : options(std::move(o)),
         material_per_particle(choice.material_per_particle()),
         kernels(select_kernels<T>(choice)),
-        max_threads(threads_to_use(o.numerics.threads)),
-        boundary(std::move(obstacles), o.numerics.dx) {
-    for (const Snow& snow : o.snows) {
-      materials.emplace_back(snow, D, o.numerics);
+        max_threads(threads_to_use(options.settings.threads)),
+        boundary(std::move(options.obstacles), options.settings.dx) {
+    for (const Snow& snow : options.snows) {
+      materials.emplace_back(snow, D, options.settings);
       constants.push_back(material_constants<T>(snow, D));
     }
   }

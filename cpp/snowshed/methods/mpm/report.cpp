@@ -66,25 +66,21 @@ ParticleState MpmSolver<T, D>::state() const {
 
 template <class T, int D>
 MotionSummary MpmSolver<T, D>::motion(double speed) const {
-  MotionSummary m;
-  double twice_kinetic = 0;
-  for (std::size_t i = 0; i < state_.particles.size(); ++i) {
-    double v2 = 0;
-    for (const auto& v : state_.particles.velocity) v2 += double(v[i]) * double(v[i]);
-    const double mass = double(state_.particles.mass[i]);
-    m.mass += mass;
-    twice_kinetic += mass * v2;
-    if (v2 > speed * speed) m.moving_mass += mass;
-  }
-  m.rms_speed = m.mass > 0 ? std::sqrt(twice_kinetic / m.mass) : 0;
-  return m;
+  const Particles<T, D>& p = state_.particles;
+  return motion_of(
+      p.size(), speed, [&p](std::size_t i) { return double(p.mass[i]); },
+      [&p](std::size_t i) {
+        double v2 = 0;
+        for (const auto& v : p.velocity) v2 += double(v[i]) * double(v[i]);
+        return v2;
+      });
 }
 
 template <class T, int D>
 std::size_t MpmSolver<T, D>::bytes() const {
   std::size_t total = work_.grid.bytes();
   state_.particles.for_each_array(
-      [&total](const char*, const auto& array) { total += array.capacity() * sizeof(array[0]); });
+      [&total](const char*, const auto& array) { total += bytes_of(array); });
   return total;
 }
 

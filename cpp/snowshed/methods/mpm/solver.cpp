@@ -22,14 +22,14 @@ constexpr double friction_reach = 0.5;
 }  // namespace
 
 template <class T, int D>
-MpmSolver<T, D>::MpmSolver(const MpmOptions& options, std::vector<Obstacle> obstacles)
-    : model_(options, std::move(obstacles)),
+MpmSolver<T, D>::MpmSolver(MpmOptions options)
+    : model_(std::move(options)),
       state_(model_),
-      work_(options.numerics.basis, model_.boundary.laws().size()) {}
+      work_(model_.options.settings.basis, model_.boundary.laws().size()) {}
 
 template <class T, int D>
 StepParameters<T> MpmSolver<T, D>::parameters(double dt) const {
-  const MpmSettings& n = model_.options.numerics;
+  const MpmSettings& n = model_.options.settings;
   return {T(dt),
           T(n.dx),
           T(model_.options.gravity),
@@ -41,15 +41,8 @@ StepParameters<T> MpmSolver<T, D>::parameters(double dt) const {
 }
 
 template <class T, int D>
-void MpmSolver<T, D>::require_sound() const {
-  if (broken_)
-    throw SimulationError("the simulation has failed; load an earlier checkpoint. It failed at " +
-                          fault_);
-}
-
-template <class T, int D>
 void MpmSolver<T, D>::step() {
-  require_sound();
+  soundness_.require();
   if (size() == 0) throw SimulationError("there is no snow to simulate");
   const Progress before = state_.progress;
   const bool tiles_were_valid = work_.tiles_valid;
@@ -73,7 +66,7 @@ double MpmSolver<T, D>::try_step() {
     sort();
     scatter();
   }
-  const MpmSettings& n = model_.options.numerics;
+  const MpmSettings& n = model_.options.settings;
   double dt = next_time_step(state_.elastic_limit, state_.progress.speed, n.dx, n.courant_factor);
   gather_and_update(dt);
   try {
@@ -102,7 +95,7 @@ void MpmSolver<T, D>::record_step(double dt) noexcept {
   p.time += dt;
   ++p.counters.steps;
   p.counters.particle_updates += state_.sleep.awake_particles();
-  p.counters.slept_updates += std::int64_t(size()) - state_.sleep.awake_particles();
+  p.slept_updates += std::int64_t(size()) - state_.sleep.awake_particles();
   p.counters.smallest_dt = std::min(p.counters.smallest_dt, dt);
   if (++work_.since_sort >= work_.until_sort) work_.tiles_valid = false;
 }
@@ -192,7 +185,7 @@ void MpmSolver<T, D>::leave_empty(std::ptrdiff_t g) {
 /// depend on dt, so only the node velocities are computed again with a smaller one.
 template <class T, int D>
 double MpmSolver<T, D>::shorten_to_limits(double dt) {
-  const double limit = model_.options.numerics.strain_limit;
+  const double limit = model_.options.settings.strain_limit;
   while (true) {
     const double strain = largest_strain() * dt;
     if (strain <= limit) return dt;
@@ -214,10 +207,10 @@ double MpmSolver<T, D>::shorten_to_limits(double dt) {
 /// block. Only where these bounds are too large are the particles themselves asked.
 template <class T, int D>
 double MpmSolver<T, D>::largest_strain() {
-  const double dx = model_.options.numerics.dx;
+  const double dx = model_.options.settings.dx;
   const double rate_limit =
-      model_.options.numerics.strain_limit /
-      next_time_step(state_.elastic_limit, 0.0, dx, model_.options.numerics.courant_factor);
+      model_.options.settings.strain_limit /
+      next_time_step(state_.elastic_limit, 0.0, dx, model_.options.settings.courant_factor);
   const auto bound_over = [&](const auto& grid_blocks) {
     VecD<D> low = VecD<D>::Constant(infinity), high = -low;
     for (std::int32_t g : grid_blocks) {
@@ -277,17 +270,15 @@ template <class T, int D>
 void MpmSolver<T, D>::check_particles() {
   for (std::int32_t b : state_.sleep.awake()) {
     if (work_.grid.block_stats[b].unsound < 0) continue;
-    broken_ = true;
-    fault_.clear();
-    fault_ = describe_unsound(b);
-    throw SimulationError(fault_);
+    soundness_.lose();  // also if the memory for the message is missing
+    soundness_.fail(describe_unsound(b));
   }
 }
 
 template <class T, int D>
 std::string MpmSolver<T, D>::describe_unsound(std::int32_t b) const {
   const BlockStats& s = work_.grid.block_stats[b];
-  const MpmSettings& n = model_.options.numerics;
+  const MpmSettings& n = model_.options.settings;
   const std::size_t i = std::size_t(s.unsound);
   const VecD<D> x =
       position_of(state_.particles, i, state_.layout.particle_blocks[b], n.dx, n.basis);
@@ -321,14 +312,14 @@ template class MpmSolver<float, 3>;
 template class MpmSolver<double, 2>;
 template class MpmSolver<double, 3>;
 
-std::unique_ptr<Method> make_mpm(const MpmOptions& options, std::vector<Obstacle> obstacles) {
-  const bool single = options.numerics.precision == Precision::float32;
+std::unique_ptr<MpmMethod> make_mpm(MpmOptions options) {
+  const bool single = options.settings.precision == Precision::float32;
   if (options.dimension == 2) {
-    if (single) return std::make_unique<MpmSolver<float, 2>>(options, std::move(obstacles));
-    return std::make_unique<MpmSolver<double, 2>>(options, std::move(obstacles));
+    if (single) return std::make_unique<MpmSolver<float, 2>>(std::move(options));
+    return std::make_unique<MpmSolver<double, 2>>(std::move(options));
   }
-  if (single) return std::make_unique<MpmSolver<float, 3>>(options, std::move(obstacles));
-  return std::make_unique<MpmSolver<double, 3>>(options, std::move(obstacles));
+  if (single) return std::make_unique<MpmSolver<float, 3>>(std::move(options));
+  return std::make_unique<MpmSolver<double, 3>>(std::move(options));
 }
 
 }  // namespace snowshed

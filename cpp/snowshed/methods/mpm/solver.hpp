@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "snowshed/material/snow.hpp"
-#include "snowshed/methods/method.hpp"
+#include "snowshed/methods/capabilities.hpp"
 #include "snowshed/methods/mpm/settings.hpp"
 #include "snowshed/methods/obstacle.hpp"
 
@@ -15,15 +15,19 @@ struct MpmOptions {
   int dimension = 3;
   double gravity = 9.81;            // m/s2, along -z
   std::vector<Snow> snows{Snow()};  // by material_id; at least one, at most `max_materials`
-  MpmSettings numerics;
-  bool energy = false;  // keep the energy balance
+  MpmSettings settings;
+  std::vector<Obstacle> obstacles;
+  bool energy = false;  // whether to keep the energy balance
 };
+
+/// MPM as a method, and what only it has.
+class MpmMethod : public Method, public Settles, public BalancesEnergy, public Sleeps {};
 
 inline constexpr int steps_between_sorts = 64;
 /// Fewer where each particle has more contacts than this: where thousands of obstacles overlap,
 /// steps take long, and a run that is to stop would wait for its safe point.
 inline constexpr double contacts_per_particle = 100;
 
-std::unique_ptr<Method> make_mpm(const MpmOptions&, std::vector<Obstacle>);
+std::unique_ptr<MpmMethod> make_mpm(MpmOptions);
 
 }  // namespace snowshed

@@ -8,6 +8,7 @@
 #include "snowshed/methods/mpm/model.hpp"
 #include "snowshed/methods/mpm/solver.hpp"
 #include "snowshed/methods/mpm/state.hpp"
+#include "snowshed/methods/particle_method.hpp"
 
 namespace snowshed {
 
@@ -25,11 +26,12 @@ struct Workspace {
 };
 
 template <class T, int D>
-class MpmSolver final : public Method {
+class MpmSolver final : public MpmMethod {
  public:
-  MpmSolver(const MpmOptions& options, std::vector<Obstacle> obstacles);
+  explicit MpmSolver(MpmOptions options);
 
-  void add(const std::vector<ParticleBatch>&) override;
+  using Method::add;
+  void add(const std::vector<ParticleBatch>&, const StopRequest&) override;
   void replace(const std::vector<ParticleBatch>&) override;
   void add_velocity(const std::vector<Vec3>& velocity_changes) override;
   void settle(const std::vector<double>& drops,
@@ -48,6 +50,7 @@ class MpmSolver final : public Method {
   }
   MotionSummary motion(double speed) const override;
   EnergyBalance energy() const override { return state_.energy(model_); }
+  std::int64_t slept_updates() const override { return state_.progress.slept_updates; }
   std::size_t bytes() const override;
   void save(BinaryWriter&) const override;
   void load(const BinaryReader&) override;
@@ -81,7 +84,6 @@ class MpmSolver final : public Method {
   void check_particles();  ///< throws SimulationError
   std::string describe_unsound(std::int32_t block) const;
   void update_energy_balance() noexcept;
-  void require_sound() const;  ///< throws SimulationError after a step that broke the particles
   void accept(MpmState<T, D> next) noexcept;
   Sym<double, D> elastic_strain(std::size_t particle) const;  ///< Hencky's
   double elastic_volume(std::size_t particle) const;  ///< logarithm of the elastic volume ratio
@@ -99,8 +101,7 @@ class MpmSolver final : public Method {
   const MpmModel<T, D> model_;
   MpmState<T, D> state_;
   Workspace<T, D> work_;
-  bool broken_ = false;  // the last step left particles that are not sound
-  std::string fault_;    // what was wrong with them
+  Soundness soundness_;
 };
 
 }  // namespace snowshed

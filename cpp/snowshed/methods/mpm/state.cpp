@@ -20,7 +20,7 @@ constexpr double friction_memory_steps = 40;
 
 template <class T, int D>
 MpmState<T, D>::MpmState(const MpmModel<T, D>& model)
-    : sleep(model.options.numerics.sleep_speed, model.options.numerics.sleep_time,
+    : sleep(model.options.settings.sleep_speed, model.options.settings.sleep_time,
             model.options.gravity) {
   particles.has_affine = model.has_affine();
   particles.has_material_id = model.material_per_particle;
@@ -72,7 +72,7 @@ void MpmState<T, D>::append(const MpmModel<T, D>& model, const ParticleBatch& ba
 template <class T, int D>
 BlockKey MpmState<T, D>::put(const MpmModel<T, D>& model, std::size_t particle,
                              const VecD<D>& position) {
-  const MpmSettings& n = model.options.numerics;
+  const MpmSettings& n = model.options.settings;
   const auto place = Placement<D>::of(position, n.dx, n.basis);
   for (int d = 0; d < D; ++d) particles.cell[d][particle] = T(place.cell[d]);
   return block_key<D>(place.block);
@@ -95,7 +95,7 @@ void MpmState<T, D>::arrange(const MpmModel<T, D>& model, std::vector<BlockKey> 
 
 template <class T, int D>
 double MpmState<T, D>::gravitational_energy(const MpmModel<T, D>& model) const {
-  const MpmSettings& n = model.options.numerics;
+  const MpmSettings& n = model.options.settings;
   double sum = 0;
   for (std::size_t b = 0; b < layout.particle_blocks.size(); ++b)
     for (std::int32_t i = layout.first[b]; i < layout.first[b + 1]; ++i)
@@ -107,7 +107,7 @@ double MpmState<T, D>::gravitational_energy(const MpmModel<T, D>& model) const {
 
 template <class T, int D>
 double MpmState<T, D>::kinetic_energy(const MpmModel<T, D>& model) const {
-  const MpmSettings& n = model.options.numerics;
+  const MpmSettings& n = model.options.settings;
   const double inertia = n.dx * n.dx / apic_inverse_inertia(n.basis);
   double sum = 0;
   for (std::size_t i = 0; i < particles.size(); ++i) {

@@ -19,6 +19,7 @@ struct Progress {
   double stress_power = 0;  // W, see MpmSolver::update_energy_balance
   std::uint32_t next_id = 0;
   StepCounters counters;
+  std::int64_t slept_updates = 0;
   EnergyBalance energy;  // the gravitational part as it was when snow was last added
 };
 

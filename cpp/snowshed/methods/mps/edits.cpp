@@ -8,12 +8,6 @@
 namespace snowshed {
 namespace {
 
-void check_count(const char* what, std::size_t given, std::size_t particles) {
-  if (given != particles)
-    throw InputError(
-        what, std::to_string(given) + " given for " + std::to_string(particles) + " particles");
-}
-
 /// Particles push each other as if they stood for the same mass, that of a cell. Those of a body
 /// whose volume is no whole number of cells differ from it by half a particle in all, so the
 /// momentum that bodies exchange does, too. More than that in a single particle is another snow.
@@ -71,11 +65,11 @@ void MpsSolver<D>::accept(MpsState<D> next) {
     next.energy.added += stored_energy(model_, next.particles).stored() -
                          stored_energy(model_, state_.particles).stored();
   state_ = std::move(next);
-  order_known_ = false;
+  order_.forget();
 }
 
 template <int D>
-void MpsSolver<D>::add(const std::vector<ParticleBatch>& batches) {
+void MpsSolver<D>::add(const std::vector<ParticleBatch>& batches, const StopRequest&) {
   MpsState<D> next = state_;
   for (const ParticleBatch& batch : batches) append(next, batch);
   accept(std::move(next));
@@ -92,23 +86,11 @@ void MpsSolver<D>::replace(const std::vector<ParticleBatch>& batches) {
 template <int D>
 void MpsSolver<D>::add_velocity(const std::vector<Vec3>& changes) {
   const std::vector<std::uint32_t>& at = order_by_id();
-  check_count("velocity_changes", changes.size(), at.size());
-  for (const Vec3& change : changes)
-    if (!change.allFinite()) throw InputError("velocity_changes", "not finite");
+  check_velocity_changes(changes, at.size());
   MpsState<D> next = state_;
   for (std::size_t k = 0; k < at.size(); ++k)
     if (next.particles.moves(at[k])) next.particles.velocity[at[k]] += section<D>(changes[k]);
   accept(std::move(next));
-}
-
-template <int D>
-void MpsSolver<D>::settle(const std::vector<double>& drops, const std::vector<double>& plastic) {
-  const std::vector<std::uint32_t>& at = order_by_id();
-  check_count("drops", drops.size(), at.size());
-  check_count("plastic changes", plastic.size(), at.size());
-  for (std::size_t k = 0; k < drops.size(); ++k)
-    if (drops[k] != 0 || plastic[k] != 0)
-      throw InputError("settling", "snow of constant density does not settle between events");
 }
 
 template class MpsSolver<2>;

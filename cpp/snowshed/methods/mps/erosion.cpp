@@ -9,12 +9,12 @@ constexpr double touching = 1.5;
 
 /// The fastest particle among the neighbours, and whether one of them, or a wall, can carry it.
 template <int D>
-struct Surroundings {
+struct NearSnow {
   double fastest2 = 0;
   bool carried = false;
 
-  Surroundings(const MpsModel<D>& model, const MpsParticles<D>& particles,
-               const MpsNeighbourhood<D>& near, std::size_t i) {
+  NearSnow(const MpsModel<D>& model, const MpsParticles<D>& particles,
+           const MpsNeighbourhood<D>& near, std::size_t i) {
     const double limit = touching * model.settings().spacing;
     for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) {
       const std::size_t j = near.lists.neighbour(e);
@@ -41,11 +41,11 @@ void erode_and_deposit(const MpsModel<D>& model, MpsParticles<D>& particles, Mps
     work.fixed[i] = false;
     const double pressure = particles.pressure[i];
     if (particles.kind[i] == MpsKind::erodible && pressure > s.erosion_pressure) {
-      const Surroundings<D> around(model, particles, work.near, i);
+      const NearSnow<D> around(model, particles, work.near, i);
       work.fixed[i] = around.fastest2 > s.erosion_speed * s.erosion_speed;
     } else if (particles.moves(i) && pressure < s.deposition_pressure &&
                particles.velocity[i].squaredNorm() < s.deposition_speed * s.deposition_speed) {
-      work.fixed[i] = Surroundings<D>(model, particles, work.near, i).carried;
+      work.fixed[i] = NearSnow<D>(model, particles, work.near, i).carried;
     }
   });
   for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {

@@ -1,8 +1,8 @@
 // What the MPS method tells of its particles.
 #include <cmath>
 
+#include "snowshed/methods/field_sources.hpp"
 #include "snowshed/methods/mps/solver_impl.hpp"
-#include "snowshed/particles/field_sources.hpp"
 
 namespace snowshed {
 
@@ -53,12 +53,10 @@ template <int D>
 ParticleState MpsSolver<D>::state() const {
   const MpsParticles<D>& p = state_.particles;
   ParticleState s;
-  s.plastic_strains.assign(size(), 0.0);
   for (const std::uint32_t i : order_by_id()) {
     s.positions.push_back(embed(p.position[i]));
     s.velocities.push_back(embed(p.velocity[i]));
     s.masses.push_back(p.mass[i]);
-    s.volume_ratios.push_back(1.0);
     s.densities.push_back(model_.settings().density);
     s.pressures.push_back(p.pressure[i]);
     s.ids.push_back(p.id[i]);
@@ -79,51 +77,28 @@ EnergyBalance MpsSolver<D>::energy() const {
 
 template <int D>
 MotionSummary MpsSolver<D>::motion(double limit) const {
-  MotionSummary m;
-  double twice_kinetic = 0;
-  for (std::size_t i = 0; i < size(); ++i) {
-    const double speed2 = state_.particles.velocity[i].squaredNorm();
-    const double mass = state_.particles.mass[i];
-    m.mass += mass;
-    twice_kinetic += mass * speed2;
-    if (speed2 > limit * limit) m.moving_mass += mass;
-  }
-  m.rms_speed = m.mass > 0 ? std::sqrt(twice_kinetic / m.mass) : 0;
-  return m;
+  const MpsParticles<D>& p = state_.particles;
+  return motion_of(
+      size(), limit, [&p](std::size_t i) { return p.mass[i]; },
+      [&p](std::size_t i) { return p.velocity[i].squaredNorm(); });
 }
 
 template <int D>
 std::size_t MpsSolver<D>::bytes() const {
-  std::size_t total = work_.near.cells.bytes() + work_.near.lists.bytes() +
-                      work_.near.contacts.bytes() + work_.multigrid.bytes() +
-                      work_.velocity_multigrid.bytes() + work_.walls.bytes();
-  const auto count = [&total](const auto& vector) {
-    total += vector.capacity() * sizeof(vector[0]);
-  };
+  const MpsNeighbourhood<D>& near = work_.near;
+  std::size_t total = near.cells.bytes() + near.lists.bytes() + near.contacts.bytes() +
+                      work_.multigrid.bytes() + work_.velocity_multigrid.bytes() +
+                      work_.walls.bytes();
   for (const auto* particles :
        {&state_.particles, &work_.next.particles, &work_.start.particles, &work_.spare})
-    particles->for_each_array([&](const char*, const auto& array) { count(array); });
-  count(work_.near.weight);
-  count(work_.near.slope);
-  count(work_.near.even_weight);
-  count(work_.near.snow_slope);
-  count(work_.near.moments);
-  count(work_.pair_rate);
-  count(work_.rate_correction);
-  count(work_.coupling);
-  count(work_.block);
-  count(work_.inverse_block);
-  count(work_.velocity_gradient);
-  count(work_.near.correction);
-  count(work_.near.spread);
-  count(work_.near.asymmetry);
-  count(work_.near.slip);
-  count(work_.concentration);
-  count(work_.pressure_sum);
-  for (const auto* vector : {&work_.yielding, &work_.base_pressure, &work_.diagonal, &work_.source,
-                             &work_.pressure, &work_.cg.r, &work_.cg.z, &work_.cg.p, &work_.cg.q})
-    count(*vector);
-  return total;
+    particles->for_each_array([&](const char*, const auto& array) { total += bytes_of(array); });
+  return total +
+         bytes_of(near.weight, near.slope, near.even_weight, near.snow_slope, near.moments,
+                  near.correction, near.spread, near.asymmetry, near.slip) +
+         bytes_of(work_.pair_rate, work_.rate_correction, work_.coupling, work_.block,
+                  work_.inverse_block, work_.velocity_gradient, work_.concentration,
+                  work_.pressure_sum, work_.yielding, work_.base_pressure, work_.diagonal,
+                  work_.source, work_.pressure, work_.cg.r, work_.cg.z, work_.cg.p, work_.cg.q);
 }
 
 template class MpsSolver<2>;

@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include "snowshed/core/errors.hpp"
+#include "snowshed/core/message_format.hpp"
 #include "snowshed/methods/mps/anderson.hpp"
 #include "snowshed/methods/mps/solver_impl.hpp"
-#include "snowshed/particles/id_order.hpp"
 
 namespace snowshed {
 namespace {
@@ -41,16 +40,10 @@ constexpr double least_stiffness = 2, least_fall = 2, most_inertia = 1e-3;
 constexpr double first_shear = 0.9, coupling_tolerance = 3e-3;
 constexpr int most_couplings = 20;
 
-std::string in_words(double value) {
-  std::ostringstream text;
-  text << value;
-  return text.str();
-}
-
 void require_converged(const SolveReport& report, const char* what, int most) {
   if (report.converged) return;
   throw SimulationError(
-      std::string("the ") + what + " equation has not converged: " + in_words(report.residual) +
+      std::string("the ") + what + " equation has not converged: " + show_rounded(report.residual) +
       " of its right-hand side is left after " + std::to_string(report.iterations) +
       " iterations; allowed: " + std::to_string(most));
 }
@@ -65,7 +58,7 @@ void add_solve(const SolveReport& one, SolveReport& all) {
 std::unique_ptr<MpsMethod> make_mps(MpsOptions options) {
   const MpsSettings& s = options.settings;
   if (options.period > 0 && options.period < 3 * s.radius * s.spacing)
-    throw InputError("period", in_words(options.period) + " m is less than three radii");
+    throw InputError("period", show_rounded(options.period) + " m is less than three radii");
   if (s.order == MpsOrder::published && s.splitting == MpsSplitting::pressure_first)
     throw InputError("splitting", "particles move before the pressure is known (order)");
   if (options.dimension == 2) return std::make_unique<MpsSolver<2>>(std::move(options));
@@ -116,8 +109,8 @@ double MpsSolver<D>::choose_step(const MpsParticles<D>& particles) const {
   double dt = std::min(s.max_time_step, pressure_step(particles));
   if (speed + root > 0) dt = std::min(dt, 2 * way / (speed + root));
   if (!(dt > 1e-9 * s.max_time_step))
-    throw SimulationError("the time step has fallen to " + in_words(dt) +
-                          " s: a particle moves at " + in_words(speed) + " m/s");
+    throw SimulationError("the time step has fallen to " + show_rounded(dt) +
+                          " s: a particle moves at " + show_rounded(speed) + " m/s");
   return dt;
 }
 
@@ -182,7 +175,7 @@ void MpsSolver<D>::act_after_pressure(double dt, MpsState<D>& next) {
   const int threads = model_.threads_for(n);
   const bool coupled = couples(dt);
   prepare_pressure(model_, p, work_);
-  work_.falling = p.velocity;
+  work_.predicted_velocity = p.velocity;
   work_.flowing.resize(n);
   work_.expected.resize(n);
   for_each_particle(n, threads, [&](std::size_t i) {
@@ -194,7 +187,7 @@ void MpsSolver<D>::act_after_pressure(double dt, MpsState<D>& next) {
   SolveReport pressure, viscosity;
   for (int k = 0;; ++k) {
     for_each_particle(n, threads, [&](std::size_t i) {
-      p.velocity[i] = work_.falling[i] + dt * work_.expected[i];
+      p.velocity[i] = work_.predicted_velocity[i] + dt * work_.expected[i];
     });
     act_with_expected_shear(dt, next);
     add_solve(next.solves.pressure, pressure);
@@ -220,8 +213,9 @@ void MpsSolver<D>::act_with_expected_shear(double dt, MpsState<D>& next) {
   next.solves.pressure = solve_pressure(model_, dt, p, work_);
   require_converged(next.solves.pressure, "pressure", model_.settings().max_iterations);
   apply_pressure(model_, dt, p, work_);
-  for_each_particle(p.size(), model_.threads_for(p.size()),
-                    [&](std::size_t i) { p.velocity[i] = work_.falling[i] + work_.change[i]; });
+  for_each_particle(p.size(), model_.threads_for(p.size()), [&](std::size_t i) {
+    p.velocity[i] = work_.predicted_velocity[i] + work_.change[i];
+  });
   act_viscosity(dt, next);
 }
 
@@ -264,8 +258,8 @@ void MpsSolver<D>::step() {
     const double way = largest_speed(next.particles) * dt;
     if (way <= longest_way * s.spacing && dt <= 2 * pressure_step(next.particles)) break;
     if (halvings == most_halvings || !std::isfinite(way))
-      throw SimulationError("a particle would move " + in_words(way) + " m within a step of " +
-                            in_words(dt) + " s");
+      throw SimulationError("a particle would move " + show_rounded(way) + " m within a step of " +
+                            show_rounded(dt) + " s");
     dt *= 0.5;
     next = start;
     ++next.counters.rejected;
@@ -292,16 +286,7 @@ void MpsSolver<D>::step() {
   c.particle_updates += std::int64_t(size());
   c.smallest_dt = c.smallest_dt > 0 ? std::min(c.smallest_dt, dt) : dt;
   std::swap(state_, next);
-  order_known_ = false;
-}
-
-template <int D>
-const std::vector<std::uint32_t>& MpsSolver<D>::order_by_id() const {
-  if (!order_known_) {
-    order_ = snowshed::order_by_id(state_.particles.id.data(), size());
-    order_known_ = true;
-  }
-  return order_;
+  order_.forget();
 }
 
 template <int D>
@@ -324,6 +309,21 @@ MpsReport MpsSolver<D>::report() const {
   }
   r.density_error = count > 0 ? std::sqrt(square / count) : 0.0;
   return r;
+}
+
+/// How well the equations were solved, in the last step and on average, and how dense the snow is.
+template <int D>
+ReportsRun::Section MpsSolver<D>::run_section() const {
+  const MpsReport r = report();
+  return {"equations",
+          {{"pressure_iterations", std::int64_t(r.pressure_iterations)},
+           {"pressure_residual", r.pressure_residual},
+           {"mean_pressure_iterations", r.mean_pressure_iterations},
+           {"viscosity_iterations", std::int64_t(r.viscosity_iterations)},
+           {"viscosity_residual", r.viscosity_residual},
+           {"mean_viscosity_iterations", r.mean_viscosity_iterations},
+           {"density_error", r.density_error},
+           {"largest_density", r.largest_density}}};
 }
 
 template struct MpsModel<2>;

@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "snowshed/methods/method.hpp"
+#include "snowshed/methods/capabilities.hpp"
 #include "snowshed/methods/mps/settings.hpp"
 #include "snowshed/methods/obstacle.hpp"
 
@@ -31,7 +31,7 @@ struct MpsReport {
 };
 
 /// MPS as a method, and what only it has.
-class MpsMethod : public Method {
+class MpsMethod : public Method, public BalancesEnergy, public ReportsRun {
  public:
   virtual MpsReport report() const = 0;
 };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "snowshed/methods/mps/forces.hpp"
+#include "snowshed/methods/particle_method.hpp"
 
 namespace snowshed {
 
@@ -15,10 +16,9 @@ class MpsSolver final : public MpsMethod {
   }
 
   using Method::add;
-  void add(const std::vector<ParticleBatch>&) override;
+  void add(const std::vector<ParticleBatch>&, const StopRequest&) override;
   void replace(const std::vector<ParticleBatch>&) override;
   void add_velocity(const std::vector<Vec3>&) override;
-  void settle(const std::vector<double>& drops, const std::vector<double>& plastic) override;
 
   void step() override;
   bool at_safe_point() const override { return true; }
@@ -28,7 +28,9 @@ class MpsSolver final : public MpsMethod {
 
   std::vector<FieldInfo> fields() const override;
   FieldView field(const std::string&) const override;
-  const std::vector<std::uint32_t>& order_by_id() const override;
+  const std::vector<std::uint32_t>& order_by_id() const override {
+    return order_.of(state_.particles.id);
+  }
 
   std::size_t size() const override { return state_.particles.size(); }
   ParticleState state() const override;
@@ -41,6 +43,7 @@ class MpsSolver final : public MpsMethod {
   void check(const BinaryReader&) const override;
 
   MpsReport report() const override;
+  ReportsRun::Section run_section() const override;
 
  private:
   void append(MpsState<D>&, const ParticleBatch&) const;
@@ -63,8 +66,7 @@ class MpsSolver final : public MpsMethod {
   MpsModel<D> model_;
   MpsState<D> state_;
   MpsWork<D> work_;
-  mutable std::vector<std::uint32_t> order_;
-  mutable bool order_known_ = false;
+  IdOrder order_;
 };
 
 /// Kinetic and gravitational energy, J.

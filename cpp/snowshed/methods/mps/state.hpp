@@ -128,7 +128,7 @@ struct MpsWork {
   MpsNeighbourhood<D> near;
   AlignedVector<VecD<D>> velocity;                    // right-hand side, m/s
   AlignedVector<VecD<D>> before, viscous, projected;  // velocities of a step, m/s; for the energy
-  AlignedVector<VecD<D>> falling;                     // what gravity alone makes of them, m/s
+  AlignedVector<VecD<D>> predicted_velocity;          // by gravity alone, m/s
   AlignedVector<VecD<D>> expected, found;             // viscous force over mass, m/s2
   AlignedVector<std::uint8_t> flowing;                // whether it is expected of a particle
   AlignedVector<VecD<D>> viscous_change;              // of velocities by viscosity, m/s

@@ -31,14 +31,6 @@ struct SlideEnergy {
     return coulomb + turbulent + resistance + viscosity + entrainment + broken + left;
   }
   double residual() const { return stored() + spent() - added; }
-
-  /// Calls visit(value) for each of the sums over steps.
-  template <class Self, class Visit>
-  static void for_each_sum(Self& e, const Visit& visit) {
-    for (auto* sum : {&e.coulomb, &e.turbulent, &e.resistance, &e.viscosity, &e.entrainment,
-                      &e.broken, &e.left, &e.added})
-      visit(*sum);
-  }
 };
 
 /// Returns the balance as tables have it, names with units.

@@ -1,15 +1,11 @@
 // What a slide tells of its particles.
 #include <cmath>
 
+#include "snowshed/core/compensated_sum.hpp"
+#include "snowshed/methods/field_sources.hpp"
 #include "snowshed/methods/slide/solver_impl.hpp"
-#include "snowshed/particles/field_sources.hpp"
 
 namespace snowshed {
-
-double SlideSolver::speed(std::size_t i) const {
-  const SlideParticles& p = state_.particles;
-  return std::sqrt(p.ux[i] * p.ux[i] + p.uy[i] * p.uy[i] + p.uz[i] * p.uz[i]);
-}
 
 /// Calls visit(info, view) for each field; view() returns its view.
 template <class Visit>
@@ -55,8 +51,6 @@ ParticleState SlideSolver::state() const {
   ParticleState s;
   s.positions.reserve(size());
   s.velocities.reserve(size());
-  s.volume_ratios.assign(size(), 1.0);
-  s.plastic_strains.assign(size(), 0.0);
   s.densities.assign(size(), model_.settings.density);
   for (auto* values : {&s.masses, &s.pressures}) values->reserve(size());
   s.ids.reserve(size());
@@ -74,47 +68,71 @@ ParticleState SlideSolver::state() const {
   return s;
 }
 
-NamedEnergies SlideSolver::energy_table() const {
+/// Adds thickness, speed, how many bonds hold a particle, and the bonds as lines.
+PointCloud SlideSolver::snapshot() const {
+  PointCloud cloud = Method::snapshot();
+  const std::vector<std::uint32_t>& order = order_by_id();
+  const SlideParticles& p = state_.particles;
+  std::vector<std::uint32_t> place(order.size());
+  std::vector<float> thickness, speed;
+  thickness.reserve(order.size());
+  speed.reserve(order.size());
+  for (std::uint32_t k = 0; k < order.size(); ++k) {
+    const std::uint32_t i = order[k];
+    place[i] = k;
+    thickness.push_back(float(work_.thickness[i]));
+    speed.push_back(float(Vec3(p.ux[i], p.uy[i], p.uz[i]).norm()));
+  }
+  std::vector<std::int32_t> count(order.size(), 0);
+  const Bonds& bonds = state_.bonds;
+  cloud.lines.reserve(bonds.size());
+  for (std::size_t b = 0; b < bonds.size(); ++b) {
+    cloud.lines.push_back({place[bonds.first[b]], place[bonds.second[b]]});
+    for (const std::uint32_t particle : cloud.lines.back()) ++count[particle];
+  }
+  cloud.arrays.push_back({"thickness", 1, std::move(thickness)});
+  cloud.arrays.push_back({"speed", 1, std::move(speed)});
+  cloud.arrays.push_back({"bonds", 1, std::move(count)});
+  return cloud;
+}
+
+/// What was released and taken up, and where it is: the sums differ by rounding alone.
+ReportsRun::Section SlideSolver::run_section() const {
+  const MassBalance& m = state_.balance;
+  const double on_terrain = compensated_sum(state_.particles.mass.data(), size());
+  return {"mass_balance",
+          {{"released_kg", m.released},
+           {"entrained_kg", m.entrained},
+           {"left_terrain_kg", m.left},
+           {"on_terrain_kg", on_terrain},
+           {"residual_kg", m.released + m.entrained - m.left - on_terrain}}};
+}
+
+NamedEnergies SlideSolver::energies() const {
   SlideEnergy energy = state_.energy;
   if (model_.keeps_energy) store_energy(model_, state_, work_, energy);
   return named_energies(energy);
 }
 
 MotionSummary SlideSolver::motion(double limit) const {
-  MotionSummary m;
-  double twice_kinetic = 0;
-  for (std::size_t i = 0; i < size(); ++i) {
-    const double v = speed(i), mass = state_.particles.mass[i];
-    m.mass += mass;
-    twice_kinetic += mass * v * v;
-    if (v > limit) m.moving_mass += mass;
-  }
-  m.rms_speed = m.mass > 0 ? std::sqrt(twice_kinetic / m.mass) : 0;
-  return m;
+  const SlideParticles& p = state_.particles;
+  return motion_of(
+      size(), limit, [&p](std::size_t i) { return p.mass[i]; },
+      [&p](std::size_t i) { return Vec3(p.ux[i], p.uy[i], p.uz[i]).squaredNorm(); });
 }
 
 std::size_t SlideSolver::bytes() const {
   std::size_t total = model_.terrain.bytes() + work_.cells.bytes() + work_.fields.bytes() +
                       work_.bond_lists.bytes();
   state_.particles.for_each_array(
-      [&total](const char*, const auto& array) { total += array.capacity() * sizeof(array[0]); });
-  const auto count = [&total](const auto& vector) {
-    total += vector.capacity() * sizeof(vector[0]);
-  };
-  count(state_.bonds.first);
-  count(state_.bonds.second);
-  count(state_.bonds.rest_length);
-  count(state_.peaks.thickness);
-  count(state_.peaks.speed);
-  count(state_.erodible);
-  count(work_.thickness);
-  count(work_.predicted);
-  count(work_.pushed);
-  count(work_.sorted_pressing);
-  count(work_.bond_force);
+      [&total](const char*, const auto& array) { total += bytes_of(array); });
+  const Bonds& bonds = state_.bonds;
+  total += bytes_of(bonds.first, bonds.second, bonds.rest_length, state_.peaks.thickness,
+                    state_.peaks.speed, state_.erodible, work_.thickness, work_.predicted,
+                    work_.pushed, work_.sorted_pressing, work_.bond_force);
   const SlideLoads& l = work_.loads;
-  for (const auto* array : {&l.ax, &l.ay, &l.az, &l.yield, &l.drag, &l.speed}) count(*array);
-  Places::for_each_array(work_.places, count);
+  total += bytes_of(l.ax, l.ay, l.az, l.yield, l.drag, l.speed);
+  Places::for_each_array(work_.places, [&](const auto& array) { total += bytes_of(array); });
   return total;
 }
 

@@ -4,14 +4,13 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <sstream>
 
 #include "snowshed/core/compensated_sum.hpp"
 #include "snowshed/core/errors.hpp"
+#include "snowshed/core/message_format.hpp"
 #include "snowshed/methods/slide/advance.hpp"
 #include "snowshed/methods/slide/forces.hpp"
 #include "snowshed/methods/slide/solver_impl.hpp"
-#include "snowshed/particles/id_order.hpp"
 
 namespace snowshed {
 namespace {
@@ -51,12 +50,6 @@ void check_no_hole(const Terrain& terrain, const Polygon& area, const std::strin
 /// Steps that stiff bonds may need in place of one.
 constexpr double most_parts = 100;
 
-std::string in_words(double value) {
-  std::ostringstream text;
-  text << value;
-  return text.str();
-}
-
 void check_on_terrain(const Terrain& terrain, const std::vector<SlideArea>& areas,
                       const std::string& kind) {
   for (std::size_t i = 0; i < areas.size(); ++i) {
@@ -82,10 +75,6 @@ SlideSolver::SlideSolver(SlideOptions o)
   check_on_terrain(model_.terrain, model_.areas.release, "release");
   check_effort(model_.settings, model_.terrain, model_.areas.release);
   state_.counters.smallest_dt = model_.settings.time_step;
-}
-
-void SlideSolver::require_sound() const {
-  if (broken_) throw SimulationError("the slide has failed; load a checkpoint to go on");
 }
 
 /// Appends a batch and bonds its particles with each other.
@@ -134,11 +123,11 @@ void SlideSolver::choose_step(SlideState& next, const SlideWork& work) const {
       0.5 * longest_bond_step(next.bonds, next.particles, work.thickness, s.bond_modulus);
   const double parts = std::ceil(s.time_step / longest);
   if (parts > most_parts)
-    throw InputError("/numerics/time_step", in_words(s.time_step) + " s; bonds with a modulus of " +
-                                                in_words(s.bond_modulus) +
-                                                " Pa need steps of at most " + in_words(longest) +
-                                                " s; at most " + in_words(most_parts) +
-                                                " are taken in place of one");
+    throw InputError("/numerics/time_step",
+                     show_rounded(s.time_step) + " s; bonds with a modulus of " +
+                         show_rounded(s.bond_modulus) + " Pa need steps of at most " +
+                         show_rounded(longest) + " s; at most " + show_rounded(most_parts) +
+                         " are taken in place of one");
   next.step = s.time_step / std::max(1.0, parts);
   next.counters.smallest_dt = std::min(next.counters.smallest_dt, next.step);
 }
@@ -161,11 +150,11 @@ void SlideSolver::accept(SlideState next) {
   count_as_added(next, work, next.energy);
   state_ = std::move(next);
   work_ = std::move(work);
-  order_known_ = false;
+  order_.forget();
 }
 
-void SlideSolver::release(const std::vector<ParticleBatch>& batches, const StopRequest& stop) {
-  require_sound();
+void SlideSolver::add(const std::vector<ParticleBatch>& batches, const StopRequest& stop) {
+  soundness_.require();
   SlideState next = state_;
   for (const ParticleBatch& batch : batches) append(next, batch, stop);
   next.stopped = false;
@@ -174,7 +163,7 @@ void SlideSolver::release(const std::vector<ParticleBatch>& batches, const StopR
 }
 
 void SlideSolver::replace(const std::vector<ParticleBatch>& batches) {
-  require_sound();
+  soundness_.require();
   SlideState next(model_);
   next.time = state_.time;
   next.counters = state_.counters;
@@ -187,14 +176,11 @@ void SlideSolver::replace(const std::vector<ParticleBatch>& batches) {
 }
 
 void SlideSolver::add_velocity(const std::vector<Vec3>& changes) {
-  require_sound();
+  soundness_.require();
   SlideState next = state_;
-  if (changes.size() != size())
-    throw InputError("velocity_changes", std::to_string(changes.size()) + " given for " +
-                                             std::to_string(size()) + " particles");
+  check_velocity_changes(changes, size());
   const std::vector<std::uint32_t>& at = order_by_id();
   for (std::size_t k = 0; k < at.size(); ++k) {
-    if (!changes[k].allFinite()) throw InputError("velocity_changes", "not finite");
     const Vec3 n = work_.places.normal(at[k]);
     const Vec3 along = changes[k] - changes[k].dot(n) * n;  // snow stays on the ground
     next.particles.ux[at[k]] += along.x();
@@ -205,10 +191,6 @@ void SlideSolver::add_velocity(const std::vector<Vec3>& changes) {
   accept(std::move(next));
 }
 
-void SlideSolver::settle(const std::vector<double>&, const std::vector<double>&) {
-  throw InputError("settling", "snow of a slide does not settle between events");
-}
-
 /// In the order of their cells particles find their neighbours faster. All or nothing: the
 /// workspace has room for all that follows.
 void SlideSolver::sort_now_and_then() {
@@ -216,7 +198,7 @@ void SlideSolver::sort_now_and_then() {
   if (std::is_sorted(work_.cells.order().begin(), work_.cells.order().end())) return;
   sort_by_cell(state_, work_);
   refresh(model_, state_, work_);
-  order_known_ = false;
+  order_.forget();
   ++state_.counters.sorts;
 }
 
@@ -227,7 +209,7 @@ void SlideSolver::choose_threads() {
 }
 
 void SlideSolver::step() {
-  require_sound();
+  soundness_.require();
   if (size() == 0) throw SimulationError("there is no snow on the terrain");
   work_.make_room(model_, state_);
   sort_now_and_then();
@@ -250,21 +232,13 @@ void SlideSolver::step() {
   const bool as_asked = state_.counters.smallest_dt == model_.settings.time_step;
   state_.time = as_asked ? double(state_.counters.steps) * state_.dt : state_.time + state_.dt;
   state_.counters.particle_updates += std::int64_t(size());
-  order_known_ = false;
+  order_.forget();
   work_.thread_choice.end();
   if (size() == 0) state_.stopped = true;
   if (!std::isfinite(state_.kinetic_energy)) {
-    broken_ = true;
-    throw SimulationError("a particle is not finite after " + std::to_string(state_.time) + " s");
+    soundness_.lose();
+    soundness_.fail("a particle is not finite after " + std::to_string(state_.time) + " s");
   }
-}
-
-const std::vector<std::uint32_t>& SlideSolver::order_by_id() const {
-  if (!order_known_) {
-    order_ = snowshed::order_by_id(state_.particles.id.data(), size());
-    order_known_ = true;
-  }
-  return order_;
 }
 
 }  // namespace snowshed

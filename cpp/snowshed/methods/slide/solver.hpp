@@ -5,9 +5,8 @@
 #include <memory>
 #include <vector>
 
-#include "snowshed/core/stop_request.hpp"
 #include "snowshed/geometry/height_field.hpp"
-#include "snowshed/methods/method.hpp"
+#include "snowshed/methods/capabilities.hpp"
 #include "snowshed/methods/slide/areas.hpp"
 #include "snowshed/methods/slide/settings.hpp"
 #include "snowshed/methods/slide/state.hpp"
@@ -22,15 +21,11 @@ struct SlideOptions {
   bool energy = false;    // whether to keep the energy balance
 };
 
-/// A slide as a method, and what only a slide has.
-class SlideMethod : public Method {
+/// A slide as a method, and what only a slide has. `seed` gives the particles of the release areas
+/// (`seed_release`).
+class SlideMethod : public Method, public SeedsItself, public KeepsEnergy, public ReportsRun {
  public:
-  /// The particles of the release areas; see `seed_release`. Throws Stopped on request.
-  virtual std::vector<ParticleBatch> seed(const StopRequest& stop) const = 0;
-  std::vector<ParticleBatch> seed() const { return seed({}); }
-  /// Adds particles as `add` does. Throws Stopped on request, and is then as it was.
-  virtual void release(const std::vector<ParticleBatch>&, const StopRequest& stop) = 0;
-  /// How many they are.
+  /// How many particles `seed` gives.
   virtual std::size_t count_seeds() const = 0;
   virtual const Terrain& terrain() const = 0;
   virtual const PeakFields& peaks() const = 0;

@@ -1,6 +1,7 @@
 // The slide's solver: what it holds, and how its parts go together.
 #pragma once
 
+#include "snowshed/methods/particle_method.hpp"
 #include "snowshed/methods/slide/release.hpp"
 #include "snowshed/methods/slide/solver.hpp"
 
@@ -11,11 +12,9 @@ class SlideSolver final : public SlideMethod {
   explicit SlideSolver(SlideOptions);
 
   using Method::add;
-  void add(const std::vector<ParticleBatch>& batches) override { release(batches, {}); }
-  void release(const std::vector<ParticleBatch>&, const StopRequest&) override;
+  void add(const std::vector<ParticleBatch>&, const StopRequest&) override;
   void replace(const std::vector<ParticleBatch>&) override;
   void add_velocity(const std::vector<Vec3>&) override;
-  void settle(const std::vector<double>& drops, const std::vector<double>& plastic) override;
 
   void step() override;
   bool at_safe_point() const override { return true; }
@@ -26,20 +25,23 @@ class SlideSolver final : public SlideMethod {
 
   std::vector<FieldInfo> fields() const override;
   FieldView field(const std::string&) const override;
-  const std::vector<std::uint32_t>& order_by_id() const override;
+  const std::vector<std::uint32_t>& order_by_id() const override {
+    return order_.of(state_.particles.id);
+  }
 
   std::size_t size() const override { return state_.particles.size(); }
   ParticleState state() const override;
   MotionSummary motion(double speed) const override;
-  EnergyBalance energy() const override { return {}; }
-  NamedEnergies energy_table() const override;
+  NamedEnergies energies() const override;
+  PointCloud snapshot() const override;
+  Section run_section() const override;
   std::size_t bytes() const override;
 
   void save(BinaryWriter&) const override;
   void load(const BinaryReader&) override;
   void check(const BinaryReader&) const override;
 
-  using SlideMethod::seed;
+  using SeedsItself::seed;
   std::vector<ParticleBatch> seed(const StopRequest& stop) const override {
     return seed_release(model_.settings, model_.terrain, model_.areas.release, stop);
   }
@@ -62,17 +64,14 @@ class SlideSolver final : public SlideMethod {
   void choose_threads();
   void choose_step(SlideState& next, const SlideWork& work) const;
   void count_as_added(const SlideState& next, const SlideWork& work, SlideEnergy& sums) const;
-  void require_sound() const;
-  double speed(std::size_t i) const;
   template <class Visit>
   void visit_fields(Visit) const;
 
   SlideModel model_;
   SlideState state_;
   SlideWork work_;
-  bool broken_ = false;  // a step has ended in a state that is not sound
-  mutable std::vector<std::uint32_t> order_;
-  mutable bool order_known_ = false;
+  Soundness soundness_;
+  IdOrder order_;
 };
 
 }  // namespace snowshed

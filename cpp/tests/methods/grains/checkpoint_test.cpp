@@ -51,7 +51,7 @@ TEST_F(GrainsCheckpoint, resumes_to_the_same_bits) {
         ASSERT_EQ(whole->time(), resumed->time());
         ASSERT_EQ(whole->state().positions, resumed->state().positions);
         ASSERT_EQ(whole->state().velocities, resumed->state().velocities);
-        ASSERT_EQ(whole->energy_table(), resumed->energy_table());
+        ASSERT_EQ(whole->energies(), resumed->energies());
         ASSERT_EQ(whole->measures().bonds, resumed->measures().bonds);
         ASSERT_EQ(whole->measures().stage, resumed->measures().stage);
         ASSERT_EQ(whole->measures().top_stress, resumed->measures().top_stress);
@@ -79,7 +79,7 @@ TEST_F(GrainsCheckpoint, resumes_to_the_same_bits_in_every_kind_of_stage) {
       ASSERT_EQ(whole->time(), resumed->time()) << "stage " << stage;
       ASSERT_EQ(whole->sphere_positions(), resumed->sphere_positions()) << "stage " << stage;
       ASSERT_EQ(whole->state().velocities, resumed->state().velocities) << "stage " << stage;
-      ASSERT_EQ(whole->energy_table(), resumed->energy_table()) << "stage " << stage;
+      ASSERT_EQ(whole->energies(), resumed->energies()) << "stage " << stage;
       ASSERT_EQ(whole->measures().bonds, resumed->measures().bonds) << "stage " << stage;
     }
     for (std::size_t i = 0; i < seen.size(); ++i) EXPECT_TRUE(seen[i]) << "stage " << i;

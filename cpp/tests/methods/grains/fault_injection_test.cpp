@@ -40,7 +40,7 @@ void expect_same_grains(const GrainsMethod& now, const GrainsMethod& wanted) {
   EXPECT_EQ(now.time(), wanted.time());
   EXPECT_EQ(now.counters().steps, wanted.counters().steps);
   EXPECT_EQ(now.counters().sorts, wanted.counters().sorts);
-  EXPECT_EQ(now.energy_table(), wanted.energy_table());
+  EXPECT_EQ(now.energies(), wanted.energies());
   EXPECT_EQ(now.measures().bonds, wanted.measures().bonds);
   EXPECT_EQ(now.measures().stage, wanted.measures().stage);
 }

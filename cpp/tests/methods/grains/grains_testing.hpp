@@ -98,7 +98,8 @@ inline void load_all(Method& method, int most) {
 
 inline std::map<std::string, double> energies_of(const Method& method) {
   std::map<std::string, double> found;
-  for (const auto& [name, joules] : method.energy_table()) found[name] = joules;
+  for (const auto& [name, joules] : capability<KeepsEnergy>(method)->energies())
+    found[name] = joules;
   return found;
 }
 

@@ -1,9 +1,8 @@
-#include "snowshed/methods/grains/loading.hpp"
-
 #include <gtest/gtest.h>
 
 #include "methods/grains/grains_testing.hpp"
 #include "snowshed/core/errors.hpp"
+#include "snowshed/methods/scene_parts.hpp"
 
 namespace snowshed {
 namespace {

@@ -22,10 +22,10 @@ struct Slide {
 };
 
 /// A slab 5 cm thick that is let go on a ramp of 40 degrees.
-std::unique_ptr<Method> slab_on_ramp(const Slide& slide) {
+std::unique_ptr<MpmMethod> slab_on_ramp(const Slide& slide) {
   const MpmOptions o = options_for({2, Precision::float32, slide.transfer});
-  auto solver =
-      make_mpm(o, {fixed(make_plane(Vec3::Zero(), ramp_normal), slide.condition, slide.friction)});
+  auto solver = make_solver(
+      o, {fixed(make_plane(Vec3::Zero(), ramp_normal), slide.condition, slide.friction)});
   ParticleBatch batch = filled_box(2, Vec3::Zero(), Vec3(slide.length, 0, 0.05), 0.005);
   for (Vec3& x : batch.positions) x = x.x() * ramp_slope + x.z() * ramp_normal;
   solver->add(batch);
@@ -87,8 +87,8 @@ TEST(Friction, HoldsBeyondTheAngleOfRepose) {
 TEST(Friction, StopsASlidingSlab) {
   // On level ground; once the contact has set in it takes v/(mu g) and v^2/(2 mu g) to stop.
   const auto solver =
-      make_mpm(options_for({2, Precision::float32}),
-               {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::separate, 0.5)});
+      make_solver(options_for({2, Precision::float32}),
+                  {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::separate, 0.5)});
   ParticleBatch batch = filled_box(2, Vec3::Zero(), Vec3(0.2, 0, 0.03), 0.005);
   batch.velocity.x() = 1;
   solver->add(batch);
@@ -121,7 +121,7 @@ void expect_coulomb(const Chunk& c, double bar) {
   MpmOptions o = options_for({2, Precision::float32}, dx);
   o.energy = true;
   const auto solver =
-      make_mpm(o, {fixed(make_plane(Vec3::Zero(), normal), Condition::separate, c.friction)});
+      make_solver(o, {fixed(make_plane(Vec3::Zero(), normal), Condition::separate, c.friction)});
   ParticleBatch chunk =
       filled_box(2, Vec3::Zero(), Vec3(c.cells, 0, std::min(c.cells, 5.0)) * dx, dx / 2);
   for (Vec3& x : chunk.positions) x = x.x() * slope + x.z() * normal;
@@ -187,10 +187,10 @@ TEST(ThinPanel, LetsNoSnowThrough) {
       if (t.dimension == 3 && condition != Condition::separate) continue;
       const double a = radians(t.turn);
       const Vec3 normal(std::sin(a), 0, std::cos(a)), along(std::cos(a), 0, -std::sin(a));
-      const auto solver = make_mpm(options_for({t.dimension, t.precision}),
-                                   {fixed(make_plate(Vec3(0.0031, 0, 0.0017), normal, 2,
-                                                     t.dimension == 2 ? infinity : 2, 0.002),
-                                          condition, 0.3)});
+      const auto solver = make_solver(options_for({t.dimension, t.precision}),
+                                      {fixed(make_plate(Vec3(0.0031, 0, 0.0017), normal, 2,
+                                                        t.dimension == 2 ? infinity : 2, 0.002),
+                                             condition, 0.3)});
       const double size = t.dimension == 2 ? 0.1 : 0.05;
       ParticleBatch batch =
           filled_box(t.dimension, Vec3(0, 0, 0.06), Vec3(size, size, 0.06 + size), 0.005);
@@ -208,7 +208,7 @@ TEST(ThinPanel, SnowThrownAgainstItsUndersideFallsOffAgain) {
   for (double degrees : {0.0, 40.0}) {
     const double a = radians(degrees);
     const Vec3 normal(std::sin(a), 0, std::cos(a));
-    const auto solver = make_mpm(
+    const auto solver = make_solver(
         options_for({2, Precision::float32}),
         {fixed(make_plate(Vec3::Zero(), normal, 2, std::numeric_limits<double>::infinity(), 0.002),
                Condition::separate, 0.6)});
@@ -234,7 +234,7 @@ TEST(ThinPanel, OfACombinedSolidLetsNoSnowThrough) {
                              make_box(Vec3(-0.05, 0, 0.0017), Vec3(0.3, 10, wall))});
   for (const Shape& shape : {bin, shelf}) {
     const auto solver =
-        make_mpm(options_for({2, Precision::float32}), {fixed(shape, Condition::separate, 0.3)});
+        make_solver(options_for({2, Precision::float32}), {fixed(shape, Condition::separate, 0.3)});
     ParticleBatch batch = filled_box(2, Vec3(-0.115, 0, 0.04), Vec3(-0.085, 0, 0.14), 0.005);
     batch.velocity.z() = -3;
     solver->add(batch);
@@ -254,7 +254,7 @@ TEST(Contact, SnowSinksLessThanACellIntoBodies) {
   for (const Shape& shape : shapes)
     for (Condition condition : {Condition::slip, Condition::separate, Condition::sticky}) {
       const auto solver =
-          make_mpm(options_for({2, Precision::float32}), {fixed(shape, condition, 0.2)});
+          make_solver(options_for({2, Precision::float32}), {fixed(shape, condition, 0.2)});
       ParticleBatch batch = filled_box(2, Vec3(-0.04, 0, 0.08), Vec3(0.06, 0, 0.14), 0.005);
       batch.velocity.z() = -3;
       solver->add(batch);
@@ -275,7 +275,7 @@ TEST(Contact, AMovingPlateCarriesSnowAlong) {
       make_plate(Vec3::Zero(), Vec3::UnitZ(), 1, std::numeric_limits<double>::infinity(), 0.05),
       Condition::sticky);
   plate.motion.emplace(motion);
-  const auto solver = make_mpm(options_for({2, Precision::float32}), {plate});
+  const auto solver = make_solver(options_for({2, Precision::float32}), {plate});
   solver->add(filled_box(2, Vec3(0, 0, 0.003), Vec3(0.08, 0, 0.033), 0.005));
   const ParticleState start = solver->state();
   run_until(*solver, 0.2);

@@ -11,12 +11,12 @@ namespace {
 constexpr double cell = 0.01;
 
 /// A block of elastic snow, 4 cells high, that rests on level ground.
-std::unique_ptr<Method> block_on(const ContactLaw& law, double gravity, const Vec3& velocity) {
+std::unique_ptr<MpmMethod> block_on(const ContactLaw& law, double gravity, const Vec3& velocity) {
   MpmOptions o = options_for({2, Precision::float32}, cell);
   o.gravity = gravity;
   o.snows[0].model = SnowModel::elastic;
   auto solver =
-      make_mpm(o, {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), law.condition, law.friction)});
+      make_solver(o, {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), law.condition, law.friction)});
   ParticleBatch block = filled_box(2, Vec3::Zero(), Vec3(0.08, 0, 0.04), cell / 2);
   block.velocity = velocity;
   solver->add(block);
@@ -80,7 +80,7 @@ double sunk_over_the_edge(Condition condition) {
   MpmOptions o = options_for({2, Precision::float32}, cell);
   o.snows[0].model = SnowModel::elastic;
   const Shape shelf = make_box(Vec3(-0.5, 0, -0.05), Vec3(1, 1e9, 0.1));
-  const auto solver = make_mpm(o, {fixed(shelf, condition, 0.8)});
+  const auto solver = make_solver(o, {fixed(shelf, condition, 0.8)});
   solver->add(filled_box(2, Vec3(-0.08, 0, 0), Vec3(0.12, 0, 0.04), cell / 2));
   run_until(*solver, 0.33);
   const ParticleState s = solver->state();
@@ -99,7 +99,7 @@ TEST(Conditions, WithSlipSnowLeavesAPanelOverItsEdge) {
   const Vec3 normal(std::sin(tilt), 0, std::cos(tilt)), slope(std::cos(tilt), 0, -std::sin(tilt));
   const Shape panel = make_plate(-0.5 * length * slope, normal, length, infinity, 0.02);
   const auto solver =
-      make_mpm(options_for({2, Precision::float32}, cell), {fixed(panel, Condition::slip, 0.3)});
+      make_solver(options_for({2, Precision::float32}, cell), {fixed(panel, Condition::slip, 0.3)});
   ParticleBatch slab = filled_box(2, Vec3(-0.15, 0, 0), Vec3(-0.05, 0, 0.03), cell / 2);
   for (Vec3& x : slab.positions) x = x.x() * slope + x.z() * normal;
   solver->add(slab);

@@ -34,12 +34,12 @@ TEST(Damping, OfARateIsTheSameOverStepsOfAnyLength) {
 double spin_left(const MpmSettings& numerics) {
   constexpr double radius = 0.02, spin = 20, duration = 0.02;
   MpmOptions o = options_for({2, Precision::float64});
-  o.numerics.flip_ratio = numerics.flip_ratio;
-  o.numerics.damping_rate = numerics.damping_rate;
-  o.numerics.courant_factor = numerics.courant_factor;
+  o.settings.flip_ratio = numerics.flip_ratio;
+  o.settings.damping_rate = numerics.damping_rate;
+  o.settings.courant_factor = numerics.courant_factor;
   o.gravity = 0;
   o.snows[0].model = SnowModel::elastic;
-  const auto solver = make_mpm(o, {});
+  const auto solver = make_solver(o, {});
   add_spinning_disc(*solver, radius, spin, 0.0025);
   const auto angular_momentum = [](const ParticleState& s) {
     double sum = 0;

@@ -13,7 +13,7 @@ TEST(Method, AddedVelocitiesCountInTheEnergyBalance) {
   MpmOptions options = options_for({3, Precision::float64});
   options.energy = true;
   options.gravity = 0;
-  const auto solver = make_mpm(options, {});
+  const auto solver = make_solver(options, {});
   solver->add(filled_box(3, Vec3::Zero(), Vec3(0.04, 0.04, 0.04), 0.005));
   std::vector<Vec3> changes(solver->size(), Vec3(1, 0, 2));
   solver->add_velocity(changes);
@@ -29,7 +29,7 @@ TEST(Method, AddedVelocitiesCountInTheEnergyBalance) {
 TEST(Method, SettlingLowersAndCompacts) {
   MpmOptions options = options_for({3, Precision::float64});
   options.energy = true;
-  const auto solver = make_mpm(options, {});
+  const auto solver = make_solver(options, {});
   solver->add(filled_box(3, Vec3(0, 0, 1), Vec3(0.1, 0.04, 1.3), 0.01));
   run_steps(*solver, 10);
   const ParticleState before = solver->state();
@@ -59,7 +59,7 @@ TEST(Method, SettlingLowersAndCompacts) {
 }
 
 TEST(Method, ReportsItsParticles) {
-  const auto solver = make_mpm(options_for({3, Precision::float64}), {});
+  const auto solver = make_solver(options_for({3, Precision::float64}), {});
   ParticleBatch batch = filled_box(3, Vec3(-0.05, 0, 0), Vec3(0.05, 0.02, 0.03), 0.01);
   batch.velocity = Vec3(1, 2, 2);
   batch.event = 3;

@@ -24,7 +24,7 @@ void expect_dissipation(const EnergyBalance& before, const EnergyBalance& now, d
 TEST(Energy, FreeFallOnlyTurnsHeightIntoSpeed) {
   MpmOptions o = options_for({2, Precision::float64});
   o.energy = true;
-  const auto solver = make_mpm(o, {});
+  const auto solver = make_solver(o, {});
   ParticleBatch batch = filled_box(2, Vec3(0, 0, 1), Vec3(0.05, 0, 1.05), 0.005);
   batch.velocity.x() = 2;
   solver->add(batch);
@@ -50,7 +50,7 @@ TEST(Energy, BooksOfASlidingSlabClose) {
     MpmOptions o = options_for({2, Precision::float32, transfer});
     o.energy = true;
     const auto solver =
-        make_mpm(o, {fixed(make_plane(Vec3::Zero(), normal), Condition::separate, 0.3)});
+        make_solver(o, {fixed(make_plane(Vec3::Zero(), normal), Condition::separate, 0.3)});
     ParticleBatch batch = filled_box(2, Vec3::Zero(), Vec3(0.3, 0, 0.05), 0.005);
     for (Vec3& x : batch.positions) x = x.x() * slope + x.z() * normal;
     solver->add(batch);
@@ -82,7 +82,7 @@ TEST(Energy, BooksOfACollapsingColumnClose) {
     o.snows[0].preconsolidation_pressure = 200;  // too weak to stand
     o.snows[0].cohesion = 0;
     const auto solver =
-        make_mpm(o, {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::sticky)});
+        make_solver(o, {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::sticky)});
     const double height = way.dimension == 2 ? 0.25 : 0.12;
     ParticleBatch batch = filled_box(way.dimension, Vec3::Zero(), Vec3(0.05, 0.05, height), 0.005);
     batch.velocity.x() = 0.5;
@@ -104,7 +104,7 @@ TEST(Energy, BooksOfACollapsingColumnClose) {
 TEST(Energy, BooksGoOnWhenSnowIsAddedOrRemoved) {
   MpmOptions o = options_for({2, Precision::float64});
   o.energy = true;
-  const auto solver = make_mpm(o, {});
+  const auto solver = make_solver(o, {});
   solver->add(filled_box(2, Vec3(0, 0, 1), Vec3(0.05, 0, 1.05), 0.005));
   run_until(*solver, 0.1);  // the first body falls, then a second appears
   const double residual = solver->energy().residual(), added = solver->energy().added;

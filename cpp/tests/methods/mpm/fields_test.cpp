@@ -3,14 +3,14 @@
 #include "methods/mpm/solver_testing.hpp"
 #include "snowshed/core/errors.hpp"
 #include "snowshed/material/cam_clay.hpp"
-#include "snowshed/particles/quantities.hpp"
+#include "snowshed/methods/quantities.hpp"
 
 namespace snowshed {
 namespace {
 
 class Fields : public testing::TestWithParam<Way> {
  protected:
-  Fields() : solver_(make_mpm(options_for(GetParam()), {})) {
+  Fields() : solver_(make_solver(options_for(GetParam()), {})) {
     solver_->add(
         filled_box(GetParam().dimension, Vec3(-0.03, -0.03, 1.0), Vec3(0.05, 0.03, 1.1), 0.005));
     shake(0.5);
@@ -26,7 +26,7 @@ class Fields : public testing::TestWithParam<Way> {
     run_steps(*solver_, 80);
   }
 
-  std::unique_ptr<Method> solver_;
+  std::unique_ptr<MpmMethod> solver_;
 };
 
 /// Every field in the order of ids has the bits of the state, which is in that order.

@@ -45,7 +45,7 @@ TEST(MovingContact, ASlipperyPlateLiftsSnow) {
     MotionSpec motion;
     motion.velocity = Vec3(0.4, 0, 0.5);
     plate.motion.emplace(motion);
-    const auto solver = make_mpm(options_for({2, Precision::float32}, cell), {plate});
+    const auto solver = make_solver(options_for({2, Precision::float32}, cell), {plate});
     solver->add(filled_box(2, Vec3(0, 0, 0.003), Vec3(0.08, 0, 0.033), 0.005));
     const Vec3 start = weighted_mean(solver->state(), solver->state().positions);
     run_until(*solver, 0.1);

@@ -19,13 +19,13 @@ Snow soft_snow() {
 
 /// Snow thrown onto a slippery slope, in two halves of the materials 0 and `upper`, with the energy
 /// balance.
-std::unique_ptr<Method> thrown_halves(const Way& way, std::vector<Snow> snows, int upper,
-                                      int threads = 1, bool energy_balance = true) {
+std::unique_ptr<MpmMethod> thrown_halves(const Way& way, std::vector<Snow> snows, int upper,
+                                         int threads = 1, bool energy_balance = true) {
   MpmOptions o = options_for(way);
   o.snows = std::move(snows);
-  o.numerics.threads = threads;
+  o.settings.threads = threads;
   o.energy = energy_balance;
-  auto solver = make_mpm(
+  auto solver = make_solver(
       o, {fixed(make_plane(Vec3::Zero(), Vec3(0.5, 0, 1).normalized()), Condition::separate, 0.3)});
   const double size = way.dimension == 2 ? 0.12 : 0.05;
   for (int half : {0, 1}) {
@@ -107,12 +107,12 @@ TEST(MaterialPerParticle, TheStiffestThereIsLimitsTheStep) {
   o.gravity = 0;
   o.snows = {soft_snow(), Snow()};
   const auto limit = [&](const Snow& s) {
-    return o.numerics.courant_factor * elastic_time_step(s.youngs_modulus, s.poissons_ratio,
-                                                         s.density, 2, o.numerics.dx,
+    return o.settings.courant_factor * elastic_time_step(s.youngs_modulus, s.poissons_ratio,
+                                                         s.density, 2, o.settings.dx,
                                                          Transfer::flip, Basis::quadratic);
   };
   ASSERT_LT(limit(o.snows[1]), 0.8 * limit(o.snows[0]));
-  const auto solver = make_mpm(o, {});
+  const auto solver = make_solver(o, {});
   solver->add(filled_box(2, Vec3::Zero(), Vec3(0.05, 0, 0.05), 0.005, 120));
   solver->step();
   EXPECT_DOUBLE_EQ(solver->time_step(), limit(o.snows[0]));
@@ -130,7 +130,7 @@ TEST(MaterialPerParticle, TheStiffestLimitsTheStepWhereverItStandsInTheList) {
   for (const int stiffest : {0, 1}) {
     o.snows = {soft_snow(), soft_snow()};
     o.snows[std::size_t(stiffest)] = Snow();
-    const auto solver = make_mpm(o, {});
+    const auto solver = make_solver(o, {});
     for (const int material_id : {0, 1}) {
       const double x = 0.05 * material_id;
       ParticleBatch batch = filled_box(2, Vec3(x, 0, 0), Vec3(x + 0.05, 0, 0.05), 0.005, 210);
@@ -162,9 +162,9 @@ TEST(MaterialPerParticle, AColumnOfTwoSettlesPiecewise) {
     return s.youngs_modulus * (1 - nu) / ((1 + nu) * (1 - 2 * nu));
   };
   const auto solver =
-      make_mpm(o, {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::sticky),
-                   fixed(make_plane(Vec3::Zero(), Vec3::UnitX()), Condition::separate),
-                   fixed(make_plane(Vec3(width, 0, 0), -Vec3::UnitX()), Condition::separate)});
+      make_solver(o, {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::sticky),
+                      fixed(make_plane(Vec3::Zero(), Vec3::UnitX()), Condition::separate),
+                      fixed(make_plane(Vec3(width, 0, 0), -Vec3::UnitX()), Condition::separate)});
   for (int material_id : {0, 1}) {
     ParticleBatch layer =
         filled_box(2, Vec3(0, 0, material_id * half), Vec3(width, 0, (material_id + 1) * half),
@@ -206,7 +206,7 @@ TEST(MaterialPerParticle, EnergyBooksClose) {
     for (Snow& snow : o.snows) snow.preconsolidation_pressure = 200;  // too weak to stand
     o.snows[1].cohesion = 0;
     const auto solver =
-        make_mpm(o, {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::sticky)});
+        make_solver(o, {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::sticky)});
     for (int material_id : {0, 1}) {
       ParticleBatch layer =
           filled_box(2, Vec3(0, 0, 0.12 * material_id), Vec3(0.05, 0, 0.12 * (material_id + 1)),

@@ -37,7 +37,7 @@ TEST_P(InEveryWay, FreeFlightKeepsMassAndMomentum) {
   const Way way = GetParam();
   MpmOptions o = options_for(way);
   o.gravity = 0;
-  const auto solver = make_mpm(o, {});
+  const auto solver = make_solver(o, {});
   add_swarm(*solver, way, 80, 0.025, 1.0);
   const ParticleState before = solver->state();
   run_steps(*solver, 70);  // past a sort
@@ -51,7 +51,7 @@ TEST_P(InEveryWay, FreeFlightKeepsMassAndMomentum) {
 
 TEST_P(InEveryWay, FreeFallIsExact) {
   const Way way = GetParam();
-  const auto solver = make_mpm(options_for(way), {});
+  const auto solver = make_solver(options_for(way), {});
   ParticleBatch batch = filled_box(way.dimension, Vec3(0, 0, 1), Vec3(0.03, 0.03, 1.03), 0.005);
   batch.velocity = Vec3(0.5, 0, 1);
   solver->add(batch);
@@ -112,7 +112,7 @@ TEST_F(SolverFiles, ApicKeepsAngularMomentum) {
     if (way.transfer != Transfer::apic || way.precision != Precision::float64) continue;
     MpmOptions o = options_for(way);
     o.gravity = 0;
-    const auto solver = make_mpm(o, {});
+    const auto solver = make_solver(o, {});
     add_swarm(*solver, way, 80, 0.025, 1.0);
     const Vec3 before = angular_momentum(*solver, way, 0.01);
     run_steps(*solver, 70);
@@ -130,9 +130,9 @@ TEST_F(SolverFiles, ADiscKeepsSpinning) {
     const Way way{2, Precision::float64, transfer};
     MpmOptions o = options_for(way);
     o.gravity = 0;
-    o.numerics.flip_ratio = 1;  // each percent of PIC damps a spin of so few cells visibly
+    o.settings.flip_ratio = 1;  // each percent of PIC damps a spin of so few cells visibly
     o.snows[0].model = SnowModel::elastic;
-    const auto solver = make_mpm(o, {});
+    const auto solver = make_solver(o, {});
     add_spinning_disc(*solver, radius, spin, 0.005);
     const ParticleState before = solver->state();
     double inertia = 0;
@@ -161,7 +161,7 @@ TEST(Method, AnElasticBarVibratesAtItsNaturalFrequency) {
   o.snows[0].poissons_ratio = 0;
   const double c = std::sqrt(o.snows[0].youngs_modulus / o.snows[0].density);
   const double frequency = c / (2 * length);
-  const auto solver = make_mpm(o, {});
+  const auto solver = make_solver(o, {});
   const ParticleBatch bar = filled_box(2, Vec3(0, 0, 0), Vec3(length, 0, 0.03), 0.005);
   for (double x = 0.0025; x < length; x += 0.005) {  // columns of equal velocity
     ParticleBatch column;
@@ -208,9 +208,9 @@ TEST(Method, AColumnCarriesItsWeight) {
   const double lambda = 1e5 * nu / ((1 + nu) * (1 - 2 * nu)), s = lambda + 2 * mu;
   const double weight = o.snows[0].density * o.gravity;
   const auto solver =
-      make_mpm(o, {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::sticky),
-                   fixed(make_plane(Vec3::Zero(), Vec3::UnitX()), Condition::separate),
-                   fixed(make_plane(Vec3(width, 0, 0), -Vec3::UnitX()), Condition::separate)});
+      make_solver(o, {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::sticky),
+                      fixed(make_plane(Vec3::Zero(), Vec3::UnitX()), Condition::separate),
+                      fixed(make_plane(Vec3(width, 0, 0), -Vec3::UnitX()), Condition::separate)});
   solver->add(filled_box(2, Vec3::Zero(), Vec3(width, 0, height), spacing));
   const ParticleState start = solver->state();
   const std::size_t n = start.positions.size();
@@ -242,11 +242,11 @@ TEST(Method, AColumnCarriesItsWeight) {
 // --- the same bits ----------------------------------------------------------------------------
 
 /// Snow thrown onto a slippery slope: contact, plasticity, blocks that come and go.
-std::unique_ptr<Method> thrown_snow(Way way, int threads, double size, bool energy_balance) {
+std::unique_ptr<MpmMethod> thrown_snow(Way way, int threads, double size, bool energy_balance) {
   MpmOptions o = options_for(way);
-  o.numerics.threads = threads;
+  o.settings.threads = threads;
   o.energy = energy_balance;
-  auto solver = make_mpm(
+  auto solver = make_solver(
       o, {fixed(make_plane(Vec3::Zero(), Vec3(0.5, 0, 1).normalized()), Condition::separate, 0.3)});
   ParticleBatch batch = filled_box(way.dimension, Vec3(0, 0, 0.01), Vec3(size, size, size), 0.005);
   batch.velocity = Vec3(1, 0, -3);
@@ -311,7 +311,7 @@ TEST(Method, AViolentImpactStaysFinite) {
     MpmOptions o = options_for({2, Precision::float32, transfer});
     o.snows[0].youngs_modulus = 1e4;
     const auto solver =
-        make_mpm(o, {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::sticky)});
+        make_solver(o, {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::sticky)});
     ParticleBatch batch = filled_box(2, Vec3(0, 0, 0.02), Vec3(0.1, 0, 0.12), 0.005);
     batch.velocity.z() = -100;
     solver->add(batch);
@@ -328,9 +328,9 @@ TEST(Method, AViolentImpactStaysFinite) {
 TEST(Method, RejectsStepsThatStrainTooMuch) {
   for (double limit : {0.2, 0.002}) {
     MpmOptions o = options_for({2, Precision::float64});
-    o.numerics.strain_limit = limit;
+    o.settings.strain_limit = limit;
     const auto solver =
-        make_mpm(o, {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::sticky)});
+        make_solver(o, {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::sticky)});
     ParticleBatch batch = filled_box(2, Vec3(0, 0, 0.005), Vec3(0.05, 0, 0.055), 0.005);
     batch.velocity.z() = -1;
     solver->add(batch);
@@ -344,7 +344,7 @@ TEST(Method, RejectsStepsThatStrainTooMuch) {
 }
 
 TEST(Method, FastSnowMovesLessThanHalfACellInEveryStep) {
-  const auto solver = make_mpm(options_for({2, Precision::float32}), {});
+  const auto solver = make_solver(options_for({2, Precision::float32}), {});
   ParticleBatch batch = filled_box(2, Vec3::Zero(), Vec3(0.03, 0, 0.03), 0.005);
   batch.velocity.x() = 200;
   solver->add(batch);
@@ -356,9 +356,9 @@ TEST(Method, FastSnowMovesLessThanHalfACellInEveryStep) {
 
 TEST(Method, GivesUpWithAClearErrorWhereNoStepIsSmallEnough) {
   MpmOptions o = options_for({2, Precision::float64});
-  o.numerics.strain_limit = 1e-12;
+  o.settings.strain_limit = 1e-12;
   const auto solver =
-      make_mpm(o, {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::sticky)});
+      make_solver(o, {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::sticky)});
   ParticleBatch batch = filled_box(2, Vec3::Zero(), Vec3(0.05, 0, 0.05), 0.005);
   batch.velocity.z() = -1;
   solver->add(batch);
@@ -377,7 +377,7 @@ TEST(Method, ParticlesOnAndNextToNodesDoNoHarm) {
   for (const Way& way : all_ways())
     for (double dx : {1e-3, 0.01, 1.0}) {
       SCOPED_TRACE(way.name() + ", dx " + std::to_string(dx));
-      const auto solver = make_mpm(options_for(way, dx), {});
+      const auto solver = make_solver(options_for(way, dx), {});
       const double node = base_offset(way.basis) * dx;
       ParticleBatch batch;
       int k = 0;

@@ -44,13 +44,18 @@ inline std::vector<Way> all_ways() {
 inline MpmOptions options_for(const Way& way, double dx = 0.01) {
   MpmOptions o;
   o.dimension = way.dimension;
-  o.numerics.dx = dx;
-  o.numerics.precision = way.precision;
-  o.numerics.transfer = way.transfer;
-  o.numerics.basis = way.basis;
-  o.numerics.threads = 1;
-  o.numerics.sleep_speed = 0;  // most of these tests are about small motions
+  o.settings.dx = dx;
+  o.settings.precision = way.precision;
+  o.settings.transfer = way.transfer;
+  o.settings.basis = way.basis;
+  o.settings.threads = 1;
+  o.settings.sleep_speed = 0;  // most of these tests are about small motions
   return o;
+}
+
+inline std::unique_ptr<MpmMethod> make_solver(MpmOptions o, std::vector<Obstacle> obstacles) {
+  o.obstacles = std::move(obstacles);
+  return make_mpm(std::move(o));
 }
 
 inline Obstacle fixed(Shape shape, Condition condition, double friction = 0.0) {

@@ -58,9 +58,9 @@ double pressure_from_round_off(Transfer transfer, Basis basis, double fraction, 
   MpmOptions o = options_for({2, Precision::float64, transfer, basis});
   o.gravity = 0;
   o.snows[0].model = SnowModel::elastic;
-  o.numerics.courant_factor = factor;
-  o.numerics.strain_limit = 1e6;
-  const auto solver = make_mpm(o, {});
+  o.settings.courant_factor = factor;
+  o.settings.strain_limit = 1e6;
+  const auto solver = make_solver(o, {});
   ParticleBatch one;
   const double x = (3 + base_offset(basis) + fraction) * 0.01;
   one.positions = {Vec3(x, 0, x)};

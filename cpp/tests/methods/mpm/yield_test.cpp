@@ -46,7 +46,7 @@ double fall_of_column(int dimension, double part_of_strength) {
   const double stress = part_of_strength * tensile_strength(snow, dimension);
   o.gravity = stress / (snow.density * column_length);
   const auto solver =
-      make_mpm(o, {fixed(make_plane(Vec3::Zero(), -Vec3::UnitZ()), Condition::sticky)});
+      make_solver(o, {fixed(make_plane(Vec3::Zero(), -Vec3::UnitZ()), Condition::sticky)});
   const double width = dimension == 2 ? 0.06 : 0.03;
   solver->add(filled_box(dimension, Vec3(0, 0, -column_length), Vec3(width, width, 0), 0.005));
   const double period = 4 * column_length / std::sqrt(snow.youngs_modulus / snow.density);
@@ -116,13 +116,13 @@ Stress stress_at_middle(const Method& solver, const Snow& snow, int dimension) {
 
 /// A block about the origin in which the velocity is `gradient` times the position. Waves from its
 /// faces reach the middle only after what the tests look at.
-std::unique_ptr<Method> straining_block(const Snow& snow, int dimension, const Mat3& gradient) {
+std::unique_ptr<MpmMethod> straining_block(const Snow& snow, int dimension, const Mat3& gradient) {
   MpmOptions o = options_for({dimension, Precision::float64});
   o.gravity = 0;
-  o.numerics.dx = 0.02;
-  o.numerics.courant_factor = 0.1;
+  o.settings.dx = 0.02;
+  o.settings.courant_factor = 0.1;
   o.snows[0] = snow;
-  auto solver = make_mpm(o, {});
+  auto solver = make_solver(o, {});
   const ParticleBatch block =
       filled_box(dimension, Vec3::Constant(-0.1), Vec3::Constant(0.1), 0.01);
   std::vector<ParticleBatch> single;

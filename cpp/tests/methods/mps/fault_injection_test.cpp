@@ -48,7 +48,7 @@ void expect_same_snow(const MpsMethod& now, const MpsMethod& wanted) {
   EXPECT_EQ(now.time(), wanted.time());
   EXPECT_EQ(now.time_step(), wanted.time_step());
   EXPECT_EQ(now.counters().steps, wanted.counters().steps);
-  EXPECT_EQ(now.energy_table(), wanted.energy_table());
+  EXPECT_EQ(now.energies(), wanted.energies());
   EXPECT_EQ(now.report().mean_pressure_iterations, wanted.report().mean_pressure_iterations);
 }
 

@@ -28,7 +28,8 @@ SlideOptions audited(HeightField terrain, SlideArea release) {
 
 std::map<std::string, double> energies(const Method& method) {
   std::map<std::string, double> found;
-  for (const auto& [name, joules] : method.energy_table()) found[name] = joules;
+  for (const auto& [name, joules] : capability<KeepsEnergy>(method)->energies())
+    found[name] = joules;
   return found;
 }
 

@@ -64,9 +64,9 @@ TEST(SlideRelease, a_request_to_stop_is_heard_and_leaves_the_slide_as_it_was) {
     const StopRequest always = [] { return true; };
     EXPECT_THROW(slide->seed(always), Stopped);
     const std::vector<ParticleBatch> snow = slide->seed();
-    EXPECT_THROW(slide->release(snow, always), Stopped);
+    EXPECT_THROW(slide->add(snow, always), Stopped);
     EXPECT_EQ(slide->size(), 0u);
-    slide->release(snow, {});
+    slide->add(snow, {});
     EXPECT_EQ(slide->size(), count(snow));
   }
 }

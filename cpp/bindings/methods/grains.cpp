@@ -1,0 +1,95 @@
+// What only a simulation of grains tells.
+#include <pybind11/numpy.h>
+
+#include <algorithm>
+
+#include "array_copies.hpp"
+#include "method_bindings.hpp"
+#include "snowshed/methods/grains/solver.hpp"
+
+namespace py = pybind11;
+
+namespace snowshed {
+namespace {
+
+/// The solver as grains; throws InputError where the scene's method is another.
+const GrainsMethod& grains_of(const Simulation& sim) {
+  const auto* grains = dynamic_cast<const GrainsMethod*>(&sim.solver());
+  if (!grains) throw InputError("/method", "is not \"grains\", and loads no sample");
+  return *grains;
+}
+
+/// The rows so far, column by column.
+py::dict curve(const Simulation& sim) {
+  grains_of(sim);  // or throws
+  return columns_of(sim.curve()->columns(), sim.curve()->values());
+}
+
+/// Grains that touch: their numbers (n, 2), where, the force on the first, and whether bonded.
+py::tuple contacts(const Simulation& sim) {
+  const std::vector<GrainContact> contacts = grains_of(sim).grain_contacts();
+  py::array_t<std::int64_t> grains({py::ssize_t(contacts.size()), py::ssize_t(2)});
+  auto pairs = grains.mutable_unchecked<2>();
+  std::vector<Vec3> points, forces;
+  std::vector<bool> bonded;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    pairs(py::ssize_t(i), 0) = contacts[i].first;
+    pairs(py::ssize_t(i), 1) = contacts[i].second;
+    points.push_back(contacts[i].point);
+    forces.push_back(contacts[i].force);
+    bonded.push_back(contacts[i].bonded);
+  }
+  return py::make_tuple(grains, rows(points), rows(forces), column<bool>(bonded));
+}
+
+/// Centres of the spheres (n, 3), and the grain that each belongs to.
+py::tuple spheres(const Simulation& sim) {
+  return py::make_tuple(rows(grains_of(sim).sphere_positions()),
+                        column<std::int64_t>(grains_of(sim).sphere_grains()));
+}
+
+using LabelArray = py::array_t<std::int32_t, py::array::c_style | py::array::forcecast>;
+
+/// An image of labels (nz, ny, nx).
+LabelImage image_of(const LabelArray& labels) {
+  if (labels.ndim() != 3) throw InputError("labels", "(nz, ny, nx) is needed");
+  LabelImage image;
+  for (int axis = 0; axis < 3; ++axis)
+    image.size[std::size_t(axis)] = std::size_t(labels.shape(2 - axis));
+  image.labels.assign(labels.data(), labels.data() + labels.size());
+  return image;
+}
+
+std::string checked_label_note(const LabelArray& labels, bool split) {
+  const LabelPieces found = count_pieces(image_of(labels));
+  check_labels(found);
+  return label_note(found, split);
+}
+
+py::array_t<std::int32_t> split_labels(const LabelArray& labels) {
+  LabelImage image = image_of(labels);
+  split_pieces(image);
+  py::array_t<std::int32_t> found({labels.shape(0), labels.shape(1), labels.shape(2)});
+  std::copy(image.labels.begin(), image.labels.end(), found.mutable_data());
+  return found;
+}
+
+void bind_labels(py::module_& m) {
+  m.attr("smallest_grain") = smallest_grain;
+  m.attr("largest_grain") = largest_grain;
+  m.def("check_grain_diameter", &check_grain_diameter, py::arg("median"),
+        "InputError unless the median diameter of grains (m) is that of snow.");
+  m.def("label_note", &checked_label_note, py::arg("labels"), py::arg("split"),
+        "What should be known of labels (nz, ny, nx), or nothing; InputError if they are none.");
+  m.def("split_labels", &split_labels, py::arg("labels"),
+        "Labels of which each piece has a number of its own.");
+}
+
+const AddedBindings added{{&bind_labels, [](SimulationClass& c) {
+                             c.reads("grains_curve", &curve);
+                             c.reads("grains_contacts", &contacts);
+                             c.reads("grains_spheres", &spheres);
+                           }}};
+
+}  // namespace
+}  // namespace snowshed

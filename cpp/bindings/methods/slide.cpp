@@ -1,0 +1,77 @@
+// What only a slide tells.
+#include <pybind11/numpy.h>
+
+#include "array_copies.hpp"
+#include "method_bindings.hpp"
+#include "snowshed/core/errors.hpp"
+#include "snowshed/methods/slide/solver.hpp"
+
+namespace py = pybind11;
+
+namespace snowshed {
+namespace {
+
+/// The solver as a slide; throws InputError where the scene's method is another.
+const SlideMethod& slide_of(const Simulation& sim) {
+  const auto* slide = dynamic_cast<const SlideMethod*>(&sim.solver());
+  if (!slide) throw InputError("/method", "is not \"slide\", and has no maps");
+  return *slide;
+}
+
+py::dict slide_maps(const Simulation& sim) {
+  const SlideMethod& slide = slide_of(sim);
+  const Terrain& t = slide.terrain();
+  const auto map = [&](const std::vector<double>& values) {
+    return map_of(values, t.rows(), t.columns());
+  };
+  std::vector<double> heights;
+  for (int i = 0; i < t.rows() * t.columns(); ++i) heights.push_back(t.nodes()[i].height);
+  py::dict d;
+  d["terrain"] = map(heights);
+  d["peak_thickness"] = map(slide.peaks().thickness);
+  d["peak_speed"] = map(slide.peaks().speed);
+  d["thickness"] = map(slide.flow().thickness_everywhere(t));
+  d["speed"] = map(slide.flow().speed_everywhere(t));
+  d["west"] = t.west();
+  d["south"] = t.south();
+  d["cell"] = t.cell();
+  d["density"] = sim.scene().numerics.as<SlideSettings>().density;
+  return d;
+}
+
+py::dict slide_facts(const Simulation& sim) {
+  const SlideMethod& slide = slide_of(sim);
+  const MassBalance& m = slide.mass_balance();
+  py::dict d;
+  d["bonds_made"] = slide.bonds_made();
+  d["bonds"] = slide.bonds().size();
+  d["released_kg"] = m.released;
+  d["entrained_kg"] = m.entrained;
+  d["left_terrain_kg"] = m.left;
+  d["left_terrain"] = m.particles_left;
+  return d;
+}
+
+/// The bonds that hold: ids of their particles (n, 2), and rest lengths (n).
+py::tuple slide_bonds(const Simulation& sim) {
+  const SlideMethod& slide = slide_of(sim);
+  const Bonds& bonds = slide.bonds();
+  const FieldView ids = slide.field("id");
+  py::array_t<std::int64_t> pairs({py::ssize_t(bonds.size()), py::ssize_t(2)});
+  auto out = pairs.mutable_unchecked<2>();
+  for (std::size_t b = 0; b < bonds.size(); ++b) {
+    out(py::ssize_t(b), 0) = *ids.at<std::uint32_t>(bonds.first[b]);
+    out(py::ssize_t(b), 1) = *ids.at<std::uint32_t>(bonds.second[b]);
+  }
+  return py::make_tuple(pairs, column<double>(bonds.rest_length));
+}
+
+const AddedBindings added{{[](py::module_&) {},
+                           [](SimulationClass& c) {
+                             c.reads("slide_maps", &slide_maps);
+                             c.reads("slide_facts", &slide_facts);
+                             c.reads("slide_bonds", &slide_bonds);
+                           }}};
+
+}  // namespace
+}  // namespace snowshed

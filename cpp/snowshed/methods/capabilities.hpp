@@ -1,0 +1,121 @@
+// What only some methods can do. A method that can derives from the class too, and whoever needs it
+// asks for it (`capability`).
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "snowshed/core/stop_request.hpp"
+#include "snowshed/methods/energy_balance.hpp"
+#include "snowshed/methods/method.hpp"
+
+namespace snowshed {
+
+/// The method as one that has a capability; null where it has not.
+template <class Capability, class SomeMethod>
+auto* capability(SomeMethod& method) {
+  using Kind = std::conditional_t<std::is_const_v<SomeMethod>, const Capability, Capability>;
+  return dynamic_cast<Kind*>(&method);
+}
+
+/// Its snow compacts between events.
+class Settles {
+ public:
+  /// Lowers each particle, ordered by id, by a height (m) and adds to its volumetric plastic
+  /// strain, if its law has one. Elastic strains and velocities stay. The energy balance counts it
+  /// as added. Throws as `Method::add_velocity`, and SimulationError where a particle would come to
+  /// lie outside the space that the method can address.
+  virtual void settle(const std::vector<double>& drops,
+                      const std::vector<double>& plastic_changes) = 0;
+
+ protected:
+  ~Settles() = default;
+};
+
+/// It makes its particles itself, from what only it takes of a scene.
+class SeedsItself {
+ public:
+  /// The particles of an event, to be added. Throws InputError, and Stopped on request.
+  virtual std::vector<ParticleBatch> seed(const StopRequest& stop) const = 0;
+  std::vector<ParticleBatch> seed() const { return seed({}); }
+
+ protected:
+  ~SeedsItself() = default;
+};
+
+/// It can keep a balance of energy.
+class KeepsEnergy {
+ public:
+  /// The balance as tables have it; all zero unless the method was made to keep it.
+  virtual NamedEnergies energies() const = 0;
+
+ protected:
+  ~KeepsEnergy() = default;
+};
+
+/// It keeps the balance of particles that are elastic and plastic.
+class BalancesEnergy : public KeepsEnergy {
+ public:
+  virtual EnergyBalance energy() const = 0;
+  NamedEnergies energies() const override { return named_energies(energy()); }
+
+ protected:
+  ~BalancesEnergy() = default;
+};
+
+/// Its snow drops out of the steps while it is at rest.
+class Sleeps {
+ public:
+  /// Particle updates that sleeping particles did not need.
+  virtual std::int64_t slept_updates() const = 0;
+
+ protected:
+  ~Sleeps() = default;
+};
+
+inline std::int64_t slept_updates(const Method& method) {
+  const auto* sleeping = capability<Sleeps>(method);
+  return sleeping ? sleeping->slept_updates() : 0;
+}
+
+/// A table that grows with the steps.
+class Curve {
+ public:
+  virtual ~Curve() = default;
+
+  /// Adds the row that is due, if one is. To be called at the beginning and after each step.
+  virtual void record(const Method&) = 0;
+  virtual const std::vector<std::string>& columns() const = 0;
+  virtual const std::vector<double>& values() const = 0;  ///< row by row
+  virtual void save(BinaryWriter&) const = 0;
+  /// Throws InputError where the rows are not those of such a curve.
+  virtual void load(const BinaryReader&) = 0;
+};
+
+/// It is measured after each step. Its curve has its energies, too, if it keeps them.
+class HasCurve {
+ public:
+  virtual std::unique_ptr<Curve> empty_curve() const = 0;
+
+ protected:
+  ~HasCurve() = default;
+};
+
+/// It has facts of its own to tell in run.json.
+class ReportsRun {
+ public:
+  struct Section {
+    std::string name;
+    std::vector<std::pair<std::string, std::variant<std::int64_t, double>>> facts;
+  };
+  virtual Section run_section() const = 0;
+
+ protected:
+  ~ReportsRun() = default;
+};
+
+}  // namespace snowshed

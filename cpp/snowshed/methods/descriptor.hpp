@@ -1,0 +1,149 @@
+// What the program knows of a method: a class for each, and one line in registry.cpp. Scenes, runs
+// and programs ask descriptors, and name no method.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <initializer_list>
+#include <memory>
+#include <optional>
+#include <string>
+#include <typeinfo>
+#include <vector>
+
+#include "snowshed/core/stop_request.hpp"
+#include "snowshed/geometry/thickened.hpp"
+#include "snowshed/methods/cost.hpp"
+#include "snowshed/methods/method.hpp"
+#include "snowshed/methods/quantities.hpp"
+#include "snowshed/methods/scene_view.hpp"
+#include "snowshed/methods/settings_visitor.hpp"
+#include "snowshed/methods/surroundings.hpp"
+
+namespace snowshed {
+
+/// The parts of a scene that only some methods take. `sample` stands for its loading and its cone,
+/// too.
+enum class Part { panel, slab, ground, obstacles, bodies, domain, terrain, sample, snow, seeding };
+
+class Parts {
+ public:
+  Parts(std::initializer_list<Part> parts = {}) {
+    for (const Part part : parts) bits_ |= bit(part);
+  }
+  bool has(Part part) const { return (bits_ & bit(part)) != 0; }
+
+ private:
+  static unsigned bit(Part part) { return 1u << unsigned(part); }
+
+  unsigned bits_ = 0;
+};
+
+/// What never changes of a method.
+struct MethodFacts {
+  const char* name;                     // as scenes give it
+  const char* doc;                      // in the schema
+  Parts takes;                          // of a scene
+  const char* length_unit = "cells";    // what `resolution` is the size of, in messages
+  std::vector<std::string> energies{};  // names with units, in the order of tables
+  std::vector<Quantity> quantities{};   // of its particles, besides those that all methods share
+};
+
+/// A method together with its settings. The registry holds one of each method with the default
+/// settings; a scene holds a copy of one (method_choice.hpp).
+class MethodDescriptor {
+ public:
+  virtual ~MethodDescriptor() = default;
+
+  virtual const MethodFacts& facts() const = 0;
+  virtual std::unique_ptr<MethodDescriptor> clone() const = 0;
+
+  // --- settings --------------------------------------------------------------------------------
+
+  /// The settings, if they are of this type; null otherwise.
+  virtual void* settings(const std::type_info&) = 0;
+  /// Shows a visitor each setting in turn.
+  virtual void describe(SettingsVisitor&) = 0;
+  /// The size of the smallest thing the method resolves, m; 0 where a file decides it.
+  virtual double resolution() const = 0;
+  /// The threads that the method shall use; 0: all.
+  virtual int& threads() = 0;
+  int threads() const { return const_cast<MethodDescriptor*>(this)->threads(); }
+  /// Multiplies the resolution, if it is a setting, so that a small copy of a scene runs fast.
+  virtual void coarsen(double /*factor*/) {}
+  /// The setting from which the length of a step follows, by its key.
+  virtual std::string step_setting() const = 0;
+  /// The floating-point type of the particles.
+  virtual const char* scalar() const { return "double"; }
+  /// The mean rate of numerical damping over so many steps in so much time (s), 1/s; nothing for
+  /// methods without it.
+  virtual std::optional<double> damping_rate(std::int64_t /*steps*/, double /*time*/) const {
+    return std::nullopt;
+  }
+
+  // --- a scene ---------------------------------------------------------------------------------
+
+  /// Throws InputError where settings or parts of the scene contradict each other. Each is in its
+  /// range, and the scene has no part that the method does not take.
+  virtual void validate(const SceneView&) const {}
+  /// A solid as the method must see it: its thin parts as thick as what the method resolves.
+  virtual ThickSolid as_seen(const Shape& shape, int /*dimension*/) const {
+    return {shape, std::nullopt};
+  }
+  /// Reads the files that only this method takes; relative names are looked for in `base_dir`.
+  /// Throws InputError.
+  virtual std::shared_ptr<const MethodInput> read(const SceneView&,
+                                                  const std::filesystem::path& /*base_dir*/) const {
+    return nullptr;
+  }
+  /// The method, before any snow.
+  virtual std::unique_ptr<Method> build(const SceneView&, const Surroundings&) const = 0;
+
+  // --- snow; of methods that take bodies, but not how the scene seeds them -----------------------
+
+  /// The number of particles that `fill` will place. Throws as it.
+  virtual std::size_t count_particles(const LevelSet&, int dimension) const;
+  /// Fills a solid with particles; notes tell what has become of a solid that these do not resolve.
+  /// Throws InputError where that fails, and Stopped on request.
+  virtual void fill(const LevelSet&, int dimension, const StopRequest&, ParticleBatch&,
+                    std::vector<std::string>& notes) const;
+
+  // --- cost ------------------------------------------------------------------------------------
+
+  /// Throws InputError where the scene cannot be run.
+  virtual CostEstimate cost(const CostRequest&) const = 0;
+  /// What the method can do, and which of it the scene uses.
+  virtual std::vector<Feature> features(const SceneView&, const SceneOutline&) const = 0;
+};
+
+namespace detail {
+
+/// Finds `describe` beside the settings.
+template <class Settings>
+void describe_settings(SettingsVisitor& visitor, Settings& settings) {
+  describe(visitor, settings);
+}
+
+}  // namespace detail
+
+/// What all descriptors share: a method's own one, `Self`, derives from this one.
+template <class Self, class Settings>
+class DescriptorOf : public MethodDescriptor {
+ public:
+  std::unique_ptr<MethodDescriptor> clone() const override {
+    return std::make_unique<Self>(static_cast<const Self&>(*this));
+  }
+  void* settings(const std::type_info& type) override {
+    return type == typeid(Settings) ? &settings_ : nullptr;
+  }
+  void describe(SettingsVisitor& visitor) override {
+    detail::describe_settings(visitor, settings_);
+  }
+  double resolution() const override { return settings_.resolution(); }
+  int& threads() override { return settings_.threads; }
+
+ protected:
+  Settings settings_;
+};
+
+}  // namespace snowshed

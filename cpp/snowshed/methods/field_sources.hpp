@@ -1,0 +1,80 @@
+// From what a method keeps to the fields that others see: how views are made and found by name.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "snowshed/core/aligned_vector.hpp"
+#include "snowshed/core/errors.hpp"
+#include "snowshed/core/parallel.hpp"
+#include "snowshed/methods/quantities.hpp"
+#include "snowshed/particles/field_view.hpp"
+
+namespace snowshed {
+
+inline FieldInfo field_of(const Quantity& q, FieldType type, bool stored) {
+  return {q.name, q.unit, q.meaning, q.components, type, stored};
+}
+
+template <class T>
+FieldView stored_view(const FieldInfo& info, const AlignedVector<T>& array) {
+  return {info, array.size(), sizeof(T), share(array)};
+}
+
+/// A view of values computed for it: `info.components` of each particle.
+template <class T>
+FieldView computed_view(const FieldInfo& info, std::vector<T> values) {
+  const auto owner = std::make_shared<const std::vector<T>>(std::move(values));
+  return {info, owner->size() / std::size_t(info.components),
+          std::ptrdiff_t(sizeof(T)) * info.components,
+          std::shared_ptr<const void>(owner, owner->data())};
+}
+
+/// The values that f(particle) returns: numbers, vectors or matrices (by rows).
+template <class F>
+std::vector<double> values_of_each(std::size_t count, int threads, F f) {
+  using Value = decltype(f(std::size_t()));
+  if constexpr (std::is_arithmetic_v<Value>) {
+    std::vector<double> values(count);
+    parallel_for_each(std::ptrdiff_t(count), threads,
+                      [&](std::ptrdiff_t i) { values[i] = f(std::size_t(i)); });
+    return values;
+  } else {
+    constexpr int rows = Value::RowsAtCompileTime, columns = Value::ColsAtCompileTime;
+    std::vector<double> values(count * rows * columns);
+    parallel_for_each(std::ptrdiff_t(count), threads, [&](std::ptrdiff_t i) {
+      const Value value = f(std::size_t(i));
+      for (int r = 0; r < rows; ++r)
+        for (int c = 0; c < columns; ++c) values[(i * rows + r) * columns + c] = value(r, c);
+    });
+    return values;
+  }
+}
+
+/// The fields that `visit_fields` shows: it calls its argument with (info, view) for each of them,
+/// where view() returns the view.
+template <class VisitFields>
+std::vector<FieldInfo> listed_fields(const VisitFields& visit_fields) {
+  std::vector<FieldInfo> all;
+  visit_fields([&all](const FieldInfo& info, const auto&) { all.push_back(info); });
+  return all;
+}
+
+/// The view of the field of this name; throws InputError where there is none.
+template <class VisitFields>
+FieldView found_field(const std::string& name, const VisitFields& visit_fields) {
+  std::optional<FieldView> found;
+  std::string names;
+  visit_fields([&](const FieldInfo& info, const auto& view) {
+    if (info.name == name) found = view();
+    names += (names.empty() ? "" : ", ") + info.name;
+  });
+  if (!found) throw InputError("field", "no \"" + name + "\"; there are " + names);
+  return *found;
+}
+
+}  // namespace snowshed

@@ -1,0 +1,29 @@
+// What grains read from a file: their sample.
+#pragma once
+
+#include <filesystem>
+
+#include "snowshed/methods/grains/clumps.hpp"
+#include "snowshed/methods/scene_parts.hpp"
+#include "snowshed/methods/surroundings.hpp"
+
+namespace snowshed {
+
+class GrainsInput final : public MethodInput {
+ public:
+  /// Reads the image, checks that its clumps fit into memory, and makes them. Throws InputError.
+  GrainsInput(const SampleSpec&, const std::filesystem::path& base_dir);
+
+  const char* section() const override { return "sample"; }
+  std::vector<FilePrint> files() const override;
+  std::string remark() const override { return label_note(sample_.pieces, split_labels_); }
+
+  const GrainSample& sample() const { return sample_; }
+
+ private:
+  std::string file_;
+  bool split_labels_;
+  GrainSample sample_;
+};
+
+}  // namespace snowshed

@@ -1,0 +1,54 @@
+// What a loading test measures, as a table that grows while the test runs.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "snowshed/methods/grains/solver.hpp"
+
+namespace snowshed {
+
+/// Rows of instantaneous values at the beginning of the test, at `points` strains of each stage,
+/// and where a stage ends. The strains are (k / points)^2 of that at which the stage ends: a
+/// brittle sample is elastic for a thousandth of it only. The rows depend on the steps alone:
+/// neither on the number of threads nor on whether the run was resumed.
+///
+/// Each row also has the strains and stresses of the step, since the row before, in which the
+/// sample carried most: the strength is the largest stress of all steps, not that of the rows.
+/// What counts as carried depends on the stage: the smaller stress of the two plates (`compress`,
+/// `isotropic`, `unload`, `hold`; of `stretch` the smaller tension), the shear stress, the force on
+/// the cone.
+class LoadingCurve final : public Curve {
+ public:
+  static constexpr int points = 300;
+
+  /// For the stages of a sample of that initial height (m); with the energies, if any are named.
+  LoadingCurve(std::vector<LoadingStage>, double height, const NamedEnergies& energies);
+
+  void record(const Method& grains) override;
+
+  const std::vector<std::string>& columns() const override { return columns_; }
+  const std::vector<double>& values() const override { return values_; }
+
+  void save(BinaryWriter&) const override;
+  void load(const BinaryReader&) override;
+
+ private:
+  double next_time() const;
+  double carried(const LoadingStresses&) const;
+  void watch(const LoadingStresses&);
+  void add_row(const GrainsMethod&);
+
+  std::vector<LoadingStage> stages_;
+  double height_;
+  bool energy_;
+  std::vector<std::string> columns_;
+  std::vector<double> values_;
+  int stage_ = 0;                        // that is being loaded
+  double begun_ = 0;                     // s, when it began
+  int points_done_ = -1;                 // of it; before the beginning of the test -1
+  std::optional<LoadingStresses> peak_;  // of the steps since the last row, if there was one
+};
+
+}  // namespace snowshed

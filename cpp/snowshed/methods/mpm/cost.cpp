@@ -1,0 +1,149 @@
+#include "snowshed/methods/mpm/cost.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "snowshed/methods/enum_names.hpp"
+#include "snowshed/methods/mpm/kernel_api.hpp"
+#include "snowshed/methods/mpm/time_step.hpp"
+
+namespace snowshed {
+namespace {
+
+/// Memory of the solver. A particle holds position, velocity, deformation gradient, affine
+/// matrix, volume, mass, plastic strain and sorting keys; a grid node mass, momentum and force,
+/// in blocks that are only partly filled.
+struct Storage {
+  double bytes_per_particle, bytes_per_voxel;
+};
+
+constexpr Storage storage(int dimension, Precision precision) {
+  const bool single = precision == Precision::float32;
+  if (dimension == 2) return single ? Storage{90.0, 32.0} : Storage{180.0, 64.0};
+  return single ? Storage{150.0, 48.0} : Storage{300.0, 96.0};
+}
+
+/// Of a contact between a node and an obstacle, which is there twice while blocks are sorted, and
+/// of an obstacle with its shape, apart from files.
+struct ObstacleStorage {
+  double bytes_per_contact, bytes_per_obstacle;
+};
+
+constexpr ObstacleStorage obstacle_storage(Precision precision) {
+  return precision == Precision::float32 ? ObstacleStorage{100.0, 500.0}
+                                         : ObstacleStorage{200.0, 1000.0};
+}
+
+/// Grid voxels in use for each voxel of snow: the splines reach beyond it, and it spreads.
+constexpr double grid_spread = 4.0;
+
+/// Share of the older snow that new snow keeps awake from its first landing to rest: about a half
+/// in the laboratory scene and on the wide stacks of chapter 5.
+constexpr double woken_share = 0.5;
+
+/// Work of an update where snow has flown apart in clumps, each with grid blocks of its own, over
+/// that in a slab: 13 to 16 in 3D after 125 m. A particle all alone takes 40.
+constexpr double scattered_snow(int dimension) { return dimension == 2 ? 4.0 : 15.0; }
+
+/// Nodes of the grid blocks around the snow of an event, were each body compact: many small bodies
+/// far apart use more of them than the volume of their snow tells.
+double count_nodes(const MpmSettings& n, const std::vector<double>& volumes, int dimension) {
+  constexpr double reached = 1.5;  // blocks beyond its own that the splines of a body reach
+  const double edge = (dimension == 2 ? block_edge<2> : block_edge<3>)*n.dx;
+  double blocks = 0;
+  for (const double volume : volumes) {
+    const double size = std::pow(volume, 1.0 / dimension) / edge;
+    blocks += std::pow(size + reached, dimension);
+  }
+  return blocks * (dimension == 2 ? block_nodes<2> : block_nodes<3>);
+}
+
+/// Memory of the grid where snow is scattered, and of the obstacles and the contacts with them.
+double surroundings_bytes(const MpmSettings& n, const SceneOutline& outline, double nodes) {
+  const auto [per_contact, per_obstacle] = obstacle_storage(n.precision);
+  return nodes * outline.most_overlapping * per_contact + per_obstacle * outline.obstacles;
+}
+
+/// New snow is awake from its release to rest, older snow in part, once something lands on it.
+double count_updates(const MpmSettings& n, int events, const SnowMotion& motion,
+                     const CostEstimate& estimate) {
+  double old_awake = 1.0;
+  if (n.sleep_speed > 0.0)
+    old_awake = woken_share * std::max(0.0, 1.0 - motion.first_landing / motion.event_time);
+  double particles = 0.0, old = 0.0;
+  for (double fresh : estimate.particles) {
+    particles += fresh + old_awake * old;
+    old += fresh;
+  }
+  return particles * estimate.steps / events;
+}
+
+/// Time over the step at rest, and more for the distance: a step gets shorter with speed, as in
+/// `next_time_step`.
+double steps_per_event(const MpmSettings& n, const SnowMotion& motion, double time_step) {
+  return std::ceil(motion.event_time / time_step +
+                   2.0 * motion.distance / (n.dx * n.courant_factor));
+}
+
+}  // namespace
+
+double stable_time_step(const MpmSettings& n, const std::vector<Snow>& snows, int dimension) {
+  double limit = std::numeric_limits<double>::infinity();
+  for (const Snow& snow : snows)
+    limit = std::min(limit, elastic_time_step(snow.youngs_modulus, snow.poissons_ratio,
+                                              snow.density, dimension, n.dx, n.transfer, n.basis));
+  return next_time_step(limit, 0.0, n.dx, n.courant_factor);
+}
+
+CostEstimate estimate_cost(const MpmSettings& n, const CostRequest& request) {
+  const int dimension = request.scene.dimension, events = request.scene.events.count;
+  const SceneOutline& outline = *request.outline;
+  CostEstimate estimate;
+  estimate.particles = request.particles;
+  estimate.total_particles =
+      std::accumulate(estimate.particles.begin(), estimate.particles.end(), 0.0);
+  estimate.time_step = stable_time_step(n, outline.snows, dimension);
+  estimate.event_time = outline.motion.event_time;
+  estimate.scattering = std::min(outline.motion.stretch, scattered_snow(dimension));
+  estimate.steps = events * steps_per_event(n, outline.motion, estimate.time_step);
+  estimate.updates = count_updates(n, events, outline.motion, estimate);
+  const auto [per_particle, per_voxel] = storage(dimension, n.precision);
+  double nodes = 0;
+  for (const auto& volumes : outline.volumes) nodes += count_nodes(n, volumes, dimension);
+  const double filled = grid_spread * estimate.total_particles / outline.particles_per_voxel;
+  const double voxels = std::max(filled, nodes);
+  estimate.bytes = per_particle * estimate.total_particles + per_voxel * voxels +
+                   surroundings_bytes(n, outline, voxels);
+  return estimate;
+}
+
+std::vector<Feature> features_of(const MpmSettings& n, const SceneView& scene,
+                                 const SceneOutline& outline) {
+  const bool yields = std::any_of(outline.snows.begin(), outline.snows.end(), [](const Snow& snow) {
+    return snow.model == SnowModel::cam_clay;
+  });
+  std::vector<Feature> features{{"third dimension", scene.dimension == 3},
+                                {"double precision", n.precision == Precision::float64},
+                                {"plasticity and hardening (Cam-Clay)", yields},
+                                {"several snows", outline.snows.size() > 1},
+                                {"APIC affine velocities", n.transfer == Transfer::apic},
+                                {"cubic B-splines", n.basis == Basis::cubic}};
+  for (const auto& [condition, name] : EnumNames<Condition>::list) {
+    const bool of_domain = condition == Condition::sticky && outline.has_domain;
+    features.push_back(
+        {std::string(name) + " contact", outline.conditions[int(condition)] || of_domain});
+  }
+  const bool reseeds = scene.events.between == Between::reseed && scene.events.count > 1;
+  features.insert(features.end(),
+                  {{"moving obstacles", outline.has_moving_obstacle},
+                   {"domain walls", outline.has_domain},
+                   {"reseeding between events", reseeds},
+                   {"sleep of snow at rest", n.sleep_speed > 0},
+                   {"energy balance", scene.output.energy},
+                   {"snapshots during events", scene.output.snapshot_interval > 0}});
+  return features;
+}
+
+}  // namespace snowshed

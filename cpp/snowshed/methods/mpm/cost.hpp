@@ -1,0 +1,18 @@
+// What a run of the material point method will cost, and which of its features a scene uses.
+#pragma once
+
+#include <vector>
+
+#include "snowshed/methods/cost.hpp"
+#include "snowshed/methods/mpm/settings.hpp"
+
+namespace snowshed {
+
+/// The first time step of snow at rest, of the stiffest, s.
+double stable_time_step(const MpmSettings&, const std::vector<Snow>&, int dimension);
+
+CostEstimate estimate_cost(const MpmSettings&, const CostRequest&);
+
+std::vector<Feature> features_of(const MpmSettings&, const SceneView&, const SceneOutline&);
+
+}  // namespace snowshed

@@ -1,0 +1,46 @@
+#include "snowshed/methods/mps/cost.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace snowshed {
+namespace {
+
+/// Of a particle with its neighbours, measured in 2D and 3D.
+constexpr double bytes_per_particle[] = {1200, 3000};
+
+}  // namespace
+
+CostEstimate estimate_cost(const MpsSettings& s, const CostRequest& request) {
+  const SceneView& scene = request.scene;
+  CostEstimate cost;
+  cost.particles = request.particles;
+  cost.total_particles = std::accumulate(cost.particles.begin(), cost.particles.end(), 0.0);
+  const double speed = std::sqrt(2 * scene.gravity * std::max(request.outline->height, s.spacing));
+  cost.time_step = std::min(s.max_time_step, s.courant_factor * s.spacing / std::max(speed, 1e-9));
+  cost.event_time = scene.events.max_time;
+  cost.steps = scene.events.count * std::ceil(cost.event_time / cost.time_step);
+  double held = 0;
+  for (const double fresh : cost.particles) {
+    held += fresh;
+    cost.updates += held * std::ceil(cost.event_time / cost.time_step);
+  }
+  cost.bytes = bytes_per_particle[scene.dimension - 2] * cost.total_particles;
+  return cost;
+}
+
+std::vector<Feature> features_of(const MpsSettings& s, const SceneView& scene) {
+  return {{"third dimension", scene.dimension == 3},
+          {"yield stress", s.rheology != MpsRheology::newtonian},
+          {"dilatant branch", s.rheology == MpsRheology::bingham_dilatant},
+          {"erosion and deposition", s.erosion},
+          {"wall particles", s.walls == MpsWalls::particles},
+          {"collisions", s.spacing_law == MpsSpacing::collision},
+          {"particle shifting", s.spacing_law == MpsSpacing::shifting},
+          {"multigrid", s.preconditioner == MpsPreconditioner::multigrid},
+          {"energy balance", scene.output.energy},
+          {"snapshots during events", scene.output.snapshot_interval > 0}};
+}
+
+}  // namespace snowshed

@@ -1,0 +1,95 @@
+// The moving particle semi-implicit method, as the rest of the program knows it.
+#include "snowshed/core/errors.hpp"
+#include "snowshed/core/message_format.hpp"
+#include "snowshed/methods/descriptor.hpp"
+#include "snowshed/methods/mps/boundary.hpp"
+#include "snowshed/methods/mps/cost.hpp"
+#include "snowshed/methods/mps/describe.hpp"
+#include "snowshed/methods/mps/seeding.hpp"
+#include "snowshed/methods/mps/solver.hpp"
+#include "snowshed/sampling/lattice.hpp"
+
+namespace snowshed {
+namespace mps {
+namespace {
+
+class Descriptor final : public DescriptorOf<Descriptor, MpsSettings> {
+ public:
+  const MethodFacts& facts() const override {
+    static const MethodFacts facts{
+        "mps",
+        "The moving particle semi-implicit method: snow as a Bingham and dilatant fluid",
+        {Part::panel, Part::slab, Part::ground, Part::obstacles, Part::bodies, Part::domain},
+        "spacings",
+        names_of(named_energies(EnergyBalance{})),
+        {{"number_density", "1", "Number density of particles over that of a lattice", 1, 0.01},
+         {"shear_rate", "1/s", "Shear rate, the root of 2 D:D"},
+         {"apparent_viscosity", "Pa s", "Shear stress over shear rate"},
+         {"particle_kind", "1", "0: moving, 1: erodible, 2: inner wall, 3: dummy wall", 1, 1.0}}};
+    return facts;
+  }
+
+  std::string step_setting() const override {
+    // The Courant factor shortens the steps that max_time_step allows.
+    return settings_.max_time_step < settings_.courant_factor * settings_.spacing
+               ? "max_time_step"
+               : "courant_factor";
+  }
+
+  void validate(const SceneView& scene) const override {
+    const MpsSettings& s = settings_;
+    if (s.erosion && s.deposition_pressure >= s.erosion_pressure)
+      throw InputError("/numerics/deposition_pressure",
+                       show(s.deposition_pressure) + " Pa must be less than " +
+                           "/numerics/erosion_pressure = " + show(s.erosion_pressure));
+    if (s.erosion && s.deposition_speed >= s.erosion_speed)
+      throw InputError("/numerics/deposition_speed",
+                       show(s.deposition_speed) + " m/s must be less than " +
+                           "/numerics/erosion_speed = " + show(s.erosion_speed));
+    if (s.order == MpsOrder::published && s.splitting == MpsSplitting::pressure_first)
+      throw InputError("/numerics/splitting",
+                       "with /numerics/order \"published\" particles move before the pressure is "
+                       "known; allowed: viscosity_first");
+    if (scene.output.energy && s.order == MpsOrder::published)
+      throw InputError("/output/energy",
+                       "the balance is kept with /numerics/order \"single_move\" only");
+  }
+  ThickSolid as_seen(const Shape& shape, int dimension) const override {
+    return as_particles_see(shape, settings_.spacing, dimension);
+  }
+  std::unique_ptr<Method> build(const SceneView& scene,
+                                const Surroundings& surroundings) const override {
+    MpsOptions o;
+    o.dimension = scene.dimension;
+    o.gravity = -scene.gravity * Vec3::UnitZ();
+    o.settings = settings_;
+    o.obstacles = surroundings.resolved;
+    o.energy = scene.output.energy;
+    return make_mps(std::move(o));
+  }
+
+  std::size_t count_particles(const LevelSet& shape, int dimension) const override {
+    return count_lattice(shape, dimension, settings_.spacing);
+  }
+  void fill(const LevelSet& shape, int dimension, const StopRequest& stop, ParticleBatch& batch,
+            std::vector<std::string>& notes) const override {
+    seed_on_lattice(settings_, shape, dimension, stop, batch, notes);
+  }
+
+  CostEstimate cost(const CostRequest& request) const override {
+    return estimate_cost(settings_, request);
+  }
+  std::vector<Feature> features(const SceneView& scene, const SceneOutline&) const override {
+    return features_of(settings_, scene);
+  }
+};
+
+}  // namespace
+
+const MethodDescriptor& descriptor() {
+  static const Descriptor own;
+  return own;
+}
+
+}  // namespace mps
+}  // namespace snowshed

@@ -1,0 +1,45 @@
+#include "snowshed/methods/mps/seeding.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include "snowshed/core/message_format.hpp"
+#include "snowshed/sampling/lattice.hpp"
+
+namespace snowshed {
+namespace {
+
+std::string in_millimetres(double metres) { return show_rounded(1000 * metres) + " mm"; }
+
+/// Says what becomes of a body that is too small for a lattice of particles of equal mass.
+void tell_of_coarse_lattice(const LevelSet& shape, const MpsSettings& settings, double mass_ratio,
+                            std::size_t particles, std::vector<std::string>& notes) {
+  constexpr double most_uneven = 0.02;
+  const double thickness = 2 * shape.inradius();
+  const std::string count =
+      std::to_string(particles) + (particles == 1 ? " particle" : " particles");
+  if (thickness < settings.spacing * (1 - 1e-6))
+    notes.push_back("is " + in_millimetres(thickness) + " thick, less than the spacing of " +
+                    in_millimetres(settings.spacing) + ": it becomes " + count +
+                    " that fill no layer, and neither pressure nor yield stress are resolved; "
+                    "give a smaller /numerics/spacing");
+  else if (std::abs(mass_ratio - 1) > most_uneven)
+    notes.push_back("becomes " + count + " of " + show_rounded(mass_ratio) +
+                    " times the mass that a cell of the spacing holds, so that its mass is right; "
+                    "give a smaller /numerics/spacing");
+}
+
+}  // namespace
+
+void seed_on_lattice(const MpsSettings& s, const LevelSet& shape, int dimension,
+                     const StopRequest& stop, ParticleBatch& batch,
+                     std::vector<std::string>& notes) {
+  LatticeFilling filling = fill_lattice(shape, dimension, s.spacing, stop);
+  const std::size_t count = filling.positions.size();
+  batch.positions = std::move(filling.positions);
+  batch.mass = s.density * filling.volume / double(count);
+  const double cell = std::pow(s.spacing, dimension);
+  tell_of_coarse_lattice(shape, s, filling.volume / (cell * double(count)), count, notes);
+}
+
+}  // namespace snowshed

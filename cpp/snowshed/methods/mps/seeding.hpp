@@ -1,0 +1,21 @@
+// Fills bodies of snow with particles of the MPS method, on a lattice.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "snowshed/core/stop_request.hpp"
+#include "snowshed/geometry/level_set.hpp"
+#include "snowshed/methods/mps/settings.hpp"
+#include "snowshed/methods/particle_batch.hpp"
+
+namespace snowshed {
+
+/// Fills a body with as many particles as its volume holds cells of the spacing. They share its
+/// mass, so that it is exact, and are as heavy as their cells, to half a particle. Notes tell what
+/// becomes of a body that is too small for that. Throws as `fill_lattice`.
+void seed_on_lattice(const MpsSettings&, const LevelSet& shape, int dimension,
+                     const StopRequest& stop, ParticleBatch& batch,
+                     std::vector<std::string>& notes);
+
+}  // namespace snowshed

@@ -1,0 +1,26 @@
+// The methods of the program.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "snowshed/methods/descriptor.hpp"
+
+namespace snowshed {
+
+/// All of them, with their default settings. The first is the default of scenes.
+const std::vector<const MethodDescriptor*>& all_methods();
+
+std::vector<std::string> method_names();
+
+/// A further method of a program that links the library, as long as this object exists. None may
+/// come or go while others look.
+class RegisteredMethod {
+ public:
+  explicit RegisteredMethod(const MethodDescriptor&);
+  RegisteredMethod(const RegisteredMethod&) = delete;
+  RegisteredMethod& operator=(const RegisteredMethod&) = delete;
+  ~RegisteredMethod();
+};
+
+}  // namespace snowshed

@@ -1,0 +1,109 @@
+// The parts of a scene that methods read: plain data in SI units.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "snowshed/geometry/polygon.hpp"
+#include "snowshed/sampling/seeding.hpp"
+
+namespace snowshed {
+
+/// A part of an area that does not belong to it.
+struct HoleSpec {
+  Ring outline;  // m, in the terrain's coordinates
+};
+
+/// An area on the map.
+struct AreaSpec {
+  std::string name;
+  Ring outline;  // m, in the terrain's coordinates
+  std::vector<HoleSpec> holes;
+  double thickness = 0.0;  // m of snow, normal to the ground
+};
+
+/// An area that holds snow back.
+struct ResistanceSpec {
+  std::string name;
+  Ring outline;
+  std::vector<HoleSpec> holes;
+};
+
+/// Ground from a raster of elevations, and what lies on it.
+struct TerrainSpec {
+  std::string file;              // ESRI ASCII grid
+  std::string crs;               // of the raster and the areas, in words; handed on to the results
+  bool single_precision = true;  // of elevations in compatible mode
+  std::string thickness_file;    // of the release, in place of the areas' thickness; an ASCII grid
+  double max_thickness = 10;     // m, of the snow in the areas
+  double max_slope = 70;         // degrees, of cliffs under a release
+  std::string notes;             // what was assumed of the files, for the results
+  std::vector<AreaSpec> release, entrainment;
+  std::vector<ResistanceSpec> resistance;
+};
+
+/// Segmented snow to be loaded.
+struct SampleSpec {
+  std::string file;           // NPY, integers (nz, ny, nx): 0 air, any other number a grain
+  double voxel_size = 0;      // m
+  bool split_labels = false;  // whether each piece of a label is a grain
+};
+
+/// What moves in a stage. Plates are at the bottom, fixed, and at the top; sides are walls or
+/// periodic. `isotropic` has the speed as that of the height, and as stress the mean over top and
+/// sides. `hold` ends when the kinetic energy has fallen to 1e-4 of its peak in the stage, or after
+/// the time in which the speed would bring about the strain; `unload` ends at the strain, too.
+enum class LoadingKind {
+  compress,   // the top plate moves down
+  unload,     // the top plate moves up, until the stress on it falls to `stress`
+  stretch,    // the top plate moves up (bonded plates)
+  shear,      // the top plate moves along x; at constant height, or under a constant normal stress
+  isotropic,  // all six sides move inward at the same rate of strain (walls, or a shrinking period)
+  penetrate,  // a cone is pushed down through the top, with the top plate away
+  hold        // nothing moves, until the kinetic energy has gone
+};
+
+struct LoadingStage {
+  LoadingKind kind = LoadingKind::compress;
+  double speed = 0.02;  // m/s, of what moves
+  double strain = 0.3;  // at which the stage ends: displacement over the sample's initial height
+  double stress = 0;    // Pa; compress, isotropic: ends the stage if reached, 0: never;
+                        // unload: see above; shear: normal stress, 0: constant height
+};
+
+/// The tip of a penetrometer: a cone with a shaft, along z.
+struct Cone {
+  double radius = 0.0025;  // m
+  double half_angle = 30;  // degrees
+};
+
+/// How snow is filled with particles.
+struct Seeding {
+  double particles_per_voxel = 0.0;  // 0: 6 in 2D, 8 in 3D
+  SeedPattern pattern = SeedPattern::poisson;
+  std::uint64_t seed = 1;
+  bool allow_sparse = false;  // fewer than 4 (2D) or 6 (3D) per voxel
+};
+
+/// What happens to the stack between two events.
+enum class Between { carry, reseed };
+
+/// When an event ends.
+struct Events {
+  int count = 1;
+  Between between = Between::carry;
+  double max_time = 10.0;    // s, per event
+  double rest_speed = 0.02;  // m/s
+  double rest_time = 0.05;   // s
+};
+
+struct Output {
+  double snapshot_interval = 0.0;  // s between particle snapshots; 0: only at the end of an event
+  bool film = true;                // record the run, so that it can be viewed
+  double film_interval = 0.0;      // s between its frames; 0: chosen by how long events last
+  bool energy = false;             // keep the energy balance
+  double checkpoint_interval = 60.0;  // s of wall time between checkpoints; 0: none
+};
+
+}  // namespace snowshed

@@ -1,0 +1,74 @@
+#include "snowshed/methods/slide/cost.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "snowshed/methods/slide/friction.hpp"
+
+namespace snowshed {
+namespace {
+
+/// Memory of a particle with three bonds, and of a node of the terrain.
+constexpr double bytes_per_particle = 620, bytes_per_node = 100;
+
+MapPoint middle(const Ring& ring) {
+  MapPoint sum{0, 0};
+  for (const MapPoint& p : ring) sum = {sum[0] + p[0], sum[1] + p[1]};
+  return {sum[0] / double(ring.size()), sum[1] / double(ring.size())};
+}
+
+}  // namespace
+
+double block_travel_time(const Terrain& terrain, const SlideSettings& s, const SlideArea& release,
+                         double gravity, double max_time) {
+  const BasalFriction law = BasalFriction::from(s, gravity);
+  const double dt = 0.05, drag = law.drag / (s.density * release.thickness);
+  const MapPoint start = middle(release.polygon.outline);
+  Vec3 x(start[0], start[1], 0), u = Vec3::Zero();
+  double time = 0;
+  for (; time < max_time; time += dt) {
+    const GridPlace place = terrain.place(x.x(), x.y());
+    if (!place.inside() || !terrain.known(place)) break;
+    const Vec3 n = terrain.normal(place);
+    u -= u.dot(n) * n;
+    u += dt * gravity * (n.z() * n - Vec3::UnitZ());
+    const double speed = u.norm();
+    const double slowed = speed - dt * (law.friction * gravity * n.z() + drag * speed * speed);
+    if (slowed <= 0) break;
+    u *= slowed / speed;
+    x += dt * u;
+  }
+  return std::max(time, dt);
+}
+
+CostEstimate estimate_cost(const SlideSettings& s, const SceneView& scene, const SlideArea& release,
+                           const SlideMethod& slide) {
+  const Terrain& terrain = slide.terrain();
+  const auto particles = double(slide.count_seeds());
+  const double max_time = scene.events.max_time;
+  CostEstimate cost;
+  cost.particles = {particles};
+  cost.total_particles = particles;
+  cost.time_step = s.time_step;
+  // The snow spreads meanwhile, and its last parts creep.
+  constexpr double longer_than_block = 1.5;
+  const double block = block_travel_time(terrain, s, release, scene.gravity, max_time);
+  cost.event_time = std::min(longer_than_block * block, max_time);
+  cost.steps = std::ceil(cost.event_time / cost.time_step);
+  cost.updates = cost.steps * particles;
+  cost.bytes = bytes_per_particle * particles +
+               bytes_per_node * double(terrain.columns()) * double(terrain.rows());
+  return cost;
+}
+
+std::vector<Feature> features_of(const SlideSettings& s, const SceneView& scene) {
+  return {{"cohesive bonds", s.bonds},
+          {"turbulent friction (Voellmy)", s.friction_law == SlideFriction::voellmy},
+          {"artificial viscosity", s.artificial_viscosity > 0},
+          {"entrainment and splitting", !scene.terrain->entrainment.empty()},
+          {"resistance areas", !scene.terrain->resistance.empty()},
+          {"resampled terrain", s.cell > 0},
+          {"snapshots during the slide", scene.output.snapshot_interval > 0}};
+}
+
+}  // namespace snowshed

@@ -1,0 +1,47 @@
+#include "snowshed/methods/slide/describe.hpp"
+
+#include "snowshed/methods/allowed.hpp"
+
+namespace snowshed {
+
+void describe(SettingsVisitor& v, SlideSettings& s) {
+  v.accuracy({"cell", "time_step", "layer_thickness"});
+  v.choice("mode", s.mode,
+           "Without the known faults of com5SnowSlide, or step by step as AvaFrame 2.1 does it");
+  v.number("cell", s.cell, "m", allowed::size_or_zero,
+           "Cells of the computing grid; 0: those of the terrain's raster");
+  v.number("time_step", s.time_step, "s", positive.up_to(1.0), "Length of a step");
+  v.number("density", s.density, "kg/m3", positive.up_to(1000.0), "Density of the sliding snow");
+  v.number("layer_thickness", s.layer_thickness, "m", positive.up_to(100.0),
+           "Snow of this thickness over a whole cell makes one particle");
+  v.choice("friction_law", s.friction_law, "Friction with the ground");
+  v.number("friction", s.friction, "", allowed::coefficient, "Coulomb coefficient mu");
+  v.number("turbulence", s.turbulence, "m/s2", positive.up_to(1e6), "Voellmy's xi");
+  v.flag("explicit_friction", s.explicit_friction,
+         "Friction from the speed before the step; in the compatible mode only");
+  v.number("resistance", s.resistance, "", non_negative.up_to(1e9),
+           "Coefficient within the areas of resistance");
+  v.number("artificial_viscosity", s.artificial_viscosity, "", non_negative.up_to(1e6),
+           "How strongly particles are drawn to the velocity of the snow around");
+  v.flag("bonds", s.bonds, "Cohesive bonds; without them a plain depth-averaged avalanche");
+  v.number("max_strain", s.max_strain, "", positive.up_to(10.0), "Strain at which a bond breaks");
+  v.number("bond_modulus", s.bond_modulus, "Pa", non_negative.up_to(1e12),
+           "Stiffness of the bonds (cohesive surface tension)");
+  v.number("min_bond_length", s.min_bond_length, "m", allowed::size_or_zero,
+           "Length below which a bond exerts no force");
+  v.number("entrained_density", s.entrained_density, "kg/m3", positive.up_to(1000.0),
+           "Density of the snow that is taken up");
+  v.number("erosion_energy", s.erosion_energy, "J/kg", non_negative.up_to(1e12),
+           "Friction work that takes up a kilogram of snow; 0: all that the slide sweeps over");
+  v.number("entrainment_shear", s.entrainment_shear, "Pa", non_negative.up_to(1e12),
+           "Shear strength of the snow that is taken up");
+  v.number("entrainment_work", s.entrainment_work, "J/kg", non_negative.up_to(1e12),
+           "Work that breaks up the snow that is taken up");
+  v.number("split_ratio", s.split_ratio, "", Range{1.0, 1e6, true, false, Need::optional},
+           "Mass over that of a fresh particle beyond which a particle splits");
+  v.number("stop_ratio", s.stop_ratio, "", fraction,
+           "The slide stops at this share of its largest kinetic energy");
+  v.integer("threads", s.threads, non_negative.up_to(4096), "Threads; 0: all");
+}
+
+}  // namespace snowshed

@@ -1,0 +1,106 @@
+#include "snowshed/methods/slide/input.hpp"
+
+#include <string>
+
+#include "snowshed/core/errors.hpp"
+#include "snowshed/core/message_format.hpp"
+#include "snowshed/geometry/cliffs.hpp"
+#include "snowshed/geometry/readers/ascii_grid.hpp"
+#include "snowshed/io/fingerprint.hpp"
+
+namespace snowshed {
+namespace {
+
+Ring moved(const Ring& ring, const HeightField& field) {
+  Ring local;
+  for (const MapPoint& p : ring) local.push_back({p[0] - field.west, p[1] - field.south});
+  return local;
+}
+
+template <class Spec>
+SlideArea area_of(const Spec& spec, const HeightField& field) {
+  SlideArea area;
+  area.name = spec.name;
+  area.polygon.outline = moved(spec.outline, field);
+  for (const HoleSpec& hole : spec.holes) area.polygon.holes.push_back(moved(hole.outline, field));
+  return area;
+}
+
+std::vector<SlideArea> areas_of(const std::vector<AreaSpec>& specs, const HeightField& field) {
+  std::vector<SlideArea> areas;
+  for (const AreaSpec& spec : specs) {
+    areas.push_back(area_of(spec, field));
+    areas.back().thickness = spec.thickness;
+  }
+  return areas;
+}
+
+/// Throws where the ground under a release, or anywhere, is as no ground is.
+void check_cliff(const std::string& where, const std::string& cliff, double max_slope) {
+  if (cliff.empty()) return;
+  throw InputError(where, "elevations of " + cliff + "; are some missing? At most " +
+                              show(max_slope) + " degrees are believed (terrain.max_slope)");
+}
+
+HeightField read_terrain(const TerrainSpec& terrain, const SlideSettings& settings,
+                         const std::filesystem::path& base_dir) {
+  HeightField field = read_ascii_grid(base_dir / terrain.file);
+  check_cliff("/terrain/file", impossible_cliff(field, terrain.max_slope), terrain.max_slope);
+  if (settings.mode == SlideMode::compatible && terrain.single_precision)
+    for (double& height : field.heights) height = double(float(height));
+  const double cell = settings.cell > 0 ? settings.cell : field.cell;
+  try {
+    return resampled(field, cell);
+  } catch (const InputError& error) {
+    throw InputError("/numerics/cell", error.what());
+  }
+}
+
+/// The areas, from the south-west node of the grid.
+SlideAreas read_areas(const TerrainSpec& terrain, const HeightField& field,
+                      const std::filesystem::path& base_dir) {
+  SlideAreas areas;
+  areas.release = areas_of(terrain.release, field);
+  if (!terrain.thickness_file.empty()) {
+    HeightField map = read_ascii_grid(base_dir / terrain.thickness_file);
+    map.west -= field.west;
+    map.south -= field.south;
+    const auto shared = std::make_shared<const HeightField>(std::move(map));
+    for (SlideArea& area : areas.release) {
+      area.map = shared;
+      area.max_thickness = terrain.max_thickness;
+    }
+  }
+  for (std::size_t i = 0; i < areas.release.size(); ++i)
+    check_cliff("/terrain/release/" + std::to_string(i),
+                cliff_under(areas.release[i].polygon, field, terrain.max_slope), terrain.max_slope);
+  areas.entrainment = areas_of(terrain.entrainment, field);
+  for (const ResistanceSpec& spec : terrain.resistance)
+    areas.resistance.push_back(area_of(spec, field));
+  return areas;
+}
+
+void add(const HeightField& f, Fingerprint& print) {
+  const double place[] = {f.cell, f.west, f.south, double(f.columns), double(f.rows)};
+  print.add(place, std::size(place));
+  print.add(f.heights.data(), f.heights.size());
+}
+
+}  // namespace
+
+SlideInput::SlideInput(const TerrainSpec& terrain, const SlideSettings& settings,
+                       const std::filesystem::path& base_dir)
+    : file_(terrain.file),
+      thickness_file_(terrain.thickness_file),
+      terrain_(read_terrain(terrain, settings, base_dir)),
+      areas_(read_areas(terrain, terrain_, base_dir)) {}
+
+std::vector<FilePrint> SlideInput::files() const {
+  Fingerprint terrain, thickness;
+  add(terrain_, terrain);
+  if (!areas_.release.empty() && areas_.release.front().map)
+    add(*areas_.release.front().map, thickness);
+  return {{file_, terrain.value()}, {thickness_file_, thickness.value()}};
+}
+
+}  // namespace snowshed

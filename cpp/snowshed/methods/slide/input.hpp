@@ -1,0 +1,32 @@
+// What a slide reads from files: its terrain, and the areas on it.
+#pragma once
+
+#include <filesystem>
+
+#include "snowshed/geometry/height_field.hpp"
+#include "snowshed/methods/scene_parts.hpp"
+#include "snowshed/methods/slide/areas.hpp"
+#include "snowshed/methods/slide/settings.hpp"
+#include "snowshed/methods/surroundings.hpp"
+
+namespace snowshed {
+
+class SlideInput final : public MethodInput {
+ public:
+  /// Reads the raster and brings it onto the computing grid. In compatible mode elevations are
+  /// rounded to single precision, as AvaFrame reads them. Throws InputError.
+  SlideInput(const TerrainSpec&, const SlideSettings&, const std::filesystem::path& base_dir);
+
+  const char* section() const override { return "ground"; }
+  std::vector<FilePrint> files() const override;
+
+  const HeightField& terrain() const { return terrain_; }
+  const SlideAreas& areas() const { return areas_; }
+
+ private:
+  std::string file_, thickness_file_;
+  HeightField terrain_;
+  SlideAreas areas_;  // from the terrain's south-west node
+};
+
+}  // namespace snowshed

@@ -1,0 +1,69 @@
+// The snow slide, as the rest of the program knows it.
+#include "snowshed/core/errors.hpp"
+#include "snowshed/core/message_format.hpp"
+#include "snowshed/methods/descriptor.hpp"
+#include "snowshed/methods/slide/cost.hpp"
+#include "snowshed/methods/slide/describe.hpp"
+#include "snowshed/methods/slide/input.hpp"
+#include "snowshed/methods/slide/solver.hpp"
+
+namespace snowshed {
+namespace slide {
+namespace {
+
+class Descriptor final : public DescriptorOf<Descriptor, SlideSettings> {
+ public:
+  const MethodFacts& facts() const override {
+    static const MethodFacts facts{
+        "slide",
+        "The snow slide: depth-averaged particles with cohesive bonds on terrain",
+        {Part::terrain},
+        "cells",
+        names_of(named_energies(SlideEnergy{})),
+        {{"thickness", "m", "Thickness of the snow, normal to the ground", 1, 0.005}}};
+    return facts;
+  }
+
+  std::string step_setting() const override { return "time_step"; }
+
+  void validate(const SceneView& scene) const override {
+    if (!scene.terrain) throw InputError("/", "a slide needs a /terrain");
+    if (scene.dimension != 3)
+      throw InputError("/dimension", "a slide moves over ground in space; allowed: 3");
+    if (scene.events.count != 1)
+      throw InputError("/events/count", show(scene.events.count) + " events; a slide has 1");
+    if (!scene.terrain->thickness_file.empty() && settings_.mode == SlideMode::compatible)
+      throw InputError("/terrain/thickness_file", "AvaFrame's com5SnowSlide takes no such raster");
+    if (settings_.explicit_friction && settings_.mode != SlideMode::compatible)
+      throw InputError("/numerics/explicit_friction", "only in the mode \"compatible\"");
+  }
+  std::shared_ptr<const MethodInput> read(const SceneView& scene,
+                                          const std::filesystem::path& base_dir) const override {
+    return std::make_shared<const SlideInput>(*scene.terrain, settings_, base_dir);
+  }
+  std::unique_ptr<Method> build(const SceneView& scene,
+                                const Surroundings& surroundings) const override {
+    const auto& input = dynamic_cast<const SlideInput&>(*surroundings.input);
+    return make_slide(
+        {settings_, scene.gravity, input.terrain(), input.areas(), scene.output.energy});
+  }
+
+  CostEstimate cost(const CostRequest& request) const override {
+    const auto& input = dynamic_cast<const SlideInput&>(*request.surroundings->input);
+    return estimate_cost(settings_, request.scene, input.areas().release.front(),
+                         dynamic_cast<const SlideMethod&>(*request.method));
+  }
+  std::vector<Feature> features(const SceneView& scene, const SceneOutline&) const override {
+    return features_of(settings_, scene);
+  }
+};
+
+}  // namespace
+
+const MethodDescriptor& descriptor() {
+  static const Descriptor own;
+  return own;
+}
+
+}  // namespace slide
+}  // namespace snowshed

@@ -1,0 +1,40 @@
+// What surrounds the snow of a scene: solids, and what a method reads from files, built once.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "snowshed/material/snow.hpp"
+#include "snowshed/methods/obstacle.hpp"
+
+namespace snowshed {
+
+/// A file that a scene names, and the fingerprint of what it held.
+struct FilePrint {
+  std::string file;
+  std::int64_t print;
+};
+
+/// What a method read from the files that only it takes.
+class MethodInput {
+ public:
+  virtual ~MethodInput() = default;
+
+  /// The section of a checkpoint that holds the fingerprints of these files.
+  virtual const char* section() const = 0;
+  virtual std::vector<FilePrint> files() const = 0;
+  /// A remark on the files that a user should read before the run; empty if there is none.
+  virtual std::string remark() const { return ""; }
+};
+
+struct Surroundings {
+  std::vector<Snow> snows;                   // by material_id
+  std::vector<Obstacle> obstacles;           // all of them, as they are given
+  std::vector<Obstacle> resolved;            // the same as the method sees them
+  std::vector<std::string> notes;            // on what was assumed or changed, a sentence each
+  std::shared_ptr<const MethodInput> input;  // null if the method reads no files
+};
+
+}  // namespace snowshed

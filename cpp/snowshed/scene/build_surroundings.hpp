@@ -1,0 +1,14 @@
+// From a scene to what surrounds its snow.
+#pragma once
+
+#include <filesystem>
+
+#include "snowshed/methods/surroundings.hpp"
+#include "snowshed/scene/scene.hpp"
+
+namespace snowshed {
+
+/// Relative file names are looked for in `base_dir`. Throws InputError.
+Surroundings build_surroundings(const Scene& scene, const std::filesystem::path& base_dir);
+
+}  // namespace snowshed

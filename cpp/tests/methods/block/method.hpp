@@ -1,0 +1,39 @@
+// The block, as the rest of the program knows it.
+#pragma once
+
+#include <cmath>
+
+#include "methods/block/solver.hpp"
+#include "snowshed/methods/descriptor.hpp"
+
+namespace snowshed::block {
+
+class Descriptor final : public DescriptorOf<Descriptor, Settings> {
+ public:
+  const MethodFacts& facts() const override {
+    static const MethodFacts facts{"block",  "A rigid block on a plane",      {},
+                                   "blocks", names_of(Solver({}).energies()), {}};
+    return facts;
+  }
+  std::string step_setting() const override { return "time_step"; }
+  void validate(const SceneView& scene) const override {
+    if (scene.dimension != 3) throw InputError("/dimension", "a block slides in space; allowed: 3");
+  }
+  std::unique_ptr<Method> build(const SceneView& scene, const Surroundings&) const override {
+    return std::make_unique<Solver>(Model{settings_, scene.gravity});
+  }
+  CostEstimate cost(const CostRequest& request) const override {
+    CostEstimate cost;
+    cost.particles = {1};
+    cost.total_particles = 1;
+    cost.time_step = settings_.time_step;
+    cost.event_time = request.scene.events.max_time;
+    cost.steps = cost.updates = std::ceil(cost.event_time / cost.time_step);
+    return cost;
+  }
+  std::vector<Feature> features(const SceneView&, const SceneOutline&) const override {
+    return {{"friction", settings_.friction > 0}};
+  }
+};
+
+}  // namespace snowshed::block
