@@ -13,7 +13,7 @@ from snowshed._core import InputError
 from snowshed.cli.commands.run import PATH, run_options
 from snowshed.cli.run_scene import run_scene
 from snowshed.cli.terminal import say
-from snowshed.results.folder import check_empty
+from snowshed.io.folders import check_empty
 from snowshed.scene.lua.builder import LuaRun
 from snowshed.scene.lua.loading import load_lua
 
