@@ -10,7 +10,8 @@ from snowshed import InputError, run_events
 from snowshed.cli.main import main
 from snowshed.io.atomic import replacing, write_text
 from snowshed.io.csv_table import Table
-from snowshed.results.folder import EVENT_COLUMNS, check_empty, read_events
+from snowshed.io.folders import check_empty
+from snowshed.results.folder import EVENT_COLUMNS, read_events
 
 
 def test_a_failed_write_leaves_the_old_file_and_nothing_else(tmp_path):

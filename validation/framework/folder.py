@@ -18,8 +18,8 @@ from typing import TYPE_CHECKING, Any, Optional
 from snowshed import _core
 from snowshed._core import InputError
 from snowshed.io.atomic import remove_leftovers, write_text
+from snowshed.io.folders import check_empty
 from snowshed.io.json_file import check_values, read_object
-from snowshed.results.folder import check_empty
 from validation.framework.measurement_file import MeasurementFile
 
 if TYPE_CHECKING:

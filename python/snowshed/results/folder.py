@@ -36,7 +36,7 @@ import numpy as np
 
 from snowshed._core import InputError
 from snowshed.base.arrays import Floats
-from snowshed.io.atomic import LEFTOVER, write_text
+from snowshed.io.atomic import write_text
 from snowshed.io.csv_table import Table, read_csv
 from snowshed.io.json_file import read_object
 from snowshed.io.run_files import check_run_file
@@ -241,15 +241,6 @@ class RunFolder:
 def _last_known(sums: Mapping[str, str], event: int) -> int:
     """Return the last event up to `event` of which there is a checksum; 0 if there is none."""
     return max((int(at) for at in sums if at.isdecimal() and int(at) <= event), default=0)
-
-
-def check_empty(folder: PathLike) -> None:
-    """Raise InputError unless results may be written to `folder`: it is new, or empty."""
-    folder = Path(folder)
-    if folder.exists() and not folder.is_dir():
-        raise InputError(f"{folder}: not a folder")
-    if folder.is_dir() and any(not LEFTOVER.match(path.name) for path in folder.iterdir()):
-        raise InputError(f"{folder}: not empty; choose a new folder, or go on with --resume")
 
 
 def read_events(folder: PathLike) -> pd.DataFrame:

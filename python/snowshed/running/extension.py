@@ -12,9 +12,10 @@ import snowshed._core as _core
 from snowshed._core import InputError
 from snowshed.base.progress import Reporter
 from snowshed.io.atomic import replacing_folder
+from snowshed.io.folders import check_empty
 from snowshed.io.json_file import read_object
 from snowshed.methods.registry import method_of
-from snowshed.results.folder import RunFolder, check_empty
+from snowshed.results.folder import RunFolder
 from snowshed.running.ageing import Ageing
 from snowshed.running.run import run_events
 from snowshed.scene.components import Snow

@@ -11,8 +11,8 @@ from snowshed._core import InputError
 from snowshed.base.progress import Reporter
 from snowshed.io.atomic import write_text
 from snowshed.io.csv_table import Table, read_csv, write_csv
+from snowshed.io.folders import check_empty
 from snowshed.methods.registry import resolution_of
-from snowshed.results.folder import check_empty
 from snowshed.results.season_folder import SeasonFolder
 from snowshed.running.run import run_events
 from snowshed.scene.scene import PathLike, ResolvedScene, SceneLike, resolve_scene

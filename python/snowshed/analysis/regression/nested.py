@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict
 from functools import partial
@@ -20,8 +19,8 @@ from snowshed.base.interrupt import InterruptRequest, deferred_interrupts
 from snowshed.base.pool.pool import Ended, Pool
 from snowshed.base.pool.threads import one_thread
 from snowshed.base.progress import Progress, Reporter
-from snowshed.io.atomic import LEFTOVER, remove_leftovers, write_text
-from snowshed.io.json_file import read_object
+from snowshed.io.atomic import remove_leftovers
+from snowshed.io.folders import claim_folder
 from snowshed.study.locks import holding, is_held
 
 IDENTITY = "regression.json"
@@ -141,18 +140,8 @@ def _claim(folder: Path, rows: StackRows, scheme: CrossValidation) -> None:
     folds = asdict(scheme)
     del folds["rounds"]
     identity = {"format": FORMAT, "rows": rows.digest, "folds": folds}
-    path = folder / IDENTITY
-    if path.is_file():
-        if read_object(path) != identity:
-            raise InputError(
-                f"{folder}: holds a regression of another table, with other folds, or by another "
-                "version of snowshed; take a new folder"
-            )
-        return
-    if folder.exists() and any(not LEFTOVER.match(file.name) for file in folder.iterdir()):
-        raise InputError(f"{folder}: not empty, and holds no regression")
-    folder.mkdir(parents=True, exist_ok=True)
-    write_text(path, json.dumps(identity, indent=1) + "\n")
+    others = "of another table, with other folds, or by another version of snowshed"
+    claim_folder(folder, IDENTITY, identity, "regression", others)
 
 
 def _computed(

@@ -39,6 +39,7 @@ from snowshed.base.arrays import AnyIntegers
 from snowshed.base.paths import PathLike
 from snowshed.io.atomic import replacing, write_text
 from snowshed.io.csv_table import write_csv
+from snowshed.io.folders import check_empty
 from snowshed.methods.grains.sample_folder import LABELS, NUMBERS, SNOW
 
 if TYPE_CHECKING:
@@ -65,9 +66,7 @@ class SampleNumbers:
 
 def check_new(folder: PathLike) -> None:
     """Raise InputError unless a folder is new or empty."""
-    path = Path(folder)
-    if path.exists() and (not path.is_dir() or any(path.iterdir())):
-        raise InputError(f"{path}: not empty; choose a new folder")
+    check_empty(folder, "; choose a new folder")
 
 
 def write_ice(folder: PathLike, image: IceImage, facts: Mapping[str, Fact]) -> SampleNumbers:

@@ -14,7 +14,7 @@ from snowshed.cli.common_options import PATH, run_options
 from snowshed.cli.dry_run import print_cost
 from snowshed.cli.run_scene import run_scene
 from snowshed.cli.terminal import say
-from snowshed.results.folder import check_empty
+from snowshed.io.folders import check_empty
 from snowshed.scene.lua.builder import LuaRun
 from snowshed.scene.lua.loading import load_lua
 
