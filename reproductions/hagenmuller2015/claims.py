@@ -59,7 +59,7 @@ REMAINS, LINEAR = 0.05, 0.95
 
 
 @dataclass(frozen=True)
-class Tests:
+class LoadingTests:
     """The computed loading tests.
 
     Attributes
@@ -111,7 +111,7 @@ def factor(found: Estimate, what: str) -> str:
     return f"{what}: x {math.exp(found.value):.3g} (noise: {noise})"
 
 
-def reversible(tests: Tests) -> Finding:
+def reversible(tests: LoadingTests) -> Finding:
     """Test whether loading and unloading in the elastic phase leaves no trace."""
     rows = tests.of(ELASTIC)
     broken = (rows["broken_in_tension"] + rows["broken_in_shear"]).astype(float)
@@ -126,14 +126,14 @@ def reversible(tests: Tests) -> Finding:
     )
 
 
-def brittle(tests: Tests) -> Finding:
+def brittle(tests: LoadingTests) -> Finding:
     """Test whether the stress falls after its peak."""
     rows = tests.of(BASE)
     drop = _estimate(LogMean.of((rows[EARLY].astype(float) / rows[PEAK].astype(float)).tolist()))
     return _factors(negative(drop, ""), drop, "mean from 5 to 10 % over the peak below 5 %")
 
 
-def hardens(tests: Tests) -> Finding:
+def hardens(tests: LoadingTests) -> Finding:
     """Test whether the stress more than doubles from 10-15 to 25-30 %, like an exponential."""
     rows = tests.of(BASE)
     growth = (rows[DENSE].astype(float) / rows[MIDDLE].astype(float)).tolist()
@@ -146,7 +146,7 @@ def hardens(tests: Tests) -> Finding:
     return Finding(found.verdict if whole else UNDECIDED, f"{found.sentence}; {begins}")
 
 
-def rises(variant: str, base: str, stresses: Sequence[str], tests: Tests) -> Finding:
+def rises(variant: str, base: str, stresses: Sequence[str], tests: LoadingTests) -> Finding:
     """Test whether stresses of a variant are larger than those of another."""
     changes = [tests.change(variant, stress, base) for stress in stresses]
     return all_of(
@@ -154,13 +154,13 @@ def rises(variant: str, base: str, stresses: Sequence[str], tests: Tests) -> Fin
     )
 
 
-def falls(variant: str, stress: str, tests: Tests, *, by: float = 0.0) -> Finding:
+def falls(variant: str, stress: str, tests: LoadingTests, *, by: float = 0.0) -> Finding:
     """Test whether a stress is less than the base's, by a logarithm."""
     change = tests.change(variant, stress)
     return _factors(negative(change - Estimate(-by, 0.0), ""), change, STRESSES[stress])
 
 
-def hardly(variants: Sequence[str], stress: str, tests: Tests, base: str = BASE) -> Finding:
+def hardly(variants: Sequence[str], stress: str, tests: LoadingTests, base: str = BASE) -> Finding:
     """Test whether a stress hardly differs from the base's."""
     findings = []
     for variant in variants:
@@ -171,7 +171,7 @@ def hardly(variants: Sequence[str], stress: str, tests: Tests, base: str = BASE)
     return all_of(findings)
 
 
-def as_much_as_yade(stress: str, tests: Tests) -> Finding:
+def as_much_as_yade(stress: str, tests: LoadingTests) -> Finding:
     """Test whether a stress of the base is that of Yade within 30 %."""
     value = YADE[BASE][list(STRESSES).index(stress)]
     assert value is not None
@@ -181,7 +181,7 @@ def as_much_as_yade(stress: str, tests: Tests) -> Finding:
     return Finding(verdict, factor(found - Estimate(math.log(1e3 * value), 0.0), words))
 
 
-def same_signs(variant: str, tests: Tests) -> Finding:
+def same_signs(variant: str, tests: LoadingTests) -> Finding:
     """Test whether stresses change as in Yade, where these change by more than the scatter."""
     findings = []
     for stress, printed, base in zip(STRESSES, YADE[variant], YADE[BASE]):
@@ -194,7 +194,7 @@ def same_signs(variant: str, tests: Tests) -> Finding:
     return all_of(findings)
 
 
-def same_order(stress: str, tests: Tests) -> Finding:
+def same_order(stress: str, tests: LoadingTests) -> Finding:
     """Test whether two variants are in Yade's order, for all pairs that are clearly apart."""
     place = list(STRESSES).index(stress)
     pairs = []
@@ -219,7 +219,7 @@ def _words(variant: str) -> str:
     return f"{variant}: stresses change in the direction in which they change in Yade"
 
 
-PAPER: list[Claim[Tests]] = [
+PAPER: list[Claim[LoadingTests]] = [
     Claim(
         "elastic phase",
         "At first the deformation is elastic: linear, reversible, and no bond breaks.",
@@ -306,7 +306,7 @@ PAPER: list[Claim[Tests]] = [
         lambda tests: hardly([SCALED], PEAK, tests),
     ),
 ]
-ENGINE: list[Claim[Tests]] = [
+ENGINE: list[Claim[LoadingTests]] = [
     Claim(
         "density of ice",
         "Far too dense ice raises the peak, by inertia.",

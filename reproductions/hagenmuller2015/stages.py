@@ -17,7 +17,7 @@ from pathlib import Path
 
 from reproductions.common.folder import ReproductionFolder
 from reproductions.common.stage import StudyStage
-from reproductions.hagenmuller2015.claims import Tests
+from reproductions.hagenmuller2015.claims import LoadingTests
 from reproductions.hagenmuller2015.snows import Samples
 from reproductions.hagenmuller2015.studies import MAKERS, Comparisons
 from snowshed._core import InputError
@@ -43,7 +43,7 @@ class GrainsComputation:
         ]
 
     @cached_property
-    def tests(self) -> Tests:
+    def tests(self) -> LoadingTests:
         """The computed tests of each stage; to be asked for when everything is computed.
 
         Raises
@@ -57,7 +57,7 @@ class GrainsComputation:
         tables = [self.comparisons[name].table(runs) for name in reversed(list(MAKERS))]
         if not any(BASE in set(table["variant"]) for table in tables):
             raise InputError("no test of the base is computed yet")
-        return Tests(tables)
+        return LoadingTests(tables)
 
     def _maker(self, name: str) -> Callable[[], list[Study]]:
         return lambda: [self.comparisons[name].study()]

@@ -12,7 +12,7 @@ from plot.browser import check_page
 from station_files import days, elements, ghcn
 
 from snowshed import InputError
-from snowshed.analysis.clearance import Design, Ranges, clearance_of, winters_of
+from snowshed.analysis.clearance import Design, Ranges, clearance_of, statistics, winters_of
 from snowshed.analysis.clearance.answer import STUDY, forecast
 from snowshed.analysis.clearance.report import write_report
 from snowshed.analysis.clearance.statistics import burial_interval, levels_of, shares_of
@@ -108,23 +108,28 @@ def test_interrupted_and_resumed_it_is_the_same(answer, winters, tmp_path):
     assert again.table().to_csv() == found.table().to_csv()
 
 
-def test_the_page_and_the_summary(answer, tmp_path):
+@pytest.fixture(scope="module")
+def report(answer, tmp_path_factory):
+    """The folder of the answer's pages and files."""
     found, _ = answer
-    write_report([found], KNOWN, tmp_path)
-    page = (tmp_path / "clearance.html").read_text()
+    folder = tmp_path_factory.mktemp("report")
+    write_report([found], KNOWN, folder, ["a note"])
+    return folder
+
+
+def test_the_page_and_the_summary(report):
+    page = (report / "clearance.html").read_text()
     assert "must be" in page and "Assumptions" in page and "Gumbel" in page
     assert "http" not in page.replace("http://www.w3.org", "")
-    summary = json.loads((tmp_path / "clearance.json").read_text())
+    summary = json.loads((report / "clearance.json").read_text())
     assert [level["probability"] for level in summary["panels"][0]["levels"]] == [0.5, 0.9, 0.98]
-    view = (tmp_path / "worst-winter-0.6-60.html").read_text()
+    view = (report / "worst-winter-0.6-60.html").read_text()
     assert 'href="worst-winter-0.6-60.html"' in page and "slide-offs" in view
 
 
-def test_its_pages_can_be_read(answer, tmp_path):
-    found, _ = answer
-    write_report([found], KNOWN, tmp_path, ["a note"])
-    check_page(tmp_path / "clearance.html")
-    check_page(tmp_path / "worst-winter-0.6-60.html")
+def test_its_pages_can_be_read(report):
+    check_page(report / "clearance.html")
+    check_page(report / "worst-winter-0.6-60.html")
 
 
 def test_a_forecast_counts_the_seasons(winters):
@@ -164,8 +169,9 @@ def answer_cases(winters):
 # --- statistics ----------------------------------------------------------------------------
 
 
-def test_confidence_holds_the_true_height_as_often_as_it_says():
+def test_confidence_holds_the_true_height_as_often_as_it_says(monkeypatch):
     """Required heights from a known Gumbel distribution, 30 winters with two draws each."""
+    monkeypatch.setattr(statistics, "RESAMPLES", 200)
     random = np.random.default_rng(5)
     true = 2.0 - 0.3 * np.log(-np.log(0.9))
     inside = 0

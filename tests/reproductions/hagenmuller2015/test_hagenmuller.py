@@ -8,7 +8,7 @@ from plot.browser import check_page
 from reproductions.common.hypothesis_tests import CONFIRMED, CONTRADICTED, UNDECIDED, judge
 from reproductions.common.report import write_report
 from reproductions.hagenmuller2015 import claims, printed, studies
-from reproductions.hagenmuller2015.claims import ENGINE, PAPER, Tests
+from reproductions.hagenmuller2015.claims import ENGINE, PAPER, LoadingTests
 from reproductions.hagenmuller2015.publication import REPRODUCTION
 from reproductions.hagenmuller2015.sections import stress_grid
 from reproductions.hagenmuller2015.snows import Samples
@@ -50,7 +50,7 @@ def made_up(noise=0.02, **changed):
     elastic = {"broken_in_tension": 0, "broken_in_shear": 0, "elastic_limit_strain": 1e-4,
                "axial_strain": 1e-7, "linearity": 0.99}  # fmt: skip
     rows += [{"variant": studies.ELASTIC, "sample": sample, **elastic} for sample in range(3)]
-    return Tests([pd.DataFrame(rows)])
+    return LoadingTests([pd.DataFrame(rows)])
 
 
 def verdicts(tests):
@@ -65,7 +65,9 @@ def test_what_is_as_claimed_is_confirmed():
 def test_noise_leaves_claims_open():
     found = verdicts(made_up(noise=3.0))
     assert found.count(UNDECIDED) > len(found) / 2
-    assert set(verdicts(Tests([made_up().tables[0].query("sample == 0")]))[1:]) == {UNDECIDED}
+    assert set(verdicts(LoadingTests([made_up().tables[0].query("sample == 0")]))[1:]) == {
+        UNDECIDED
+    }
 
 
 def test_the_opposite_contradicts():
@@ -119,7 +121,7 @@ def test_the_variants_have_the_names_that_claims_use(tmp_path):
 def test_the_page_of_all_stages_can_be_read_by_everyone(tmp_path):
     found = GrainsComputation(tmp_path, Samples(40, 1))
     sizes = {"final_particles": 90, "spheres": 900, "density_kg_m3": 250.0}
-    found.tests = Tests([table.assign(**sizes) for table in made_up().tables])
+    found.tests = LoadingTests([table.assign(**sizes) for table in made_up().tables])
     write_report(REPRODUCTION, REPRODUCTION.size("quick"), tmp_path, found)
     text = (tmp_path / "hagenmuller.html").read_text(encoding="utf-8")
     assert "Nothing is computed yet" not in text and "confirmed" in text
