@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
+from snowshed.base.formatting import plural
 from snowshed.plot.figure_style import BODY, STACK, STYLE, blank, headline
 from snowshed.plot.labels import label
 
@@ -60,7 +61,7 @@ def study_figure(table: pd.DataFrame, axes: Sequence[str], title: str) -> Figure
     with rc_context(STYLE):
         rows, columns = max(len(measures), 1), max(len(shown), 1)
         figure = blank(1.2 + COLUMN * columns, 0.9 + ROW * rows)
-        count = "1 run" if len(last) == 1 else f"{len(last)} runs"
+        count = plural(len(last), "run")
         headline(figure, f"{title}: {count}, each after its last event")
         grid = figure.subplots(rows, columns, squeeze=False, sharey="row")
         for row, measure in enumerate(measures):

@@ -16,6 +16,7 @@ import numpy as np
 
 from snowshed._core import InputError
 from snowshed.base.arrays import Booleans, Floats, Integers
+from snowshed.base.formatting import plural
 from snowshed.io.weather import Station
 from snowshed.season.columns import CONTRADICTION, Choice, Chooser, Column
 from snowshed.season.daily import Days, days_of_station
@@ -213,17 +214,12 @@ def _gaps(days: Days) -> list[str]:
     first, last = (
         datetime.fromordinal(int(ordinals[longest + n] + (1, -1)[n])).date() for n in (0, 1)
     )
-    return [
-        f"{_many(int((spans - 1).sum()), 'day')} missing in {_gaps_in_words(spans)}from {first} to "
-        f"{last}"
-    ]
+    missing = int((spans - 1).sum())
+    verb = "is" if missing == 1 else "are"
+    return [f"{plural(missing, 'day')} {verb} missing in {_gaps_text(spans)}from {first} to {last}"]
 
 
-def _many(number: int, what: str) -> str:
-    return f"{number} {what} is" if number == 1 else f"{number} {what}s are"
-
-
-def _gaps_in_words(spans: Integers) -> str:
+def _gaps_text(spans: Integers) -> str:
     gaps = int((spans > 1).sum())
     return "1 gap, " if gaps == 1 else f"{gaps} gaps, the longest "
 
