@@ -83,14 +83,14 @@ def _draw(axes: Axes, runs: pd.DataFrame, path: str, measure: str) -> None:
     import pandas as pd
 
     values = pd.to_numeric(runs[path], errors="coerce")
-    known = runs[path].map(str)
+    categories = runs[path].map(str)
     if values.notna().all() and runs[path].dtype != bool:
         positions = values / label(path).scale
         if positions.min() > 0 and positions.max() > 30 * positions.min():
             axes.set_xscale("log")
     else:
-        names = list(dict.fromkeys(known))
-        positions = known.map({name: float(place) for place, name in enumerate(names)})
+        names = list(dict.fromkeys(categories))
+        positions = categories.map({name: float(place) for place, name in enumerate(names)})
         axes.set_xticks(range(len(names)), [_short(name) for name in names])
         axes.set_xlim(-0.5, len(names) - 0.5)
     results = runs[measure].astype(float)

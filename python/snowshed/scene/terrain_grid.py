@@ -22,9 +22,9 @@ def slide_terrain(scene: SceneLike) -> Raster:
     OSError
         If the terrain cannot be read.
     """
-    ready = resolve_scene(scene)
-    maps = _core.Simulation(ready.json, ready.base_dir).slide_maps()
-    crs = str(json.loads(ready.json)["terrain"]["crs"])
+    resolved = resolve_scene(scene)
+    maps = _core.Simulation(resolved.json, resolved.base_dir).slide_maps()
+    crs = str(json.loads(resolved.json)["terrain"]["crs"])
     return Raster(maps["terrain"], maps["west"], maps["south"], maps["cell"], crs=crs)
 
 

@@ -192,16 +192,16 @@ def _take(snow: _Snow, n: int, choice: Choice, columns: Mapping[Source, Column])
 
 def _share_out(snow: _Snow, total: Total) -> None:
     """Take snow that other columns observed out of a rise over several days."""
-    own, known = [], 0.0
+    own, observed = [], 0.0
     for n in total.days:
         if snow.source[n] is Source.DEPTH or snow.reason[n].endswith(Source.DEPTH.label):
             own.append(n)
             snow.reason[n] = f"part of a rise of {total.rise:.2f} m over {len(total.days)} days"
         else:
-            known += snow.fall[n]
+            observed += snow.fall[n]
     if len(own) < len(total.days):
         for n in own:
-            snow.fall[n] = max(total.rise - known, 0.0) / len(own)
+            snow.fall[n] = max(total.rise - observed, 0.0) / len(own)
 
 
 def _gaps(days: Days) -> list[str]:
@@ -235,10 +235,10 @@ def _notes(snow: _Snow, days: Days, calendar: Calendar) -> Iterator[str]:
     yield from _contradictions(snow, calendar)
     filled = [n for n, source in enumerate(snow.source) if source is Source.FILLED]
     if filled:
-        words = sorted({_kind(snow.reason[n]) for n in filled})
+        kinds = sorted({_kind(snow.reason[n]) for n in filled})
         yield (
             f"the snow of {some_days(days.dates, filled)} is filled, "
-            f"{sum(snow.fall[n] for n in filled):.2f} m in all: {'; '.join(words)}"
+            f"{sum(snow.fall[n] for n in filled):.2f} m in all: {'; '.join(kinds)}"
         )
     missing = [n for n, source in enumerate(snow.source) if source is Source.MISSING]
     if missing:

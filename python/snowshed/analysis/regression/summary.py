@@ -181,7 +181,7 @@ def thesis_checks(quartiles: pd.DataFrame, errors: pd.DataFrame) -> list[str]:
         off = float(np.abs(ours / np.array(THESIS_QUARTILES[kind]) - 1).max())
         checks.append((off <= QUARTILES_OFF, f"{kind} quartiles off by up to {off:.0%} from "
                        f"Table 5.3.1, at most {QUARTILES_OFF:.0%}"))  # fmt: skip
-    lines = [f"{'holds' if good else 'DOES NOT HOLD'}: {words}" for good, words in checks]
+    lines = [f"{'holds' if good else 'DOES NOT HOLD'}: {claim}" for good, claim in checks]
     most = int(errors["most_seeds"].max())
     if most > 1:
         lines.append(
