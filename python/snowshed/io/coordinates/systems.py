@@ -88,7 +88,7 @@ def are_same(left: str, other: str) -> bool:
     first, second = horizontal_system(left), horizontal_system(other)
     if first is None or second is None:
         return False
-    if first == second or _description(first) == _words(second):
+    if first == second or _description(first) == _description(second):
         return True
     return _is_of_etrs89(first) and _is_of_etrs89(second) and first.to_proj4() == second.to_proj4()
 
