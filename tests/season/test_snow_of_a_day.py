@@ -194,7 +194,7 @@ def test_new_snow_that_nobody_entered_gives_way(tmp_path):
     """In one winter, or in all of them: the depth rises, and new snow is 0 throughout."""
     one = lambda day, _: 0.0 if date(2001, 7, 1) <= day < date(2002, 7, 1) else 100.0 * snows(day)  # noqa: E731
     record = several_winters(tmp_path, SNOW=one, SNWD=lambda _, deep: deep)
-    sources = [winter.source_words for winter in record.winters().winters]
+    sources = [winter.source_text for winter in record.winters().winters]
     assert sources == ["new snow", "snow depth", "new snow"]
     assert told(record, "2001/02: new snow 0 m, snow depth 2 m")
     record = several_winters(tmp_path, SNOW=lambda *_: 0.0, SNWD=lambda _, deep: deep)

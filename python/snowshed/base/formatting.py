@@ -104,6 +104,17 @@ def count(value: Optional[float]) -> str:
     return f"{value:,.0f}"
 
 
+def plural(number: int, noun: str) -> str:
+    """Return a number of things.
+
+    Examples
+    --------
+    >>> plural(1, "winter"), plural(3, "winter")
+    ('1 winter', '3 winters')
+    """
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
+
+
 def about(seconds: float) -> str:
     """Return an estimated time.
 

@@ -43,7 +43,7 @@ def quoted(text: str) -> str:
     return repr(text[:LONGEST]) + ("" if len(text) <= LONGEST else "...")
 
 
-def suggestion(given: str, words: Iterable[str]) -> str:
+def suggestion(given: str, allowed: Iterable[str]) -> str:
     """Return "; did you mean ...?" with the word nearest to `given`, or nothing if none is near.
 
     Examples
@@ -51,7 +51,7 @@ def suggestion(given: str, words: Iterable[str]) -> str:
     >>> suggestion("tlit", ["tilt", "length"]), suggestion("DX", ["dx"]), suggestion("x", ["tilt"])
     ('; did you mean tilt?', '; did you mean dx?', '')
     """
-    by_lower = {word.lower(): word for word in words}
+    by_lower = {word.lower(): word for word in allowed}
     near = difflib.get_close_matches(given.lower(), by_lower, n=1)
     return f"; did you mean {by_lower[near[0]]}?" if near else ""
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, Optional
 
 import snowshed._core as _core
-from snowshed.base.formatting import about
+from snowshed.base.formatting import about, plural
 from snowshed.base.progress import Progress, Reporter
 from snowshed.cli.exit_codes import Failed, Stopped
 from snowshed.cli.terminal import PlainConsole, say
@@ -79,7 +79,7 @@ def announcement(progress: Progress) -> str:
     earlier = f" ({progress.count - left} of {progress.count} are done already)"
     slow = _core.slow_kernels_note()
     return (
-        f"{runs_text(left)} to compute{earlier if left < progress.count else ''}, "
+        f"{plural(left, 'run')} to compute{earlier if left < progress.count else ''}, "
         f"{progress.at_once} at once; expected time: {about(progress.expected_s or 0.0)}"
         + (f"\nnote: {slow}" if slow else "")
     )
@@ -90,8 +90,3 @@ def print_failures(runs: Sequence[StoredRun], console: PlainConsole) -> None:
     for run in runs:
         if run.status == "failed":
             console.print(f"  {run.hash[:12]} failed: {run.error}")
-
-
-def runs_text(count: int) -> str:
-    """Return a number of runs, such as "1 run"."""
-    return f"{count} run{'' if count == 1 else 's'}"

@@ -223,9 +223,9 @@ def csv_text(table: pd.DataFrame, **options: Any) -> str:
     >>> csv_text(pd.DataFrame({"name": ["=A1", "b"], "x": [-1.0, 2.0]})).split()
     ['name,x', "'=A1,-1.0", 'b,2.0']
     """
-    words = [i for i, kind in enumerate(table.dtypes) if kind.kind not in "biufcmM"]
+    text_columns = [i for i, kind in enumerate(table.dtypes) if kind.kind not in "biufcmM"]
     safe = table.rename(columns=csv_cell)
-    for i in words:
+    for i in text_columns:
         safe = safe.assign(**{str(safe.columns[i]): table.iloc[:, i].map(csv_cell)})
     return str(safe.to_csv(index=False, lineterminator="\n", **options))
 

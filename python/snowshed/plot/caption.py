@@ -97,9 +97,9 @@ def _span(scene: Mapping[str, Any], name: str) -> str:
     """Return a parameter of the snow with its unit; from where to where, if layers differ."""
     layers = (scene.get("slab") or {}).get("layers") or [{}]
     values = [layer.get("snow", scene["snow"])[name] for layer in layers]
-    known = label(f"snow.{name}")
+    parameter = label(f"snow.{name}")
     ends = sorted({min(values), max(values)})
-    return " to ".join([*map(known.value, ends[:-1]), known.quantity(ends[-1])])
+    return " to ".join([*map(parameter.value, ends[:-1]), parameter.quantity(ends[-1])])
 
 
 def _snow(scene: Mapping[str, Any]) -> str:

@@ -96,8 +96,8 @@ def _draw_forces(axes: Axes, contacts: GrainContacts) -> None:
     for pulls, colour in ((False, BODY), (True, STACK)):
         chosen = (pulling == pulls) & drawn_ones
         for side in (0, 1):
-            ways, whole = contacts.arms(side)
-            shown = np.flatnonzero(chosen & whole)
+            ways, complete = contacts.arms(side)
+            shown = np.flatnonzero(chosen & complete)
             ends = np.stack([contacts.points[shown] - ways[shown], contacts.points[shown]], axis=1)
             lines, widths = 1e3 * ends[:, :, [0, 2]], WIDEST * size[shown] / largest
             drawn = LineCollection(list(lines), linewidths=widths, colors=colour)

@@ -104,9 +104,9 @@ def label(path: str) -> Label:
     >>> label("events.rest_speed").axis
     'events.rest_speed, m/s'
     """
-    known = LABELS.get(path, Label(path))
-    unit = known.unit or parameter_units().get(path, "")
-    return Label(known.name, known.symbol or known.name, SHOWN_UNITS.get(unit, unit), known.scale)
+    entry = LABELS.get(path, Label(path))
+    unit = entry.unit or parameter_units().get(path, "")
+    return Label(entry.name, entry.symbol or entry.name, SHOWN_UNITS.get(unit, unit), entry.scale)
 
 
 def settings(values: Mapping[str, float]) -> str:

@@ -38,10 +38,10 @@ def scene_figure(scene: SceneLike) -> Figure:
     InputError
         If the scene is wrong.
     """
-    ready = resolve_scene(scene)
-    simulation = Simulation(ready.core, ready.base_dir)
+    resolved = resolve_scene(scene)
+    simulation = Simulation(resolved.core, resolved.base_dir)
     simulation.begin_event()
-    data = ready.data
+    data = resolved.data
     left, right, bottom, top = _limits(simulation, data)
     figure = blank(WIDTH, min(1.2 + (WIDTH - 1) * (top - bottom) / (right - left), 9.0))
     axes = figure.subplots()

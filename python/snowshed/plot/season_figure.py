@@ -92,8 +92,8 @@ def season_figure(
         _plain(axes)
     first, last = (f"{moment:%Y-%m-%d}" for moment in (moments[0], moments[-1]))
     caption = scene_caption(dict(scene))
-    known = f"\n{snow}" if snow else ""
-    describe(figure, f"Season from {first} to {last}, {title}{known}\n{caption}")
+    snow_line = f"\n{snow}" if snow else ""
+    describe(figure, f"Season from {first} to {last}, {title}{snow_line}\n{caption}")
     return figure
 
 

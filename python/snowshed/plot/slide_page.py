@@ -303,10 +303,10 @@ def multiples_figure(
         panels = figure.subplots(down, across, squeeze=False).ravel()
         for axes, frame in zip(panels, chosen):
             draw_terrain(axes, ground, part, labels=False)
-            whole = np.full(ground.heights.shape, np.nan)
+            thickness = np.full(ground.heights.shape, np.nan)
             cut = frame.window(rows, columns)
-            whole[rows, columns] = np.where(cut > LEAST_SHOWN, cut, np.nan)
-            drawn = draw_values(axes, ground, whole, cmap=COLOURS, norm=norm)
+            thickness[rows, columns] = np.where(cut > LEAST_SHOWN, cut, np.nan)
+            drawn = draw_values(axes, ground, thickness, cmap=COLOURS, norm=norm)
             draw_outlines(axes, outlines)
             axes.set_title(f"{frame.time:.0f} s" if frame.time >= 10 else f"{frame.time:.1f} s")
             axes.set(xticks=[], yticks=[])

@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
+from snowshed.base.formatting import plural
 from snowshed.plot.figure_style import BODY, STACK, STYLE, blank, headline
 from snowshed.plot.labels import label
 
@@ -60,7 +61,7 @@ def study_figure(table: pd.DataFrame, axes: Sequence[str], title: str) -> Figure
     with rc_context(STYLE):
         rows, columns = max(len(measures), 1), max(len(shown), 1)
         figure = blank(1.2 + COLUMN * columns, 0.9 + ROW * rows)
-        count = "1 run" if len(last) == 1 else f"{len(last)} runs"
+        count = plural(len(last), "run")
         headline(figure, f"{title}: {count}, each after its last event")
         grid = figure.subplots(rows, columns, squeeze=False, sharey="row")
         for row, measure in enumerate(measures):
@@ -82,14 +83,14 @@ def _draw(axes: Axes, runs: pd.DataFrame, path: str, measure: str) -> None:
     import pandas as pd
 
     values = pd.to_numeric(runs[path], errors="coerce")
-    known = runs[path].map(str)
+    categories = runs[path].map(str)
     if values.notna().all() and runs[path].dtype != bool:
         positions = values / label(path).scale
         if positions.min() > 0 and positions.max() > 30 * positions.min():
             axes.set_xscale("log")
     else:
-        names = list(dict.fromkeys(known))
-        positions = known.map({name: float(place) for place, name in enumerate(names)})
+        names = list(dict.fromkeys(categories))
+        positions = categories.map({name: float(place) for place, name in enumerate(names)})
         axes.set_xticks(range(len(names)), [_short(name) for name in names])
         axes.set_xlim(-0.5, len(names) - 0.5)
     results = runs[measure].astype(float)

@@ -131,8 +131,8 @@ def _cropped(ground: Raster, part: Extent) -> Raster:
 
 def _levels(ground: Raster) -> tuple[float, Floats]:
     """Return a round interval and the contours at it that a terrain shows."""
-    known = ground.heights[~np.isnan(ground.heights)]
-    low, high = float(known.min()), float(known.max())
+    elevations = ground.heights[~np.isnan(ground.heights)]
+    low, high = float(elevations.min()), float(elevations.max())
     rounded = (0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0)
     interval = next((step for step in rounded if (high - low) / step <= CONTOURS), 1000.0)
     return interval, interval * np.arange(np.ceil(low / interval), np.floor(high / interval) + 1)

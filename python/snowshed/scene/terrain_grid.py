@@ -21,9 +21,9 @@ def slide_terrain(scene: SceneLike) -> Raster:
     OSError
         If the terrain cannot be read.
     """
-    ready = resolve_scene(scene)
-    maps = _core.Simulation(ready.core, ready.base_dir).slide_maps()
-    crs = str(ready.data["terrain"]["crs"])
+    resolved = resolve_scene(scene)
+    maps = _core.Simulation(resolved.core, resolved.base_dir).slide_maps()
+    crs = str(resolved.data["terrain"]["crs"])
     return Raster(maps["terrain"], maps["west"], maps["south"], maps["cell"], crs=crs)
 
 

@@ -108,10 +108,10 @@ def _check_amounts(rows: Sequence[Weather], table_rows: Sequence[Row], name: str
     """Refuse record-breaking amounts of a day, or of a winter."""
     falls = _daily_sums(rows)
     for day, (total, first) in falls.items():
-        whole = first > 0 and (rows[first].date - rows[first - 1].date).total_seconds() <= DAY
+        daily = first > 0 and (rows[first].date - rows[first - 1].date).total_seconds() <= DAY
         single = first + 1 == len(rows) or rows[first + 1].date.date() != day.date()
         # a single row may be the snow of several days
-        most = RECORD_DAY if whole or not single else MOST_SNOWFALL
+        most = RECORD_DAY if daily or not single else MOST_SNOWFALL
         if total > most:
             raise InputError(
                 f"{table_rows[first].where}, column snowfall_m: {total:.3g} m of snow on "

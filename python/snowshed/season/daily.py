@@ -108,10 +108,10 @@ def days_of_station(station: Station) -> Days:
     )
 
 
-def _calendar(known: set[date]) -> list[date]:
+def _calendar(dates: set[date]) -> list[date]:
     """Return the days that are known and those of short gaps between them."""
     days: list[date] = []
-    for day in sorted(known):
+    for day in sorted(dates):
         if days and (day - days[-1]).days - 1 <= LONGEST_GAP:
             days += [days[-1] + timedelta(n) for n in range(1, (day - days[-1]).days)]
         days.append(day)

@@ -14,6 +14,7 @@ from datetime import date
 import numpy as np
 
 from snowshed.base.arrays import Booleans, Floats, Integers
+from snowshed.base.formatting import plural
 from snowshed.season.daily import LONGEST_GAP, Days
 from snowshed.season.extremes import RECORD_DAY, RECORD_WORDS
 
@@ -90,7 +91,7 @@ def snow_of_depth(days: Days, temperature: Floats) -> DepthSnow:
     if wrong.any():
         numbers = np.flatnonzero(wrong)
         snow.notes.append(
-            f"{_times(len(numbers), 'reading')} of the snow depth "
+            f"{plural(len(numbers), 'reading')} of the snow depth "
             f"({_some(days.dates, numbers)}) went up or down by {SPIKE:g} m or more and was taken "
             "back: a spike or a drop-out of the sensor, not snow"
         )
@@ -188,22 +189,18 @@ def _tell_jumps(days: Days, snow: DepthSnow) -> None:
     rising = [(day, rise) for day, rise in seams if abs(rise) >= LEAST_RISE]
     if rising:
         snow.notes.append(
-            f"the snow depth jumps at {_times(len(rising), 'joint')} of two series "
+            f"the snow depth jumps at {plural(len(rising), 'joint')} of two series "
             f"({_sizes(rising)}), which is not snowfall"
         )
     if others:
         snow.notes.append(
-            f"the snow depth jumps {_times(len(others), 'time')} faster than snow falls "
+            f"the snow depth jumps {plural(len(others), 'time')} faster than snow falls "
             f"({_sizes(others)}), which is not snowfall"
         )
 
 
 def _seam_dates(days: Days) -> set[date]:
     return {days.dates[number] for number in np.flatnonzero(days.seams).tolist()}
-
-
-def _times(number: int, what: str) -> str:
-    return f"{number} {what}" if number == 1 else f"{number} {what}s"
 
 
 def _sizes(jumps: Sequence[tuple[date, float]]) -> str:

@@ -16,6 +16,7 @@ import numpy as np
 
 from snowshed._core import InputError
 from snowshed.base.arrays import Booleans, Floats, Integers
+from snowshed.base.formatting import plural
 from snowshed.io.weather import Station
 from snowshed.season.columns import CONTRADICTION, Choice, Chooser, Column
 from snowshed.season.daily import Days, days_of_station
@@ -191,16 +192,16 @@ def _take(snow: _Snow, n: int, choice: Choice, columns: Mapping[Source, Column])
 
 def _share_out(snow: _Snow, total: Total) -> None:
     """Take snow that other columns observed out of a rise over several days."""
-    own, known = [], 0.0
+    own, observed = [], 0.0
     for n in total.days:
         if snow.source[n] is Source.DEPTH or snow.reason[n].endswith(Source.DEPTH.label):
             own.append(n)
             snow.reason[n] = f"part of a rise of {total.rise:.2f} m over {len(total.days)} days"
         else:
-            known += snow.fall[n]
+            observed += snow.fall[n]
     if len(own) < len(total.days):
         for n in own:
-            snow.fall[n] = max(total.rise - known, 0.0) / len(own)
+            snow.fall[n] = max(total.rise - observed, 0.0) / len(own)
 
 
 def _gaps(days: Days) -> list[str]:
@@ -213,17 +214,12 @@ def _gaps(days: Days) -> list[str]:
     first, last = (
         datetime.fromordinal(int(ordinals[longest + n] + (1, -1)[n])).date() for n in (0, 1)
     )
-    return [
-        f"{_many(int((spans - 1).sum()), 'day')} missing in {_gaps_in_words(spans)}from {first} to "
-        f"{last}"
-    ]
+    missing = int((spans - 1).sum())
+    verb = "is" if missing == 1 else "are"
+    return [f"{plural(missing, 'day')} {verb} missing in {_gaps_text(spans)}from {first} to {last}"]
 
 
-def _many(number: int, what: str) -> str:
-    return f"{number} {what} is" if number == 1 else f"{number} {what}s are"
-
-
-def _gaps_in_words(spans: Integers) -> str:
+def _gaps_text(spans: Integers) -> str:
     gaps = int((spans > 1).sum())
     return "1 gap, " if gaps == 1 else f"{gaps} gaps, the longest "
 
@@ -239,10 +235,10 @@ def _notes(snow: _Snow, days: Days, calendar: Calendar) -> Iterator[str]:
     yield from _contradictions(snow, calendar)
     filled = [n for n, source in enumerate(snow.source) if source is Source.FILLED]
     if filled:
-        words = sorted({_kind(snow.reason[n]) for n in filled})
+        kinds = sorted({_kind(snow.reason[n]) for n in filled})
         yield (
             f"the snow of {some_days(days.dates, filled)} is filled, "
-            f"{sum(snow.fall[n] for n in filled):.2f} m in all: {'; '.join(words)}"
+            f"{sum(snow.fall[n] for n in filled):.2f} m in all: {'; '.join(kinds)}"
         )
     missing = [n for n, source in enumerate(snow.source) if source is Source.MISSING]
     if missing:

@@ -70,7 +70,7 @@ class WinterQuality:
         return sum(row.snowfall for row in self.rows)
 
     @property
-    def source_words(self) -> str:
+    def source_text(self) -> str:
         """Sources of its snow, the most frequent source first."""
         observing = [
             source.label

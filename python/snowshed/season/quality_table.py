@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from snowshed.base.formatting import plural
 from snowshed.season.quality import WinterQuality
 from snowshed.season.record import WinterList, percent
 from snowshed.season.source import Source
@@ -52,7 +53,7 @@ def caption(winters: WinterList) -> str:
     winter = winters.winters[0]
     filled = f"; filled: {_filled(winter)}" if winter.sources[Source.FILLED] else ""
     return (
-        f"Snow of {winter.name}: observed on {_observed(winter)}, source: {winter.source_words}"
+        f"Snow of {winter.name}: observed on {_observed(winter)}, source: {winter.source_text}"
         f"{filled}"
     )
 
@@ -63,9 +64,9 @@ def _row(winter: WinterQuality) -> tuple[str, ...]:
         winter.name,
         _observed(winter),
         f"{winter.snowfall:.2f}" if winter.rows else "",
-        winter.source_words if winter.rows else "",
+        winter.source_text if winter.rows else "",
         _filled(winter) if winter.sources[Source.FILLED] else "",
-        _days(missing) if missing else "",
+        plural(missing, "day") if missing else "",
         "yes" if winter.counts else "no",
     )
 
@@ -75,12 +76,8 @@ def _observed(winter: WinterQuality) -> str:
         return "list of snowfalls"
     if not winter.rows:
         return "no rows"
-    return f"{winter.observed} of {_days(winter.season)} ({percent(winter.share)})"
+    return f"{winter.observed} of {plural(winter.season, 'day')} ({percent(winter.share)})"
 
 
 def _filled(winter: WinterQuality) -> str:
-    return f"{_days(winter.sources[Source.FILLED])}, {winter.filled_snow:.2f} m"
-
-
-def _days(number: int) -> str:
-    return "1 day" if number == 1 else f"{number} days"
+    return f"{plural(winter.sources[Source.FILLED], 'day')}, {winter.filled_snow:.2f} m"

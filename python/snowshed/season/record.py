@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Optional
 
+from snowshed.base.formatting import plural
 from snowshed.season.quality import COVERAGE, WinterQuality, qualities_of, spans
 from snowshed.season.source import Source
 from snowshed.season.weather_row import Weather
@@ -90,7 +91,7 @@ class WinterList:
     @property
     def counted_text(self) -> str:
         """Number of winters that count, such as "2 of 20 winters"."""
-        return f"{len(self.counted)} of {winters_text(len(self.winters))}"
+        return f"{len(self.counted)} of {plural(len(self.winters), 'winter')}"
 
     @property
     def excluded_text(self) -> str:
@@ -137,11 +138,6 @@ class WinterList:
             }
             for winter in self.winters
         ]
-
-
-def winters_text(winters: int) -> str:
-    """Return a number of winters, such as "1 winter"."""
-    return "1 winter" if winters == 1 else f"{winters} winters"
 
 
 def _shortfall(winter: WinterQuality) -> Optional[str]:

@@ -41,9 +41,9 @@ def filled_temperatures(
     [-4.0, -3.0, -2.0]
     """
     ordinals = np.array([day.toordinal() for day in dates])
-    known = np.flatnonzero(~np.isnan(measured))
-    lined: Floats = np.interp(ordinals, ordinals[known], measured[known])
-    far = _distance(ordinals, ordinals[known]) > LONGEST_BRIDGED
+    measured_days = np.flatnonzero(~np.isnan(measured))
+    lined: Floats = np.interp(ordinals, ordinals[measured_days], measured[measured_days])
+    far = _distance(ordinals, ordinals[measured_days]) > LONGEST_BRIDGED
     usual = _usual(dates, measured)
     climate = far & ~np.isnan(usual)
     filled = np.where(climate, usual, lined)
@@ -78,19 +78,22 @@ def some_days(dates: Sequence[date], numbers: Sequence[int] | Integers) -> str:
     return f"1 day ({first})" if len(numbers) == 1 else f"{len(numbers)} days ({first} to {last})"
 
 
-def _distance(days: Floats, known: Floats) -> Floats:
+def _distance(days: Floats, measured_days: Floats) -> Floats:
     """Return how far each day is from the nearest known one."""
-    near = np.searchsorted(known, days)
-    before, after = known[np.maximum(near - 1, 0)], known[np.minimum(near, len(known) - 1)]
+    near = np.searchsorted(measured_days, days)
+    before, after = (
+        measured_days[np.maximum(near - 1, 0)],
+        measured_days[np.minimum(near, len(measured_days) - 1)],
+    )
     return np.asarray(np.minimum(np.abs(days - before), np.abs(after - days)), dtype=float)
 
 
 def _usual(dates: Sequence[date], measured: Floats) -> Floats:
     """Return the mean temperature around each day of the year; NaN where too few were measured."""
     place = np.array([_day_of_year(day) for day in dates])
-    known = ~np.isnan(measured)
-    sums = np.bincount(place[known], measured[known], YEAR)
-    counts = np.bincount(place[known], minlength=YEAR)
+    is_measured = ~np.isnan(measured)
+    sums = np.bincount(place[is_measured], measured[is_measured], YEAR)
+    counts = np.bincount(place[is_measured], minlength=YEAR)
     window = np.arange(-AROUND, AROUND + 1)
     around = (np.arange(YEAR)[:, None] + window) % YEAR
     total, number = sums[around].sum(axis=1), counts[around].sum(axis=1)

@@ -133,8 +133,8 @@ class Measurement:
         if unknown := sorted(data.keys() - FORM.keys()):
             raise InputError(f"{where}: damaged: unknown key {quoted(unknown[0])}")
         for name, value in data["settings"].items():
-            known = isinstance(value, (str, bool)) or is_number(value)
-            if not known or name in (*IDENTITY, *RESULTS):
+            valid = isinstance(value, (str, bool)) or is_number(value)
+            if not valid or name in (*IDENTITY, *RESULTS):
                 raise InputError(f"{where}: damaged: /settings/{shortened(name)}: not a setting")
         measured = [
             _measured(result, f"{where}: /measured/{i}")

@@ -114,10 +114,10 @@ def compare(stacks: Simulated, measurements: Sequence[Measurement]) -> pd.DataFr
     means = means.melt(keys, var_name="quantity", value_name="simulated")
     both = to_table(measurements).merge(means, on=["tilt", "event", "quantity"])
     counts = both.groupby(SET)["simulated"].transform("size")
-    whole = both[counts == len(measurements)]
-    if whole.empty:
+    complete = both[counts == len(measurements)]
+    if complete.empty:
         raise InputError(f"none of the {len(stacks.sets)} parameter sets has all measured stacks")
-    return whole.sort_values([SET, "line", "quantity"], ignore_index=True)
+    return complete.sort_values([SET, "line", "quantity"], ignore_index=True)
 
 
 def _check_simulated(stacks: Simulated, measurement: Measurement) -> None:

@@ -104,9 +104,9 @@ def _bars(
 
 
 def _name_sets(axes: Axes, rows: pd.DataFrame, parameters: Sequence[str], best: Booleans) -> None:
-    words = [label(path) for path in parameters]
+    labels = [label(path) for path in parameters]
     axes.set_xlabel(
-        " · ".join(f"{word.symbol} ({word.unit})" if word.unit else word.symbol for word in words)
+        " · ".join(f"{word.symbol} ({word.unit})" if word.unit else word.symbol for word in labels)
     )
     if len(rows) > NAMED:
         axes.set_xticks([])

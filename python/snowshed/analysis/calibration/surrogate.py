@@ -84,8 +84,8 @@ class Process:
     def predict(self, at: Floats) -> tuple[Floats, Floats]:
         """Return mean and variance of single runs at points of the unit cube, m and m²."""
         across = self.kernel(at, self.points)
-        known = ((across @ self.inverse) * across).sum(axis=1)
-        variance = np.maximum(self.kernel.diag(at) - known, 0.0) + self.noise
+        explained = ((across @ self.inverse) * across).sum(axis=1)
+        variance = np.maximum(self.kernel.diag(at) - explained, 0.0) + self.noise
         mean = across @ (self.inverse @ self.values)
         return self.mean + self.deviation * mean, self.deviation**2 * variance
 

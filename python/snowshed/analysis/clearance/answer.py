@@ -21,9 +21,10 @@ from snowshed.analysis.clearance.seasons import Case, Outcome, cases_of
 from snowshed.analysis.clearance.statistics import Level, Share, levels_of, shares_of
 from snowshed.analysis.clearance.winters import Winter
 from snowshed.base.arrays import Floats
+from snowshed.base.formatting import plural
 from snowshed.base.json_values import JsonValue
 from snowshed.base.progress import Reporter
-from snowshed.season.record import WinterList, winters_text
+from snowshed.season.record import WinterList
 from snowshed.season.settings import SeasonSettings
 from snowshed.study.session import compute_runs, expected_duration
 from snowshed.study.table import read_table
@@ -113,7 +114,7 @@ class Answer:
         """The number of winters behind the answer, such as "2 of 20 winters"."""
         number = len(self.winters)
         if self.winter_list is None or len(self.winter_list.winters) == number:
-            return winters_text(number)
+            return plural(number, "winter")
         return self.winter_list.counted_text
 
     @property

@@ -6,7 +6,8 @@ from collections.abc import Sequence
 
 from snowshed.analysis.clearance.answer import Answer
 from snowshed.analysis.clearance.design import MEANING, Ranges
-from snowshed.season.record import percent, winters_text
+from snowshed.base.formatting import plural
+from snowshed.season.record import percent
 
 FIRST_PROBABILITY = 0.9  # of the answer's first sentence
 CHANCE = "chance: positions of particles, and interactions of causes"
@@ -63,7 +64,7 @@ def warnings(answers: Sequence[Answer]) -> list[str]:
             elif not level.counted:
                 notes.append(
                     f"{name}: {100 * level.probability:g} % is extrapolated (Gumbel) from "
-                    f"{winters_text(len(answer.winters))}; counting it needs at least "
+                    f"{plural(len(answer.winters), 'winter')}; counting it needs at least "
                     f"{level.return_period:.0f}"
                 )
         if answer.failed:
@@ -78,7 +79,7 @@ def _excluded_winters(answer: Answer) -> list[str]:
     record = answer.winter_list
     if record is None or len(record.counted) == len(record.winters):
         return []
-    number = winters_text(len(record.winters) - len(record.counted))
+    number = plural(len(record.winters) - len(record.counted), "winter")
     return [
         f"the answer uses {record.counted_text}; the snow of {number} was observed on less than "
         f"{percent(record.coverage)} of the days {record.season.text}: {record.excluded_text}"

@@ -46,10 +46,10 @@ class LogMean:
     @classmethod
     def of(cls, values: Sequence[float]) -> LogMean:
         """Return the mean of the logarithms of those values that are positive."""
-        known = np.array([value for value in values if np.isfinite(value) and value > 0])
-        if not known.size:
+        positive = np.array([value for value in values if np.isfinite(value) and value > 0])
+        if not positive.size:
             return cls(np.nan, np.nan, 0)
-        logs = np.log(known)
+        logs = np.log(positive)
         error = float(logs.std(ddof=1) / np.sqrt(len(logs))) if len(logs) > 1 else np.nan
         return cls(float(logs.mean()), error, len(logs))
 
@@ -116,7 +116,7 @@ def compare_variants(table: pd.DataFrame) -> pd.DataFrame:
             logs = LogMean.of(values.tolist())
             ratio = LogMean.of(paired_ratios(table, variant, stress).tolist())
             low, high = ratio.interval()
-            known = variant != BASE and ratio.count > 1
+            has_scatter = variant != BASE and ratio.count > 1
             rows.append(
                 {
                     "variant": variant,
@@ -128,7 +128,7 @@ def compare_variants(table: pd.DataFrame) -> pd.DataFrame:
                     "ratio": ratio.value,
                     "low": low,
                     "high": high,
-                    "distinct": bool(not low <= 1.0 <= high) if known else None,
+                    "distinct": bool(not low <= 1.0 <= high) if has_scatter else None,
                 }
             )
     return pd.DataFrame(rows)

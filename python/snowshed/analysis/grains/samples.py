@@ -120,8 +120,8 @@ class LabelledSample:
             )
         image = downscaled(IceImage(self.labels > 0, self.voxel_size, self.name), factor)
         nz, ny, nx = counts
-        whole = self.labels[: nz * factor, : ny * factor, : nx * factor]
-        blocks = whole.reshape(nz, factor, ny, factor, nx, factor).transpose(0, 2, 4, 1, 3, 5)
+        divisible = self.labels[: nz * factor, : ny * factor, : nx * factor]
+        blocks = divisible.reshape(nz, factor, ny, factor, nx, factor).transpose(0, 2, 4, 1, 3, 5)
         labels = np.zeros(image.ice.shape, dtype=self.labels.dtype)
         labels[image.ice] = _most_frequent(blocks[image.ice].reshape(-1, factor**3))
         name = f"{self.name}-coarser{factor}"
@@ -144,8 +144,8 @@ class LabelledSample:
                 f"{LEAST_VOXELS} along an edge"
             )
         cut = tuple(
-            slice((whole - length) // 2, (whole - length) // 2 + length)
-            for whole, length in zip(self.labels.shape, lengths)
+            slice((size - length) // 2, (size - length) // 2 + length)
+            for size, length in zip(self.labels.shape, lengths)
         )
         return replace(self, name=f"{self.name}-middle{part:g}", labels=self.labels[cut])
 
@@ -184,14 +184,14 @@ def _checked_labels(file: Path, labels: AnyIntegers, split: bool) -> Labels:
     """Return labels as the core takes them; tell where one lies in several places."""
     if int(labels.min()) < 0 or int(labels.max()) > LARGEST_LABEL:
         raise InputError(f"{file}: no labels; 0 is air, grains are 1 to {LARGEST_LABEL:,}")
-    known = labels.astype(np.int32)
+    labelled = labels.astype(np.int32)
     try:
-        note = _core.label_note(known, split)
+        note = _core.label_note(labelled, split)
     except InputError as error:
         raise InputError(f"{file}: {error}") from None
     if note:
         tell(f"{file}: {note}")
-    return _core.split_labels(known) if split else known
+    return _core.split_labels(labelled) if split else labelled
 
 
 def _check_voxel_size(file: Path, labels: AnyIntegers, voxel_size: float) -> None:

@@ -186,7 +186,7 @@ def sensitivity_variants(
             changes = {name: _scaled(full["numerics"][name], factor) for name in names}
             if changes.get("density_scaling", 1.0) >= 1.0:  # ice is not made lighter
                 paths = {f"numerics.{name}": value for name, value in changes.items()}
-                words = _words(varied, next(iter(changes.values())))
+                words = _variant_title(varied, next(iter(changes.values())))
                 variants.append(Variant(words, varied, files, voxel, paths))
     for factor in SPEEDS:
         speed = _scaled(full["loading"][0]["speed"], factor)
@@ -220,7 +220,7 @@ def _scaled(value: float, factor: float) -> float:
     return float(f"{value * factor:.12g}")
 
 
-def _words(varied: str, value: float) -> str:
+def _variant_title(varied: str, value: float) -> str:
     unit = {"elastic modulus": " Pa", "strength of bonds": " Pa"}.get(varied, "")
     times = "x " if varied == "density of ice" else ""
     return f"{varied} {times}{value:g}{unit}"

@@ -70,11 +70,11 @@ class Domain:
         for name, value, least, most in zip(self.names, question, low, high):
             margin = TOLERANCE * max(1.0, abs(most))
             if not least - margin <= value <= most + margin:
-                known = label(name)
-                given, end = (known.quantity(number, DIGITS) for number in (value, most))
-                reach = f"reach from {known.value(least, DIGITS)} to {end}"
+                parameter = label(name)
+                given, end = (parameter.quantity(number, DIGITS) for number in (value, most))
+                reach = f"reach from {parameter.value(least, DIGITS)} to {end}"
                 reach = f"have {end} only" if least == most else reach
-                objections.append(f"{known.name} {given} is outside the data, which {reach}")
+                objections.append(f"{parameter.name} {given} is outside the data, which {reach}")
         return objections
 
     def _misplaced(self, question: Floats, panels: Floats) -> list[str]:

@@ -262,13 +262,13 @@ def _parameter_word(name: str, inputs: Sequence[str]) -> str:
 
 
 def _quantity(target: str) -> str:
-    words = {"ratio": "height / length"}.get(target, target)
-    return f"{words}, {TARGETS[target]}" if TARGETS[target] else words
+    title = {"ratio": "height / length"}.get(target, target)
+    return f"{title}, {TARGETS[target]}" if TARGETS[target] else title
 
 
 def _at(name: str, value: float) -> str:
-    known = label(name)
-    return f"{known.name.removeprefix('panel ')} {known.quantity(value)}"
+    parameter = label(name)
+    return f"{parameter.name.removeprefix('panel ')} {parameter.quantity(value)}"
 
 
 def _in_threes(texts: Sequence[str]) -> list[Sequence[str]]:

@@ -36,7 +36,7 @@ def local_index_figure(table: pd.DataFrame) -> Figure:
         From `local_index`.
     """
     events, parameters = _unique(table, "event"), _unique(table, "parameter")
-    known = bool(table["standard_error"].notna().any())
+    has_errors = bool(table["standard_error"].notna().any())
     with matplotlib.rc_context(STYLE):
         figure = blank(8.4, 6.2)
         headline(figure, "Single-parameter sensitivity index S")
@@ -52,8 +52,8 @@ def local_index_figure(table: pd.DataFrame) -> Figure:
             Patch(color=colour, label=f"event {event}")
             for event, colour in zip(events, _shades(len(events)))
         ]
-        keys += [Line2D([], [], color=INK, label="95 % by seeding noise")] if known else []
-        keys += [Patch(fill=False, ec=FAINT, label="not distinct from 0")] if known else []
+        keys += [Line2D([], [], color=INK, label="95 % by seeding noise")] if has_errors else []
+        keys += [Patch(fill=False, ec=FAINT, label="not distinct from 0")] if has_errors else []
         figure.legend(handles=keys, loc="outside lower center", ncols=len(keys))
     return figure
 
@@ -73,8 +73,8 @@ def _draw_indices(axes: Axes, rows: pd.DataFrame, number: int, events: int, colo
 
 def _pair_label(table: pd.DataFrame, parameter: str) -> str:
     row = table[table["parameter"] == parameter].iloc[0]
-    known = label(parameter)
-    return f"{known.symbol}\n{known.change(row['nominal'], row['altered'])}"
+    parameter_label = label(parameter)
+    return f"{parameter_label.symbol}\n{parameter_label.change(row['nominal'], row['altered'])}"
 
 
 def fixation_figure(table: pd.DataFrame, group: str) -> Figure:

@@ -136,7 +136,7 @@ class _Design:
 
     @classmethod
     def of(
-        cls, stored: StoredRuns, more: int, is_block: Callable[[Booleans], bool], words: str
+        cls, stored: StoredRuns, more: int, is_block: Callable[[Booleans], bool], unit: str
     ) -> _Design:
         """Return the design of a study's points.
 
@@ -149,12 +149,12 @@ class _Design:
         is_block
             Function that tells from the changes between neighbouring points whether they are a
             block.
-        words
+        unit
             Name of the design, for messages.
         """
         names = list(stored.axes)
         points = stored.points[names].to_numpy(float)
-        _check_blocks(points, len(names) + more, is_block, words)
+        _check_blocks(points, len(names) + more, is_block, unit)
         return cls(names, points, len(names) + more)
 
 

@@ -82,8 +82,8 @@ class _Histogram:
     def between(
         cls, name: str, lowest: Union[int, float], highest: Union[int, float]
     ) -> _Histogram:
-        whole = isinstance(lowest, int) and isinstance(highest, int)
-        if whole and highest - lowest < MOST_VALUES:
+        integers = isinstance(lowest, int) and isinstance(highest, int)
+        if integers and highest - lowest < MOST_VALUES:
             bins = int(highest - lowest) + 1
             return cls(lowest, 1.0, bins, True, np.zeros(bins, dtype=np.int64))
         width = (float(highest) - float(lowest)) / BINS

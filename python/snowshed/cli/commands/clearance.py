@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Optional
 import click
 
 from snowshed._core import InputError
-from snowshed.base.formatting import about
+from snowshed.base.formatting import about, plural
 from snowshed.cli.common_options import (
     PATH,
     ResultsFolder,
@@ -115,9 +115,8 @@ def clearance(
         ]
         seconds, seasons = (sum(values) for values in zip(*costs))
         say(
-            f"{winter_list.counted_text}, {len(designs)} "
-            f"{'panel' if len(designs) == 1 else 'panels'}, about {seasons} seasons: "
-            f"{about(seconds)}"
+            f"{winter_list.counted_text}, {plural(len(designs), 'panel')}, "
+            f"about {seasons} seasons: {about(seconds)}"
         )
     if dry_run:
         return

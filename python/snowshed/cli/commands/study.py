@@ -10,6 +10,7 @@ from typing import Any, Optional, TypeVar
 import click
 
 from snowshed._core import InputError
+from snowshed.base.formatting import plural
 from snowshed.cli.common_options import (
     PATH,
     ResultsFolder,
@@ -24,7 +25,6 @@ from snowshed.cli.compute_study import (
     print_failures,
     print_outcome,
     print_study_cost,
-    runs_text,
     study_progress,
 )
 from snowshed.cli.terminal import PlainConsole, say, write_out
@@ -262,7 +262,7 @@ def print_status(store: Store) -> None:
     console = PlainConsole(soft_wrap=True)
     for name in store.studies():
         runs = store.runs(name)
-        console.print(f"{name}: {runs_text(len(runs))}", style="bold")
+        console.print(f"{name}: {plural(len(runs), 'run')}", style="bold")
         alive = {run.owner for run in runs if run.owner and is_alive(store, run.owner)}
         kinds = Counter("running" if run.owner in alive else run.status for run in runs)
         for status, meaning in (

@@ -40,15 +40,15 @@ def threads_error() -> float:
 
 def checkpoint_error() -> float:
     """Return the part of the particles that move otherwise after a checkpoint than without it."""
-    whole, interrupted = (Drive(panel_scene(COARSE, threads=1)).core for _ in range(2))
-    whole.run(_go_on)
+    uninterrupted, interrupted = (Drive(panel_scene(COARSE, threads=1)).core for _ in range(2))
+    uninterrupted.run(_go_on)
     interrupted.run(lambda report: bool(report["steps"] < STEPS), 0.0)
     with TemporaryDirectory() as folder:
         checkpoint = str(Path(folder) / "checkpoint.bin")
         interrupted.save(checkpoint)
         resumed = _core.Simulation.load(checkpoint)
     resumed.run(_go_on)
-    return different(whole, resumed)
+    return different(uninterrupted, resumed)
 
 
 def executable_error() -> float:

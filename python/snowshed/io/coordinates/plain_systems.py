@@ -26,7 +26,7 @@ OF_FILES = ("init", "nadgrids", "geoidgrids", "grids", "xy_grids", "z_grids", "f
 NO_FILE = re.compile(r"\+?(nadgrids|geoidgrids)=@null", re.IGNORECASE)
 
 
-def plain_system(words: str) -> str:
+def plain_system(description: str) -> str:
     """Return the description of a coordinate system if it is accepted, else "".
 
     Those are WKT, codes such as "EPSG:31287", and proj strings without names of files.
@@ -38,7 +38,7 @@ def plain_system(words: str) -> str:
     >>> plain_system("http://example.com/31287"), plain_system("+init=/tmp/file:1")
     ('', '')
     """
-    text = words.strip()
+    text = description.strip()
     if len(text) > COORDINATE_SYSTEM or "\0" in text:
         return ""
     if old := OLD_CODE.fullmatch(text):

@@ -38,10 +38,12 @@ def read_prj(raster: Path) -> str:
     system = system_of(text)
     if system is None and _rasterio() is not None:
         raise InputError(f"{file}: not a coordinate system; {ALLOWED}")
-    words = text if system is None else _words(system)
-    if is_in_degrees(words):
-        raise InputError(f"{file}: its map is in degrees ({words}); project it to metres first")
-    return words
+    description = text if system is None else _description(system)
+    if is_in_degrees(description):
+        raise InputError(
+            f"{file}: its map is in degrees ({description}); project it to metres first"
+        )
+    return description
 
 
 def read_system(file: Path) -> str:
@@ -58,13 +60,13 @@ def read_system(file: Path) -> str:
     return text
 
 
-def write_prj(raster: Path, words: str) -> None:
+def write_prj(raster: Path, description: str) -> None:
     """Write the .prj of a raster; nothing where its coordinate system is not known."""
-    system = horizontal_system(words)
+    system = horizontal_system(description)
     if system is not None:
         text = str(system.to_wkt(version="WKT1_ESRI"))
-    elif plain_system(words).upper().startswith(("PROJCS", "PROJCRS", "COMPD")):
-        text = first_part(words)
+    elif plain_system(description).upper().startswith(("PROJCS", "PROJCRS", "COMPD")):
+        text = first_part(description)
     else:
         return  # a name that only rasterio can put into WKT
     write_text(raster.with_suffix(".prj"), text + "\n")
@@ -86,12 +88,12 @@ def are_same(left: str, other: str) -> bool:
     first, second = horizontal_system(left), horizontal_system(other)
     if first is None or second is None:
         return False
-    if first == second or _words(first) == _words(second):
+    if first == second or _description(first) == _description(second):
         return True
     return _is_of_etrs89(first) and _is_of_etrs89(second) and first.to_proj4() == second.to_proj4()
 
 
-def is_in_degrees(words: str) -> bool:
+def is_in_degrees(description: str) -> bool:
     """Return whether a coordinate system is known to be in degrees.
 
     Examples
@@ -99,24 +101,24 @@ def is_in_degrees(words: str) -> bool:
     >>> is_in_degrees("EPSG:4326")
     True
     """
-    plain = first_part(plain_system(words)).upper()
+    plain = first_part(plain_system(description)).upper()
     if plain in DEGREES or plain.startswith(("GEOGCS", "GEOGCRS")):
         return True
-    system = horizontal_system(words)
+    system = horizontal_system(description)
     return system is not None and bool(system.is_geographic)
 
 
-def is_in_feet(words: str) -> bool:
+def is_in_feet(description: str) -> bool:
     """Return whether the map of a coordinate system is known to be in feet."""
-    system = horizontal_system(words)
+    system = horizontal_system(description)
     if system is None or system.is_geographic:
         return False
     return "foot" in str(system.linear_units).lower() or "feet" in str(system.linear_units).lower()
 
 
-def horizontal_system(words: str) -> Optional[Any]:
+def horizontal_system(description: str) -> Optional[Any]:
     """Return rasterio's view of a coordinate system without its heights, as `system_of` does."""
-    system = system_of(words)
+    system = system_of(description)
     if system is None:
         return None
     wkt = str(system.to_wkt())
@@ -124,13 +126,13 @@ def horizontal_system(words: str) -> Optional[Any]:
     return system if horizontal == wkt else system_of(horizontal)
 
 
-def system_of(words: str) -> Optional[Any]:
+def system_of(description: str) -> Optional[Any]:
     """Return rasterio's view of a coordinate system; None without rasterio, or if it knows none.
 
     Descriptions that are not plain are refused (`snowshed.io.coordinates.plain_systems`).
     """
     rasterio = _rasterio()
-    plain = plain_system(words)
+    plain = plain_system(description)
     if rasterio is None or not plain:
         return None
     try:
@@ -150,6 +152,6 @@ def _rasterio() -> Optional[Any]:
         return None
 
 
-def _words(system: Any) -> str:
+def _description(system: Any) -> str:
     code = system.to_epsg()
     return f"EPSG:{code}" if code else str(system.to_wkt())

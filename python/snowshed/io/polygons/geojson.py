@@ -193,9 +193,9 @@ def _crs(content: Mapping[str, Any], farthest: Floats, path: Path) -> str:
     if kind == "link":
         raise InputError(f"{path}: crs: a link, which is not followed; {HOW}")
     name = properties.get("name" if kind == "name" else "code")
-    words = f"EPSG:{name}" if kind == "EPSG" else str(name)
-    code = CODES.fullmatch(words)
-    plain = plain_system(f"{code[1]}:{code[2]}" if code else words)
+    description = f"EPSG:{name}" if kind == "EPSG" else str(name)
+    code = CODES.fullmatch(description)
+    plain = plain_system(f"{code[1]}:{code[2]}" if code else description)
     if not plain:
-        raise InputError(f"{path}: crs: {quoted(words)} is not a code such as EPSG:31287")
+        raise InputError(f"{path}: crs: {quoted(description)} is not a code such as EPSG:31287")
     return plain

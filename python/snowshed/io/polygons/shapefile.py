@@ -99,10 +99,10 @@ def _check_sizes(path: Path, companions: dict[str, Path]) -> None:
     entries = np.fromfile(index, dtype=">i4", count=2 * count, offset=HEAD)
     begins = 2 * entries[::2].astype(np.int64)
     # The number of rings and that of corners stand 44 bytes into a record.
-    whole = (begins >= HEAD) & (begins + 52 <= len(content))
-    offsets = begins[whole, None] + np.arange(44, 52)
+    complete = (begins >= HEAD) & (begins + 52 <= len(content))
+    offsets = begins[complete, None] + np.arange(44, 52)
     rings, corners = content[offsets].view("<i4").astype(np.int64).T if len(offsets) else ([0], [0])
-    shapes = content[begins[whole, None] + np.arange(8, 12)].view("<i4").ravel()
+    shapes = content[begins[complete, None] + np.arange(8, 12)].view("<i4").ravel()
     polygons = np.isin(shapes, OF_POLYGONS)
     if np.sum(np.asarray(corners)[polygons]) > CORNERS:
         raise InputError(f"{path}: more than {CORNERS} corners; simplify the outlines")

@@ -17,7 +17,7 @@ from snowshed.io.coordinates.systems import read_prj
 from snowshed.io.input_file import first_bytes
 from snowshed.io.raster.geotiff import read_geotiff
 from snowshed.io.raster.sidecars import refuse_other_facts
-from snowshed.io.raster.vertical_units import split_words
+from snowshed.io.raster.vertical_units import split_vertical
 
 GEOTIFF = (".tif", ".tiff")
 TIFF_MARKS = (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+")
@@ -137,7 +137,7 @@ def _read_ascii(path: Path) -> Raster:
     if commas:
         tell(f"{path.name}: {commas} numbers have a decimal comma")
     raster = Raster(heights, west, south, cell, str(path), read_prj(path), plain=True)
-    system, per_height = split_words(raster.crs, str(path))
+    system, per_height = split_vertical(raster.crs, str(path))
     if per_height in (None, 1.0):
         return replace(raster, crs=system)
     tell(f"{path.name}: its values were turned into metres; one unit is {per_height:.10g} m")
@@ -152,8 +152,8 @@ def is_single(raster: Raster) -> bool:
     >>> is_single(Raster(np.array([[0.5, 0.1]]), 0.0, 0.0, 1.0))
     False
     """
-    known = raster.heights[~np.isnan(raster.heights)]
-    return bool((known == known.astype(np.float32)).all())
+    elevations = raster.heights[~np.isnan(raster.heights)]
+    return bool((elevations == elevations.astype(np.float32)).all())
 
 
 def write_ascii_grid(path: PathLike, raster: Raster, *, exact: bool = False) -> None:
@@ -176,11 +176,11 @@ def write_ascii_grid(path: PathLike, raster: Raster, *, exact: bool = False) -> 
         f"ncols {columns}\nnrows {rows}\nxllcenter {raster.east:.15g}\n"
         f"yllcenter {raster.north:.15g}\ncellsize {raster.cell:.15g}\nnodata_value -9999\n"
     )
-    known = np.where(np.isnan(raster.heights), -9999.0, raster.heights)
+    elevations = np.where(np.isnan(raster.heights), -9999.0, raster.heights)
     with replacing(path) as beside, beside.open("w", encoding="ascii") as file:
         file.write(header)
         number = "%.17g" if exact else "%.9g"
         empty = " ".join(["0"] * columns) + "\n"  # most rows of a map
-        for row in known[::-1]:
+        for row in elevations[::-1]:
             filled = row.any() or np.signbit(row).any()
             file.write(" ".join([number] * columns) % tuple(row) + "\n" if filled else empty)

@@ -102,8 +102,8 @@ def _outlines(depth: Raster, snow: Booleans, shapely: Any) -> list[Any]:
 
 def _corner_count(snow: Booleans) -> int:
     """Return the corners of the outlines of cells with snow."""
-    whole = np.pad(snow, 1)
-    a, b, c, d = whole[:-1, :-1], whole[:-1, 1:], whole[1:, :-1], whole[1:, 1:]
+    padded = np.pad(snow, 1)
+    a, b, c, d = padded[:-1, :-1], padded[:-1, 1:], padded[1:, :-1], padded[1:, 1:]
     crossing = (a == d) & (b == c) & (a != b)  # two corners that touch
     return int(np.count_nonzero(a ^ b ^ c ^ d)) + 2 * int(np.count_nonzero(crossing))
 

@@ -128,14 +128,14 @@ def thickness_of(
         If two fields contradict each other.
     """
     given = [(field.name, field.value(record, where)) for field in fields]
-    known = [(name, value) for name, value in given if value is not None]
-    for name, value in known[1:]:
-        if not math.isclose(value, known[0][1], rel_tol=1e-6):
+    stated = [(name, value) for name, value in given if value is not None]
+    for name, value in stated[1:]:
+        if not math.isclose(value, stated[0][1], rel_tol=1e-6):
             raise InputError(
-                f"{where}: {known[0][0]} says {known[0][1]:g} m and {name} {value:g} m; keep one "
+                f"{where}: {stated[0][0]} says {stated[0][1]:g} m and {name} {value:g} m; keep one "
                 "of the fields"
             )
-    return known[0][1] if known else None
+    return stated[0][1] if stated else None
 
 
 def _is(field: str, name: str) -> bool:

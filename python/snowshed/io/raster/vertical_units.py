@@ -89,20 +89,20 @@ def split_system(system: Any, name: str) -> tuple[str, Optional[float]]:
     return horizontal.to_string(), _metres_of_axis(axis, name)
 
 
-def split_words(words: str, name: str) -> tuple[str, Optional[float]]:
+def split_vertical(description: str, name: str) -> tuple[str, Optional[float]]:
     """Do the same for the text of a .prj, "EPSG:31287" or WKT; unchanged without rasterio."""
     try:
         rasterio = importlib.import_module("rasterio")
     except ImportError:
-        return words, None
-    code = re.fullmatch(r"EPSG:(\d+)", words)
-    known = rasterio.crs.CRS
+        return description, None
+    code = re.fullmatch(r"EPSG:(\d+)", description)
+    systems = rasterio.crs.CRS
     try:
-        system = known.from_epsg(int(code[1])) if code else known.from_wkt(words)
+        system = systems.from_epsg(int(code[1])) if code else systems.from_wkt(description)
     except rasterio.errors.CRSError:
-        return words, None
+        return description, None
     horizontal, metres = split_system(system, name)
-    return (words if metres is None else horizontal), metres
+    return (description if metres is None else horizontal), metres
 
 
 def _vertical_axis(part: dict[str, Any]) -> Optional[dict[str, Any]]:

@@ -125,8 +125,8 @@ def write_vdb(
 
 def _plain(array: NDArray[np.generic]) -> NDArray[np.generic]:
     """Return the array in a type that point data has."""
-    whole = np.issubdtype(array.dtype, np.integer)
-    return array.astype(np.int32 if whole else np.float32)
+    is_integer = np.issubdtype(array.dtype, np.integer)
+    return array.astype(np.int32 if is_integer else np.float32)
 
 
 def _odd_cells(width: Optional[float], dx: float) -> int:

@@ -197,8 +197,8 @@ def _turn(fields: Fields) -> Turn:
         return Turn()
     matrix = np.array(fields.numbers(name, 9)).reshape(3, 3)  # axis of the file, x y z
     steps = np.rint(matrix)
-    whole = np.abs(matrix - steps).max() < 1e-4 and (np.abs(steps).sum(axis=0) == 1).all()
-    if not whole or not (np.abs(steps).sum(axis=1) == 1).all():
+    along_axes = np.abs(matrix - steps).max() < 1e-4 and (np.abs(steps).sum(axis=0) == 1).all()
+    if not along_axes or not (np.abs(steps).sum(axis=1) == 1).all():
         raise fields.wrong(name, "the axes must be along x, y and z; resample the image")
     axes, mirrored = [], []
     for axis in (2, 1, 0):  # of the image: z, y, x

@@ -83,8 +83,8 @@ class Fields:
         """Return a field that is True or False."""
         if name not in self.values:
             return default
-        words = {"true": True, "t": True, "1": True, "false": False, "f": False, "0": False}
-        truth = words.get(self.values[name].lower())
+        truths = {"true": True, "t": True, "1": True, "false": False, "f": False, "0": False}
+        truth = truths.get(self.values[name].lower())
         if truth is None:
             raise self.wrong(name, "True or False is needed")
         return truth

@@ -112,16 +112,18 @@ def oriented(pixels: NDArray[Any], orientation: int) -> NDArray[Any]:
 
 
 def _check_same(picture: Picture, first: Picture) -> None:
-    known = Path(first.name).name
+    first_name = Path(first.name).name
     if picture.size != first.size:
         raise InputError(
-            f"{picture.name}: {picture.size[1]} x {picture.size[0]} pixels; {known} has "
+            f"{picture.name}: {picture.size[1]} x {picture.size[0]} pixels; {first_name} has "
             f"{first.size[1]} x {first.size[0]}"
         )
     if (picture.kind, picture.dtype) != (first.kind, first.dtype):
-        raise InputError(f"{picture.name}: pixels of type {picture.kind}; {known} has {first.kind}")
+        raise InputError(
+            f"{picture.name}: pixels of type {picture.kind}; {first_name} has {first.kind}"
+        )
     if (picture.orientation or first.orientation or 1) != (first.orientation or 1):
         raise InputError(
-            f"{picture.name}: Orientation {picture.orientation}; {known} has "
+            f"{picture.name}: Orientation {picture.orientation}; {first_name} has "
             f"{first.orientation or 1}"
         )

@@ -123,7 +123,7 @@ def _numbered(folder: Path) -> list[Path]:
     if len(kinds) > 1:
         raise InputError(f"{folder}: slices of mixed types: {', '.join(sorted(kinds))}")
     numbers: dict[int, Path] = {}
-    words: dict[str, Path] = {}
+    named: dict[str, Path] = {}
     for path in sorted(paths):
         match = re.search(r"(\d{1,12})\D*$", path.stem)
         if match is None:
@@ -132,9 +132,9 @@ def _numbered(folder: Path) -> list[Path]:
         if number in numbers:
             raise InputError(f"{path}: has the number of {numbers[number].name}, {number}")
         numbers[number] = path
-        words.setdefault(path.stem[: match.start(1)] + "*" + path.stem[match.end(1) :], path)
-    if len(words) > 1:
-        first, other = [path.name for path in words.values()][:2]
+        named.setdefault(path.stem[: match.start(1)] + "*" + path.stem[match.end(1) :], path)
+    if len(named) > 1:
+        first, other = [path.name for path in named.values()][:2]
         tell(f"{folder}: its slices have several names, as {first} and {other}; all are one stack")
     order = sorted(numbers)
     for one_number, following in zip(order, order[1:]):

@@ -91,13 +91,13 @@ def _stack(name: str, counts: Mapping[str, int]) -> tuple[int, tuple[str, ...]]:
 
 def _cube(name: str, edges: list[Optional[float]]) -> Optional[float]:
     """Return the edge of a voxel; None unless all three are known."""
-    known = [edge for edge in edges if edge is not None and math.isfinite(edge) and edge > 0]
-    if len(known) < len(edges):
+    valid = [edge for edge in edges if edge is not None and math.isfinite(edge) and edge > 0]
+    if len(valid) < len(edges):
         return None
-    if max(known) > CUBIC * min(known):
-        said = " x ".join(f"{edge:.4g}" for edge in known)
+    if max(valid) > CUBIC * min(valid):
+        said = " x ".join(f"{edge:.4g}" for edge in valid)
         raise InputError(f"{name}: voxels of {said} m; they must be cubes: resample the image")
-    return float(f"{known[0]:.7g}")
+    return float(f"{valid[0]:.7g}")
 
 
 def _by_imagej(name: str, text: str, pixels_per_unit: Optional[float]) -> Description:

@@ -118,8 +118,8 @@ def _dtype(tags: Tags, big_endian: bool) -> tuple[np.dtype[Any], tuple[str, ...]
     """Return the type of the numbers, in the byte order of the file, and assumptions."""
     bits, sample_format = tags.number(258, 1), tags.number(339, 1)
     kind = KINDS.get(sample_format, "")
-    known = {"u": (1, 2, 4, 8, 16, 32, 64), "i": (8, 16, 32, 64), "f": (16, 32, 64)}
-    if bits not in known.get(kind, ()):
+    supported = {"u": (1, 2, 4, 8, 16, 32, 64), "i": (8, 16, 32, 64), "f": (16, 32, 64)}
+    if bits not in supported.get(kind, ()):
         raise InputError(
             f"{tags.name}: numbers of {bits} bits, SampleFormat {sample_format}: whole numbers of "
             "1, 2, 4, 8, 16, 32 or 64 bits and floating-point numbers of 16, 32 or 64 are read"
@@ -169,11 +169,11 @@ def _layout(path: Path, tags: Tags, size: tuple[int, int], big_endian: bool) -> 
         raise InputError(
             f"{tags.name}: damaged: {len(offsets)} strips or tiles for {across * down}"
         )
-    whole = tuple(
+    lengths = tuple(
         layout.rows_of(number) * coding.row_bytes(piece[1]) for number in range(len(offsets))
     )
     if coding.compression == segments.NONE:
-        counts = whole
+        counts = lengths
     if len(counts) != len(offsets):
         raise InputError(f"{tags.name}: damaged: no lengths of its strips or tiles")
     end = path.stat().st_size
@@ -272,9 +272,9 @@ def contiguous_copies(picture: Picture, count: int) -> list[Picture]:
     layout = reader.layout
     begins = layout.offsets[0]
     ends = [place + length for place, length in zip(layout.offsets, layout.counts)]
-    whole = [*layout.offsets[1:], ends[-1]] == ends and layout.piece[1] == layout.size[1]
+    contiguous = [*layout.offsets[1:], ends[-1]] == ends and layout.piece[1] == layout.size[1]
     length = ends[-1] - begins
-    if layout.coding.compression != segments.NONE or not whole:
+    if layout.coding.compression != segments.NONE or not contiguous:
         raise InputError(
             f"{picture.name}: {count} slices in one page, which are read only uncompressed and in "
             "one piece; save the image as a sequence of images, or as raw"

@@ -156,9 +156,9 @@ def _numbers(coding: Coding, rows: NDArray[np.uint8], columns: int) -> NDArray[A
         return numbers.reshape(len(rows), columns)
     numbers = rows.view(dtype)
     if coding.predictor == DIFFERENCES:
-        whole = numbers.view(f"{dtype.str[0]}u{dtype.itemsize}")
+        integers = numbers.view(f"{dtype.str[0]}u{dtype.itemsize}")
         native = np.dtype(f"u{dtype.itemsize}")
-        return np.cumsum(whole, axis=1, dtype=native).view(dtype.newbyteorder("="))
+        return np.cumsum(integers, axis=1, dtype=native).view(dtype.newbyteorder("="))
     return numbers
 
 

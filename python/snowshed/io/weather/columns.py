@@ -47,13 +47,13 @@ class Cells:
     def read(self, cells: Sequence[str], place: str) -> list[Optional[float]]:
         """Return the values of a row; raises InputError naming the place and the column."""
         values = []
-        for (i, title, quantity), known in self.known:
+        for (i, title, quantity), parsed in self.known:
             text = cells[i]
-            if text not in known:
-                if len(known) >= MOST_KNOWN:
-                    known.clear()
-                known[text] = quantity.read(text, f"{place}, column {title}", self.missing)
-            values.append(known[text])
+            if text not in parsed:
+                if len(parsed) >= MOST_KNOWN:
+                    parsed.clear()
+                parsed[text] = quantity.read(text, f"{place}, column {title}", self.missing)
+            values.append(parsed[text])
         return values
 
 

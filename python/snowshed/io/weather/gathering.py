@@ -30,11 +30,11 @@ def with_hours(station: Station) -> Station:
     out; overlapping sums of new snow are named by `rolling`.
     """
     rows, notes, rolling = list(station.rows), [*station.notes], set(station.rolling)
-    for name, hours, unit, words in AMOUNTS:
+    for name, hours, unit, label in AMOUNTS:
         own = [i for i, row in enumerate(rows) if getattr(row, name) is not None]
         if not own:
             continue
-        title = station.columns.get(name, words)
+        title = station.columns.get(name, label)
         fixed = [getattr(rows[i], hours) for i in own]
         if fixed[0] is None:
             notes += _fill_in(rows, own, (name, hours), f"{title}, in {unit},")

@@ -41,8 +41,8 @@ def arranged(
     rising = all(earlier.time < later.time for earlier, later in zip(rows, rows[1:]))
     years = sorted({row.time.year for row in rows})
     if rising and _are_actual(rows):
-        words = f"the year {years[0]}" if len(years) == 1 else f"{years[0]} to {years[-1]}"
-        return list(rows), False, [f"the years are taken as actual ones: {words}"]
+        span = f"the year {years[0]}" if len(years) == 1 else f"{years[0]} to {years[-1]}"
+        return list(rows), False, [f"the years are taken as actual ones: {span}"]
     return _typical(rows, latitude, source), True, _notes(years, latitude)
 
 

@@ -67,12 +67,12 @@ def project_inputs(root: Path) -> list[InputFile]:
             f"{inputs}: {size / GB:.3g} GB of files; at most {PROJECT_BYTES // GB} GB are copied "
             "to the results"
         )
-    known = [each for each in files if each.file.suffix.lower() in KNOWN]
+    supported = [each for each in files if each.file.suffix.lower() in KNOWN]
     others = [str(each.place) for each in files if each.file.suffix.lower() not in KNOWN]
     if others:
         more = f" and {len(others) - 5} others" if len(others) > 5 else ""
         tell(f"{inputs}: not copied to the results: {', '.join(others[:5])}{more}")
-    return known
+    return supported
 
 
 def copy_inputs(inputs: Sequence[InputFile], folder: Path) -> None:

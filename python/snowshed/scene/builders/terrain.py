@@ -224,5 +224,5 @@ def _distances(mesh: Mesh, points: Floats, spacing: float) -> Floats:
             bodies=[Body(shape=Shape.sphere(above, 2.0 * spacing))],  # a scene needs some snow
             numerics=MpmSettings(dx=spacing, threads=1),
         )
-        ready = scene.resolve()
-        return Simulation(ready.core, ready.base_dir).obstacle_distance(points)
+        resolved = scene.resolve()
+        return Simulation(resolved.core, resolved.base_dir).obstacle_distance(points)

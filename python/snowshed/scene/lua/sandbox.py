@@ -53,7 +53,7 @@ class Call:
 
 def run_sandboxed(
     scripts: Sequence[Script],
-    words: Sequence[str],
+    functions: Sequence[str],
     shapes: Mapping[str, str],
     limits: Optional[Limits] = None,
     echo: Optional[Callable[[str], None]] = None,
@@ -64,7 +64,7 @@ def run_sandboxed(
     ----------
     scripts
         The scripts to run; a later script sees the globals of the earlier ones.
-    words
+    functions
         Names of the functions whose calls are recorded.
     shapes
         Functions that make shapes from tables, and the types of these shapes.
@@ -93,7 +93,7 @@ def run_sandboxed(
     request = {
         "lupa_in": str(Path(lupa.__file__).parents[1]),
         "texts": [script.text for script in scripts],
-        "words": list(words),
+        "words": list(functions),
         "shapes": dict(shapes),
         "limits": asdict(limits),
     }

@@ -58,8 +58,8 @@ def fit_yield_surface(p: Floats, q: Floats) -> YieldSurface:
 
     def surface(beta: float) -> YieldSurface:
         shape = np.sqrt(np.maximum((p + beta) * (1 - p), 0.0) / (1 + 2 * beta))
-        whole = float(shape @ shape)
-        slope = float(shape @ q) / whole if whole > 0 else 0.0
+        norm = float(shape @ shape)
+        slope = float(shape @ q) / norm if norm > 0 else 0.0
         missed = float(np.linalg.norm(q - slope * shape) / np.linalg.norm(q))
         return YieldSurface(slope, beta, missed)
 
