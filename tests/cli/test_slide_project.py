@@ -12,7 +12,7 @@ import pytest
 from slide_files import box, write_polygons, write_project
 
 from snowshed.cli.main import main
-from snowshed.running import slides
+from snowshed.methods.slide.run import SlideRun
 
 pytest.importorskip("pyogrio")
 pytest.importorskip("shapely")
@@ -61,13 +61,13 @@ def test_an_interrupt_while_pictures_are_drawn_keeps_the_next_slide_from_running
     tmp_path, capsys, monkeypatch
 ):
     project = write_project(tmp_path / "project", "tEnd = 0.05\n", releases=("a", "b"))
-    draw = slides._draw
+    draw = SlideRun.draw
 
     def interrupt(*given):
         signal.raise_signal(signal.SIGTERM)
         draw(*given)
 
-    monkeypatch.setattr(slides, "_draw", interrupt)
+    monkeypatch.setattr(SlideRun, "draw", interrupt)
     assert slide(project, tmp_path / "out", "-q") == 130
     assert "interrupted; resume with: " in capsys.readouterr().err
     assert not list((tmp_path / "out").glob("b_*"))
@@ -93,7 +93,7 @@ def test_settings_that_the_scene_refuses_are_located_in_the_ini(tmp_path, capsys
 @pytest.fixture
 def undrawn(monkeypatch):
     """Leave out the pictures, which take most of the time."""
-    monkeypatch.setattr(slides, "_draw", lambda *_: None)
+    monkeypatch.setattr(SlideRun, "draw", lambda *_: None)
 
 
 @pytest.mark.usefixtures("undrawn")
