@@ -9,7 +9,6 @@ from validation.framework.report import Validation, problems
 
 from snowshed.analysis.accuracy.measurements import to_table
 
-
 MODULES = case_modules()
 
 

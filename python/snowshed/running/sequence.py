@@ -1,7 +1,7 @@
 """The core's sequence of events in a results folder: opened, and run to its end.
 
-What readers of the results should know of a run is said here, as a note (`snowshed.base.notes`), and
-written into run.json: whoever runs a scene, hears the same.
+Notes for readers of the results (`snowshed.base.notes`) are given here and written into run.json:
+whoever runs a scene, hears the same.
 """
 
 from __future__ import annotations

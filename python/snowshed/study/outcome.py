@@ -51,7 +51,7 @@ class Outcome:
     error
         Reason why the run is not done.
     particles
-        Those after each completed event, packed (see `snowshed.results.event_particles`), by events;
+        Those after each completed event, by events, packed (`snowshed.results.event_particles`);
         empty unless the task asked for them.
     notes
         What readers of the results should know, as run.json has it.
