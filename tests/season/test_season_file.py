@@ -76,7 +76,7 @@ BAD_HEADERS = [
     ("date,snow,temperature_c", "line 1: unknown column 'snow'; allowed: date, snowfall_m"),
     ("[" * 20_000, rf"line 1: unknown column '{re.escape('[' * 60)}'\.\.\.; allowed: "),
     ("date,snowfall_m", "line 1: no column 'temperature_c'; needed: date, snowfall_m"),
-    ("date,date,snowfall_m,temperature_c", "line 1: not a table: the column 'date' is there twice"),
+    ("date,date,snowfall_m,temperature_c", "line 1: not a table: the column 'date' occurs twice"),
 ]
 
 

@@ -67,7 +67,7 @@ def test_a_rise_over_a_gap_is_no_snowfall_of_a_day(tmp_path):
     assert total(record) == pytest.approx(0.9, abs=0.01)
     within = on(record, date(2024, 1, 5))
     assert within.source is Source.FILLED and "rise of 0.90 m over 37 days" in within.reason
-    assert told(record, "rises by 0.90 m in the 37 days to 2024-01-25", "no snowfall of a day")
+    assert told(record, "rises by 0.90 m in the 37 days to 2024-01-25", "not snowfall of a day")
     assert not record.winters().counted
 
 

@@ -51,11 +51,11 @@ def test_rounds_repeat_an_experiment(tmp_path):
         (b"\xff\xfe\x00", "line 1: not a table: not UTF-8 text"),
         ("tilt_deg;event\n", "line 1: 'tilt_deg;event' is not a column; allowed: tilt_deg, event"),
         ("[" * 20_000, f"line 1: {'[' * 60!r}... is not a column; allowed: tilt_deg"),
-        ("tilt_deg,event,height_cm\n", "line 1: 'height_cm' is no column"),
+        ("tilt_deg,event,height_cm\n", "line 1: 'height_cm' is not a column"),
         ("event,height_m,height_std_m\n", "line 1: no column tilt_deg"),
         ("tilt_deg,event\n", "line 1: no column of a measured value"),
         ("tilt_deg,event,head_m\n", "line 1: no column head_std_m, the uncertainty of head_m"),
-        ("tilt_deg,event,event\n", "line 1: not a table: the column 'event' is there twice"),
+        ("tilt_deg,event,event\n", "line 1: not a table: the column 'event' occurs twice"),
         (f"{HEADER}\n40,1,0.05\n", "line 2: not a table: 3 cells in 6 columns"),
         (f"{HEADER}\n40,1,0.05,,,\n", "line 2: height_std_m: missing"),
         (

@@ -70,8 +70,8 @@ def test_questions_that_the_model_does_not_know_are_refused(regressed):
     ("inputs", "message"),
     [
         ((), "inputs: none"),
-        (("height",), "input: 'height' is no parameter"),
-        (("seeding.seed",), "input: 'seeding.seed' is no parameter"),
+        (("height",), "input: 'height' is not a parameter"),
+        (("seeding.seed",), "input: 'seeding.seed' is not a parameter"),
         (("snow.cohesion", "snow.cohesion"), "each once"),
         (("snow.cohesion",), "panel.friction: the rows have different values"),
         (("snow.density", *INPUTS), "snow.density"),

@@ -102,9 +102,9 @@ def test_a_folder_that_is_not_empty_is_kept(tmp_path, capsys):
     ("options", "message"),
     [
         (["--density", 300], "give one of the two"),
-        (["--density", 300, "--specific-surface", 15, "--neck", 0.4], "--neck: not taken"),
-        (["--density", 300, "--spheres", 5e-4, "--anisotropy", 2], "--anisotropy: not taken"),
-        (["--density", 300, "--spheres", 5e-4, "--specific-surface", 9], "not taken by a pack"),
+        (["--density", 300, "--specific-surface", 15, "--neck", 0.4], "--neck: no option"),
+        (["--density", 300, "--spheres", 5e-4, "--anisotropy", 2], "--anisotropy: no option"),
+        (["--density", 300, "--spheres", 5e-4, "--specific-surface", 9], "no option of a pack"),
     ],
 )
 def test_options_that_do_not_fit_are_refused(tmp_path, capsys, options, message):

@@ -90,7 +90,7 @@ def test_the_seed_decides():
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"density": 60, "specific_surface": 15}, "so little ice is not connected"),
+        ({"density": 60, "specific_surface": 15}, "there is too little ice for a connected part"),
         ({"density": 300, "specific_surface": 500}, "from 4 voxels"),
         ({"density": 300, "specific_surface": 1}, "from 4 voxels"),
         ({"density": 1000, "specific_surface": 15}, "it must be below 1"),
