@@ -100,9 +100,7 @@ def test_every_command_is_on_the_page_of_commands(name):
 def test_every_option_is_on_the_page_of_its_command(name, page):
     text = (DOCS / page).read_text(encoding="utf-8")
     command, _ = command_of("snowshed", [name])
-    options = [
-        max(one.opts, key=len) for one in command.params if one.param_type_name == "option"
-    ]
+    options = [max(one.opts, key=len) for one in command.params if one.param_type_name == "option"]
     assert [option for option in options if not re.search(rf"`{option}[ `]", text)] == []
 
 
