@@ -34,7 +34,8 @@ def test_running_a_scene_does_not_import_what_reads_images_of_snow():
 
 
 @pytest.mark.parametrize(
-    ("module", "allowed"), [("snowshed", set()), ("snowshed.cli.main", {"click"})]
+    ("module", "allowed"),
+    [("snowshed", {"lazy_loader"}), ("snowshed.cli.main", {"click", "lazy_loader"})],
 )
 def test_import_is_quick_and_leaves_the_libraries_out(module, allowed):
     code = (

@@ -69,7 +69,7 @@ DEVIATIONS: Mapping[str, Deviation] = {
             "reseed",
             "Between events, the stack becomes a solid and is reseeded.",
             "The particles stay as they are.",
-            "Seeding anew makes broken bonds whole, forgets compaction, and moves the stack.",
+            "Reseeding heals broken bonds, discards compaction, and moves the stack.",
         ),
         Deviation(
             "grid",
@@ -82,8 +82,8 @@ DEVIATIONS: Mapping[str, Deviation] = {
             "An event is over after 50, 60 and 100 frames in chapters 3, 4 and 5: "
             "2.1, 2.5 and 4.2 s at 24 frames a second (the rate is not printed).",
             "An event is over when the snow rests.",
-            "A long slab on a rough panel slides longer than that, and snow that still moves is no "
-            "stack yet.",
+            "A long slab on a rough panel slides longer than that, and moving snow is not a stack "
+            "yet.",
         ),
         Deviation(
             "trimming",

@@ -119,7 +119,7 @@ def _causes_part(stacks: pd.DataFrame, errors: pd.DataFrame) -> list[str]:
         f"{SCHEME.rounds} round{'s' if SCHEME.rounds > 1 else ''} of {SCHEME.folds} outer and "
         f"{SCHEME.inner_folds} inner folds. The "
         "quartiles are those of the predictions. A sample has a tenth of the rows of the data set, "
-        "so that its errors are to be compared with each other.",
+        "so that its errors can only be compared with each other.",
         markdown_table(deviations_section.errors_grid(errors, stacks)),
     ]
 

@@ -222,7 +222,7 @@ def _as_film_of_run(file: Path) -> str:
 
 
 def _as_scene_of_run(file: Path) -> str:
-    found = Results(file.parent).scene.data
+    found = Results(file.parent).scene.copied_data()
     found["numerics"].pop("threads")  # changes nothing
     return json.dumps(found)
 

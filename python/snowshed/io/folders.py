@@ -14,12 +14,12 @@ from snowshed.io.json_file import read_object
 
 
 def check_empty(
-    folder: PathLike, otherwise: str = "; choose a new folder, or go on with --resume"
+    folder: PathLike, otherwise: str = "; choose a new folder, or use --resume"
 ) -> None:
     """Raise InputError unless results may be written to `folder`: it is new, or empty.
 
-    What a killed process left there does not count. `otherwise` ends the message of a folder that
-    is not empty.
+    Leftovers of killed processes do not count. `otherwise` ends the message of a folder that is
+    not empty.
     """
     folder = Path(folder)
     if folder.exists() and not folder.is_dir():
@@ -42,7 +42,7 @@ def claim_folder(
     identity
         JSON data that decides what is in the folder.
     what, others
-        What the work is called, and how works with another identity differ, for messages.
+        Name of the work, and how work with another identity differs, for messages.
 
     Raises
     ------

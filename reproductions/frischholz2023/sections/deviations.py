@@ -76,7 +76,7 @@ def sample_text(stacks: pd.DataFrame) -> list[str]:
         "outermost_first, but for the deviation in the trimming and for all together. A change "
         f"that is not above {SIGMAS:g} standard errors may be chance.",
         f"Table 5.3.1 holds quartiles of predictions for {THESIS_ROWS} rows; these are of rows of "
-        "a sample, so that rows are to be compared with each other.",
+        "a sample, so compare rows only with each other.",
         f"Frames are counted at {FRAME_RATE:g} a second; the thesis prints their number only.",
     ]
 

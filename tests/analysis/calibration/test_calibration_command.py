@@ -136,7 +136,7 @@ def test_plan_and_errors(tmp_path, capsys):
         ((*options, "--stored", tmp_path / "nowhere"), "nowhere"),
         ((*options, "--stored", tmp_path, "--plan"), "--dry-run has no effect with --stored"),
         ((*options, "--study", tmp_path / "x", "--seeds", 3), "--seeds has no effect with --study"),
-        ((*options, "--name", "grid"), "--name is of a study given with --stored"),
+        ((*options, "--name", "grid"), "--name needs --stored"),
         ((*options, "--quantity", "width", "--study", tmp_path / "no.toml"), "no.toml"),
     ):
         assert run("calibrate", *arguments) == 2

@@ -60,7 +60,7 @@ def test_questions_that_the_model_does_not_know_are_refused(regressed):
         predict(inputs={"snow.cohesion": 0.1}, events=1, model=file)
     with pytest.raises(InputError, match=r"cohesion factor 0\.5 is outside the data"):
         predict(inputs={"snow.cohesion": 0.5, "panel.friction": 0.2}, events=1, model=file)
-    with pytest.raises(InputError, match=r"snow\.cohesion: is no input of this model"):
+    with pytest.raises(InputError, match=r"snow\.cohesion: not an input of this model"):
         predict(height=2, length=4, tilt=60, events=1, inputs={"snow.cohesion": 0.1})
     with pytest.raises(InputError, match=r"snow\.cohesion: nan is not a finite number"):
         predict(inputs={"snow.cohesion": np.nan, "panel.friction": 0.2}, events=1, model=file)

@@ -46,7 +46,7 @@ class TargetReport:
     expression
         The linear model as a formula; otherwise empty.
     checks
-        For the ratio, in words, whether the results agree with published ones.
+        Verdicts on published claims about the ratio, a sentence each.
     """
 
     target: str
@@ -86,7 +86,7 @@ def regress(
     jobs
         Number of processes. [default: the number of cores]
     title, measure
-        What the data are, and what of the stack was measured; kept in the model file.
+        Title of the data, and measure of the stack; kept in the model file.
     figures
         Whether figures are drawn.
     progress

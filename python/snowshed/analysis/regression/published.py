@@ -63,7 +63,7 @@ def published() -> Published:
 
 
 def compare_with_published(quartiles: pd.DataFrame, errors: pd.DataFrame) -> list[str]:
-    """Return in words whether results for the ratio agree with the published ones.
+    """Return sentences that say whether results for the ratio agree with the published ones.
 
     Parameters
     ----------
