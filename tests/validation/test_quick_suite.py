@@ -10,13 +10,23 @@ from validation.framework.report import Validation, problems
 from snowshed.analysis.accuracy.measurements import to_table
 
 MODULES = case_modules()
+#: Those that take longest have tests of their own in `test_case_*.py`, which are quicker.
+LONG = {"between_events", "manufactured", "material_paths", "vibration"}
+
+
+def modules():
+    """Return the modules as parameters; `make validation` and `make test-slow` run the long ones."""
+    return [
+        pytest.param(module, id=name, marks=[pytest.mark.slow] if name in LONG else [])
+        for name, module in MODULES.items()
+    ]
 
 
 def test_modules_are_found():
     assert len(MODULES) > 20 and len(set(MODULES.values())) == len(MODULES)
 
 
-@pytest.mark.parametrize("module", MODULES.values(), ids=MODULES)
+@pytest.mark.parametrize("module", modules())
 def test_bars_hold(module, tmp_path):
     cases = cases_of(module)
     measurements = measure_cases(cases, MeasurementFile(tmp_path / "measurements.jsonl"))

@@ -1,4 +1,4 @@
-"""Where a slide leaves what the method was made for, in words.
+"""Warnings where a slide violates the method's assumptions.
 
 com5SnowSlide is stated to be for releases on slopes of 28 to 50 degrees between 500 and 1500 m of
 altitude, drops of 30 to 80 m, and snow that moves as one slab (AvaFrame's documentation of
