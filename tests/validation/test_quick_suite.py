@@ -11,11 +11,11 @@ from snowshed.analysis.accuracy.measurements import to_table
 
 MODULES = case_modules()
 #: Those that take longest have tests of their own in `test_case_*.py`, which are quicker.
-LONG = {"between_events", "manufactured", "material_paths", "vibration"}
+LONG = {"elastic_vibration", "manufactured", "material_paths"}
 
 
 def modules():
-    """Return the modules as parameters; `make validation` and `make test-slow` run the long ones."""
+    """Return the modules as parameters; `make test-slow` runs the long ones."""
     return [
         pytest.param(module, id=name, marks=[pytest.mark.slow] if name in LONG else [])
         for name, module in MODULES.items()
