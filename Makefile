@@ -9,12 +9,12 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 TREE := build/release
-WATCHED := build/sanitize
-FUZZED := build/fuzz
+SANITIZE_TREE := build/sanitize
+FUZZ_TREE := build/fuzz
 DEMO := demo-results
 FUZZ_SECONDS ?= 60
 CLANG_FORMAT := 23.1.5
-VERIFY ?= --quick
+VALIDATION ?= $(or $(VERIFY),--quick)
 THESIS ?= --quick
 MUTANTS ?=
 
@@ -30,16 +30,16 @@ SHELL := bash
 
 CORE := CMakeLists.txt pyproject.toml $(shell find cmake cpp/apps cpp/bindings cpp/snowshed cpp/vdb -type f)
 CPP_FILES = $(shell find cpp -name '*.[ch]pp')
-PYTHON_FOLDERS = $(wildcard python validation reproduction thesis hagenmuller saito tests tools examples benchmarks lua_compat)
+PYTHON_FOLDERS := python reproductions validation tests tools examples benchmarks lua_compat
 
-.PHONY: help build demo verify thesis test test-cpp test-py test-slow sanitize sanitize-address \
+.PHONY: help build demo validation verify thesis test test-cpp test-py test-slow sanitize sanitize-address \
   sanitize-thread fuzz mutants bench docs components format lint tidy clean
 .NOTPARALLEL:
 
 help:
 	@echo "make build     $(BIN)/snowshed and $(BIN)/snowshed-run"
 	@echo "make demo      the laboratory experiment: five slide-offs, table, pictures and a page that moves"
-	@echo "make verify    problems with known answers, a minute (VERIFY=--full: hours)"
+	@echo "make validation problems with known answers, a minute (VALIDATION=--full: hours)"
 	@echo "make thesis    the thesis reproduced, some minutes (THESIS=--middle: hours, --full: days)"
 	@echo "make test      all tests (test-cpp, test-py: C++, Python; test-slow: those that take minutes)"
 	@echo "make sanitize  the tests with AddressSanitizer, UBSan and ThreadSanitizer"
@@ -89,13 +89,15 @@ demo: build
 	@echo "$(CURDIR)/$(DEMO)/view.html"
 
 # Old results of the quick suite give way; those of the full one took hours and never do.
-verify: build $(VENV)/.dev-tools
-	$(if $(findstring --full,$(VERIFY)),,rm -rf verification-quick)
-	$(BIN)/python -m validation $(VERIFY) -o verification-$(patsubst --%,%,$(firstword $(VERIFY)))
+validation: build $(VENV)/.dev-tools
+	$(if $(findstring --full,$(VALIDATION)),,rm -rf validation-quick)
+	$(BIN)/python -m validation $(VALIDATION) -o validation-$(patsubst --%,%,$(firstword $(VALIDATION)))
+
+verify: validation  # its former name
 
 # What was interrupted goes on.
 thesis: build $(VENV)/.dev-tools
-	$(BIN)/python -m thesis $(THESIS) -o reproduction-$(patsubst --%,%,$(firstword $(THESIS)))
+	$(BIN)/python -m reproductions frischholz2023 $(THESIS) -o reproduction-$(patsubst --%,%,$(firstword $(THESIS)))
 
 # --- test ----------------------------------------------------------------------------------
 
@@ -121,39 +123,39 @@ test-py: build $(VENV)/.dev-tools
 test-slow: build $(VENV)/.dev-tools
 	$(BIN)/python -m pytest -m slow
 
-# --- robustness, see docs/robustness.md ----------------------------------------------------
+# --- robustness, see docs/trust/robustness.md ----------------------------------------------
 
 # Each sanitizer has its own tree; the second argument are tests that are left out. LongSlab takes
 # minutes and runs only code that shorter tests run, too. ThreadSanitizer's threads are those of the
 # standard library, which allocate where OpenMP's do not: no place for tests in which every
 # allocation fails. Lua's memory limit leaves no room for AddressSanitizer.
-build_sanitized = cmake -S . -B $(WATCHED)-$(1) -G Ninja -DSNOWSHED_SANITIZE=$(1) \
+build_sanitized = cmake -S . -B $(SANITIZE_TREE)-$(1) -G Ninja -DSNOWSHED_SANITIZE=$(1) \
     -DSNOWSHED_BUILD_TESTS=ON -DSNOWSHED_BUILD_PYTHON=ON \
     -DPython_EXECUTABLE=$(CURDIR)/$(BIN)/python \
     -Dpybind11_DIR="$$($(BIN)/python -m pybind11 --cmakedir)" && \
-  cmake --build $(WATCHED)-$(1) --target snowshed_tests _core snowshed-run && \
-  ctest --test-dir $(WATCHED)-$(1) -j 2 --output-on-failure --exclude-regex '$(2)'
+  cmake --build $(SANITIZE_TREE)-$(1) --target snowshed_tests _core snowshed-run && \
+  ctest --test-dir $(SANITIZE_TREE)-$(1) -j 2 --output-on-failure --exclude-regex '$(2)'
 
 sanitize: sanitize-address sanitize-thread
 
 sanitize-address: $(VENV)/.dev-tools
 	@sh tools/provide_header.sh gtest/gtest.h libgtest-dev || echo "Fetching GoogleTest instead."
 	$(call build_sanitized,address,LongSlab)
-	sh tools/sanitized_pytest.sh $(WATCHED)-address $(VENV) "asan ubsan" \
-	  tests/test_*.py tests/{cli,io,methods,run,scene,snow/stack}/test_*.py -k "not lua"
+	sh tools/sanitized_pytest.sh $(SANITIZE_TREE)-address $(VENV) "asan ubsan" \
+	  tests/test_*.py tests/{cli,io,methods,running,scene,snow/stack}/test_*.py -k "not lua"
 
 sanitize-thread: $(VENV)/.dev-tools
 	@sh tools/provide_header.sh gtest/gtest.h libgtest-dev || echo "Fetching GoogleTest instead."
 	$(call build_sanitized,thread,LongSlab|Faults)
-	sh tools/sanitized_pytest.sh $(WATCHED)-thread $(VENV) tsan tests/run/test_executable.py \
-	  tests/run/test_simulation.py -k "test_executable or thread"
+	sh tools/sanitized_pytest.sh $(SANITIZE_TREE)-thread $(VENV) tsan tests/running/test_executable.py \
+	  tests/running/test_simulation.py -k "test_executable or thread"
 
 fuzz: $(VENV)/.build-tools
-	cmake -S . -B $(FUZZED) -G Ninja -DSNOWSHED_SANITIZE=address -DSNOWSHED_BUILD_FUZZ=ON \
+	cmake -S . -B $(FUZZ_TREE) -G Ninja -DSNOWSHED_SANITIZE=address -DSNOWSHED_BUILD_FUZZ=ON \
 	  -DSNOWSHED_BUILD_APPS=OFF -DPython_EXECUTABLE=$(CURDIR)/$(BIN)/python \
 	  -DCMAKE_CXX_COMPILER="$$(sh tools/provide_fuzzer.sh || echo $${CXX:-c++})"
-	cmake --build $(FUZZED)
-	sh tools/fuzz.sh $(FUZZED) $(FUZZ_SECONDS)
+	cmake --build $(FUZZ_TREE)
+	sh tools/fuzz.sh $(FUZZ_TREE) $(FUZZ_SECONDS)
 
 # In a tree of its own, with one job, so that the machine can be used meanwhile.
 mutants: $(VENV)/.dev-tools
@@ -190,7 +192,7 @@ lint: $(VENV)/.cpp-tools $(VENV)/.dev-tools python/snowshed/_core.pyi
 	$(BIN)/clang-format --dry-run -Werror $(CPP_FILES)
 	$(BIN)/ruff check $(PYTHON_FOLDERS)
 	$(BIN)/ruff format --check $(PYTHON_FOLDERS)
-	$(BIN)/mypy python/snowshed validation reproduction thesis hagenmuller saito
+	$(BIN)/mypy python/snowshed validation reproductions
 
 tidy: $(VENV)/.build-tools $(VENV)/.cpp-tools
 	sh tools/tidy.sh
@@ -207,7 +209,7 @@ $(VENV)/.cpp-tools: $(VENV)/.created
 
 # The pages name estimators, which are classes of scikit-learn.
 $(VENV)/.docs-tools: $(VENV)/.installed docs/conf.py
-	$(PIP) --quiet "snowshed[regression]" sphinx myst-nb ipykernel furo sphinx-mathjax-offline
+	$(PIP) --quiet "snowshed[regression]" sphinx myst-nb ipykernel furo sphinx-mathjax-offline sphinx-design
 	touch $@
 
 clean:

@@ -26,8 +26,8 @@ from pathlib import Path
 
 import numpy as np
 
-from snowshed.io.raster import Raster, write_ascii_grid
-from snowshed.run.simulation import Simulation
+from snowshed.io.raster.raster import Raster, write_ascii_grid
+from snowshed.running.simulation import Simulation
 from snowshed.scene.builders.avaframe import avaframe_scene
 
 CELL = 2.0  # m

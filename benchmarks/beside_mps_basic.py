@@ -29,8 +29,8 @@ sys.path.insert(0, str(ROOT))
 
 from benchmarks.keeping import keep_cases  # noqa: E402
 
-from snowshed.methods.mps import MpsSettings  # noqa: E402
-from snowshed.run.simulation import Simulation  # noqa: E402
+from snowshed.methods.mps.settings import MpsSettings  # noqa: E402
+from snowshed.running.simulation import Simulation  # noqa: E402
 from snowshed.scene.components import Body, Events, Obstacle  # noqa: E402
 from snowshed.scene.scene import Scene  # noqa: E402
 from snowshed.scene.shape import Shape  # noqa: E402

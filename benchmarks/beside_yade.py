@@ -28,7 +28,7 @@ from benchmarks.engines.voxel_sample import VoxelSample  # noqa: E402
 from benchmarks.keeping import keep_cases  # noqa: E402
 
 from snowshed import GrainsSettings, LoadingStage  # noqa: E402
-from snowshed.run.simulation import Simulation  # noqa: E402
+from snowshed.running.simulation import Simulation  # noqa: E402
 from snowshed.scene.builders import grains_scene  # noqa: E402
 
 VOXEL = 5e-5  # m

@@ -30,10 +30,10 @@ from pathlib import Path
 
 import numpy as np
 
-from snowshed.io.arrays import Floats
-from snowshed.io.raster import Raster, read_raster
-from snowshed.methods.slide import SlideSettings
-from snowshed.run.slides import run_slide
+from snowshed.base.arrays import Floats
+from snowshed.io.raster.raster import Raster, read_raster
+from snowshed.methods.slide.settings import SlideSettings
+from snowshed.running.run import run
 from snowshed.scene.builders.slides import slide_scene
 
 THICKNESS, FRICTION, TURBULENCE = 1.5, 0.4, 2000.0  # m, 1, m/s2
@@ -69,7 +69,7 @@ def our_peaks(case: Path, folder: Path, changes: dict[str, object]) -> tuple[Ras
         thickness=THICKNESS,
         settings=SlideSettings.from_data(settings),
     )
-    run_slide(scene, folder / "run", pictures=False)
+    run(scene, folder / "run", pictures=False)
     peaks = folder / "run" / "peaks"
     return read_raster(peaks / "pft.asc"), read_raster(peaks / "pfv.asc")
 

@@ -7,7 +7,7 @@ import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from snowshed.run.machine import cpu_name
+from snowshed.base.machine import cpu_name
 
 RESULTS = Path(__file__).parent / "results"
 

@@ -20,7 +20,7 @@ from pathlib import Path
 
 import numpy as np
 
-from snowshed.run.machine import cpu_name
+from snowshed.base.machine import cpu_name
 
 RESULTS = Path(__file__).parent / "results"
 VARIANTS = ("baseline", "avx2", "avx512")

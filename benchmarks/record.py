@@ -3,7 +3,7 @@
 Usage: python benchmarks/record.py path/to/snowshed_bench
 
 Writes benchmarks/results/DATE.json (machine, date, every case) and prints the tables that
-docs/performance.md shows. Nothing else should run on the machine meanwhile.
+docs/trust/performance.md shows. Nothing else should run on the machine meanwhile.
 """
 
 from __future__ import annotations
@@ -20,8 +20,8 @@ from typing import Any
 from keeping import keep_cases
 from tables import print_tables
 
-from snowshed.run.events import run_events
-from snowshed.run.machine import cpu_name
+from snowshed.base.machine import cpu_name
+from snowshed.running.run import run_events
 from snowshed.scene.scene import Scene
 
 Case = dict[str, Any]

@@ -28,7 +28,7 @@ from benchmarks.engines.voxel_sample import VoxelSample  # noqa: E402
 from benchmarks.keeping import keep_cases  # noqa: E402
 
 from snowshed import GrainsSettings, LoadingStage  # noqa: E402
-from snowshed.run.grains import run_grains  # noqa: E402
+from snowshed.running.run import run  # noqa: E402
 from snowshed.scene.builders import grains_scene  # noqa: E402
 
 VOXEL = 1e-4  # m
@@ -42,7 +42,7 @@ def ours(file: Path, strain: float) -> list[float]:
     stage = LoadingStage(kind="compress", speed=SPEED, strain=strain)
     scene = grains_scene(file, VOXEL, [stage], settings=GrainsSettings(damping=0.2, threads=1))
     with tempfile.TemporaryDirectory() as name:
-        found = run_grains(scene.update({"gravity": 0}), Path(name) / "out", pictures=False)
+        found = run(scene.update({"gravity": 0}), Path(name) / "out", pictures=False).summary
     stresses = (found.strength_pa, found.mean_stress_5_10_pa, found.mean_stress_10_15_pa)
     return [float("nan") if one is None else one / 1e3 for one in stresses]
 

@@ -14,7 +14,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from snowshed.run.machine import cpu_name
+from snowshed.base.machine import cpu_name
 from snowshed.scene.scene import Scene
 from snowshed.study import Study
 from snowshed.study.table import read_table

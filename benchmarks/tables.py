@@ -1,4 +1,4 @@
-"""The tables of docs/performance.md, from the cases that benchmarks/record.py measured.
+"""The tables of docs/trust/performance.md, from the cases that benchmarks/record.py measured.
 
 Usage: python benchmarks/tables.py benchmarks/results/DATE.json
 """
@@ -110,7 +110,7 @@ def whole_problems(cases: list[Case]) -> None:
 
 
 def print_tables(cases: list[Case]) -> None:
-    """Print everything, in the order of docs/performance.md."""
+    """Print everything, in the order of docs/trust/performance.md."""
     for table in (speeds, prices, scaling, whole_problems):
         table(cases)
         print()

@@ -4,7 +4,7 @@ Usage: python benchmarks/taichi_slab.py [--steps 50] [--threads 2] [--atomic] [-
 
 Needs Taichi (pip install taichi). 262 144 particles of reference snow on sticky ground, float,
 quadratic splines, FLIP 0.99. Taichi takes the time steps that snowshed chose, free of charge, and
-their end states are compared. Numbers in parentheses are equations of docs/theory.md.
+their end states are compared. Numbers in parentheses are equations of docs/methods/mpm.md.
 
 The Taichi version is the fastest of those tried: grid flat or in blocks, as one or eight arrays;
 particles as one or many arrays; stress in a kernel of its own or not; transfers fused or not.
@@ -22,7 +22,7 @@ from statistics import median
 import numpy as np
 
 from snowshed import Scene, _core
-from snowshed.run.machine import cpu_name
+from snowshed.base.machine import cpu_name
 
 try:
     import taichi as ti

@@ -1,5 +1,5 @@
 # Sanitizers for tests: SNOWSHED_SANITIZE=address finds memory errors and undefined behaviour,
-# SNOWSHED_SANITIZE=thread finds data races. See docs/robustness.md.
+# SNOWSHED_SANITIZE=thread finds data races. See docs/trust/robustness.md.
 set(SNOWSHED_SANITIZE "" CACHE STRING "sanitizers: address (and undefined behaviour), thread, or empty")
 set_property(CACHE SNOWSHED_SANITIZE PROPERTY STRINGS "" address thread)
 

@@ -12,8 +12,9 @@ extensions = [
     "sphinx.ext.napoleon",
     "sphinx.ext.mathjax",
     "sphinx-mathjax-offline",  # formulas need no network
+    "sphinx_design",  # cards
 ]
-myst_enable_extensions = ["dollarmath"]
+myst_enable_extensions = ["colon_fence", "dollarmath"]
 myst_heading_anchors = 3
 nb_execution_mode = "cache"  # tutorials, again when they change
 nb_execution_timeout = 300
@@ -24,3 +25,5 @@ napoleon_use_ivar = True
 autodoc_member_order = "bysource"
 html_theme = "furo"
 html_title = f"snowshed {release}"
+html_static_path = ["_static"]
+html_css_files = ["pages.css"]

@@ -13,12 +13,12 @@ import numpy as np
 from matplotlib import rc_context
 from matplotlib.collections import LineCollection
 
-from snowshed.io.raster import Raster
+from snowshed.io.raster.raster import Raster
 from snowshed.plot.figure_style import INK, STACK, STYLE, blank, save
 from snowshed.plot.terrain_map import draw_outlines, draw_terrain, focus
-from snowshed.run.slide_states import slide_states
-from snowshed.run.slides import slide_terrain
+from snowshed.running.slide_states import slide_states
 from snowshed.scene.builders import example_slide
+from snowshed.scene.terrain_grid import slide_terrain
 
 STRAINS = {"strong bonds": 0.2, "weak bonds": 0.03}  # at which a bond breaks
 SHARES = (0.15, 0.4, 1.0)  # of the time that is shown

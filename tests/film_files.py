@@ -1,4 +1,4 @@
-"""Films written by hand, as docs/view.md describes them: no code of snowshed."""
+"""Films written by hand, as docs/reference/film.md describes them: no code of snowshed."""
 
 import json
 import struct

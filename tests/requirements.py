@@ -23,6 +23,7 @@ MODULES_OF = {
     "emcee": "emcee",
     "jinja2": "jinja2",
     "imageio-ffmpeg": "imageio_ffmpeg",
+    "lazy-loader": "lazy_loader",
     "lupa": "lupa",
     "matplotlib": "matplotlib",
     "pandas": "pandas",
@@ -45,12 +46,12 @@ MODULES_OF = {
 
 
 def required() -> tuple[set[str], dict[str, set[str]]]:
-    """Names of the requirements of snowshed itself, and of each extra that users install."""
+    """Names of the requirements of snowshed itself, and of each extra, but for extras of extras."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     extras = {
         extra: {_name(one) for one in listed}
         for extra, listed in project["optional-dependencies"].items()
-        if extra != "dev"
+        if not any(one.startswith("snowshed[") for one in listed)
     }
     return {_name(one) for one in project["dependencies"]}, extras
 

@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 
-from snowshed.io.raster import Raster, write_ascii_grid
+from snowshed.io.raster.raster import Raster, write_ascii_grid
 
 SQUARE = [[[10, 10], [30, 10], [30, 30], [10, 30], [10, 10]]]
 WITH_HOLE = [*SQUARE, [[15, 15], [15, 20], [20, 20], [20, 15], [15, 15]]]

@@ -13,8 +13,8 @@ from snowshed.cli.main import main
 EXAMPLES = ROOT / "examples"
 ARGUMENTS = {
     "custom_obstacles.py": ["out", "0.05"],
-    "dimension_ratio.py": ["out", "0.02", "1"],
-    "image_to_stack.py": ["out", "20", "2", "0.04"],
+    "dimension_ratio.py": ["out", "0.03", "1"],
+    "image_to_stack.py": ["out", "18", "2", "0.05"],
     "in_memory.py": ["out", "0.02"],
     "panel_2d.py": ["out", "0.02"],
     "resume.py": ["out", "0.02"],

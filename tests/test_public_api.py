@@ -23,7 +23,7 @@ PACKAGES = [
 #: Modules with a source; the compiled core has none.
 WRITTEN = {one.name for one in pkgutil.walk_packages(snowshed.__path__, "snowshed.")}
 WRITTEN -= {"snowshed._core"}
-API = (ROOT / "docs" / "api.md").read_text(encoding="utf-8")
+API = (ROOT / "docs" / "reference" / "api.md").read_text(encoding="utf-8")
 DOCUMENTED = re.findall(r"^\.\. auto\w+:: (snowshed\S*)\.(\w+)$", API, re.MULTILINE)
 EXPORTED = [
     (package, name)

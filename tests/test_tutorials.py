@@ -1,4 +1,4 @@
-"""The tutorials in docs/tutorials: their cells run, and come to what their text says."""
+"""The tutorials in docs/start/tutorials: their cells run, and come to what their text says."""
 
 import json
 from pathlib import Path
@@ -7,7 +7,7 @@ from typing import Any
 import matplotlib
 import pytest
 
-FOLDER = Path(__file__).parents[1] / "docs" / "tutorials"
+FOLDER = Path(__file__).parents[1] / "docs" / "start" / "tutorials"
 
 
 @pytest.fixture

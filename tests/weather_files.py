@@ -293,7 +293,7 @@ FILES = {
         (34, ",-5.0,", ",cold,", "line 34, column dry bulb temperature: 'cold' is not a number"),
         (34, ",-5.0,", ",268.15,", "line 34, column dry bulb temperature: 268.15 is outside"),
         (34, ",140,", ",14000,", "line 34, column snow depth: 14000 is outside the allowed range"),
-        (34, "1997,1,2,", "1997,13,2,", "line 34, column day: 1997-13-2 is no date"),
+        (34, "1997,1,2,", "1997,13,2,", "line 34, column day: 1997-13-2 is not a date"),
         (8, "DATA PERIODS", "DATA", "line 8, column 1: 'DATA'; allowed: DATA PERIODS"),
     ]),
     "TMY3": (tmy3(), None, [

@@ -21,7 +21,7 @@ from pathlib import Path
 from tools.component_docs import attributes_section
 
 from snowshed import Scene
-from snowshed.io.record import Record
+from snowshed.base.record import Record
 from snowshed.methods.registry import METHODS
 from snowshed.scene.schema import properties, resolve, scene_schema, schema_of_method
 
@@ -35,10 +35,10 @@ def components() -> dict[type[Record], dict]:
     A part that several methods have is described for each; the whole scene by the whole schema.
     """
     nodes: dict[type[Record], dict] = {}
-    for method, settings in METHODS.items():
-        schema = schema_of_method(method)
+    for name, method in METHODS.items():
+        schema = schema_of_method(name)
         _collect(Scene, schema, nodes)
-        nodes[settings] = resolve(schema, schema["properties"]["numerics"])
+        nodes[method.settings] = resolve(schema, schema["properties"]["numerics"])
     nodes[Scene] = scene_schema()
     return nodes
 

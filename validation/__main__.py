@@ -3,7 +3,7 @@
 import sys
 
 from snowshed.cli.main import main
-from validation.command import validate
+from validation.framework.command import validate
 
 if __name__ == "__main__":
     sys.exit(main(command=validate, name="python -m validation"))

@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "bindings.hpp"
+#include "scene_argument.hpp"
 #include "simulation_handle.hpp"
-#include "snowshed/scene/scene_json.hpp"
 
 namespace py = pybind11;
 
@@ -95,16 +95,16 @@ void bind_event_sequence(py::module_& m) {
   py::class_<EventSequence, std::shared_ptr<EventSequence>>(m, "EventSequence")
       .def_static(
           "create",
-          [](const std::string& json, const Path& base_dir, const Path& folder) {
-            return EventSequence::create(parse_scene(json), base_dir, folder, python_interrupts);
+          [](const py::object& scene, const Path& base_dir, const Path& folder) {
+            return EventSequence::create(scene_of(scene), base_dir, folder, python_interrupts);
           },
-          "scene_json"_a, "base_dir"_a, "folder"_a)
+          "scene"_a, "base_dir"_a, "folder"_a)
       .def_static(
           "resume",
-          [](const std::string& json, const Path& base_dir, const Path& folder) {
-            return EventSequence::resume(parse_scene(json), base_dir, folder);
+          [](const py::object& scene, const Path& base_dir, const Path& folder) {
+            return EventSequence::resume(scene_of(scene), base_dir, folder);
           },
-          "scene_json"_a, "base_dir"_a, "folder"_a)
+          "scene"_a, "base_dir"_a, "folder"_a)
       .def("run", &run_sequence, "observer"_a, "report_interval_s"_a)
       .def("__enter__", [](EventSequence& self) -> EventSequence& { return self; })
       .def("__exit__", [](EventSequence& self, const py::args&) { self.close(); })

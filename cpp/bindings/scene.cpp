@@ -4,19 +4,19 @@
 #include <nlohmann/json.hpp>
 
 #include "bindings.hpp"
+#include "scene_argument.hpp"
 #include "snowshed/run/cost_report.hpp"
 #include "snowshed/scene/earlier_version.hpp"
 #include "snowshed/scene/json_text.hpp"
 #include "snowshed/scene/presets.hpp"
-#include "snowshed/scene/scene_json.hpp"
 
 namespace py = pybind11;
 
 namespace snowshed {
 namespace {
 
-py::dict plan_dict(const std::string& text, const std::filesystem::path& base_dir) {
-  const Scene scene = parse_scene(text);
+py::dict plan_dict(const py::object& argument, const std::filesystem::path& base_dir) {
+  const Scene scene = scene_of(argument);
   const CostReport report = report_cost(scene, base_dir);
   const int events = scene.events.count;
   py::dict d;
@@ -57,25 +57,27 @@ std::string updated(const std::string& text) {
 
 void bind_scene(py::module_& m) {
   using namespace py::literals;
-  m.def(
-      "parse_scene",
-      [](const std::string& text, const std::filesystem::path& base_dir) {
-        std::vector<std::string> notes;
-        const Scene scene = parse_scene(text, "scene", &notes);
-        warn(notes);
-        return write_scene(resolve(with_absolute_files(base_dir, scene)));
-      },
-      "text"_a, "base_dir"_a = ".",
-      "The complete, validated JSON of a scene; files it names are found from base_dir.");
-  m.def(
-      "load_scene",
-      [](const std::filesystem::path& path) {
-        std::vector<std::string> notes;
-        const Scene scene = load_scene(path, &notes);
-        warn(notes, path.string());
-        return write_scene(resolve(scene));
-      },
-      "path"_a, "The same of a file; files it names are found beside it.");
+  py::class_<ParsedScene>(m, "ParsedScene", "A complete, validated scene.")
+      .def_static(
+          "parse",
+          [](const std::string& text, const std::filesystem::path& base_dir) {
+            std::vector<std::string> notes;
+            const Scene scene = parse_scene(text, "scene", &notes);
+            warn(notes);
+            return ParsedScene(resolve(with_absolute_files(base_dir, scene)));
+          },
+          "text"_a, "base_dir"_a = ".",
+          "The scene of a JSON text; files it names are found from base_dir.")
+      .def_static(
+          "load",
+          [](const std::filesystem::path& path) {
+            std::vector<std::string> notes;
+            const Scene scene = load_scene(path, &notes);
+            warn(notes, path.string());
+            return ParsedScene(resolve(scene));
+          },
+          "path"_a, "The same of a file; files it names are found beside it.")
+      .def_property_readonly("json", [](const ParsedScene& s) { return s.json; });
   m.def("update_version", &updated, "text"_a,
         "The JSON of a scene, where it is of an earlier version as the present one says the same.");
   m.def("scene_checksum", &scene_checksum, "text"_a,
@@ -86,13 +88,13 @@ void bind_scene(py::module_& m) {
   m.def(
       "snow_preset", [](const std::string& name) { return write_snow(preset_snow(name)); },
       "name"_a);
-  m.def("plan", &plan_dict, "scene_json"_a, "base_dir"_a = ".");
+  m.def("plan", &plan_dict, "scene"_a, "base_dir"_a = ".");
   m.def(
       "expected_work",
-      [](const std::string& text, const std::filesystem::path& base_dir) {
-        return expected_work(parse_scene(text), base_dir);
+      [](const py::object& scene, const std::filesystem::path& base_dir) {
+        return expected_work(scene_of(scene), base_dir);
       },
-      "scene_json"_a, "base_dir"_a = ".",
+      "scene"_a, "base_dir"_a = ".",
       "Expected work of a run, in particle updates of whole snow; nothing is measured.");
 }
 

@@ -7,13 +7,13 @@
 #include "array_copies.hpp"
 #include "bindings.hpp"
 #include "method_bindings.hpp"
+#include "scene_argument.hpp"
 #include "snowshed/core/errors.hpp"
 #include "snowshed/methods/capabilities.hpp"
 #include "snowshed/methods/quantities.hpp"
 #include "snowshed/run/energy_history.hpp"
 #include "snowshed/run/run_record.hpp"
 #include "snowshed/scene/assemble.hpp"
-#include "snowshed/scene/scene_json.hpp"
 
 namespace py = pybind11;
 
@@ -197,12 +197,12 @@ void bind_files(SimulationClass& c) {
       "path"_a);
   (*c).def_static(
       "load_into",
-      [](const std::string& json, const std::filesystem::path& base_dir,
+      [](const py::object& scene, const std::filesystem::path& base_dir,
          const std::filesystem::path& path) {
         return std::make_unique<SimulationHandle>(
-            Simulation::load_into(parse_scene(json), base_dir, path));
+            Simulation::load_into(scene_of(scene), base_dir, path));
       },
-      "scene_json"_a, "base_dir"_a, "path"_a);
+      "scene"_a, "base_dir"_a, "path"_a);
   c.reads(
       "save", [](const Simulation& s, const std::filesystem::path& path) { s.save(path); },
       "path"_a);
@@ -288,11 +288,11 @@ void bind_simulation(py::module_& m) {
   using namespace py::literals;
   m.def("quantities", &quantity_list, "(name, unit, meaning) of what particles may have.");
   SimulationClass c(m);
-  (*c).def(py::init([](const std::string& json, const std::filesystem::path& base_dir) {
+  (*c).def(py::init([](const py::object& scene, const std::filesystem::path& base_dir) {
              return std::make_unique<SimulationHandle>(
-                 std::make_shared<Simulation>(parse_scene(json), base_dir));
+                 std::make_shared<Simulation>(scene_of(scene), base_dir));
            }),
-           "scene_json"_a, "base_dir"_a = ".");
+           "scene"_a, "base_dir"_a = ".");
   bind_run(c);
   bind_files(c);
   bind_fields(c);

@@ -2,6 +2,7 @@
 // saved and continued, also into the next event. A SimulationError is allowed, since the state in
 // the file may be one from which no step is possible.
 #include "fuzzing.hpp"
+#include "snowshed/methods/capabilities.hpp"
 #include "snowshed/run/simulation.hpp"
 
 namespace snowshed {
@@ -20,7 +21,7 @@ void continue_run(Simulation& simulation) {
 
 void exercise(Simulation& simulation, const std::filesystem::path& copy) {
   simulation.solver().state();
-  simulation.solver().energy();
+  if (const auto* keeping = capability<KeepsEnergy>(simulation.solver())) keeping->energies();
   simulation.save(copy);
   try {
     continue_run(simulation);

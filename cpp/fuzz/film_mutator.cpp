@@ -12,7 +12,7 @@
 namespace snowshed {
 namespace {
 
-// The layout of docs/view.md. None of the values need be valid.
+// The layout of docs/reference/film.md. None of the values need be valid.
 constexpr std::size_t text_length_at = 12, text_at = 24, record_head = 40, facts_at = 8;
 constexpr std::size_t raw_at = 28, packed_at = 32;
 

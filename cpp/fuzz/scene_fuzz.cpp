@@ -2,7 +2,6 @@
 // written and read.
 #include "fuzzing.hpp"
 #include "snowshed/run/cost_estimate.hpp"
-#include "snowshed/run/mps_cost.hpp"
 #include "snowshed/scene/scene_json.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -15,7 +14,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     } catch (const InputError& error) {
       throw std::logic_error(std::string("a scene is refused once it is written: ") + error.what());
     }
-    if (scene.numerics.takes(Part::bodies)) estimate_cost(scene);
+    if (scene.numerics.takes(Part::bodies)) {
+      estimate_cost(scene);
+      estimate_cost(scene, {100});
+    }
   });
   return 0;
 }

@@ -132,7 +132,7 @@ def test_what_a_row_says_holds_until_the_next():
 
 def test_far_dates_are_refused():
     dates = pd.to_datetime(["1700-12-01", "2025-01-05"])
-    with pytest.raises(InputError, match="from 1700-12-01 to 2025-01-05; at most"):
+    with pytest.raises(InputError, match="it spans 1700-12-01 to 2025-01-05; at most"):
         monthly_table(made_season(dates, [0.1, 0.1], [False, False]), NOTHING, 0.02)
     wrong = made_season(dates, [0.1, 0.1], [False, False]).assign(date=["0224-01-01", "2024-01-02"])
     with pytest.raises(InputError, match="column date"):
@@ -143,8 +143,8 @@ def test_the_short_name_is_a_module():
     code = (
         "from snowshed.pv import monthly_table; import snowshed.pv, snowshed; "
         "from snowshed.analysis import photovoltaics; "
-        "assert snowshed.pv is photovoltaics; assert photovoltaics.monthly_table is monthly_table; "
-        "assert photovoltaics.__spec__.name == photovoltaics.__name__; print('good')"
+        "assert snowshed.pv.monthly_table is photovoltaics.monthly_table is monthly_table; "
+        "print('good')"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert done.stdout == "good\n", done.stderr

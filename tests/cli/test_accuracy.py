@@ -3,9 +3,9 @@ import json
 import pytest
 
 from snowshed import InputError, Scene
-from snowshed.analysis.verification import recorded
-from snowshed.analysis.verification.measurements import Measured, Measurement
-from snowshed.analysis.verification.recorded import load_recorded, record
+from snowshed.analysis.accuracy import recorded
+from snowshed.analysis.accuracy.measurements import Measured, Measurement
+from snowshed.analysis.accuracy.recorded import load_recorded, record
 from snowshed.cli.accuracy import CASE, QUANTITIES, choose
 from snowshed.cli.main import main
 from snowshed.cli.scene_options import option_name
@@ -171,7 +171,7 @@ def test_it_does_not_go_with_what_it_chooses(packaged, capsys, path, value):
 @pytest.mark.parametrize("text", ["5", "0", "-3%", "100%", "five", "nan", ""])
 def test_what_is_no_accuracy(capsys, text):
     assert main(["scene", f"--accuracy={text}"]) == 2
-    assert "is no accuracy; give a percentage such as 5%" in capsys.readouterr().err
+    assert "is not an accuracy; give a percentage such as 5%" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("dimension", [2, 3])

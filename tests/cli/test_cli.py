@@ -1,15 +1,18 @@
 import json
+import re
 import signal
 import subprocess
 import sys
 
+import click
 import pytest
 from bad_scenes import bad_scene  # noqa: F401
 from processes import modules_after
 
 from snowshed import _core, read_events
 from snowshed.cli import main as cli
-from snowshed.cli.commands.run import panel
+from snowshed.cli.commands.panel import panel
+from snowshed.cli.deferred import Deferred
 from snowshed.cli.main import main
 from snowshed.cli.scene_options import PREFIXED, SHORT_NAMES, option_name
 from snowshed.scene.schema import scene_parameters
@@ -226,7 +229,7 @@ def test_ctrl_c_says_how_to_go_on(tmp_path, capsys, monkeypatch):
     def pressed(*_):
         signal.raise_signal(signal.SIGINT)
 
-    monkeypatch.setattr("snowshed.run.events._Recorder.event_begun", pressed)
+    monkeypatch.setattr("snowshed.running.run._Observer.event_begun", pressed)
     out = tmp_path / "out"
     assert main(["panel", *TINY, "-q", "-o", str(out)]) == 130
     message = capsys.readouterr().err
@@ -265,3 +268,62 @@ def test_deferred_commands_show_their_own_help(capsys, name):
     shown = capsys.readouterr().out
     assert shown.startswith(f"Usage: snowshed {name} ")
     assert cli.cli.commands[name].load().name == name
+
+
+@pytest.mark.parametrize(
+    ("former", "now"),
+    [
+        (["plan"], ["run", "--dry-run"]),
+        (["verify"], ["self-test"]),
+        (["study", "plan"], ["study", "run", "--dry-run"]),
+    ],
+)
+def test_former_names_of_commands_work_and_are_not_listed(former, now, capsys):
+    assert main([*former, "--help"]) == 0
+    capsys.readouterr()
+    assert main([*former[:-1], "--help"]) == 0
+    listed = re.findall(r"^  ([a-z-]+) ", capsys.readouterr().out, re.MULTILINE)
+    assert former[-1] not in listed and now[len(former) - 1] in listed
+
+
+def test_a_dry_run_prints_the_cost_and_needs_no_folder(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert main(["scene", *TINY, "-q", "-o", "scene.json"]) == 0
+    for command in (["panel", *TINY], ["run", "scene.json"], ["slide", "--example"],
+                    ["grains", "example"], ["plan", "scene.json"]):  # fmt: skip
+        option = [] if command[0] == "plan" else ["--dry-run"]
+        assert main([*command, *option]) == 0
+        assert "run time" in capsys.readouterr().out
+    assert main(["run", "scene.json"]) == 2
+    assert "Missing option '-o'" in capsys.readouterr().err
+    assert [path.name for path in tmp_path.iterdir()] == ["scene.json"]
+
+
+def commands_with_options():
+    """Every command with its options, without hidden commands."""
+
+    def walk(command, name):
+        command = command.load() if isinstance(command, Deferred) else command
+        if isinstance(command, click.Group):
+            for each, child in command.commands.items():
+                if not child.hidden:
+                    yield from walk(child, f"{name} {each}".strip())
+        else:
+            yield name, {option for one in command.params for option in one.opts}
+
+    return dict(walk(cli.cli, ""))
+
+
+def test_commands_that_compute_have_the_same_options():
+    """One spelling each: a dry run, and resuming; other commands take seconds."""
+    computing = {
+        name: options
+        for name, options in commands_with_options().items()
+        if {"--jobs", "--resume", "--dry-run"} & options and not name.startswith("reproduce")
+    }
+    assert {"panel", "run", "slide", "season", "clearance", "lua", "study run"} <= computing.keys()
+    assert {"sensitivity", "calibrate", "grains sensitivity"} <= computing.keys()
+    without_resume = {name for name, options in computing.items() if "--resume" not in options}
+    assert without_resume == {"study resume"}  # its name says it
+    without_dry_run = {name for name, options in computing.items() if "--dry-run" not in options}
+    assert without_dry_run == {"study resume", "regress"}

@@ -12,11 +12,11 @@ import pandas as pd
 import pytest
 from conftest import tiny_scene
 
+from snowshed.base.messages import HARMFUL, printable
 from snowshed.cli.main import main
 from snowshed.cli.start import main as start
 from snowshed.cli.terminal import PlainConsole, plain_table
 from snowshed.io.csv_table import csv_text
-from snowshed.io.printable import HARMFUL, printable
 
 HOSTILE = "\x1b[31mred\x9b\u202e[/a]"
 COMMAND = [sys.executable, "-m", "snowshed"]
@@ -85,7 +85,7 @@ def test_every_signal_that_ends_a_run_leaves_a_checkpoint(tmp_path, number):
     while not (out / "checkpoint.bin").exists() and run.poll() is None:
         time.sleep(0.01)
     run.send_signal(number)
-    assert "interrupted; go on with: " in run.communicate()[1] and run.returncode == 130
+    assert "interrupted; resume with: " in run.communicate()[1] and run.returncode == 130
     assert json.loads((out / "run.json").read_text())["status"] == "interrupted"
 
 

@@ -24,12 +24,12 @@ def test_a_file_that_needs_too_much_is_named(tmp_path, monkeypatch, capsys):
 
 
 def test_a_run_that_needs_too_much_is_told_so(tmp_path, monkeypatch, capsys):
-    from snowshed.run import events
+    from snowshed.running import run as running
 
     def exhausted(*_, **__):
         raise MemoryError
 
-    monkeypatch.setattr(events, "open_sequence", exhausted)
+    monkeypatch.setattr(running, "open_sequence", exhausted)
     out = str(tmp_path / "out")
     assert main(["panel", "--preset", "lab-50", "--dim", "2", "-q", "-o", out]) == 3
     assert "fewer particles or a larger dx" in capsys.readouterr().err

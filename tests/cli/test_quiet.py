@@ -9,7 +9,7 @@ from slide_files import plane
 
 from snowshed.cli.deferred import Deferred
 from snowshed.cli.main import cli, main
-from snowshed.io.raster import write_ascii_grid
+from snowshed.io.raster.raster import write_ascii_grid
 
 
 def commands(command: click.Command, name: str) -> Iterator[tuple[str, click.Command]]:

@@ -7,7 +7,7 @@ from pages import Page
 from plot.browser import check_page
 
 from snowshed.cli.main import main
-from snowshed.io.raster import read_raster
+from snowshed.io.raster.raster import read_raster
 
 
 def snowshed(*arguments: object) -> int:

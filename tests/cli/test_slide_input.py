@@ -8,7 +8,7 @@ import pytest
 from slide_files import box, plane, write_features, write_polygons, write_project
 
 from snowshed.cli.main import main
-from snowshed.io.raster import Raster, read_raster, write_ascii_grid
+from snowshed.io.raster.raster import Raster, read_raster, write_ascii_grid
 
 pytest.importorskip("pyogrio")
 pytest.importorskip("shapely")
@@ -55,7 +55,7 @@ def refused(folder, capsys, message, files, **case):
         ({"thickness": 0.5, "options": ["--thickness", "nan"]}, "thickness"),
         ({"thickness": 0.001}, "0.001 m of snow; at least 0.01 m are needed"),
         ({"crs": "EPSG:4326"}, "its coordinates are in degrees"),
-        ({"raster": scaled(8.0)}, "are none of the Earth"),
+        ({"raster": scaled(8.0)}, "do not occur on Earth"),
         ({"raster": scaled(horizontal=1 / 0.6096)}, "are 1 m in feet"),
         ({"raster": scaled(horizontal=200.0)}, "cells of 400 m"),
         ({"raster": scaled(1 / 0.3048 / 2, degrees=60.0)}, "is steeper than 71 degrees"),
@@ -208,7 +208,7 @@ def test_the_mass_balance_closes(tmp_path):
     assert slide(tmp_path, options=options) == 0
     kg = json.loads((tmp_path / "out/slide.json").read_text())
     came = kg["released_kg"] + kg["entrained_kg"]
-    went = kg["detrained_kg"] + kg["left_terrain_kg"] + kg["on_terrain_kg"]
+    went = kg["left_terrain_kg"] + kg["on_terrain_kg"]
     assert kg["entrained_kg"] > 0
     assert kg["left_terrain_kg"] > 0
     assert went == pytest.approx(came, rel=1e-12)

@@ -12,7 +12,7 @@ import pytest
 from slide_files import box, write_polygons, write_project
 
 from snowshed.cli.main import main
-from snowshed.run import slides
+from snowshed.methods.slide.run import SlideRun
 
 pytest.importorskip("pyogrio")
 pytest.importorskip("shapely")
@@ -33,7 +33,7 @@ def interrupted(project, out, number, *options):
     run.send_signal(number)
     said = run.communicate()[1]
     assert run.returncode == 130
-    (hint,) = re.findall(r"interrupted; go on with: (.*)", said)
+    (hint,) = re.findall(r"interrupted; resume with: (.*)", said)
     program, *again = shlex.split(hint)
     assert (program, again[0], again[-1]) == ("snowshed", "slide", "--resume")
     assert {*map(str, options), str(project), str(out)} <= {*again}
@@ -61,15 +61,15 @@ def test_an_interrupt_while_pictures_are_drawn_keeps_the_next_slide_from_running
     tmp_path, capsys, monkeypatch
 ):
     project = write_project(tmp_path / "project", "tEnd = 0.05\n", releases=("a", "b"))
-    draw = slides._draw
+    draw = SlideRun.draw
 
     def interrupt(*given):
         signal.raise_signal(signal.SIGTERM)
         draw(*given)
 
-    monkeypatch.setattr(slides, "_draw", interrupt)
+    monkeypatch.setattr(SlideRun, "draw", interrupt)
     assert slide(project, tmp_path / "out", "-q") == 130
-    assert "interrupted; go on with: " in capsys.readouterr().err
+    assert "interrupted; resume with: " in capsys.readouterr().err
     assert not list((tmp_path / "out").glob("b_*"))
     assert (tmp_path / "out/slide.html").is_file()
 
@@ -93,7 +93,7 @@ def test_settings_that_the_scene_refuses_are_located_in_the_ini(tmp_path, capsys
 @pytest.fixture
 def undrawn(monkeypatch):
     """Leave out the pictures, which take most of the time."""
-    monkeypatch.setattr(slides, "_draw", lambda *_: None)
+    monkeypatch.setattr(SlideRun, "draw", lambda *_: None)
 
 
 @pytest.mark.usefixtures("undrawn")
@@ -104,11 +104,10 @@ def test_outputs_that_cannot_be_written_are_no_fault_of_the_input(tmp_path, caps
         raise InputError("no rasterio")
 
     project = write_project(tmp_path / "project", "tEnd = 0.05\n")
-    monkeypatch.setattr("snowshed.run.avaframe_outputs.write_avaframe_outputs", fail)
+    monkeypatch.setattr("snowshed.results.avaframe.write_avaframe_outputs", fail)
     assert slide(project, tmp_path / "out", "-q") == 3
-    assert (
-        "the slide has ended, its outputs are not written: no rasterio" in capsys.readouterr().err
-    )
+    said = capsys.readouterr().err
+    assert "the slide has ended, but its outputs could not be written: no rasterio" in said
 
 
 def test_links_are_refused_before_anything_is_written(tmp_path, capsys):

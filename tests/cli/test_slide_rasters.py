@@ -9,7 +9,7 @@ from slide_files import box, plane, write_polygons
 
 from snowshed import Scene
 from snowshed.cli.main import main
-from snowshed.io.raster import Raster, write_ascii_grid
+from snowshed.io.raster.raster import Raster, write_ascii_grid
 
 pytest.importorskip("pyogrio")
 rasterio = pytest.importorskip("rasterio")
@@ -120,7 +120,7 @@ def test_a_cliff_beside_the_release_is_ground_and_one_below_may_be_believed(tmp_
 @pytest.mark.parametrize("options", [("--thickness", "50"), ()])
 def test_fifty_metres_of_snow_are_not_believed(tmp_path, capsys, options):
     write_geotiff(tmp_path / "dem.tif", STEEP, **FORM)
-    message = "50 m of snow; at most 10 m are believed; is it in centimetres?"
+    message = "50 m of snow; at most 10 m are plausible; is it in centimetres?"
     refused(tmp_path, capsys, message, *options, thickness=0.5 if options else 50)
     assert slide(tmp_path, "-q", "--max-thickness", "12", thickness=11) == 0
 

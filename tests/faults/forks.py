@@ -19,7 +19,7 @@ LONGEST_S = 300
 
 
 class Forks:
-    """A process that runs command lines of one program in forks of itself."""
+    """A process that runs command lines in forks of itself."""
 
     def __init__(self, folder: Path, preloaded: Path) -> None:
         self._folder = folder
@@ -49,21 +49,25 @@ class Forks:
 
 
 def serve() -> None:
-    """Fork for each request; import in advance what the first of them needed."""
-    for number, line in enumerate(sys.stdin):
+    """Fork for each request; import afterwards what it needed, for those that follow."""
+    sys.path.append(str(Path.cwd()))
+    for line in sys.stdin:
         request = json.loads(line)
+        modules = Path(request["modules"])
+        modules.unlink(missing_ok=True)
         child = os.fork()
         if child == 0:
-            answer(request, learn=number == 0)
+            answer(request)
         _, status = os.waitpid(child, 0)
-        if number == 0:
-            for name in json.loads(Path(request["modules"]).read_text()):
-                with suppress(ImportError):
-                    importlib.import_module(name)
+        if modules.is_file():  # the fork was not killed
+            for name in json.loads(modules.read_text()):
+                if name not in sys.modules:
+                    with suppress(ImportError):
+                        importlib.import_module(name)
         print(os.waitstatus_to_exitcode(status), flush=True)
 
 
-def answer(request: dict, *, learn: bool) -> None:
+def answer(request: dict) -> None:
     """Run a request and end as its program would."""
     signal.alarm(LONGEST_S)
     os.environ.update(request["environment"])
@@ -80,8 +84,7 @@ def answer(request: dict, *, learn: bool) -> None:
         else:
             runpy.run_path(sys.argv[0], run_name="__main__")
     finally:
-        if learn:
-            Path(request["modules"]).write_text(json.dumps([*sys.modules]))
+        Path(request["modules"]).write_text(json.dumps([*sys.modules]))
     sys.exit(0)
 
 

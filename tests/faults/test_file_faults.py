@@ -15,8 +15,9 @@ import pytest
 from conftest import tiny_mps, tiny_scene
 from faults.forks import Forks
 
+from snowshed.analysis.tomography.example import example_grains
 from snowshed.io.atomic import LEFTOVER
-from snowshed.scene.builders import example_grains, example_slide
+from snowshed.scene.builders import example_slide
 from snowshed.study.table import read_table
 
 SCRIPTS = Path(sysconfig.get_path("scripts"))
@@ -29,7 +30,7 @@ REGRESS = (
     *("--kind", "linear", "--target", "ratio", "--rounds", "1", "--folds", "2"),
     *("--inner-folds", "2", "--jobs", "1", "-q"),
 )
-VERIFY = (sys.executable, "-m", "validation", "--case", "spin", "-q")
+VALIDATION = (sys.executable, "-m", "validation", "--case", "spin", "-q")
 CLEARANCE = (
     *("--slope-length", "0.4", "--tilt", "60", "--heights", "0.3", "--draws", "1"),
     *("--jobs", "1", "-q"),
@@ -45,12 +46,14 @@ PROGRAMS = {
     "grains": ([SNOWSHED, "run", "{inputs}/grains.json", "-q"], ["--resume"]),
     "mps": ([SNOWSHED, "run", "{inputs}/mps.json", "-q"], ["--resume"]),
     "regress": ([SNOWSHED, "regress", "{inputs}/rows.csv", *REGRESS], []),
-    "verify": ([*VERIFY], ["--resume"]),
+    "validation": ([*VALIDATION], ["--resume"]),
     "clearance": ([SNOWSHED, "clearance", "{inputs}/winter.csv", *CLEARANCE], []),
 }
 KINDS = ("kill", "full")
 #: Operations tried in the tests that run always, where they are more than two.
 SAMPLES = {"snowshed-run": 16}
+#: Programs of which some operations are tried in every test run; the others share their writers.
+SAMPLED = ("snowshed-run", "run", "season", "study", "slide", "clearance")
 #: Files that hold wall times.
 DIFFERENT = (
     *("run.json", "events.csv", "store.sqlite", "store.sqlite-shm", "store.sqlite-wal"),
@@ -190,14 +193,25 @@ def check(program, sample=None):
         shutil.rmtree(left)
 
 
-@pytest.mark.parametrize("name", PROGRAMS)
-def test_a_command_goes_on_after_some_operations(name, inputs, faults, tmp_path):
-    check(Program(name, inputs, faults, tmp_path, in_a_process), SAMPLES.get(name, 2))
+@pytest.fixture(scope="module")
+def forks(faults, tmp_path_factory):
+    """One process for the commands of all tests: what one of them imports, the others have."""
+    with Forks(tmp_path_factory.mktemp("forks"), faults) as process:
+        yield process
+
+
+def started(name, forks):
+    """Return what starts a program: one that is compiled has a process of its own."""
+    return in_a_process if name == "snowshed-run" else forks.run
+
+
+@pytest.mark.parametrize("name", SAMPLED)
+def test_a_command_goes_on_after_some_operations(name, inputs, faults, forks, tmp_path):
+    program = Program(name, inputs, faults, tmp_path, started(name, forks))
+    check(program, SAMPLES.get(name, 2))
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", PROGRAMS)
-def test_a_command_goes_on_after_every_operation(name, inputs, faults, tmp_path):
-    with Forks(tmp_path, faults) as forks:
-        compiled = name == "snowshed-run"
-        check(Program(name, inputs, faults, tmp_path, in_a_process if compiled else forks.run))
+def test_a_command_goes_on_after_every_operation(name, inputs, faults, forks, tmp_path):
+    check(Program(name, inputs, faults, tmp_path, started(name, forks)))

@@ -1,4 +1,4 @@
-"""Films, read as docs/view.md describes them: against files that were written by hand."""
+"""Films, read as docs/reference/film.md describes them: against files that were written by hand."""
 
 import json
 import struct

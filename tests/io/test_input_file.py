@@ -8,7 +8,7 @@ import pytest
 from snowshed import InputError
 from snowshed.analysis.regression import load_model
 from snowshed.io.film import Film
-from snowshed.io.vtp import read_particles
+from snowshed.io.vtk.vtp import read_particles
 from snowshed.study import Study
 
 ENDLESS = "/dev/zero"

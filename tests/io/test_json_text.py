@@ -55,6 +55,6 @@ def test_texts_with_a_repeated_key_are_refused():
     with pytest.raises(InputError, match=r"run\.json: damaged: /a/b: this key appears twice"):
         parse_object('{"a": {"b": 1, "b": 1}}', "run.json")
     with pytest.raises(InputError, match=r"/panel: this key appears twice, in line 2 again"):
-        _core.parse_scene('{"snowshed": 2, "panel": {},\n"panel": {}}')
+        _core.ParsedScene.parse('{"snowshed": 2, "panel": {},\n"panel": {}}')
     with pytest.raises(click.BadParameter, match=r"/tilt: this key appears twice"):
         json_object('{"tilt": 1, "tilt": 2}')

@@ -11,7 +11,7 @@ from snowshed import InputError, ResolvedScene, Scene, _core
 from snowshed.io.csv_table import read_csv
 from snowshed.io.film import Film
 from snowshed.io.json_file import read_object
-from snowshed.io.vtp import read_particles
+from snowshed.io.vtk.vtp import read_particles
 
 READERS = {
     "scene": Scene.load,

@@ -16,9 +16,9 @@ from slide_files import plane, write_polygons
 from voxel_files import VOXELS, save_metaimage, save_slices
 
 from snowshed import Scene, _core, run_events
-from snowshed.io.raster import write_ascii_grid
-from snowshed.methods.peak_maps import PeakMaps
-from snowshed.run.grains import run_grains
+from snowshed.io.raster.raster import write_ascii_grid
+from snowshed.methods.slide.maps import PeakMaps
+from snowshed.running.run import run
 from snowshed.scene.builders.grains import grains_scene
 from snowshed.scene.loading import LoadingStage
 
@@ -174,7 +174,7 @@ def store(folder: Path) -> Path:
 
 
 def packed(folder: Path) -> Path:
-    from snowshed.run.event_particles import EventParticles
+    from snowshed.results.event_particles import EventParticles
 
     ones = np.ones(5, dtype=np.float32)
     place = np.arange(15, dtype=np.float32).reshape(5, 3)
@@ -281,7 +281,7 @@ def sample(folder: Path) -> Path:
 
 def curve(folder: Path) -> Path:
     loading = [LoadingStage(kind="compress", speed=0.1, strain=0.001)]
-    run_grains(grains_scene(write_labels(folder), 1e-4, loading), folder / "out", pictures=False)
+    run(grains_scene(write_labels(folder), 1e-4, loading), folder / "out", pictures=False)
     return folder / "out" / "curve.csv"
 
 

@@ -17,7 +17,7 @@ import good_files
 from mutate import mutated
 from slide_files import box, plane, write_project
 
-from snowshed.io.raster import write_ascii_grid
+from snowshed.io.raster.raster import write_ascii_grid
 
 ENDINGS = (".gpkg", ".shp", ".geojson")
 SECRET = b"a secret that stands outside"

@@ -21,8 +21,8 @@ from hostile_maps import MAKERS, SECRET, Chance, Try  # noqa: E402
 from slide_files import write_project  # noqa: E402
 
 from snowshed import InputError, SimulationError, _core  # noqa: E402
-from snowshed.io.map_areas import read_areas  # noqa: E402
-from snowshed.io.raster import read_raster  # noqa: E402
+from snowshed.io.raster.areas import read_areas  # noqa: E402
+from snowshed.io.raster.raster import read_raster  # noqa: E402
 from snowshed.scene.builders.avaframe import avaframe_simulations  # noqa: E402
 from snowshed.scene.builders.avaframe_files import copy_inputs  # noqa: E402
 

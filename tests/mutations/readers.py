@@ -33,15 +33,15 @@ from snowshed import InputError, Results, Scene, SimulationError, Snow, _core, r
 from snowshed.cli.scene_options import json_object
 from snowshed.io.csv_table import read_csv
 from snowshed.io.film import Film
-from snowshed.io.map_areas import read_areas
-from snowshed.io.pvd import read_series
-from snowshed.io.raster import read_raster
+from snowshed.io.raster.areas import read_areas
+from snowshed.io.raster.raster import read_raster
 from snowshed.io.voxels.open_voxels import open_voxels
-from snowshed.io.vtp import read_particles
+from snowshed.io.vtk.pvd import read_series
+from snowshed.io.vtk.vtp import read_particles
 from snowshed.methods.grains.curve import LoadingCurve
-from snowshed.methods.grains.image.sample_folder import find_sample
-from snowshed.methods.peak_maps import PeakMaps
-from snowshed.run.method_runs import runs_of
+from snowshed.methods.grains.run import GrainsRun
+from snowshed.methods.grains.sample_folder import find_sample
+from snowshed.methods.slide.maps import PeakMaps
 
 REFUSED = (InputError, SimulationError, OSError)
 
@@ -80,7 +80,7 @@ def _as_labels(file: Path) -> None:
 
 def _as_scene(file: Path) -> None:
     Scene.load(file)
-    simulation = _core.Simulation(_core.load_scene(str(file)), str(file.parent))
+    simulation = _core.Simulation(_core.ParsedScene.load(str(file)), str(file.parent))
     if simulation.scene and simulation.event_count:
         _core.update_version(file.read_text(errors="replace"))
 
@@ -127,7 +127,7 @@ def _as_lua(file: Path) -> None:
 
 
 def _as_season(file: Path) -> None:
-    from snowshed.run.season.weather import read_season
+    from snowshed.season.weather import read_season
 
     read_season(file)
 
@@ -139,7 +139,7 @@ def _as_measurements(file: Path) -> None:
 
 
 def _as_stack_table(file: Path) -> None:
-    from snowshed.analysis.stack_table import StackTable
+    from snowshed.study.stack_table import StackTable
 
     StackTable.read_file(file)
 
@@ -159,7 +159,7 @@ def _as_model(file: Path) -> Any:
 
 
 def _as_packed(file: Path) -> Any:
-    from snowshed.run.event_particles import EventParticles
+    from snowshed.results.event_particles import EventParticles
 
     return _digest([repr(vars(EventParticles.unpacked(file.read_bytes())))])
 
@@ -222,7 +222,7 @@ def _as_film_of_run(file: Path) -> str:
 
 
 def _as_scene_of_run(file: Path) -> str:
-    found = Results(file.parent).scene.data
+    found = Results(file.parent).scene.copied_data()
     found["numerics"].pop("threads")  # changes nothing
     return json.dumps(found)
 
@@ -252,7 +252,7 @@ def _as_curve(file: Path) -> str:
 
 
 def _as_summary(file: Path) -> str:
-    (row,) = runs_of({"method": "grains"}).rows(file.parent)
+    (row,) = GrainsRun.rows(file.parent)
     return json.dumps(row)
 
 

@@ -9,7 +9,7 @@ from plot.browser import faults_of
 TEMPLATES = sorted(
     path
     for path in (*ROOT.glob("python/snowshed/**/*.j2"), *ROOT.glob("validation/**/*.j2"),
-                 *ROOT.glob("reproduction/**/*.j2"))
+                 *ROOT.glob("reproductions/**/*.j2"))
     if ".venv" not in path.parts
 )  # fmt: skip
 SHARED = ROOT / "python/snowshed/plot/templates/page.html.j2"

@@ -5,7 +5,7 @@ from pages import Page
 from plot.browser import open_page
 
 from snowshed import Results, Scene, run_events
-from snowshed.run.view import write_view
+from snowshed.results.view import write_view
 
 LARGEST_PAGE = 20e6  # bytes, of 30 000 particles in 300 frames
 READY = "document.body.dataset.ready === 'true'"

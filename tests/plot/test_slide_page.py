@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from matplotlib.image import imread
 
-from snowshed.io.raster import Raster
-from snowshed.methods.slide_frames import Frame
-from snowshed.methods.slide_maps import SlideMaps
+from snowshed.io.raster.raster import Raster
+from snowshed.methods.slide.frames import Frame
+from snowshed.methods.slide.maps import SlideMaps
 from snowshed.plot.slide_page import _film, _moving
 from snowshed.plot.terrain_map import _cropped, extent, focus
 

@@ -6,20 +6,31 @@ import pytest
 from matplotlib.image import imread
 from piles import triangle
 
-from snowshed import Body, Ground, Scene, Shape, StackMeasure, measure_stack, read_events
+from snowshed import (
+    Body,
+    Ground,
+    ResolvedScene,
+    Scene,
+    Shape,
+    StackMeasure,
+    measure_stack,
+    read_events,
+)
 from snowshed.plot.caption import scene_caption
 from snowshed.plot.figure_style import save
 from snowshed.plot.stack_figures import growth_figure, stack_figure
+
+SCENE = Scene.preset("lab-50").set("dimension", 2).resolve().data
 
 
 class Snow:
     """What the pictures ask of a simulation."""
 
-    scene = Scene.preset("lab-50").set("dimension", 2).resolve().json
     event = 3
     damping_rate_per_s = 188.2
 
     def __init__(self, positions, tilt=0.0, panel=True):
+        self._core = self
         self._positions = positions
         self.ground_tilt_deg = tilt
         self._panel = panel
@@ -54,7 +65,7 @@ def test_stack_picture_shows_panel_and_stack_to_scale(tmp_path, panel, tilt):
     pile = triangle(1.0, 0.3, count=2000) + [1.5, 0, 0]
     ones = np.ones(len(pile))
     stack = measure_stack(pile, ones, ones, dimension=2, dx=0.05)
-    figure = stack_figure(Snow(pile, tilt, panel), stack)
+    figure = stack_figure(Snow(pile, tilt, panel), stack, SCENE)
     save(figure, tmp_path / "stack.png")
     overview, enlarged = figure.axes
     assert overview.get_aspect() == enlarged.get_aspect() == 1
@@ -72,12 +83,12 @@ def test_stack_picture_shows_panel_and_stack_to_scale(tmp_path, panel, tilt):
 
 
 def test_pictures_without_snow(tmp_path):
-    save(stack_figure(Snow(np.zeros((0, 3))), StackMeasure()), tmp_path / "stack.png")
+    save(stack_figure(Snow(np.zeros((0, 3))), StackMeasure(), SCENE), tmp_path / "stack.png")
     assert (tmp_path / "stack.png").exists()
 
 
 def test_growth_shows_stack_and_body(finished):
-    figure = growth_figure(read_events(finished), (finished / "scene.json").read_text())
+    figure = growth_figure(read_events(finished), ResolvedScene.load(finished / "scene.json").data)
     assert [axes.get_title(loc="left").split(",")[0] for axes in figure.axes] == [
         "height",
         "length",
@@ -96,7 +107,8 @@ def test_the_scene_beside_the_pictures_is_complete(finished):
 def test_what_rolled_far_away_does_not_hide_the_stack():
     pile = np.vstack([triangle(1.0, 0.3, count=2000), triangle(1.0, 0.1, count=200) + [50, 0, 0]])
     ones = np.ones(len(pile))
-    figure = stack_figure(Snow(pile), measure_stack(pile, ones, ones, dimension=2, dx=0.05))
+    stack = measure_stack(pile, ones, ones, dimension=2, dx=0.05)
+    figure = stack_figure(Snow(pile), stack, SCENE)
     low, high = figure.axes[1].get_xlim()
     assert high - low < 3
     assert "97 % of the snow lies within" in figure.get_suptitle()

@@ -13,13 +13,13 @@ from plot.browser import check_page, open_page
 from plot.firefox import open_in_firefox
 
 from snowshed import InputError, Results
+from snowshed.base.messages import HARMFUL
 from snowshed.io.film import Film
-from snowshed.io.printable import HARMFUL
 from snowshed.plot.film_page import VIEWER, MeasureLine, ViewContent, write_view_page
 from snowshed.plot.film_summary import summarise_film
 from snowshed.plot.solids import Box, scene_solids
-from snowshed.run.video import write_video
-from snowshed.run.view import view_content, write_view
+from snowshed.results.video import write_video
+from snowshed.results.view import view_content, write_view
 
 READY = "document.body.dataset.ready === 'true'"
 POST = {"type": "cylinder", "from": [0.9, 0, 0], "to": [0.9, 0, 0.5], "radius": 0.05}

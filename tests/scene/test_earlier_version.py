@@ -44,12 +44,12 @@ def test_the_command_line_says_so_in_a_line(old_file, capsys):
 @pytest.mark.filterwarnings("error")
 def test_slip_of_version_2_is_slip_and_its_new_meaning_is_said(tmp_path):
     scene = tiny_scene().set("panel.condition", "slip")
-    with pytest.warns(FutureWarning, match='is "separate" now'):
+    with pytest.warns(FutureWarning, match='use "separate" for the behaviour of version 1'):
         ready = scene.resolve()
     assert ready.data["panel"]["condition"] == "slip"
     ready.save(tmp_path / "new.json")
     assert ResolvedScene.load(tmp_path / "new.json") == ResolvedScene(ready.json, str(tmp_path))
-    with pytest.warns(FutureWarning, match='is "separate" now'):
+    with pytest.warns(FutureWarning, match='use "separate" for the behaviour of version 1'):
         tiny_scene().append(
             "obstacles", Obstacle(shape=Shape.sphere((9, 0), 1), condition="slip")
         ).resolve()

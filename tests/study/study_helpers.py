@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from snowshed import Scene
-from snowshed.run.results import WORDS
+from snowshed.results.folder import WORDS
 from snowshed.study import Study, session
 from snowshed.study.database import FILE, MEASURED_TYPES
 from snowshed.study.outcome import Outcome

@@ -120,4 +120,4 @@ def test_files_count_by_their_content_not_by_their_path(tmp_path):
 
 def test_the_scene_of_a_run_can_be_run():
     run = run_of(tiny_scene())
-    assert json.loads(_core.parse_scene(run.scene)) == json.loads(run.scene)
+    assert json.loads(_core.ParsedScene.parse(run.scene).json) == json.loads(run.scene)

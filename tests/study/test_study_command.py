@@ -9,9 +9,9 @@ import study_helpers
 from study_helpers import outcome, tiny_study
 
 from snowshed import Scene
-from snowshed.cli.display.study import announcement
+from snowshed.base.progress import Progress
+from snowshed.cli.compute_study import announcement
 from snowshed.cli.main import main
-from snowshed.run.progress import Progress
 from snowshed.study.store import Store
 
 scripted = study_helpers.scripted  # a fixture
@@ -172,7 +172,7 @@ def test_what_is_said_while_a_study_runs():
 
     assert said(progress()) == "12 runs to compute, 2 at once; expected time: about 95 s"
     assert said(progress(done=10, failed=1)) == (
-        "1 run to compute (11 of 12 are there already), 2 at once; expected time: about 95 s"
+        "1 run to compute (11 of 12 are done already), 2 at once; expected time: about 95 s"
     )
     assert progress(done=3, running=2).description == "3/12 runs, 2 running"
     assert progress(done=3, failed=1, elsewhere=4).description == (

@@ -6,7 +6,7 @@ import pytest
 from grain_files import VOXEL, write_labels
 
 from snowshed import GrainsSettings, LoadingStage
-from snowshed.run.grains import run_grains
+from snowshed.running.run import run
 from snowshed.scene.builders import grains_scene
 from snowshed.study import Study, read_table
 
@@ -23,10 +23,10 @@ def test_the_table_tells_what_a_test_alone_tells(tmp_path):
     study.compute(tmp_path / "runs", jobs=1, threads=1)
     table = read_table(tmp_path / "runs")
     assert table["ended"].tolist() == ["rest", "rest"]
-    run_grains(json.loads(study.runs()[-1].scene), tmp_path / "out", pictures=False)
+    run(json.loads(study.runs()[-1].scene), tmp_path / "out", pictures=False)
     alone = json.loads((tmp_path / "out/grains.json").read_text())
     row = table.iloc[-1]
-    assert row["final_particles"] == alone["grains"]
+    assert row["final_particles"] == alone["final_particles"]
     for name in ("spheres", "bonds", "tangent_modulus_pa", "strength_pa", "axial_strain"):
         assert row[name] == pytest.approx(alone[name], rel=1e-15)
     soft, stiff = table["tangent_modulus_pa"]

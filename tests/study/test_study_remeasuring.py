@@ -9,8 +9,8 @@ from study_helpers import ALONE, outcome, tiny_scene, tiny_study
 
 from snowshed import InputError
 from snowshed.cli.main import main
-from snowshed.run.event_particles import EventParticles
-from snowshed.run.results import WORDS
+from snowshed.results.event_particles import EventParticles
+from snowshed.results.folder import WORDS
 from snowshed.snow.stack.quantities import MEASURES, QUANTITIES
 from snowshed.study import Study, read_table, remeasure, resume
 from snowshed.study.database import FILE

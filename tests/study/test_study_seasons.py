@@ -8,7 +8,7 @@ from study_helpers import ALONE, tiny_scene
 
 from snowshed import InputError, read_events
 from snowshed.cli.main import main
-from snowshed.run.season import SeasonSettings, Weather, run_season
+from snowshed.season import SeasonSettings, Weather, run_season
 from snowshed.study import SeasonPart, Study, read_table, resume
 
 FIRST = datetime(2024, 12, 1)

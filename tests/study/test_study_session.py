@@ -10,7 +10,7 @@ import study_helpers
 from study_helpers import outcome, tiny_study
 
 from snowshed import InputError, SnowshedNote, _core
-from snowshed.io.notes import recorded
+from snowshed.base.notes import recorded
 from snowshed.study import Study, StudyError, StudyInterrupted, cost_estimate, resume, session
 from snowshed.study.outcome import Outcome
 from snowshed.study.owner import ownership

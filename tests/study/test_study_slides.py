@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from snowshed import InputError
-from snowshed.analysis.hazard_maps import hazard_maps, wilson_interval
-from snowshed.io.raster import read_raster
-from snowshed.methods.peak_maps import PeakMaps
-from snowshed.run.slides import run_slide
+from snowshed.analysis.hazard.maps import hazard_maps, wilson_interval
+from snowshed.io.raster.raster import read_raster
+from snowshed.methods.slide.maps import PeakMaps
+from snowshed.running.run import run
 from snowshed.scene.builders import example_slide
 from snowshed.study import Study, read_table
 from snowshed.study.store import Store
@@ -37,7 +37,7 @@ def test_the_table_tells_what_a_slide_alone_tells(study, computed, tmp_path):
     assert not {"height_m", "dx", "trimming"} & set(table)  # of the other method
     assert (table["time_step"] == 0.01).all() and (table["steps"] == 150).all()
     last = json.loads(study.runs()[-1].scene)
-    run_slide(last, tmp_path / "out", pictures=False)
+    run(last, tmp_path / "out", pictures=False)
     alone = json.loads((tmp_path / "out/slide.json").read_text())
     row = table.iloc[-1]
     for name in ("run_out_m", "peak_speed_m_s", "released_kg", "bonds_broken", "reached_m2"):
@@ -51,10 +51,10 @@ def test_the_cost_of_a_study_of_slides_is_known_before(study):
 
 def test_probabilities_and_percentiles_are_those_of_the_single_slides(study, computed, tmp_path):
     single = []
-    for run in study.runs():
-        run_slide(json.loads(run.scene), tmp_path / run.hash, pictures=False)
+    for one in study.runs():
+        run(json.loads(one.scene), tmp_path / one.hash, pictures=False)
         names = ("pft", "pfv", "ppr")
-        single.append([read_raster(tmp_path / run.hash / f"peaks/{n}.asc").heights for n in names])
+        single.append([read_raster(tmp_path / one.hash / f"peaks/{n}.asc").heights for n in names])
     thickness, speed, pressure = np.moveaxis(np.array(single), 1, 0)
     maps = hazard_maps(computed, reached=0.1, pressures=[1.0])
     reached, hit = maps.exceedances
@@ -69,7 +69,7 @@ def test_probabilities_and_percentiles_are_those_of_the_single_slides(study, com
 
 def test_bands_of_the_terrain_join_to_the_same_maps(computed, monkeypatch):
     whole = hazard_maps(computed)
-    monkeypatch.setattr("snowshed.analysis.hazard_maps.BAND_BYTES", 40_000)
+    monkeypatch.setattr("snowshed.analysis.hazard.maps.BAND_BYTES", 40_000)
     parts = hazard_maps(computed)
     for one, other in zip(whole.exceedances, parts.exceedances):
         assert (one.probability == other.probability).all()

@@ -12,7 +12,7 @@ from paths import ROOT
 from study_helpers import outcome, tiny_scene, tiny_study
 
 from snowshed import InputError, Shape
-from snowshed.run.results import EVENT_COLUMNS
+from snowshed.results.folder import EVENT_COLUMNS
 from snowshed.scene.components import Obstacle
 from snowshed.study import Factor, Study, export, read_table, to_dataset
 from snowshed.study.database import FILE, MEASURED_TYPES, TIMING
@@ -182,7 +182,7 @@ def test_the_recipe_of_the_guide_works_with_files(tmp_path):
     """Of a file xarray reads texts late, which it could not sort into dimensions."""
     study = Study.product(tiny_scene(), {"panel.tilt": [40, 50], "panel.height": [1.0, 2.0]})
     export(store_with(tmp_path / "store", study, *["done"] * 4), tmp_path / "t.nc")
-    guide = (ROOT / "docs" / "studies.md").read_text(encoding="utf-8")
+    guide = (ROOT / "docs" / "reference" / "study-table.md").read_text(encoding="utf-8")
     (recipe,) = re.findall(r"^`(xarray\..*t\.nc.*)` makes", guide, re.M)
     script = recipe.replace('"t.nc"', repr(str(tmp_path / "t.nc")))
     grid = eval(script, {"xarray": xarray})

@@ -300,5 +300,5 @@ def test_every_fault_has_a_result_and_survivors_a_reason():
 
 
 def test_the_page_shows_the_results():
-    page = (DOCS / "verification.md").read_text(encoding="utf-8")
+    page = (DOCS / "trust" / "injected-faults.md").read_text(encoding="utf-8")
     assert with_table(page, table(read_faults(), Results.read().caught_by)) == page

@@ -5,10 +5,10 @@ import signal
 import sys
 import time
 
-from validation.case import Case, Outcome, Quantity
-from validation.command import validate
+from validation.framework.case import Case, Outcome, Quantity
+from validation.framework.command import validate
 
-from snowshed.analysis.verification.measurements import Measured
+from snowshed.analysis.accuracy.measurements import Measured
 from snowshed.cli.main import main
 
 MEGABYTES = 150

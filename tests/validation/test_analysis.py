@@ -6,14 +6,14 @@ from math import inf, isnan, nan
 import numpy as np
 import pytest
 from made_up import made_up_case
-from validation.bars import compare
-from validation.case import Quantity
-from validation.cheapest import by_problem, cheapest, pareto_front
-from validation.convergence import convergences, observed_order, pairwise_orders
-from validation.schemes import varying
+from validation.framework.bars import compare
+from validation.framework.case import Quantity
+from validation.framework.cheapest import by_problem, cheapest, pareto_front
+from validation.framework.convergence import convergences, observed_order, pairwise_orders
+from validation.framework.schemes import varying
 
-from snowshed.analysis.verification.measurements import Measured, Measurement, to_table
-from snowshed.analysis.verification.solutions import (
+from snowshed.analysis.accuracy.measurements import Measured, Measurement, to_table
+from snowshed.analysis.accuracy.solutions import (
     Solution,
     assured_errors,
     quickest,

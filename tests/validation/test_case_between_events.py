@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from validation.cases import between_events
-from validation.cases.between_events import CASE
-from validation.lab_stack import (
+from validation.laboratory import case_between_events as between_events
+from validation.laboratory.case_between_events import CASE
+from validation.laboratory.lab_stack import (
     COMPARED,
     Conversion,
     lab_scene,

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from validation import granular_column
-from validation.cases import collapse
-from validation.cases.collapse import CASE
+from validation.collapse import case as collapse
+from validation.collapse import granular_column
+from validation.collapse.case import CASE
 
 from snowshed import InputError
 from snowshed._core import CamClay

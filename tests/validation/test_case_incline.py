@@ -4,8 +4,8 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from validation.cases import incline
-from validation.cases.incline import ANGLE, CASES, DEFAULTS, SLAB, Incline
+from validation.incline import case as incline
+from validation.incline.case import ANGLE, CASES, DEFAULTS, SLAB, Incline
 
 COARSE = {**DEFAULTS, "dx": 0.025, "length": 0.5, "speed": 0.0}
 

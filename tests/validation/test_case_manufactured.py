@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from validation.cases import manufactured
-from validation.cases.manufactured import APIC, CASES, FLIP, SCHEME, VORTEX, WAVES
-from validation.forced_body import ForcedBody
-from validation.manufactured_motions import (
+from validation.manufactured import case as manufactured
+from validation.manufactured.case import APIC, CASES, FLIP, SCHEME, VORTEX, WAVES
+from validation.manufactured.forced_body import ForcedBody
+from validation.manufactured.motions import (
     DENSITY,
     WAVE_SPEED,
     YOUNGS_MODULUS,

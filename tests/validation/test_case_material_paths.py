@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 from scipy.optimize import brentq
-from validation.cases import material_paths
-from validation.cases.material_paths import CASES, Path
-from validation.rate_equations import RateEquations, evenly
+from validation.material_paths import case as material_paths
+from validation.material_paths.case import CASES, Path
+from validation.material_paths.rate_equations import RateEquations, evenly
 
 from snowshed._core import CamClay
 

@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 import pytest
-from validation.cases import panel_edge
-from validation.cases.panel_edge import CASE, SLAB, Moment
-from validation.rigid_slab import RigidSlab
+from validation.panel_edge import case as panel_edge
+from validation.panel_edge.case import CASE, SLAB, Moment
+from validation.panel_edge.rigid_slab import RigidSlab
 
 
 def test_a_tipping_slab_without_friction_keeps_its_energy():

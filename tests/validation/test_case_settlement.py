@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 from scipy.integrate import quad, solve_ivp
-from validation.cases import settlement
-from validation.cases.settlement import CASES, ELASTIC, ElasticColumn, YieldingColumn
+from validation.settlement import case as settlement
+from validation.settlement.case import CASES, ELASTIC, ElasticColumn, YieldingColumn
 
 WEIGHT = settlement.DENSITY * settlement.GRAVITY
 COLUMNS = {"elastic": ElasticColumn, "yielding": YieldingColumn}

@@ -2,8 +2,11 @@
 
 import numpy as np
 import pytest
-from validation.cases import dam_break, parabolic_cap, slide_block, slide_rotation
-from validation.slides import Plane, Site, maps_of, rectangle, slide_drive
+from validation.slide import case_block as slide_block
+from validation.slide import case_dam_break as dam_break
+from validation.slide import case_parabolic_cap as parabolic_cap
+from validation.slide import case_rotation as slide_rotation
+from validation.slide.site import Plane, Site, maps_of, rectangle, slide_drive
 
 
 def test_the_dam_keeps_its_snow():

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from validation.cases import spin
-from validation.cases.spin import APIC, CASE, CYLINDER, DISC, FLIP, RADIUS, RATE, Spinning
+from validation.elastic import case_spin as spin
+from validation.elastic.case_spin import APIC, CASE, CYLINDER, DISC, FLIP, RADIUS, RATE, Spinning
 
 COARSE = {**DISC, "dx": 0.25, "turns": 0.5}
 COARSE_CYLINDER = {**CYLINDER, "dx": 0.25, "turns": 0.5}

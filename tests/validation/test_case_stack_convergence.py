@@ -4,10 +4,10 @@ import json
 
 import numpy as np
 import pytest
-from validation import lab_stack
-from validation.cases import stack_convergence
-from validation.cases.stack_convergence import CASE
-from validation.lab_stack import lab_scene, record, recorded, run_lab
+from validation.laboratory import case_stack_convergence as stack_convergence
+from validation.laboratory import lab_stack
+from validation.laboratory.case_stack_convergence import CASE
+from validation.laboratory.lab_stack import lab_scene, record, recorded, run_lab
 
 from snowshed import Scene
 

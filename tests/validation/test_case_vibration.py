@@ -5,12 +5,12 @@ import math
 import numpy as np
 import pytest
 from scipy.integrate import trapezoid
-from validation.cantilever import Cantilever
-from validation.cases import vibration
-from validation.cases.vibration import BAR, BAR_DEFAULTS, CANTILEVER_DEFAULTS, CASES
-from validation.elastic_bodies import TRANSFERS
-from validation.smoothing import Smoothing
-from validation.swing import Swing
+from validation.elastic import case_vibration as vibration
+from validation.elastic.bodies import TRANSFERS
+from validation.elastic.cantilever import Cantilever
+from validation.elastic.case_vibration import BAR, BAR_DEFAULTS, CANTILEVER_DEFAULTS, CASES
+from validation.elastic.smoothing import Smoothing
+from validation.elastic.swing import Swing
 
 BEAM = Cantilever(1.0, 0.2, 1e6, 0.3, 210.0)
 APIC = {"transfer": "apic"}

@@ -1,4 +1,4 @@
-"""Damaged files of a verification folder are named, with the line and what is wrong."""
+"""Damaged files of a validation folder are named, with the line and what is wrong."""
 
 import json
 import resource
@@ -6,12 +6,13 @@ import resource
 import pandas as pd
 import pytest
 from made_up import made_up_case, program
-from validation import stress, suite
-from validation.folder import SuiteFolder
+from validation import stress
+from validation.framework import cases as listing
+from validation.framework.folder import ValidationFolder
 
 from snowshed import InputError
-from snowshed.analysis.verification.measurements import Measured, Measurement
-from snowshed.analysis.verification.recorded import load_recorded
+from snowshed.analysis.accuracy.measurements import Measured, Measurement
+from snowshed.analysis.accuracy.recorded import load_recorded
 
 WHOLE = Measurement("bar", {"dx": 0.1, "apic": True}, [Measured("height", 1.0, 2.0, -0.5)])
 
@@ -44,7 +45,7 @@ def test_a_damaged_line_of_measurements(name, tmp_path):
     line, message = LINES[name]
     if isinstance(line, dict):
         line = json.dumps({**WHOLE.to_json(), **line}).encode()
-    folder = SuiteFolder.create(tmp_path)
+    folder = ValidationFolder.create(tmp_path)
     folder.measurements.append(WHOLE)
     with folder.measurements.path.open("ab") as file:
         file.write(line + b"\n")
@@ -56,7 +57,7 @@ def test_a_damaged_line_of_measurements(name, tmp_path):
 
 
 def test_a_file_that_cannot_grow_is_named(tmp_path):
-    folder = SuiteFolder.create(tmp_path)
+    folder = ValidationFolder.create(tmp_path)
     limits = resource.getrlimit(resource.RLIMIT_FSIZE)
     try:
         resource.setrlimit(resource.RLIMIT_FSIZE, (0, limits[1]))
@@ -69,7 +70,7 @@ def test_a_file_that_cannot_grow_is_named(tmp_path):
 def test_a_device_without_end_is_no_file_of_measurements(tmp_path):
     (tmp_path / "measurements.jsonl").symlink_to("/dev/zero")
     with pytest.raises(InputError, match="not a regular file"):
-        SuiteFolder(tmp_path).measurements.read()
+        ValidationFolder(tmp_path).measurements.read()
 
 
 @pytest.mark.parametrize("missing", WHOLE.to_json())
@@ -113,7 +114,7 @@ RUNS = pd.DataFrame({"outcome": ["rest", "failed"], "n": [1.5, None], "wall_s": 
     ],
 )
 def test_damaged_runs_of_the_stress_suite(old, new, message, tmp_path):
-    folder = SuiteFolder.create(tmp_path)
+    folder = ValidationFolder.create(tmp_path)
     folder.keep_stress(RUNS, full=False, seed=1)
     file = tmp_path / "stress.json"
     assert folder.kept_stress(full=False, seed=1).equals(RUNS)
@@ -124,7 +125,7 @@ def test_damaged_runs_of_the_stress_suite(old, new, message, tmp_path):
 
 
 def test_the_runs_of_another_stress_suite_do_not_count(tmp_path):
-    folder = SuiteFolder.create(tmp_path)
+    folder = ValidationFolder.create(tmp_path)
     folder.keep_stress(RUNS, full=False, seed=1)
     assert folder.kept_stress(full=True, seed=1) is None
     assert folder.kept_stress(full=False, seed=2) is None
@@ -132,12 +133,12 @@ def test_the_runs_of_another_stress_suite_do_not_count(tmp_path):
 
 @pytest.mark.parametrize("name", ["measurements.jsonl", "stress.json"])
 def test_resuming_in_a_damaged_folder_is_one_line_and_code_2(name, tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr(suite, "case_modules", lambda: ["made_up"])
-    monkeypatch.setattr(suite, "cases_of", lambda module: [made_up_case(entries=[{"dx": 0.1}])])
+    monkeypatch.setattr(listing, "case_modules", lambda: {"made_up": "validation.made_up.case"})
+    monkeypatch.setattr(listing, "cases_of", lambda module: [made_up_case(entries=[{"dx": 0.1}])])
     monkeypatch.setattr(stress, "run", lambda *_: pytest.fail("the damage was not found"))
-    SuiteFolder.create(tmp_path / "out")
+    ValidationFolder.create(tmp_path / "out")
     (tmp_path / "out" / name).write_text("snow\n")
     assert program("-q", "--resume", "-o", tmp_path / "out") == 2
     said = capsys.readouterr().err
     assert said.startswith(f"error: {tmp_path / 'out' / name}:") and said.count("\n") == 1
-    assert not (tmp_path / "out" / "verification.html").exists()
+    assert not (tmp_path / "out" / "validation.html").exists()

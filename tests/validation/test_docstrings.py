@@ -3,9 +3,9 @@ import importlib
 import pkgutil
 
 import pytest
-import validation as verify
+import validation
 
-MODULES = [m.name for m in pkgutil.walk_packages(verify.__path__, f"{verify.__name__}.")]
+MODULES = [one.name for one in pkgutil.walk_packages(validation.__path__, "validation.")]
 
 
 @pytest.mark.parametrize("name", MODULES)

@@ -1,19 +1,35 @@
 """The quick suite: every case over its quick matrix, and every bar on what was measured."""
 
 import pytest
-from validation.bars import compare
-from validation.measurement_file import MeasurementFile
-from validation.report import Suite, problems
-from validation.runner import run_suite
-from validation.suite import case_modules, cases_of
+from validation.framework.bars import compare
+from validation.framework.cases import case_modules, cases_of
+from validation.framework.measure import measure_cases
+from validation.framework.measurement_file import MeasurementFile
+from validation.framework.report import Validation, problems
 
-from snowshed.analysis.verification.measurements import to_table
+from snowshed.analysis.accuracy.measurements import to_table
+
+MODULES = case_modules()
+#: Those that take longest have tests of their own in `test_case_*.py`, which are quicker.
+LONG = {"elastic_vibration", "manufactured", "material_paths"}
 
 
-@pytest.mark.parametrize("module", case_modules())
+def modules():
+    """Return the modules as parameters; `make test-slow` runs the long ones."""
+    return [
+        pytest.param(module, id=name, marks=[pytest.mark.slow] if name in LONG else [])
+        for name, module in MODULES.items()
+    ]
+
+
+def test_modules_are_found():
+    assert len(MODULES) > 20 and len(set(MODULES.values())) == len(MODULES)
+
+
+@pytest.mark.parametrize("module", modules())
 def test_bars_hold(module, tmp_path):
     cases = cases_of(module)
-    measurements = run_suite(cases, MeasurementFile(tmp_path / "measurements.jsonl"))
+    measurements = measure_cases(cases, MeasurementFile(tmp_path / "measurements.jsonl"))
     assert {one.case for one in measurements} == {case.name for case in cases}
     found = compare(to_table(measurements), cases)
-    assert not problems(Suite(cases, measurements, full=False), found)
+    assert not problems(Validation(cases, measurements, full=False), found)

@@ -8,16 +8,16 @@ import pytest
 from made_up import DRIFT, HEIGHT, made_up_case
 from pages import Page
 from plot.browser import check_page
-from validation import sections
-from validation.case import Quantity
-from validation.figures import LineStyles, worth_naming
-from validation.measurement_file import MeasurementFile
-from validation.report import Stress, Suite, write_report
-from validation.runner import run_suite
+from validation.framework import sections
+from validation.framework.case import Quantity
+from validation.framework.figures import LineStyles, worth_naming
+from validation.framework.measure import measure_cases
+from validation.framework.measurement_file import MeasurementFile
+from validation.framework.report import Stress, Validation, write_report
 from validation.stress import SummaryTable
 
-from snowshed.analysis.verification.measurements import to_table
-from snowshed.io import formatting
+from snowshed.analysis.accuracy.measurements import to_table
+from snowshed.base import formatting
 
 PNG = b"\x89PNG\r\n\x1a\n"
 
@@ -28,18 +28,18 @@ def report(tmp_path_factory):
     folder = tmp_path_factory.mktemp("report")
     entries = [*made_up_case().matrix(True), {"dx": 0.1, "transfer": "flip"}]
     case = made_up_case(entries=entries)
-    measurements = run_suite([case], MeasurementFile(folder / "m.jsonl"), full=True)
+    measurements = measure_cases([case], MeasurementFile(folder / "m.jsonl"), full=True)
     runs = pd.DataFrame({"outcome": ["rest", "rest", "failed"]})
     outcomes = pd.DataFrame({"outcome": ["rest"], "runs": [2], "largest_error": [0.123456789]})
     tables = [SummaryTable("outcomes", "How runs ended", "None may fail.", outcomes)]
     stress = Stress(runs, tables)
-    write_report(Suite([case], measurements, full=True, stress=stress), folder)
+    write_report(Validation([case], measurements, full=True, stress=stress), folder)
     return folder
 
 
 @pytest.fixture(scope="module")
 def page(report):
-    return Page((report / "verification.html").read_text(encoding="utf-8"))
+    return Page((report / "validation.html").read_text(encoding="utf-8"))
 
 
 def row_with(page, *texts):
@@ -59,12 +59,12 @@ def test_the_page_needs_no_other_file(page, report):
         "made_up-convergence.png",
         "made_up-error-against-run-time.png",
     }
-    html = (report / "verification.html").read_text(encoding="utf-8")
+    html = (report / "validation.html").read_text(encoding="utf-8")
     assert not re.search(r"https?://|<script|@import|url\(", html)
 
 
 def test_the_page_can_be_read(report):
-    check_page(report / "verification.html")
+    check_page(report / "validation.html")
 
 
 def test_the_page_says_what_holds_and_what_does_not(page):
@@ -138,10 +138,10 @@ def test_tables_and_numbers_are_files_too(report):
 
 def test_a_suite_in_which_everything_failed_has_a_report(tmp_path):
     case = made_up_case(entries=[{"mode": "raises", "dx": 0.1}])
-    measurements = run_suite([case], MeasurementFile(tmp_path / "m.jsonl"))
-    bars = write_report(Suite([case], measurements, full=False), tmp_path)
+    measurements = measure_cases([case], MeasurementFile(tmp_path / "m.jsonl"))
+    bars = write_report(Validation([case], measurements, full=False), tmp_path)
     assert [bar.holds for bar in bars] == [None, False]
-    page = Page((tmp_path / "verification.html").read_text(encoding="utf-8"))
+    page = Page((tmp_path / "validation.html").read_text(encoding="utf-8"))
     assert not page.images
     assert "stress" not in page.ids
 
@@ -194,7 +194,7 @@ def test_errors_are_drawn_against_time_where_they_say_which_way_is_better(tmp_pa
         folder = tmp_path / str(number)
         folder.mkdir()
         case = made_up_case(entries=entries, quantities=[quantity, no_drift])
-        measured = run_suite([case], MeasurementFile(folder / "m.jsonl"))
+        measured = measure_cases([case], MeasurementFile(folder / "m.jsonl"))
         pictures = sections.section(case, measured, to_table(measured)).pictures
         assert [one.name for one in pictures] == ["made_up-error-against-run-time"] * drawn
 
@@ -203,7 +203,7 @@ def test_quantities_that_were_not_measured_have_no_column(tmp_path):
     case = made_up_case(
         entries=[{"transfer": "apic"}], quantities=[HEIGHT, DRIFT, Quantity("tilt", "tilt")]
     )
-    measured = run_suite([case], MeasurementFile(tmp_path / "m.jsonl"))
+    measured = measure_cases([case], MeasurementFile(tmp_path / "m.jsonl"))
     grid = sections.results_grid(case, measured)
     titles = [title for title, _ in grid.groups if title]
     assert [title.split(",")[0] for title in titles] == ["height", "drift"]

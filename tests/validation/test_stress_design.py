@@ -86,5 +86,5 @@ def test_without_allpairspy_the_error_says_what_to_install(
     hide: Callable[[str], None],
 ) -> None:
     hide("allpairspy")
-    with pytest.raises(InputError, match=r'allpairspy.*pip install "snowshed\[verify\]"'):
+    with pytest.raises(InputError, match=r'allpairspy.*pip install "snowshed\[validation\]"'):
         trials(full=False)

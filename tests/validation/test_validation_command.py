@@ -7,11 +7,12 @@ import pytest
 from made_up import made_up_case, program
 from paths import ROOT
 from processes import modules_after
-from validation import runner, suite
-from validation.case import Quantity
+from validation.framework import cases as listing
+from validation.framework import measure
+from validation.framework.case import Quantity
 
-from snowshed.analysis.verification.recorded import load_recorded
-from snowshed.run.progress import Progress
+from snowshed.analysis.accuracy.recorded import load_recorded
+from snowshed.base.progress import Progress
 
 HOLDING = (Quantity("height", "height, m", bar=0.2, bar_for={"transfer": "apic"}, order_in="dx"),)
 
@@ -31,29 +32,29 @@ def cases(monkeypatch):
         object.__setattr__(case, "measure", made_up_measure_of_height_only)
         return [case]
 
-    monkeypatch.setattr(suite, "case_modules", lambda: ["made_up"])
-    monkeypatch.setattr(suite, "cases_of", cases_of)
+    monkeypatch.setattr(listing, "case_modules", lambda: {"made_up": "validation.made_up.case"})
+    monkeypatch.setattr(listing, "cases_of", cases_of)
     return held
 
 
-def verify(folder, *options):
+def validate(folder, *options):
     return program(*options, "--no-stress", "-o", folder)
 
 
 def test_it_writes_the_report_and_says_that_all_holds(cases, tmp_path, capsys):
-    assert verify(tmp_path / "out") == 0
+    assert validate(tmp_path / "out") == 0
     out, err = capsys.readouterr()
     assert "What holds" in out
     assert "17.6 %" in out
-    assert str(tmp_path / "out" / "verification.html") in out
+    assert str(tmp_path / "out" / "validation.html") in out
     assert "error" not in err
     assert sorted(path.name for path in (tmp_path / "out").iterdir()) == [
-        *("figures", "measurements.jsonl", "results.csv", "results.json", "verification.html"),
+        *("figures", "measurements.jsonl", "results.csv", "results.json", "validation.html"),
     ]
 
 
 def test_full_takes_the_full_matrix(cases, tmp_path):
-    assert verify(tmp_path / "out", "--full", "-q") == 0
+    assert validate(tmp_path / "out", "--full", "-q") == 0
     data = json.loads((tmp_path / "out" / "results.json").read_text())
     assert len(data["measurements"]) == 6
     assert data["about"]["suite"] == "full"
@@ -61,7 +62,7 @@ def test_full_takes_the_full_matrix(cases, tmp_path):
 
 def test_the_exit_code_is_1_if_a_bar_does_not_hold(cases, tmp_path, capsys):
     cases["quantities"] = (Quantity("height", "height, m", bar=0.1),)
-    assert verify(tmp_path / "out", "-q") == 1
+    assert validate(tmp_path / "out", "-q") == 1
     assert capsys.readouterr() == (
         "",
         "error: A made-up case, height, m: demanded ≤ 10 %, worst 96 %, dx 0.2, pic\n",
@@ -70,33 +71,33 @@ def test_the_exit_code_is_1_if_a_bar_does_not_hold(cases, tmp_path, capsys):
 
 def test_the_exit_code_is_1_if_a_measurement_fails(cases, tmp_path, capsys):
     cases["entries"] = [{"dx": 0.1}, {"dx": 0.2, "mode": "raises"}]
-    assert verify(tmp_path / "out", "-q") == 1
+    assert validate(tmp_path / "out", "-q") == 1
     assert "A made-up case, dx 0.2, raises: ValueError: no such snow" in capsys.readouterr().err
 
 
 def test_bad_input(cases, tmp_path, capsys):
-    assert verify(tmp_path / "out", "--case", "other") == 2
+    assert validate(tmp_path / "out", "--case", "other") == 2
     assert "--case other: no such case; there are made_up" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
     (tmp_path / "full").mkdir()
     (tmp_path / "full" / "precious.txt").touch()
-    assert verify(tmp_path / "full") == 2
+    assert validate(tmp_path / "full") == 2
     assert "not empty" in capsys.readouterr().err
-    assert verify(tmp_path / "nowhere", "--resume") == 2
+    assert validate(tmp_path / "nowhere", "--resume") == 2
     assert "nothing to resume" in capsys.readouterr().err
     assert program() == 2
 
 
 def test_an_interrupted_suite_goes_on(cases, tmp_path, capsys, monkeypatch):
-    measured, count = runner.measured, iter(range(9))
+    measured, count = measure.measure_once, iter(range(9))
 
     def interrupted(*request):
         if next(count) == 2:
             raise KeyboardInterrupt
         return measured(*request)
 
-    monkeypatch.setattr(runner, "measured", interrupted)
-    assert verify(tmp_path / "my out", "--case", "made_up") == 130
+    monkeypatch.setattr(measure, "measure_once", interrupted)
+    assert validate(tmp_path / "my out", "--case", "made_up") == 130
     message = capsys.readouterr().err.strip().splitlines()[-1]
     _, _, resume = message.partition("go on with: python -m validation ")
     assert program(*shlex.split(resume)) == 0
@@ -106,7 +107,7 @@ def test_an_interrupted_suite_goes_on(cases, tmp_path, capsys, monkeypatch):
 
 def test_measurements_can_be_recorded(cases, tmp_path):
     path = tmp_path / "recorded.json"
-    assert verify(tmp_path / "out", "-q", "--record", path) == 0
+    assert validate(tmp_path / "out", "-q", "--record", path) == 0
     assert [one.case for one in load_recorded(path)] == ["made_up"] * 4
 
 
@@ -131,7 +132,7 @@ def test_the_stress_suite_runs_once_and_is_reported(cases, tmp_path, capsys, mon
     monkeypatch.setattr(stress, "summarise", summarise)
     out = tmp_path / "out"
     assert program("-o", out) == 0
-    assert "All of them" in (out / "verification.html").read_text(encoding="utf-8")
+    assert "All of them" in (out / "validation.html").read_text(encoding="utf-8")
     first = (out / "stress.csv").read_text()
     assert program("--resume", "-q", "-o", out) == 0
     assert (out / "stress.csv").read_text() == first
@@ -140,24 +141,24 @@ def test_the_stress_suite_runs_once_and_is_reported(cases, tmp_path, capsys, mon
     assert program("--resume", "-q", "--full", "--seed", "7", "-o", out) == 1
     assert capsys.readouterr().err == "error: stress suite: 1 runs failed\n"
     assert calls[1:] == [(True, 7)]
-    assert verify(tmp_path / "other", "--case", "made_up", "-q") == 0
+    assert validate(tmp_path / "other", "--case", "made_up", "-q") == 0
     assert len(calls) == 2
 
 
 def test_help_stays_quick():
-    heavy = {"jinja2", "matplotlib", "pandas", "rich", "scipy", "validation.report"}
-    assert heavy & modules_after("import validation.command") == set()
+    heavy = {"jinja2", "matplotlib", "pandas", "rich", "scipy", "validation.framework.report"}
+    assert heavy & modules_after("import validation.framework.command") == set()
 
 
-@pytest.mark.parametrize("package", ["validation", "thesis"])
-def test_python_m(package):
+@pytest.mark.parametrize("words", [["validation"], ["reproductions", "saito2012"]])
+def test_python_m(words):
     def run(*arguments):
-        words = [sys.executable, "-m", package, *arguments]
-        return subprocess.run(words, cwd=ROOT, capture_output=True, text=True)
+        command = [sys.executable, "-m", *words, *arguments]
+        return subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
 
     shown = run("-h")
     assert (shown.returncode, shown.stderr) == (0, "")
-    assert shown.stdout.startswith(f"Usage: python -m {package} [OPTIONS]")
+    assert shown.stdout.startswith(f"Usage: python -m {' '.join(words)} [OPTIONS]")
     refused = run()
     assert (refused.returncode, refused.stdout) == (2, "")
     assert refused.stderr == "error: Missing option '-o' / '--output'.\n"

@@ -1,1 +1,1 @@
-"""Injected faults: which of them the tests catch. See docs/verification.md."""
+"""Injected faults: which of them the tests catch. See docs/trust/injected-faults.md."""

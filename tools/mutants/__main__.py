@@ -14,7 +14,7 @@ from tools.mutants.sources import SourceCopy
 from tools.mutants.trial import BuildError, Workshop
 
 ROOT = Path(__file__).parents[2]
-PAGE = ROOT / "docs/verification.md"
+PAGE = ROOT / "docs/trust/injected-faults.md"
 FOLDER = ROOT / "build/mutants"
 TARGETS = ("snowshed_tests", "_core", "snowshed-run")
 

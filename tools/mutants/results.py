@@ -1,4 +1,4 @@
-"""What a run found, as a file, and as the table of docs/verification.md."""
+"""What a run found, as a file, and as the table of docs/trust/injected-faults.md."""
 
 from __future__ import annotations
 

@@ -5,7 +5,7 @@ pairs and at random. Each must come to rest or run to its limit with finite stat
 closed balances, or stop with an error that names its cause and leaves a checkpoint.
 """
 
-from validation.stress.suite import run, run_trials
+from validation.stress.measure import run, run_trials
 from validation.stress.tables import SummaryTable, summarise
 
 __all__ = ["SummaryTable", "run", "run_trials", "summarise"]

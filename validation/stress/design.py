@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from snowshed.io.extras import require
+from snowshed.base.extras import require
 from validation.stress.space import PARAMETERS, Point, Value, reference
 
 #: Random combinations of the full suite.
@@ -76,7 +76,7 @@ def _pairwise(steps: int) -> Iterator[Trial]:
     InputError
         If `allpairspy` is not installed.
     """
-    all_pairs = require("allpairspy", "verify", "the stress suite").AllPairs
+    all_pairs = require("allpairspy", "validation", "the stress suite").AllPairs
     for row in all_pairs([list(p.levels) for p in PARAMETERS]):
         point = {p.name: value for p, value in zip(PARAMETERS, row)}
         yield Trial("pairwise", "", point, steps)

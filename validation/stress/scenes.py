@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from snowshed.methods.mpm import MpmSettings
+from snowshed.methods.mpm.settings import MpmSettings
 from snowshed.scene.components import (
     Body,
     Events,

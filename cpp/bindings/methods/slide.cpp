@@ -35,6 +35,7 @@ py::dict slide_maps(const Simulation& sim) {
   d["west"] = t.west();
   d["south"] = t.south();
   d["cell"] = t.cell();
+  d["density"] = sim.scene().numerics.as<Settings>().density;
   return d;
 }
 

@@ -1,5 +1,5 @@
 // The file of a film: frames are appended while a run goes on, so that a killed run leaves all
-// frames that it has written. docs/view.md describes the format.
+// frames that it has written. docs/reference/film.md describes the format.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// A film of particles: what its header and its frames hold, in whole numbers. docs/view.md
+// A film of particles: what its header and its frames hold, in whole numbers. docs/reference/film.md
 // describes the file.
 #pragma once
 

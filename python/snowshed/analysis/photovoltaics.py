@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from snowshed._core import InputError
-from snowshed.io.extras import require
+from snowshed.base.extras import require
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -138,7 +138,7 @@ def coverage_nrel(
 
 
 def blocked_days(season: pd.DataFrame, dx: float) -> pd.Series:
-    """Return on which days the snow below reaches the lower edge; the index holds the dates.
+    """Return whether the snow below reaches the lower edge, by day; the index holds the dates.
 
     Parameters
     ----------
@@ -169,10 +169,10 @@ def monthly_table(season: pd.DataFrame, events: pd.DataFrame, dx: float) -> pd.D
     Returns
     -------
     pandas.DataFrame
-        By month, also months without a row: ``snow_total`` (cm), ``snow_events`` (days with more
-        than 2.54 cm), ``temp_air`` (mean of the days), ``releases``, ``pile_height_m`` and
-        ``clearance_m`` (least), ``blocked_days``, ``pile_angle_deg`` for `loss_townsend`. Days
-        count by their dates, however long the rows are; what a row says holds until the next.
+        One row per month, also for months without data: ``snow_total`` (cm), ``snow_events`` (days
+        with more than 2.54 cm), ``temp_air`` (mean of the days), ``releases``, ``pile_height_m``
+        and ``clearance_m`` (least), ``blocked_days``, ``pile_angle_deg`` for `loss_townsend`. Days
+        count by their dates, for any spacing of the rows; a row holds until the next.
 
     Raises
     ------
@@ -222,7 +222,7 @@ def _dates(season: pd.DataFrame) -> pd.Series:
         raise InputError("the season: no rows")
     if (dates.iloc[-1] - dates.iloc[0]).days > LONGEST:
         raise InputError(
-            f"the season, column date: it goes from {dates.iloc[0].date()} to "
+            f"the season, column date: it spans {dates.iloc[0].date()} to "
             f"{dates.iloc[-1].date()}; at most {LONGEST} days are allowed"
         )
     return dates
@@ -231,8 +231,8 @@ def _dates(season: pd.DataFrame) -> pd.Series:
 def _daily(rows: pd.DataFrame) -> pd.DataFrame:
     """Return a row for each day from the first to the last, of rows of any length.
 
-    A day without a row has what the row before it says; in a day with rows, the state that it
-    begins with counts as well.
+    A day without a row has the state of the last row before it; for a day with rows, its initial
+    state counts, too.
     """
     import pandas as pd
 

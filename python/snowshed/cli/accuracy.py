@@ -16,16 +16,16 @@ from typing import TYPE_CHECKING, Any, Optional
 import click
 
 from snowshed._core import InputError
+from snowshed.base.formatting import percent
 from snowshed.cli.scene_options import option_name
-from snowshed.io.formatting import percent
-from snowshed.methods.mpm import MpmSettings
+from snowshed.methods.mpm.settings import MpmSettings
 from snowshed.methods.registry import resolution_path
 from snowshed.scene.accuracy_settings import ACCURACY
 from snowshed.scene.scene import Scene
 from snowshed.scene.schema import current_path
 
 if TYPE_CHECKING:
-    from snowshed.analysis.verification.measurements import Measurement, Settings, Value
+    from snowshed.analysis.accuracy.measurements import Measurement, Settings, Value
 
 CASE = "stack_convergence"
 QUANTITIES = ("height", "length")
@@ -47,7 +47,7 @@ def part(text: str) -> float:
     except ValueError:
         value = nan
     if not 0 < value < 1:
-        raise click.BadParameter(f"{text!r} is no accuracy; give a percentage such as 5%")
+        raise click.BadParameter(f"{text!r} is not an accuracy; give a percentage such as 5%")
     return value
 
 
@@ -106,8 +106,8 @@ def choose(
     >>> choice.values["numerics.dx"] > 0
     True
     """
-    from snowshed.analysis.verification.recorded import load_recorded
-    from snowshed.analysis.verification.solutions import quickest
+    from snowshed.analysis.accuracy.recorded import load_recorded
+    from snowshed.analysis.accuracy.solutions import quickest
 
     data = scene.resolve().data
     thickness = _slab_thickness(data)
@@ -123,7 +123,7 @@ def choose(
     path = resolution_path(data)
     name = path.rpartition(".")[2]
     share = float(stack.settings[name]) / _slab_thickness(Scene.preset(PRESET).resolve().data)
-    # What a recorded run does not name had its default, and so must have it here.
+    # A recorded run used the defaults of unnamed settings, so they must be defaults here, too.
     values = {where: stack.settings.get(key) for key, where in ACCURACY.items()}
     size = float(f"{share * thickness:.3g}")
     values[path] = size
@@ -181,33 +181,37 @@ class RecordedStack:
 
 def recorded_stacks(measurements: Iterable[Measurement]) -> list[RecordedStack]:
     """Return the recorded stacks."""
-    from snowshed.analysis.verification.measurements import to_table
-    from snowshed.analysis.verification.solutions import assured_errors, key_of, rows_of, solutions
+    from snowshed.analysis.accuracy.measurements import to_table
+    from snowshed.analysis.accuracy.solutions import assured_errors, key_of, rows_of, solutions
 
-    table = to_table(one for one in measurements if one.case == CASE and not one.failure)
+    table = to_table(
+        measurement
+        for measurement in measurements
+        if measurement.case == CASE and not measurement.failure
+    )
 
     def by_settings(quantity: str, order_in: Optional[str]) -> dict[Hashable, float]:
-        found = solutions(rows_of(table, CASE, quantity))
-        return {key_of(o.settings): e for o, e in zip(found, assured_errors(found, order_in))}
+        recorded = solutions(rows_of(table, CASE, quantity))
+        return {key_of(o.settings): e for o, e in zip(recorded, assured_errors(recorded, order_in))}
 
     errors = [by_settings(name, ORDER_IN) for name in QUANTITIES]
     spreads = [by_settings(f"{name}_spread", None) for name in QUANTITIES]
     return [
         RecordedStack(
-            settings=one.settings,
+            settings=solution.settings,
             errors=[of_each[key] for of_each in errors],
             spreads=[of_each[key] for of_each in spreads if key in of_each],
-            wall_s=one.wall_s,
+            wall_s=solution.wall_s,
         )
-        for one in solutions(rows_of(table, CASE, QUANTITIES[0]))
-        if all((key := key_of(one.settings)) in of_each for of_each in errors)
+        for solution in solutions(rows_of(table, CASE, QUANTITIES[0]))
+        if all((key := key_of(solution.settings)) in of_each for of_each in errors)
     ]
 
 
 def _slab_thickness(data: Mapping[str, Any]) -> float:
     if data.get("slab") is None:
         raise InputError(
-            "--accuracy: the scene has no slab, and dx is chosen by its thickness; give --dx"
+            "--accuracy: the scene has no slab, whose thickness determines dx; give --dx"
         )
     slab = data["slab"]
     events = {layer["event"] for layer in slab["layers"]}
@@ -244,8 +248,8 @@ def _distance(value: Value, mine: Value) -> float:
 
 
 def _reasons(stack: RecordedStack, wanted: float, data: Mapping[str, Any], name: str) -> list[str]:
-    """Return the rest of the first sentence, which tells the setting `name`, and what follows."""
-    from snowshed.analysis.verification.setting_labels import settings
+    """Return the end of the first sentence, after the setting `name`, and the further sentences."""
+    from snowshed.analysis.accuracy.setting_labels import settings
 
     scheme = {k: v for k, v in stack.settings.items() if k in ACCURACY and k != name}
     height, length = (percent(error, 2) for error in stack.errors)

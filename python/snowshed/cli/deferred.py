@@ -1,4 +1,4 @@
-"""Commands that are imported when they are used."""
+"""Commands that are imported on first use."""
 
 from __future__ import annotations
 
@@ -9,21 +9,34 @@ import click
 
 
 class Deferred(click.Command):
-    """A command, or group of commands, that is imported when it is used, so that others start fast.
+    """A command, or group of commands, that is imported on first use, so that others start fast.
 
     Parameters
     ----------
     name
-        Name of the command, and of its function in the module.
+        Name of the command.
     module
-        The module that defines it.
+        Module that defines it.
     short_help
-        Its line in the list of commands, for which it is not imported.
+        Its line in the list of commands.
+    command
+        Name of the command in the module. [default: `name`]
+    hidden
+        Whether the list of commands leaves it out.
     """
 
-    def __init__(self, name: str, module: str, short_help: str) -> None:
-        super().__init__(name, short_help=short_help)
+    def __init__(
+        self,
+        name: str,
+        module: str,
+        short_help: str = "",
+        *,
+        command: Optional[str] = None,
+        hidden: bool = False,
+    ) -> None:
+        super().__init__(name, short_help=short_help, hidden=hidden)
         self._module = module
+        self._function = (command or name).replace("-", "_")
 
     def make_context(
         self,
@@ -32,10 +45,10 @@ class Deferred(click.Command):
         parent: Optional[click.Context] = None,
         **extra: Any,
     ) -> click.Context:
-        """Return the context of the command itself, which takes over from here."""
+        """Return the context of the imported command."""
         return self.load().make_context(info_name, args, parent, **extra)
 
     def load(self) -> click.Command:
-        """Return the command itself."""
-        command: click.Command = getattr(importlib.import_module(self._module), str(self.name))
+        """Import and return the command."""
+        command: click.Command = getattr(importlib.import_module(self._module), self._function)
         return command

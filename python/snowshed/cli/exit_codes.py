@@ -5,13 +5,13 @@ from __future__ import annotations
 import click
 
 BAD_INPUT = 2  # nothing was written
-COULD_NOT_GO_ON = 3  # the simulation, the disk or the memory; what is there can be gone on with
+COULD_NOT_FINISH = 3  # simulation failed, disk full, out of memory; the run can be resumed
 INTERRUPTED = 130
-PIPE_CLOSED = 141  # who read the output left: as shells report a program that SIGPIPE ended
+PIPE_CLOSED = 141  # the reader of the output left; shells report SIGPIPE with this code
 
 
 class Stopped(click.ClickException):
-    """An interruption, with a message that says how to go on; click drops that of Ctrl-C itself."""
+    """An interruption, with a message how to resume; click drops the message of Ctrl-C."""
 
     exit_code = INTERRUPTED
 
@@ -19,4 +19,4 @@ class Stopped(click.ClickException):
 class Failed(click.ClickException):
     """A failure of runs, or of the command itself."""
 
-    exit_code = COULD_NOT_GO_ON
+    exit_code = COULD_NOT_FINISH

@@ -1,4 +1,4 @@
-"""What to say where memory was short: which file was read, or what was computed."""
+"""Messages after a shortage of memory: the file or the computation at fault."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from types import FrameType
 from typing import Optional
 
 #: Modules whose work grows with the number of particles.
-OF_PARTICLES = ("snowshed.run.", "snowshed.methods.", "snowshed.study.")
-#: What readers call the file that they read, in the order in which they are asked.
+OF_PARTICLES = ("snowshed.running.", "snowshed.methods.", "snowshed.study.")
+#: Names of file arguments in readers, in the order in which they are tried.
 NAMES = ("path", "file", "source", "where", "raster", "mesh")
 
 

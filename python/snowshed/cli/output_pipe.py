@@ -9,7 +9,7 @@ import sys
 
 
 def output_is_closed() -> bool:
-    """Return whether standard output or error is a pipe that nobody reads any more."""
+    """Return whether standard output or error is a pipe whose reader has left."""
     poll = select.poll()
     for stream in (sys.stdout, sys.stderr):
         with contextlib.suppress(OSError, ValueError, AttributeError):  # of a test, no files
@@ -18,19 +18,19 @@ def output_is_closed() -> bool:
 
 
 def flush_output() -> None:
-    """Write out what is left for standard output.
+    """Flush standard output.
 
     Raises
     ------
     BrokenPipeError
-        If nobody reads it any more.
+        If the reader of the pipe has left.
     """
     if sys.stdout is not None and not sys.stdout.closed:
         sys.stdout.flush()
 
 
 def drop_output() -> None:
-    """Drop what is left, which Python would otherwise complain about when it ends."""
+    """Drop unwritten output, because Python would report errors for it when it ends."""
     for stream in (sys.stdout, sys.stderr):
         with contextlib.suppress(OSError, ValueError, AttributeError):
             stream.flush()

@@ -15,11 +15,11 @@ from rich.progress import (
 )
 from rich.progress import Progress as Bar
 
+from snowshed.base.formatting import duration
+from snowshed.base.progress import Progress, Reporter
 from snowshed.cli.terminal import PlainConsole
-from snowshed.io.formatting import duration
-from snowshed.run.progress import Progress, Reporter
 
-#: Time over which the speed is averaged that gives the time left, s.
+#: Time over which the speed is averaged, which gives the remaining time, s.
 SPEED_PERIOD_S = 30.0
 LONG_PERIOD_S = 3600.0  # where units take long, and the time left should not jump when one ends
 
@@ -37,8 +37,8 @@ def progress_bar(
 ) -> Iterator[Optional[Reporter]]:
     """Yield a function that shows a `Progress` as a bar; the bar ends with the block.
 
-    The bar appears with the first report, so that earlier errors stand alone. It shows the time
-    that is left as the work reports it, or else as it follows from the speed so far.
+    The bar appears with the first report, so that earlier errors stand alone. It shows the
+    remaining time from the report, or from the speed so far.
 
     Parameters
     ----------

@@ -12,21 +12,21 @@ from click.core import ParameterSource
 def same_command(*more: str) -> str:
     """Return the command that runs now as a shell takes it, with further options.
 
-    Options that it has already are not repeated. Outside a command it is the program alone.
+    Options that it has already are not repeated. Outside a command, only the program is returned.
     """
     context = click.get_current_context(silent=True)
     if context is None:
         return shlex.join(["snowshed", *more])
-    words = context.command_path.split()
+    arguments = context.command_path.split()
     for parameter in context.command.params:
         source = context.get_parameter_source(str(parameter.name))
         if source is ParameterSource.COMMANDLINE:
-            words += _words(parameter, context.params.get(str(parameter.name)))
-    return shlex.join([*words, *(word for word in more if word not in words)])
+            arguments += _argument_texts(parameter, context.params.get(str(parameter.name)))
+    return shlex.join([*arguments, *(word for word in more if word not in arguments)])
 
 
-def _words(parameter: click.Parameter, value: object) -> Iterator[str]:
-    """Return the words that give a parameter its value."""
+def _argument_texts(parameter: click.Parameter, value: object) -> Iterator[str]:
+    """Return the arguments that give a parameter its value."""
     if isinstance(parameter, click.Option) and parameter.is_flag:
         yield (
             parameter.opts if value or not parameter.secondary_opts else parameter.secondary_opts

@@ -39,7 +39,7 @@ SHORT_NAMES = {
     "obstacles": "obstacle",
     "bodies": "body",
 }
-#: What ``--help`` shows.
+#: Options in ``--help``; ``--help-all`` shows the others, too.
 BASIC = (
     "dimension", "panel.height", "panel.length", "panel.width", "panel.tilt", "panel.friction",
     "panel.condition", "slab.thickness", "slab.layers", "ground.tilt", "snow.density",
@@ -55,7 +55,7 @@ Command = TypeVar("Command", bound=Callable[..., Any])
 def _show_all(context: click.Context, parameter: click.Parameter, given: bool) -> None:
     if not given or context.resilient_parsing:
         return
-    aliases = {option_name(path) for one in scene_parameters() for path in one.aliases}
+    aliases = {option_name(path) for parameter in scene_parameters() for path in parameter.aliases}
     for option in context.command.params:
         if isinstance(option, click.Option):
             option.hidden = bool(aliases & set(option.opts))
@@ -109,7 +109,7 @@ def scene_options(command: Command) -> Command:
 
 
 def _completed(names: Sequence[str], *, files: bool = False) -> Callable[..., Any]:
-    """Return what a shell offers for an option: names, and files where none of them fits."""
+    """Return the completion of an option: names, or files if no name fits."""
 
     def offered(_: click.Context, __: click.Parameter, begun: str) -> list[CompletionItem]:
         fitting = [CompletionItem(name) for name in names if name.startswith(begun)]

@@ -1,23 +1,22 @@
-"""The files that ``snowshed slide`` is given: terrain, areas, copies of them."""
+"""Input files of ``snowshed slide``: terrain, areas, and their copies."""
 
 from __future__ import annotations
 
-import json
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Optional
 
 from snowshed._core import InputError
+from snowshed.scene.builders.terrain_copy import terrain_copy
 from snowshed.scene.scene import ResolvedScene, Scene
 
-WAYS = "give --terrain and --release, or --avaframe, or --example"
+INPUTS = "give --terrain and --release, or --avaframe, or --example"
 
 
 @dataclass(frozen=True)
 class SlideFiles:
-    """Files of a slide, their bands, and the thickness of its release, m; None: not given.
+    """Files of a slide, their bands, and the thickness of its release, m, if given.
 
     `layers` are those of `snowshed.scene.builders.slide_scene`.
     """
@@ -33,11 +32,11 @@ class SlideFiles:
     layers: Mapping[str, str] = field(default_factory=dict)
 
     def any(self) -> bool:
-        """Return whether there are any."""
+        """Return whether any file is given."""
         return any(file is not None for file in (self.terrain, *self.of_areas().values()))
 
     def of_areas(self) -> dict[str, Optional[Path]]:
-        """Return the files of areas by the part of a scene's terrain that they make."""
+        """Return the files of areas by their key in a scene's terrain."""
         return {
             "release": self.release or self.thickness_raster,
             "entrainment": self.entrainment,
@@ -52,25 +51,25 @@ class SlideFiles:
         settings: Mapping[str, object],
         limits: Mapping[str, Any],
     ) -> Scene:
-        """Return the scene that they describe, or that of the example.
+        """Return the scene of the files, or the example.
 
         Parameters
         ----------
         folder
-            The results folder, beside which copies of files go.
+            The results folder; copies of files are written beside it.
         example
-            Whether the example is wanted, which takes no files.
+            Whether to return the example, which takes no files.
         settings
             Settings of the method.
         limits
-            What is believed of terrain and snow: `max_slope`, `max_thickness` and
-            `max_cells` of `slide_scene`.
+            Largest plausible values: `max_slope`, `max_thickness` and `max_cells` of
+            `slide_scene`.
         """
-        from snowshed.methods.slide import SlideSettings
+        from snowshed.methods.slide.settings import SlideSettings
         from snowshed.scene.builders.slides import example_slide, slide_scene
 
         if self.any() == example:
-            raise InputError(WAYS)
+            raise InputError(INPUTS)
         if example:
             beside = folder.with_name(f"{folder.name}-terrain")
             beside.mkdir(parents=True, exist_ok=True)
@@ -94,38 +93,18 @@ class SlideFiles:
         )
 
 
-def terrain_copy(folder: Path) -> Path:
-    """Return where the copy of terrain goes for a results folder: beside it."""
-    return folder.with_name(f"{folder.name}-terrain.asc")
-
-
-@contextmanager
-def removing_copies(folder: Path) -> Iterator[None]:
-    """Remove new copies of files beside a results folder if no run begins there."""
-    copy = terrain_copy(folder)
-    copies = [copy, copy.with_name(f"{copy.stem}-thickness.asc")]
-    new = [file for file in copies if not file.exists()]
-    try:
-        yield
-    except BaseException:
-        if not folder.exists():
-            for file in new:
-                file.unlink(missing_ok=True)
-        raise
-
-
 def refuse_changed_areas(
-    ready: ResolvedScene, folder: Path, files: Mapping[str, Optional[Path]]
+    scene: ResolvedScene, folder: Path, files: Mapping[str, Optional[Path]]
 ) -> None:
-    """Refuse to resume a run whose areas were others, and name their file."""
+    """Refuse to resume a run whose areas have changed, and name their file."""
     stored = folder / "scene.json"
     if not stored.is_file():
-        return  # there is nothing to resume, which resuming says
-    then: dict[str, Any] = json.loads(ResolvedScene.load(stored).json)["terrain"]
-    now: dict[str, Any] = json.loads(ready.json)["terrain"]
-    for part, file in files.items():
-        if file is not None and then.get(part) != now.get(part):
+        return  # resuming reports that there is nothing to resume
+    earlier = ResolvedScene.load(stored).data
+    current = scene.data
+    for key, file in files.items():
+        if file is not None and earlier["terrain"].get(key) != current["terrain"].get(key):
             raise InputError(
-                f"{file}: has changed since the run in {folder} began; bring back the file, or "
-                "start anew"
+                f"{file}: has changed since the run in {folder} began; restore the file, or "
+                "start again"
             )

@@ -1,4 +1,4 @@
-"""The command ``snowshed``: what the command line needs is imported where an interrupt is heard."""
+"""The command ``snowshed``: imports happen where an interrupt is handled."""
 
 from __future__ import annotations
 

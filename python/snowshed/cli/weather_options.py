@@ -9,7 +9,7 @@ import click
 
 from snowshed._core import InputError
 from snowshed.cli.temperature import temperature_option
-from snowshed.run.season.source import AUTO, CHOICES
+from snowshed.season.source import AUTO, CHOICES
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 

@@ -1,1 +1,1 @@
-"""Files in and out, and the values, tables and messages in them."""
+"""File formats."""

@@ -1,4 +1,4 @@
-"""Archives of arrays (.npz) that somebody else may have written."""
+"""Archives of arrays (.npz) from untrusted sources."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ LARGEST = 1 << 30  # bytes
 def open_archive(content: bytes, largest: int = LARGEST) -> Iterator[Any]:
     """Yield the arrays of an archive.
 
-    A small archive can hold arrays that fill the memory, so what they take is looked up before.
+    A small archive can hold arrays that fill the memory, so their sizes are checked first.
 
     Parameters
     ----------
     content
-        Of the file.
+        Content of the file.
     largest
-        Bytes that the file may have, and that its arrays may take.
+        Largest size of the file, and of its arrays, bytes.
 
     Raises
     ------
-    snowshed.io.damage.DAMAGED
-        If it is no archive, is larger, or, while arrays are read, if they are damaged.
+    snowshed.base.damage.DAMAGED
+        If it is not an archive, or too large, or, during reading, if its arrays are damaged.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Files that appear whole or not at all: written beside their place, then renamed."""
+"""Atomic files: written under a temporary name beside their target, then renamed."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from typing import Union
 
 from snowshed._core import InputError
 
-#: How files begin that are still being written, or that a killed process left.
+#: Prefix of files that are being written, or that a killed process left.
 LEFTOVER = re.compile(r"\.partial-[0-9a-f]{16}-")
-#: Errors of file systems that flush nothing.
+#: Errors of file systems without flushing.
 CANNOT_FLUSH = (errno.EINVAL, errno.ENOTSUP, errno.EROFS)
-#: How a file is opened that may be a link, which is refused, or a pipe that nobody writes to.
+#: Flags to open a file that may be a link (refused) or a pipe without a writer.
 WITHOUT_WAITING = os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK
 
 
@@ -27,13 +27,12 @@ WITHOUT_WAITING = os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK
 def replacing(path: Union[str, os.PathLike[str]]) -> Iterator[Path]:
     """Yield a path to write to, in the same folder; it takes the place of `path` on success.
 
-    Of a link, the file that it names is replaced. What killed processes left of such a file is
-    removed.
+    If the file is a link, its target is replaced. Leftovers of killed processes are removed.
 
     Raises
     ------
     InputError
-        If there is something at `path` that is no file, such as a folder or a device.
+        If `path` is something other than a file, such as a folder or a device.
 
     Examples
     --------
@@ -46,7 +45,7 @@ def replacing(path: Union[str, os.PathLike[str]]) -> Iterator[Path]:
     """
     path = Path(path)
     if path.exists() and not path.is_file():
-        raise InputError(f"{path}: not a file; what is written would destroy it")
+        raise InputError(f"{path}: not a file; writing would destroy it")
     path = Path(os.path.realpath(path))
     if path.is_symlink():
         raise OSError(errno.ELOOP, os.strerror(errno.ELOOP), str(path))
@@ -70,7 +69,7 @@ def replacing(path: Union[str, os.PathLike[str]]) -> Iterator[Path]:
 def replacing_folder(path: Union[str, os.PathLike[str]]) -> Iterator[Path]:
     """Yield a new folder beside `path`; it takes the place of `path`, if empty, on success.
 
-    What killed processes left of such a folder is removed.
+    Leftovers of killed processes are removed.
 
     Examples
     --------
@@ -95,7 +94,7 @@ def replacing_folder(path: Union[str, os.PathLike[str]]) -> Iterator[Path]:
 
 
 def _remove_abandoned(path: Path) -> None:
-    """Remove what dead processes left of files and folders that were to become `path`."""
+    """Remove leftovers of dead processes for `path`."""
     with suppress(OSError):  # of a folder that cannot be read
         for other in path.parent.iterdir():
             leftover = LEFTOVER.match(other.name)
@@ -142,12 +141,12 @@ def _closing(descriptor: int) -> Iterator[int]:
 
 
 def _new_file(path: Path) -> None:
-    """Make an empty file that was not there."""
+    """Create an empty file; it must not exist."""
     os.close(os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
 
 
 def remove_leftovers(folder: Path) -> None:
-    """Remove what killed processes left half-written in a folder and those below it.
+    """Remove leftovers of killed processes in a folder and its subfolders.
 
     Folders that are links are not entered.
     """
@@ -160,14 +159,14 @@ def remove_leftovers(folder: Path) -> None:
 def _partial(path: Path) -> str:
     """Return a name for what becomes `path`.
 
-    Nobody can guess it, so nobody can plant a link there. The core removes files of such names from
+    The name is random, so that nobody can plant a link there. The core removes such files from
     results folders.
     """
     return f".partial-{secrets.token_hex(8)}-{_end_of(path.name)}"
 
 
 def _end_of(name: str) -> str:
-    """Return the end of a name, which tells its kind, so short that more fits into a name."""
+    """Return the suffix of a name, which tells its kind, shortened to fit into a name."""
     return os.fsdecode(os.fsencode(name)[-100:].lstrip(bytes(range(0x80, 0xC0))))
 
 
@@ -178,7 +177,7 @@ def write_text(path: Union[str, os.PathLike[str]], text: str) -> None:
 
 
 def _flush(path: Path) -> None:
-    """Make a file or a folder survive a power cut, where the file system can."""
+    """Make a file or a folder survive a power cut, if the file system supports it."""
     descriptor = os.open(path, os.O_RDONLY)
     try:
         os.fsync(descriptor)

@@ -1,6 +1,6 @@
-"""Tables in CSV files: those that grow row by row, those that people write, and any other.
+"""CSV tables: tables that grow row by row, hand-written tables, and any others.
 
-All are read by the same rules: UTF-8, one name for each column, and a cell for each in every row.
+All follow the same rules: UTF-8, a unique name for each column, and a cell for each in every row.
 """
 
 from __future__ import annotations
@@ -17,14 +17,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from snowshed._core import InputError
+from snowshed.base.formatting import number_in
+from snowshed.base.limits import COLUMNS, LINE, MB, ROWS, TABLE, TEXT, WRITTEN_ROWS
+from snowshed.base.messages import csv_cell, quoted
+from snowshed.base.paths import PathLike
 from snowshed.io.atomic import write_text
 from snowshed.io.input_file import read_input
-from snowshed.io.limits import COLUMNS, LINE, MB, ROWS, TABLE, TEXT, WRITTEN_ROWS
-from snowshed.io.messages import quoted
-from snowshed.io.number_text import number_in
 from snowshed.io.packed import unpacked
-from snowshed.io.paths import PathLike
-from snowshed.io.printable import csv_cell
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -76,9 +75,9 @@ class Table:
 
     def keep_through(self, event: int) -> None:
         """Drop the rows of later events."""
-        kept = [row for row in self.rows if int(row["event"]) <= event]
-        if len(kept) < len(self.rows):
-            self.rows = kept
+        rows = [row for row in self.rows if int(row["event"]) <= event]
+        if len(rows) < len(self.rows):
+            self.rows = rows
             self._write()
 
     def fill_columns(self) -> None:
@@ -113,8 +112,8 @@ class Table:
 
     def checksum(self, event: int) -> str:
         """Return a checksum of the rows through an event, with the names of their columns."""
-        kept = [row for row in self.rows if int(row["event"]) <= event]
-        return hashlib.blake2b(self._text(kept).encode(), digest_size=16).hexdigest()
+        rows = [row for row in self.rows if int(row["event"]) <= event]
+        return hashlib.blake2b(self._text(rows).encode(), digest_size=16).hexdigest()
 
     def _write(self) -> None:
         write_text(self.path, self._text(self.rows))
@@ -142,11 +141,11 @@ class Row:
     Attributes
     ----------
     table, place
-        Where it stands, for messages: in which table, and in which line or row of it.
+        Position for messages: the table, and the line or row.
     number
-        Its line, or else its row, from 1.
+        Line, or else row, from 1.
     cells
-        Its texts by the names of their columns.
+        Texts by the names of their columns.
     """
 
     table: str
@@ -156,7 +155,7 @@ class Row:
 
     @property
     def where(self) -> str:
-        """Table and place."""
+        """Name of the table with its line."""
         return f"{self.table}, {self.place}"
 
 
@@ -167,9 +166,9 @@ class TextTable:
     Attributes
     ----------
     columns
-        Names.
+        Names of the columns.
     rows
-        What is below.
+        The rows below the head.
     """
 
     columns: Sequence[str]
@@ -179,22 +178,22 @@ class TextTable:
 def read_text_table(
     path: Path, hint: str, check_columns: Callable[[Sequence[str], str], None]
 ) -> TextTable:
-    """Return a CSV table that people write: with comments (#) and empty lines, cells as texts.
+    """Return a hand-written CSV table: with comments (#) and empty lines, cells as texts.
 
     Parameters
     ----------
     path
         The file, packed with gzip or xz or not.
     hint
-        What to do about a file that is empty, for the message.
+        Advice for an empty file, for the message.
     check_columns
-        Called with the names and where they stand before any row is read; raises InputError if
-        they do not serve.
+        Called with the names and their position before any row is read; raises InputError for
+        unsuitable names.
 
     Raises
     ------
     InputError
-        As for `read_csv`, naming the line.
+        As for `read_csv`; the message names the line.
     OSError
         If it cannot be read.
     """
@@ -209,14 +208,14 @@ def read_text_table(
 
 
 def csv_text(table: pd.DataFrame, **options: Any) -> str:
-    """Return a table as CSV without its index; texts in it do no harm in a spreadsheet.
+    """Return a table as CSV without its index; its texts are safe in a spreadsheet.
 
     Parameters
     ----------
     table
         Any table.
     **options
-        As of `pandas.DataFrame.to_csv`.
+        As for `pandas.DataFrame.to_csv`.
 
     Examples
     --------
@@ -224,9 +223,9 @@ def csv_text(table: pd.DataFrame, **options: Any) -> str:
     >>> csv_text(pd.DataFrame({"name": ["=A1", "b"], "x": [-1.0, 2.0]})).split()
     ['name,x', "'=A1,-1.0", 'b,2.0']
     """
-    words = [i for i, kind in enumerate(table.dtypes) if kind.kind not in "biufcmM"]
+    text_columns = [i for i, kind in enumerate(table.dtypes) if kind.kind not in "biufcmM"]
     safe = table.rename(columns=csv_cell)
-    for i in words:
+    for i in text_columns:
         safe = safe.assign(**{str(safe.columns[i]): table.iloc[:, i].map(csv_cell)})
     return str(safe.to_csv(index=False, lineterminator="\n", **options))
 
@@ -252,11 +251,11 @@ def frame_as_text(table: pd.DataFrame, name: str, *, index: str) -> TextTable:
     Parameters
     ----------
     table
-        Any DataFrame; what is missing becomes an empty text, numbers keep their value.
+        Any DataFrame; a missing value becomes an empty text, numbers keep their value.
     name
-        What messages call it.
+        Name of the table in messages.
     index
-        The column that the index stands for, if the table has none of that name.
+        The column for the index, if the table has no column of this name.
     """
     if index not in table:
         table = table.rename_axis(index).reset_index()
@@ -290,8 +289,8 @@ def read_csv(path: Path, *, as_text: bool = False) -> pd.DataFrame:
     Raises
     ------
     InputError
-        If it is no table in UTF-8, a column has no name of its own, there are too many, or a row
-        has not a cell for each.
+        If it is not a table in UTF-8, names of columns are missing or repeated, there are too many,
+        or a row has too few or too many cells.
     OSError
         If it cannot be read.
     """
@@ -328,7 +327,7 @@ def _decoded(path: Path, largest: int) -> str:
 def _records(
     path: Path | str, text: str, comment: str = "", most: int = ROWS
 ) -> Iterator[tuple[int, list[str]]]:
-    """Yield the first line and the cells of each record, which has as many as there are names."""
+    """Yield the first line and the cells of each record, all of the same length."""
     pulled: list[int] = []
     reader = csv.reader(_numbered(path, text, comment, pulled), strict=True)
     names: list[str] = []
@@ -357,14 +356,14 @@ def _records(
 def _numbered(path: Path | str, text: str, comment: str, pulled: list[int]) -> Iterator[str]:
     """Yield the lines that are neither empty nor comments, noting their numbers in `pulled`."""
     length = 0
-    for number, found in enumerate(LINES.finditer(text), 1):
-        start, end = found.span()
+    for number, match in enumerate(LINES.finditer(text), 1):
+        start, end = match.span()
         length = end - start if not pulled else length + end - start
         if length > LINE:  # before the reader makes cells of it
             raise InputError(
                 f"{path}, line {number}: not a table: a row longer than {LINE // MB} MB"
             )
-        line = found.group()
+        line = match.group()
         if comment and (not line.strip() or line.lstrip().startswith(comment)):
             continue
         pulled.append(number)
@@ -378,4 +377,4 @@ def _check_names(names: Sequence[str], where: str) -> None:
         )
     for number, name in enumerate(names):  # few, as was checked
         if name in names[:number]:
-            raise InputError(f"{where}: not a table: the column {quoted(name)} is there twice")
+            raise InputError(f"{where}: not a table: the column {quoted(name)} occurs twice")

@@ -1,4 +1,4 @@
-"""Films of runs: the particles over time, as a run records them; docs/view.md has the format."""
+"""Films of runs: the particles over time (docs/reference/film.md has the format)."""
 
 from __future__ import annotations
 
@@ -11,10 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 import snowshed._core as _core
-from snowshed.io.arrays import Floats, Integers
-from snowshed.io.messages import shortened
-from snowshed.io.paths import PathLike
-from snowshed.io.printable import printable
+from snowshed.base.arrays import Floats, Integers
+from snowshed.base.messages import printable, shortened
+from snowshed.base.paths import PathLike
 
 #: Name of the film in a results folder.
 FILM = "film.bin"
@@ -22,7 +21,7 @@ LINEAR_STEPS = 64.0  # up to about which codes are even steps
 
 
 class FilmQuantity(NamedTuple):
-    """A quantity of particles that a film holds, and the step in which small values are stored."""
+    """A quantity of particles in a film, and the step in which small values are stored."""
 
     name: str
     unit: str
@@ -49,7 +48,7 @@ def _shown(text: str) -> str:
 
 
 class FrameFacts(NamedTuple):
-    """What is known of a frame before it is decoded: time (s), event and particles."""
+    """Facts about a frame before it is decoded: time (s), event and particles."""
 
     time: float
     event: int
@@ -63,19 +62,19 @@ class FilmFrame:
     Attributes
     ----------
     time
-        s, through all events.
+        Times of the frames, through all events, s.
     event
-        Whose event this is, from 1.
+        Number of the event, from 1.
     ids : (n,)
-        Of the particles, rising.
+        Ids of the particles, rising.
     events, materials : (n,)
-        Which event and which of the scene's snows each particle is of.
+        Event of each particle, and its index among the scene's snows.
     radii : (n,)
-        m; empty where the method has none.
+        Grid size, m; empty if the method has none.
     positions : (n, 3)
         m; y is 0 in 2D.
     codes : (n, q)
-        Of the film's quantities.
+        Codes of the film's quantities.
     """
 
     time: float
@@ -99,8 +98,8 @@ class Film:
     Raises
     ------
     InputError
-        If it cannot be read, is no film, or damaged. A last frame that is cut off, as a killed run
-        leaves it, is left out; `whole` is false then, and `notes` say so.
+        If it cannot be read, is not a film, or damaged. An incomplete last frame, as a killed run
+        leaves it, is dropped; `whole` is false then, and `notes` mention it.
 
     Examples
     --------
@@ -129,22 +128,19 @@ class Film:
             FilmQuantity(_shown(name), _shown(unit), _shown(meaning), step)
             for name, unit, meaning, step in reader.quantities
         )
-        self.frames = tuple(FrameFacts(*one) for one in reader.frames)
+        self.frames = tuple(FrameFacts(*frame) for frame in reader.frames)
 
     @property
     def notes(self) -> list[str]:
-        """What should be known of the film as a record of the run."""
+        """Notes on the limits of the film as a record of the run."""
         if not self.whole:
-            return ["the film ends within a frame: its run still goes on, or was killed"]
+            return ["the film ends within a frame: its run is still active, or was killed"]
         if self.version == 1:
-            return [
-                "the film is of version 1, which knows the checksum of each frame, but not whether "
-                "frames are missing at its end"
-            ]
+            return ["the film is of version 1, which does not detect missing frames at its end"]
         return [] if self.closed else ["the film is not complete: its run has not come to its end"]
 
     def checksum(self, frames: int) -> str:
-        """Return the checksum of the first so many frames, as run.json holds it."""
+        """Return the checksum of the first frames, as run.json holds it."""
         return _core.FilmReader(self.path).checksum(frames)
 
     def __iter__(self) -> Iterator[FilmFrame]:
@@ -152,19 +148,19 @@ class Film:
         for _ in reader.frames:
             yield self._frame(reader.next())
 
-    def _frame(self, found: dict[str, object]) -> FilmFrame:
-        places = np.asarray(found["positions"])
-        positions = np.zeros((len(places), 3))
-        positions[:, [0, 2] if self.dimension == 2 else [0, 1, 2]] = self.quantum * places
+    def _frame(self, decoded: dict[str, object]) -> FilmFrame:
+        points = np.asarray(decoded["positions"])
+        positions = np.zeros((len(points), 3))
+        positions[:, [0, 2] if self.dimension == 2 else [0, 1, 2]] = self.quantum * points
         return FilmFrame(
-            time=float(found["time"]),  # type: ignore[arg-type]
-            event=int(found["event"]),  # type: ignore[call-overload]
-            ids=np.asarray(found["ids"]),
-            events=np.asarray(found["events"]),
-            materials=np.asarray(found["materials"]),
-            radii=self.quantum * np.asarray(found["radii"]),
+            time=float(decoded["time"]),  # type: ignore[arg-type]
+            event=int(decoded["event"]),  # type: ignore[call-overload]
+            ids=np.asarray(decoded["ids"]),
+            events=np.asarray(decoded["events"]),
+            materials=np.asarray(decoded["materials"]),
+            radii=self.quantum * np.asarray(decoded["radii"]),
             positions=positions,
-            codes=np.asarray(found["codes"]),
+            codes=np.asarray(decoded["codes"]),
         )
 
     def __repr__(self) -> str:

@@ -1,4 +1,4 @@
-"""Reading files that somebody else may have written, of whatever size."""
+"""Reading files from untrusted sources, of any size."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from snowshed._core import InputError
-from snowshed.io.limits import MB, PIPE, PIPE_SILENCE, TEXT
+from snowshed.base.limits import MB, PIPE, PIPE_SILENCE, TEXT
 
 
 def read_regular(path: Path) -> bytes:
@@ -53,7 +53,7 @@ def first_bytes(path: Path, count: int) -> bytes:
 
 
 def open_regular(path: Path) -> BinaryIO:
-    """Return an open file that is no device and no pipe, for which nobody waits.
+    """Return an open file that is neither a device nor a pipe, without waiting.
 
     Raises
     ------
@@ -77,7 +77,7 @@ def open_regular(path: Path) -> BinaryIO:
 
 
 def stored_bytes(file: BinaryIO, enough: int) -> int:
-    """Return how many bytes of a file are not holes, counted no farther than `enough`.
+    """Return the number of bytes of a file outside holes, counted up to `enough`.
 
     Holes read as zeros and take no room on the disk, so a file may claim any size.
 
@@ -89,18 +89,18 @@ def stored_bytes(file: BinaryIO, enough: int) -> int:
     ...     stored_bytes(file, 1 << 20) < 1 << 20
     True
     """
-    found, at, end = 0, 0, os.fstat(file.fileno()).st_size
+    length, at, end = 0, 0, os.fstat(file.fileno()).st_size
     place = file.tell()
     try:
-        while at < end and found < enough:
+        while at < end and length < enough:
             data = os.lseek(file.fileno(), at, os.SEEK_DATA)
             at = os.lseek(file.fileno(), data, os.SEEK_HOLE)
-            found += at - data
+            length += at - data
     except OSError:  # no data behind this place
         pass
     finally:
         file.seek(place)
-    return found
+    return length
 
 
 def _open_at_once(path: str, flags: int) -> int:
@@ -115,14 +115,14 @@ def _memory() -> int:
 
 
 def read_input(path: Path, largest: int = TEXT) -> bytes:
-    """Return the content of a file; devices without end are read no farther than `largest` bytes.
+    """Return the content of a file; endless devices are read up to `largest` bytes.
 
-    A pipe is read as long as its writer goes on, but nothing waits for a writer that is silent.
+    A pipe is read until its writer closes it; a silent writer is not waited for.
 
     Raises
     ------
     InputError
-        If it is longer than the limit, or a pipe into which nothing is written.
+        If it is longer than the limit, or a pipe without a writer.
     OSError
         If it cannot be read.
 
@@ -138,7 +138,7 @@ def read_input(path: Path, largest: int = TEXT) -> bytes:
         if not stat.S_ISREG(status.st_mode):
             content = _awaited(file.fileno(), path, largest)
         elif status.st_size <= largest:
-            content = file.read(largest + 1) or b""  # None of what has nothing to say yet
+            content = file.read(largest + 1) or b""  # None before the first byte
         if status.st_size > largest or len(content) > largest:
             limit = f"{largest} bytes" if largest % MB else f"{largest // MB} MB"
             raise InputError(f"{path}: longer than {limit}")
@@ -146,13 +146,13 @@ def read_input(path: Path, largest: int = TEXT) -> bytes:
 
 
 def _awaited(descriptor: int, path: Path, largest: int) -> bytes:
-    """Return what a pipe or a device holds, at most `largest` + 1 bytes."""
+    """Return the content of a pipe or a device, at most `largest` + 1 bytes."""
     content, end = bytearray(), time.monotonic() + PIPE
     while len(content) <= largest:
         wait = min(end - time.monotonic(), PIPE_SILENCE)
         if wait <= 0.0 or not select.select([descriptor], [], [], wait)[0]:
             raise InputError(
-                f"{path}: a pipe or a device to which nobody writes, or too slowly; write its "
+                f"{path}: a pipe or a device without a writer, or with a slow one; write its "
                 "content to a file first"
             )
         try:

@@ -1,4 +1,4 @@
-"""JSON objects in files that somebody may have damaged."""
+"""JSON objects in files that may be damaged."""
 
 from __future__ import annotations
 
@@ -7,21 +7,17 @@ import sys
 import zlib
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, Dict, List, Union
+from typing import Any
 
 from snowshed._core import InputError
+from snowshed.base.messages import shortened
 from snowshed.io.input_file import read_input
 from snowshed.io.json_text import loads
-from snowshed.io.messages import shortened
 
-#: What `json.loads` returns.
-JsonValue = Union[None, bool, int, float, str, List["JsonValue"], Dict[str, "JsonValue"]]
-JsonObject = Dict[str, JsonValue]
-
-#: How the last value of an object begins that says its checksum, as the core writes it.
+#: Beginning of an object's last value, its checksum, as the core writes it.
 SEAL = b',\n  "checksum": "'
 
-#: What the values of a JSON object may have to be, in words.
+#: Names of the required types of JSON values.
 KINDS = {dict: "an object", list: "a list", str: "a text", float: "a finite number"}
 
 
@@ -31,8 +27,8 @@ def parse_object(text: str | bytes, where: str) -> dict[str, Any]:
     Raises
     ------
     InputError
-        If it holds anything else, a key twice, or says a checksum that is not its own, naming
-        `where` it is.
+        If the text is not an object, a key occurs twice, or the checksum is wrong; the message
+        names `where` it is.
 
     Examples
     --------
@@ -40,13 +36,13 @@ def parse_object(text: str | bytes, where: str) -> dict[str, Any]:
     {'wall_s': 2.5}
     """
     try:
-        found = loads(text)
+        data = loads(text)
     except (ValueError, RecursionError) as error:
         raise InputError(f"{where}: damaged: {shortened(str(error), 200)}") from None
-    if not isinstance(found, dict):
+    if not isinstance(data, dict):
         raise InputError(f"{where}: damaged: not a JSON object")
     _check_seal(text if isinstance(text, bytes) else text.encode(), where)
-    return found
+    return data
 
 
 def _check_seal(text: bytes, where: str) -> None:
@@ -61,29 +57,29 @@ def read_object(path: Path) -> dict[str, Any]:
     return parse_object(read_input(path), str(path))
 
 
-def check_values(found: Any, kinds: Mapping[str, type], where: str) -> None:
+def check_values(data: Any, kinds: Mapping[str, type], where: str) -> None:
     """Raise InputError unless JSON data is an object with these keys and kinds of values.
 
     Parameters
     ----------
-    found
+    data
         The data.
     kinds
         For every key one of `KINDS`.
     where
-        Where the data is, for the message.
+        Position of the data, for the message.
 
     Examples
     --------
     >>> check_values({"wall_s": 2.5, "machine": "a"}, {"wall_s": float}, "run.json")
     """
-    if not isinstance(found, dict):
+    if not isinstance(data, dict):
         raise InputError(f"{where}: damaged: not a JSON object")
     for key, kind in kinds.items():
-        if key not in found:
+        if key not in data:
             raise InputError(f"{where}: damaged: /{key} is missing")
-        if not (is_number(found[key]) if kind is float else isinstance(found[key], kind)):
-            shown = shortened(json.dumps(found[key]))
+        if not (is_number(data[key]) if kind is float else isinstance(data[key], kind)):
+            shown = shortened(json.dumps(data[key]))
             raise InputError(f"{where}: damaged: /{key}: {shown} is not {KINDS[kind]}")
 
 

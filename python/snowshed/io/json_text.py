@@ -1,4 +1,4 @@
-"""The text of JSON, with what `json.loads` lets pass: a key that is given twice."""
+"""The text of JSON, with a check that `json.loads` omits: repeated keys."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def loads(text: Union[str, bytes]) -> Any:
     Raises
     ------
     ValueError
-        If it is no JSON, or a key of an object is given twice: the message says where.
+        If it is not JSON, or a key occurs twice in an object; the message names the line.
     RecursionError
         If it is nested too deep.
 
@@ -44,16 +44,16 @@ def loads(text: Union[str, bytes]) -> Any:
 
 
 def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    found = dict(pairs)
-    if len(found) < len(pairs):
+    mapping = dict(pairs)
+    if len(mapping) < len(pairs):
         raise _RepeatedKeyError
-    return found
+    return mapping
 
 
 def _repeated(text: str) -> Iterator[tuple[str, int]]:
-    """Yield path and line of the keys that are there for the second time, in a sound text."""
+    """Yield path and line of repeated keys in a valid text."""
     names: list[Union[str, int]] = []  # from the root to where the text is
-    seen: list[set[str]] = []  # keys of the objects around, and none of the lists
+    seen: list[set[str]] = []  # keys of the enclosing objects, and indices of the lists
     before = ""
     for token in _TOKEN.finditer(text):
         sign = token.group()
@@ -69,7 +69,7 @@ def _repeated(text: str) -> Iterator[tuple[str, int]]:
             key = str(json.loads(before))
             names[-1] = key
             if key in seen[-1]:
-                steps = (str(one).replace("~", "~0").replace("/", "~1") for one in names)
+                steps = (str(name).replace("~", "~0").replace("/", "~1") for name in names)
                 yield "/" + "/".join(steps), text.count("\n", 0, token.start()) + 1
             seen[-1].add(key)
         before = sign

@@ -1,4 +1,4 @@
-"""Packed files: gzip and xz, which may be small and unpack to more than the memory holds."""
+"""Packed files: gzip and xz, which may unpack to more than the memory."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from pathlib import Path
 from typing import Any
 
 from snowshed._core import InputError
-from snowshed.io.limits import KB, MB, MEMBERS, TEXT, UNPACKING
+from snowshed.base.limits import KB, MB, MEMBERS, TEXT, UNPACKING
 
 GZIP, XZ = b"\x1f\x8b", b"\xfd7zXZ\x00"
-#: What is not unpacked, by its first bytes.
+#: Refused packings, by their first bytes.
 OTHERS = {
     b"PK\x03\x04": "a zip archive",
     b"BZh": "packed with bzip2",
@@ -21,7 +21,7 @@ OTHERS = {
     b"\x28\xb5\x2f\xfd": "packed with zstd",
 }
 ZEROS = re.compile(rb"\0*")
-PART = 64 * KB  # fed at once, so that the rest is not copied for every member
+PART = 64 * KB  # chunk of input, so that the rest is not copied for every member
 
 
 def unpacked(content: bytes, path: Path, largest: int = TEXT) -> bytes:
@@ -30,16 +30,16 @@ def unpacked(content: bytes, path: Path, largest: int = TEXT) -> bytes:
     Parameters
     ----------
     content
-        Of the file, packed or not.
+        Content of the file, packed or not.
     path
-        Its name, for messages.
+        Name for messages.
     largest
-        Bytes that it may have when it is unpacked.
+        Largest unpacked size, bytes.
 
     Raises
     ------
     InputError
-        If it is damaged, longer than allowed, or packed in another way.
+        If the content is damaged, longer than allowed, or packed in another format.
 
     Examples
     --------
@@ -85,7 +85,7 @@ def _members(
     made_of: Callable[[Any, bytes, int], Iterator[bytes]],
     begin: Callable[[], Any],
 ) -> bytes:
-    """Return what the members hold, one after another; zeros may stand between and after them."""
+    """Return the joined contents of the members; zeros may stand between and after them."""
     made, start = bytearray(), 0
     for _ in range(MEMBERS):
         member = begin()

@@ -1,8 +1,8 @@
-"""Files of a results folder, checked by what its run.json says of them.
+"""Files of a results folder, checked against the checksums in its run.json.
 
-A table has a checksum of its rows through an event. Of any other file, run.json has the length and
-the checksum of what the run wrote; one that grows may have become longer while the run goes on.
-Folders of the version before have no such checksums.
+A table has a checksum of its rows through an event. For any other file, run.json holds the length
+and the checksum of the written part, because a growing file may be longer meanwhile. Folders of the
+version before have no such checksums.
 """
 
 from __future__ import annotations
@@ -17,12 +17,12 @@ from snowshed.io.input_file import read_regular
 from snowshed.io.json_file import read_object
 
 RECORD = "run.json"
-#: Files that `snowshed-run` does not keep up where it goes on with a run.
+#: Files that `snowshed-run` does not update when it resumes a run.
 OF_PYTHON = ("curve.csv", "energy_history.csv", "grains.json", "slide.json")
 
 
 def read_record(folder: Path) -> dict[str, Any]:
-    """Return what run.json of a results folder says; nothing where there is none.
+    """Return the content of run.json in a results folder; empty without the file.
 
     Raises
     ------
@@ -50,9 +50,9 @@ def file_mark(path: Path) -> tuple[int, str]:
 
 
 def check_run_file(path: Path) -> None:
-    """Raise InputError unless a file is as the run wrote it whose run.json stands beside it.
+    """Raise InputError unless a file matches the run.json beside it.
 
-    Nothing is checked where there is no run.json, or it is of the version before.
+    Nothing is checked without a run.json, or with one of the version before.
     """
     record = read_record(path.parent)
     tables, files = (record.get(name) for name in ("tables", "files"))

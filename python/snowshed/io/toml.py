@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from snowshed._core import InputError
-from snowshed.io.messages import shortened
+from snowshed.base.messages import shortened
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -29,7 +29,7 @@ def parse_toml(content: bytes) -> dict[str, Any]:
     Raises
     ------
     InputError
-        If it is none, or one whose keys have too many parts or that has too many tables.
+        If the text is not TOML, has keys with too many parts, or too many tables.
 
     Examples
     --------
@@ -75,7 +75,7 @@ def toml_value(value: object) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):
-        # TOML's escapes are those of JSON; it wants one more character escaped.
+        # TOML's escapes are those of JSON, and one more.
         return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
     if isinstance(value, (int, float)):
         return repr(value)
@@ -93,9 +93,9 @@ def toml_lines(values: Mapping[str, object], prefix: str = "") -> Iterator[str]:
     Parameters
     ----------
     values
-        By their keys, which may be dotted.
+        Values by their keys, which may be dotted.
     prefix
-        What stands before every key.
+        Text before every key.
 
     Examples
     --------

@@ -1,41 +1,35 @@
-"""The methods that a scene may choose.
-
-A further method is a class of settings in a module of its own, its line in `METHODS`, and its name
-in `MethodName`.
-"""
+"""The methods that a scene may choose: each is a folder beside this module, and a name here."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Literal, Optional
+from importlib import import_module
+from typing import Optional
 
 from snowshed._core import InputError
-from snowshed.io.json_file import JsonValue
-from snowshed.io.messages import suggestion
-from snowshed.methods.grains.settings import GrainsSettings
-from snowshed.methods.mpm import MpmSettings
-from snowshed.methods.mps import MpsSettings
+from snowshed.base.json_values import JsonValue
+from snowshed.base.messages import suggestion
+from snowshed.methods.method import Method
 from snowshed.methods.settings import MethodSettings
-from snowshed.methods.slide import SlideSettings
 
-MethodName = Literal["mpm", "slide", "grains", "mps"]
-DEFAULT: MethodName = "mpm"
+#: The folders of the methods; the first one is the method of scenes that name none.
+FOLDERS = ("mpm", "slide", "grains", "mps")
 
-#: The class of the settings of every method, by its name in a scene.
-METHODS: Mapping[str, type[MethodSettings]] = {
-    "mpm": MpmSettings,
-    "slide": SlideSettings,
-    "grains": GrainsSettings,
-    "mps": MpsSettings,
+#: The entry of every method, by its name in a scene.
+METHODS: Mapping[str, Method] = {
+    entry.name: entry
+    for folder in FOLDERS
+    for entry in [import_module(f"snowshed.methods.{folder}").METHOD]
 }
+DEFAULT = next(iter(METHODS))
 
 #: Where in a scene the name of the method and its settings stand.
 NAME_KEY = "method"
 SETTINGS_KEY = "numerics"
 
 
-def settings_class(method: Optional[str]) -> type[MethodSettings]:
-    """Return the class of a method's settings; None is the default method.
+def method_named(name: Optional[str]) -> Method:
+    """Return the method of a name; None stands for the default.
 
     Raises
     ------
@@ -44,15 +38,32 @@ def settings_class(method: Optional[str]) -> type[MethodSettings]:
 
     Examples
     --------
-    >>> settings_class("mpm").__name__
+    >>> method_named("mpm").settings.__name__
     'MpmSettings'
     """
-    name = method or DEFAULT
+    name = name or DEFAULT
     if name not in METHODS:
         raise InputError(
             f"/{NAME_KEY}: {name!r} is none of {', '.join(METHODS)}{suggestion(name, METHODS)}"
         )
     return METHODS[name]
+
+
+def method_of(scene: Mapping[str, JsonValue]) -> Method:
+    """Return the method that a scene's data chooses.
+
+    Raises
+    ------
+    InputError
+        If there is no such method.
+
+    Examples
+    --------
+    >>> method_of({}) is method_named(None)
+    True
+    """
+    name = scene.get(NAME_KEY)
+    return method_named(name if isinstance(name, str) else None)
 
 
 def settings_of(scene: Mapping[str, JsonValue]) -> MethodSettings:
@@ -68,9 +79,8 @@ def settings_of(scene: Mapping[str, JsonValue]) -> MethodSettings:
     >>> settings_of({"numerics": {"dx": 0.02}}).resolution
     0.02
     """
-    name = scene.get(NAME_KEY)
     given = scene.get(SETTINGS_KEY)
-    kind = settings_class(name if isinstance(name, str) else None)
+    kind = method_of(scene).settings
     return kind.from_data(given if isinstance(given, dict) else {}, f"/{SETTINGS_KEY}")
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar, Optional
 
-from snowshed.io.record import Record
+from snowshed.base.record import Record
 
 
 @dataclass
@@ -15,6 +15,8 @@ class MethodSettings(Record):
     #: The setting that is the size of the smallest thing the method resolves, m; empty where files
     #: that the scene names decide it.
     RESOLUTION: ClassVar[str]
+    #: What notes call things of this size, in the plural.
+    ELEMENTS: ClassVar[str] = "cells"
 
     @property
     def resolution(self) -> Optional[float]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Optional
 
 import numpy as np
@@ -15,12 +16,12 @@ if TYPE_CHECKING:
 #: Parameters of the snow that are named.
 ELASTIC = ("youngs_modulus", "poissons_ratio")
 PLASTIC = ("critical_state_slope", "preconsolidation_pressure", "cohesion", "hardening_factor")
-#: What becomes of the stack between events.
-BETWEEN = {"carry": "the stack stays", "reseed": "the stack is seeded anew"}
+#: Treatment of the stack between events.
+BETWEEN = {"carry": "the stack stays", "reseed": "the stack is reseeded"}
 MOST_LAYERS = 4  # whose thicknesses are named one by one
 
 
-def scene_caption(scene: dict[str, Any], damping_rate: Optional[float] = None) -> str:
+def scene_caption(scene: Mapping[str, Any], damping_rate: Optional[float] = None) -> str:
     """Return what tells one scene from another.
 
     Parameters
@@ -92,16 +93,16 @@ def _slab(slab: dict[str, Any]) -> str:
     return f"layers {', '.join(thicknesses)} m"
 
 
-def _span(scene: dict[str, Any], name: str) -> str:
+def _span(scene: Mapping[str, Any], name: str) -> str:
     """Return a parameter of the snow with its unit; from where to where, if layers differ."""
     layers = (scene.get("slab") or {}).get("layers") or [{}]
-    found = [layer.get("snow", scene["snow"])[name] for layer in layers]
-    known = label(f"snow.{name}")
-    ends = sorted({min(found), max(found)})
-    return " to ".join([*map(known.value, ends[:-1]), known.quantity(ends[-1])])
+    values = [layer.get("snow", scene["snow"])[name] for layer in layers]
+    parameter = label(f"snow.{name}")
+    ends = sorted({min(values), max(values)})
+    return " to ".join([*map(parameter.value, ends[:-1]), parameter.quantity(ends[-1])])
 
 
-def _snow(scene: dict[str, Any]) -> str:
+def _snow(scene: Mapping[str, Any]) -> str:
     elastic = scene["snow"]["model"] == "elastic"
     shown = ELASTIC if elastic else (*ELASTIC, *PLASTIC)
     values = [f"{label(f'snow.{name}').symbol} {_span(scene, name)}" for name in shown]

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 from snowshed.plot.figure_style import BODY, COLOURS, FAINT, INK, NOISE, STACK, STYLE, blank
 
 Band = tuple[float, float]
@@ -52,23 +52,28 @@ def burial_figure(required: Floats, levels: Sequence[tuple[float, float, float, 
         return figure
 
 
-def design_figure(found: Sequence[tuple[float, float, float, Band]], probability: float) -> Figure:
+def design_figure(
+    designs: Sequence[tuple[float, float, float, Band]], probability: float
+) -> Figure:
     """Draw the required height against slope length, a line for each tilt.
 
     Parameters
     ----------
-    found
+    designs
         Slope length, m, tilt, degrees, required height, m, and its lower and upper bound.
     probability
-        Of staying clear in a winter.
+        Share of winters in which the edge stays clear.
     """
     with rc_context(STYLE):
         figure = blank(6.4, 3.6)
         axes = figure.subplots()
-        for colour, tilt in zip(COLOURS * 9, sorted({one[1] for one in found})):
-            own = sorted(one for one in found if one[1] == tilt)
-            lengths, heights = [one[0] for one in own], np.array([one[2] for one in own])
-            bounds = np.array([one[3] for one in own]).T
+        for colour, tilt in zip(COLOURS * 9, sorted({design[1] for design in designs})):
+            own = sorted(design for design in designs if design[1] == tilt)
+            lengths, heights = (
+                [design[0] for design in own],
+                np.array([design[2] for design in own]),
+            )
+            bounds = np.array([design[3] for design in own]).T
             errors = np.abs(bounds - heights)
             axes.errorbar(
                 lengths, heights, errors, fmt="o-", color=colour, capsize=3, label=f"tilt {tilt:g}°"
@@ -86,7 +91,7 @@ def causes_figure(shares: Mapping[str, float]) -> Figure:
     Parameters
     ----------
     shares
-        Parts from 0 to 1 by cause in words.
+        Shares from 0 to 1 by the label of the cause.
     """
     with rc_context(STYLE):
         figure = blank(6.4, 0.9 + 0.34 * len(shares))
@@ -102,5 +107,5 @@ def causes_figure(shares: Mapping[str, float]) -> Figure:
         axes.set_xlim(0.0, 1.15 * max(parts))
         axes.grid(False)
         axes.spines["left"].set_color(FAINT)
-        axes.set_title("What the required height varies with, % of its variance")
+        axes.set_title("Causes of the variance of the required height, %")
         return figure

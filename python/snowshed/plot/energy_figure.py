@@ -1,4 +1,4 @@
-"""The energy of a run over time: what the snow holds, and where the rest went."""
+"""The energy of a run over time: the snow's own, and its losses."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 HELD, OF_HEIGHT = ("kinetic_j", "elastic_j", "bonds_j"), ("gravitational_j", "potential_j")
 #: The other columns that are no loss.
 SUMS = ("added_j", "residual_j")
-SMALL = 1e-3  # of the largest: what is smaller is not drawn
+SMALL = 1e-3  # smaller shares of the largest energy are not drawn
 SCALES = ((1e9, "GJ"), (1e6, "MJ"), (1e3, "kJ"), (1.0, "J"), (1e-3, "mJ"), (1e-6, "µJ"))
 WIDTH, HEIGHT = 9.0, 6.4  # inches
 MOST_MARKED = 40  # events whose ends are marked
@@ -29,9 +29,8 @@ MOST_MARKED = 40  # events whose ends are marked
 def energy_figure(table: pd.DataFrame, scene: Mapping[str, Any]) -> Figure:
     """Draw the energy balance of a run over time.
 
-    Above, the energy that the snow holds: of its motion and of its elastic strain. Below, what
-    height has released and new snow has brought in sum, and what took it up. Thin vertical lines
-    are the beginnings of events.
+    Above: the energy of the snow, kinetic and elastic. Below: the cumulative energy from height and
+    new snow, and its sinks. Thin vertical lines mark the beginnings of events.
 
     Parameters
     ----------
@@ -63,12 +62,12 @@ def energy_figure(table: pd.DataFrame, scene: Mapping[str, Any]) -> Figure:
         above.set_title("In the snow")
         lines = {name: table[name] for name in taken}
         largest = max((np.abs(line).max() for line in (released, *lines.values())), default=0.0)
-        kept = {n: line for n, line in lines.items() if np.abs(line).max() > SMALL * largest}
-        shown = {"released by height, and brought": released, **kept}
+        visible = {n: line for n, line in lines.items() if np.abs(line).max() > SMALL * largest}
+        shown = {"released by height, and brought": released, **visible}
         if "residual_j" in table:
             shown["gained (+) or lost by time integration"] = table["residual_j"]
         _draw(below, table, shown, per_width)
-        below.set_title("Released, and what took it up, in sum")
+        below.set_title("Released energy, and its sinks, cumulative")
         below.set_xlabel("time through all events, s")
         describe(figure, f"Energy balance\n{_caption(scene)}")
     return figure
@@ -112,4 +111,4 @@ def _named(name: str) -> str:
 
 def _scale(largest: float) -> tuple[float, str]:
     """Return the unit in which an energy is between 1 and 1000, as far as there is one."""
-    return next((one for one in SCALES if largest >= one[0]), SCALES[-1])
+    return next((scale for scale in SCALES if largest >= scale[0]), SCALES[-1])

@@ -18,7 +18,7 @@ INK, FAINT, STACK, BODY = "#22303c", "#8a97a3", "#2b6a8f", "#c8553d"
 FIRST, LAST = 0.08, 0.86
 #: Colours that stay apart for colour-blind eyes and in print (Okabe and Ito).
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8c6d31")
-#: What stands for noise, beside the colours of effects.
+#: Colour of noise, beside the colours of effects.
 NOISE = "#c9d1d8"
 GRID = "#e6eaee"
 #: For `matplotlib.rc_context`.
@@ -64,17 +64,17 @@ def blank(width: float, height: float) -> Figure:
 
 
 def headline(figure: Figure, text: str) -> None:
-    """Write what a figure shows above all of its diagrams, at the left."""
+    """Write the subject of a figure above all of its diagrams, at the left."""
     figure.suptitle(text, x=0.01, ha="left", color=INK, fontsize=10.5)
 
 
 def describe(figure: Figure, text: str) -> None:
-    """Write the key numbers of what a figure shows above it, in small letters, at the left."""
+    """Write the key numbers of a figure above it, in small letters, at the left."""
     figure.suptitle(text, x=0.02, ha="left", color=INK, fontsize=9, linespacing=1.5)
 
 
 def quiet(axes: Axes) -> None:
-    """Leave of a frame what is needed to read it."""
+    """Remove the parts of a frame that are not needed."""
     axes.spines[["top", "right"]].set_visible(False)
     axes.spines[["left", "bottom"]].set_color(FAINT)
     axes.tick_params(colors=INK, labelsize=9)

@@ -11,9 +11,9 @@ from typing import Any, Optional
 
 import numpy as np
 
+from snowshed.base.messages import printable
 from snowshed.io.atomic import write_text
 from snowshed.io.film import Film
-from snowshed.io.printable import printable
 from snowshed.plot.film_picture import still_picture, view_lift
 from snowshed.plot.film_summary import Colouring, FilmSummary, summarise_film
 from snowshed.plot.html_page import Grid, template
@@ -25,7 +25,7 @@ SCRIPTS = ("film.js", "camera.js", "draw.js", "overlay.js", "controls.js", "view
 
 @dataclass(frozen=True)
 class MeasureLine:
-    """A length that is drawn: its ends (m), after which event, and what it says."""
+    """A dimension in the picture: its ends (m), its event, and its label."""
 
     event: int
     start: Sequence[float]
@@ -35,24 +35,24 @@ class MeasureLine:
 
 @dataclass(frozen=True)
 class ViewContent:
-    """What a page shows besides its film.
+    """The content of a page besides its film.
 
     Attributes
     ----------
     title, sentence
-        What this is; what came of it.
+        Title of the page, and its result in a sentence.
     facts
         Names and values.
     notes
-        What should be known.
+        Notes for readers.
     solids, focus
-        What snow collides with, and a box that should be seen.
+        Solids of the scene, and a box that must be in view.
     measures
         Lengths that are drawn.
     table
         The measures of all events.
     events
-        How many there are in all.
+        Number of events.
     """
 
     title: str
@@ -74,9 +74,9 @@ def write_view_page(file: Path, film: Film, content: ViewContent) -> None:
     file
         The HTML file; it appears whole or not at all.
     film
-        What moves.
+        The film.
     content
-        What stands around it.
+        The surroundings of the film.
     """
     summary = summarise_film(film)
     page = template("snowshed.plot", "view.html.j2")
@@ -86,10 +86,10 @@ def write_view_page(file: Path, film: Film, content: ViewContent) -> None:
         sentence=content.sentence,
         described=f"{content.title}, moving view",
         style=(VIEWER / "view.css").read_text(encoding="utf-8"),
-        script="\n".join((VIEWER / one).read_text(encoding="utf-8") for one in SCRIPTS),
+        script="\n".join((VIEWER / script).read_text(encoding="utf-8") for script in SCRIPTS),
         data=_embedded(_data(film, summary, content)),
         film=base64.b64encode(film.path.read_bytes()).decode(),
-        colourings=[one.option for one in summary.colourings],
+        colourings=[colouring.option for colouring in summary.colourings],
         still=still_picture(film, summary, content.solids, content.focus),
         notes=[*content.notes, *_film_notes(film)],
         facts=[*content.facts, *_film_facts(film)],
@@ -110,15 +110,15 @@ def _data(film: Film, summary: FilmSummary, content: ViewContent) -> dict[str, A
         "lift": view_lift(content.solids),
         "events": content.events,
         "meshes": [solid.data for solid in content.solids],
-        "colourings": [_colouring(one) for one in summary.colourings],
+        "colourings": [_colouring(colouring) for colouring in summary.colourings],
         "measures": [
             {
-                "event": one.event,
-                "from": list(one.start),
-                "to": list(one.end),
-                "label": printable(one.label),
+                "event": measure.event,
+                "from": list(measure.start),
+                "to": list(measure.end),
+                "label": printable(measure.label),
             }
-            for one in content.measures
+            for measure in content.measures
         ],
     }
 
@@ -127,12 +127,17 @@ def _box(box: Box) -> dict[str, list[float]]:
     return {"low": box.low.tolist(), "high": box.high.tolist()}
 
 
-def _colouring(one: Colouring) -> dict[str, Any]:
+def _colouring(colouring: Colouring) -> dict[str, Any]:
     tables = {
-        name: base64.b64encode(np.round(255 * one.colours(dark=dark)).astype(np.uint8).tobytes())
+        name: base64.b64encode(
+            np.round(255 * colouring.colours(dark=dark)).astype(np.uint8).tobytes()
+        )
         for name, dark in (("light", False), ("dark", True))
     }
-    return {**asdict(one), "colours": {name: table.decode() for name, table in tables.items()}}
+    return {
+        **asdict(colouring),
+        "colours": {name: table.decode() for name, table in tables.items()},
+    }
 
 
 def _embedded(data: Mapping[str, Any]) -> Any:
@@ -156,7 +161,7 @@ def _film_notes(film: Film) -> list[str]:
 
 
 def _film_facts(film: Film) -> list[tuple[str, str]]:
-    most = max(one.particles for one in film.frames)
+    most = max(frame.particles for frame in film.frames)
     return [
         ("film", f"{len(film.frames)} frames, every {film.interval:.3g} s of the snow's time"),
         ("particles shown", f"{most:,}"),

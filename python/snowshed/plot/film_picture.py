@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 from snowshed.io.film import Film, FilmFrame
 from snowshed.plot.figure_style import blank
 from snowshed.plot.film_summary import Colouring, FilmSummary
@@ -25,12 +25,12 @@ WIDTH = 8.0  # inches
 
 def view_lift(solids: Sequence[Solid]) -> float:
     """Return how high above the horizon the camera begins, radians."""
-    return TERRAIN_LIFT if any(one.name == "terrain" for one in solids) else LIFT
+    return TERRAIN_LIFT if any(solid.name == "terrain" for solid in solids) else LIFT
 
 
 @dataclass(frozen=True)
 class Projection:
-    """A view from far away: what is right, up and toward the viewer (rows)."""
+    """A distant view: the directions right, up and toward the viewer (rows)."""
 
     axes: Floats
 
@@ -45,7 +45,7 @@ class Projection:
         return cls(np.array([right, np.cross(back, right), back]))
 
     def __call__(self, points: Floats) -> Floats:
-        """Return points (n, 3) as they are seen: right, up and toward the viewer."""
+        """Return points (n, 3) in the view: right, up and toward the viewer."""
         seen: Floats = points @ self.axes.T
         return seen
 
@@ -64,11 +64,11 @@ class FilmPainter:
     Parameters
     ----------
     film, summary
-        What moves, and what is known of it.
+        The film and its summary.
     solids, focus
-        What stands around it, and a box that should be seen.
+        Solids of the scene, and a box that must be in view.
     width
-        Of the picture, inches.
+        Width of the picture, inches.
     """
 
     def __init__(
@@ -125,19 +125,19 @@ class FilmPainter:
         colours = colouring.of(frame, self.film)[order]
         depth = seen[order, 2]
         span = float(np.ptp(depth)) if len(depth) else 0.0
-        if span > 0 and self.film.dimension == 3:  # what is farther away is darker
+        if span > 0 and self.film.dimension == 3:  # more distant particles are darker
             colours = colours * (0.78 + 0.22 * ((depth - depth.min()) / span)[:, None])
         self._draw_balls(seen[order, :2], colours)
         return self.figure
 
-    def _draw_balls(self, places: Floats, colours: Floats) -> None:
+    def _draw_balls(self, positions: Floats, colours: Floats) -> None:
         """Draw each ball as a disc with a lighter one on it, where the light falls."""
         light = np.clip(0.92 * colours + 0.08, 0.0, 1.0)
-        lit = places + self.radius * np.array([-0.2, 0.25])
-        self.dots.set_offsets(np.stack([places, lit], axis=1).reshape(-1, 2))
+        lit = positions + self.radius * np.array([-0.2, 0.25])
+        self.dots.set_offsets(np.stack([positions, lit], axis=1).reshape(-1, 2))
         both = np.stack([0.8 * colours, light], axis=1).reshape(-1, 3).tolist()
         self.dots.set_facecolor([(red, green, blue) for red, green, blue in both])
-        self.dots.set_sizes(np.tile([self.size, 0.42 * self.size], len(places)))
+        self.dots.set_sizes(np.tile([self.size, 0.42 * self.size], len(positions)))
 
 
 def still_picture(film: Film, summary: FilmSummary, solids: Sequence[Solid], focus: Box) -> Picture:

@@ -1,4 +1,4 @@
-"""What a page or a video needs to know of a film before it shows it."""
+"""Facts about a film that a page or a video needs first."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from snowshed._core import InputError
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 from snowshed.io.film import Film, FilmFrame
 from snowshed.plot.solids import Box
 
 COLOURS = "viridis"  # perceptually uniform, and safe for colour-blind eyes
 #: Parts of it that stand out from a light and from a dark ground.
 ON_LIGHT, ON_DARK = (0.0, 0.88), (0.25, 1.0)
-SHOWN_SHARES = (0.005, 0.995)  # of all values: what the scale of colours spans
+SHOWN_SHARES = (0.005, 0.995)  # share of all values within the scale of colours
 MOST_LABELS = 10  # of events; of more, a scale is shown
 SPACING_SAMPLE = 4000  # particles whose nearest neighbours are looked for
 BALL = 0.72  # radius over the distance of neighbours, so that snow looks closed
@@ -27,16 +27,16 @@ SHIFT = 1 << 15  # codes lie between -711 and 711, and are counted with this shi
 
 @dataclass(frozen=True)
 class Colouring:
-    """A way to colour the particles.
+    """A colouring of the particles.
 
     Attributes
     ----------
     name, title
-        Of a quantity, "event" or "material"; what the legend says.
+        Name of a quantity, "event" or "material"; and the title of its legend.
     low, high
         Values with the first and the last colour.
     labels
-        Of whole numbers; None of quantities.
+        Labels of whole numbers; None for quantities.
     """
 
     name: str
@@ -47,7 +47,7 @@ class Colouring:
 
     @property
     def option(self) -> str:
-        """What a list to choose from says."""
+        """Text in a list of choices."""
         if self.labels is not None or self.name == "event":
             return {"event": "event", "material": "snow"}[self.name]
         return self.title.partition(",")[0].lower()
@@ -65,7 +65,7 @@ class Colouring:
         elif self.name == "material":
             values = frame.materials.astype(float)
         else:
-            which = [one.name for one in film.quantities].index(self.name)
+            which = [quantity.name for quantity in film.quantities].index(self.name)
             values = film.quantities[which].values(frame.codes[:, which]).astype(float)
         part = (values - self.low) / max(self.high - self.low, 1e-20)
         chosen: Floats = self.colours()[np.clip(255 * part, 0, 255).round().astype(int)]
@@ -74,14 +74,14 @@ class Colouring:
 
 @dataclass(frozen=True)
 class FilmSummary:
-    """What all frames of a film have in common.
+    """Common properties of all frames of a film.
 
     Attributes
     ----------
     bounds
-        Of all positions at all times.
+        Bounds of all positions at all times.
     radius
-        Of a particle's ball, m.
+        Radius of a particle, m.
     colourings
         Those that tell particles apart, the one to begin with first.
     last
@@ -95,7 +95,7 @@ class FilmSummary:
 
 
 def summarise_film(film: Film) -> FilmSummary:
-    """Return what all frames of a film have in common.
+    """Return the common properties of all frames of a film.
 
     Raises
     ------
@@ -151,21 +151,21 @@ def _colourings(
     film: Film, ranges: Sequence[tuple[float, float]], materials: int
 ) -> list[Colouring]:
     events = film.frames[-1].event
-    found = []
+    colourings = []
     if events > 1:
         labels = [f"event {k}" for k in range(1, events + 1)] if events <= MOST_LABELS else None
         title = "Brought by" if labels else "Brought by event"
-        found.append(Colouring("event", title, 1.0, float(events), labels))
+        colourings.append(Colouring("event", title, 1.0, float(events), labels))
     for quantity, (low, high) in zip(film.quantities, ranges):
         if high > low:
             unit = "" if quantity.unit == "1" else f", {quantity.unit.replace('m3', 'm³')}"
-            found.append(Colouring(quantity.name, _short(quantity.meaning) + unit, low, high))
+            colourings.append(Colouring(quantity.name, _short(quantity.meaning) + unit, low, high))
     if materials:
         labels = [f"snow {k + 1}" for k in range(materials + 1)]
-        found.append(Colouring("material", "Snow", 0.0, float(materials), labels))
-    if not found:
-        found.append(Colouring("event", "Brought by", 1.0, 2.0, ["event 1"]))
-    return found
+        colourings.append(Colouring("material", "Snow", 0.0, float(materials), labels))
+    if not colourings:
+        colourings.append(Colouring("event", "Brought by", 1.0, 2.0, ["event 1"]))
+    return colourings
 
 
 def _short(meaning: str) -> str:

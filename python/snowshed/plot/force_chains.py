@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from snowshed.io.arrays import Booleans, Floats
+from snowshed.base.arrays import Booleans, Floats
 from snowshed.methods.grains.contacts import GrainContacts
 from snowshed.plot.figure_style import BODY, FAINT, INK, STACK, STYLE, blank, describe
 
@@ -25,15 +25,14 @@ ICE = ("#e3ebf1", "#cfdce6", "#bccdda", "#d9e0ea", "#c5d6d9")
 def force_figure(contacts: GrainContacts, voxel_size: float, title: str = "") -> Figure:
     """Return the picture of a sample from the side, with the forces between its grains.
 
-    Lines join the centres of grains that touch by way of their contact. Of a sample of few grains
-    all contacts are drawn, of others those in the slice in the middle whose ice is drawn, too.
-    Width is in proportion to the force. Only bonds can pull: where grains without one are pushed
-    apart askew, they press.
+    Lines connect the centres of touching grains through their contacts. In a small sample all
+    contacts are drawn, in others those within the slice that shows the ice. The width is
+    proportional to the force. Only bonds can pull: unbonded grains in oblique contact always push.
 
     Parameters
     ----------
     contacts
-        As they are at a time.
+        Contacts at a time.
     voxel_size
         Diameter of the spheres, m.
     title
@@ -97,8 +96,8 @@ def _draw_forces(axes: Axes, contacts: GrainContacts) -> None:
     for pulls, colour in ((False, BODY), (True, STACK)):
         chosen = (pulling == pulls) & drawn_ones
         for side in (0, 1):
-            ways, whole = contacts.arms(side)
-            shown = np.flatnonzero(chosen & whole)
+            ways, complete = contacts.arms(side)
+            shown = np.flatnonzero(chosen & complete)
             ends = np.stack([contacts.points[shown] - ways[shown], contacts.points[shown]], axis=1)
             lines, widths = 1e3 * ends[:, :, [0, 2]], WIDEST * size[shown] / largest
             drawn = LineCollection(list(lines), linewidths=widths, colors=colour)

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from snowshed.io.arrays import Floats
-from snowshed.io.raster import Raster
+from snowshed.base.arrays import Floats
+from snowshed.io.raster.raster import Raster
 from snowshed.plot.figure_style import INK, STYLE, blank
 from snowshed.plot.terrain_map import (
     Extent,
@@ -54,11 +54,11 @@ def probability_figure(
     outlines
         Corners of the release areas, in map coordinates, m.
     part
-        What to show (`part_shown`).
+        The part to show (`part_shown`).
     label
-        Of what it is the probability, in words.
+        Description of the event whose probability is shown.
     area
-        Of the figure's map, square inches.
+        Area of the figure's map, square inches.
     """
     from matplotlib import rc_context
 
@@ -69,7 +69,7 @@ def probability_figure(
         draw_terrain(axes, ground, part)
         shown = np.where(probability > 0.0, probability, np.nan)
         drawn = draw_values(axes, ground, shown, cmap="plasma_r", vmin=0.0, vmax=1.0)
-        levels = [one for one in LEVELS if probability.max() >= one > probability.min()]
+        levels = [level for level in LEVELS if probability.max() >= level > probability.min()]
         if levels:
             lines = axes.contour(
                 *coordinates(ground), probability, levels=levels, colors=[INK],
@@ -110,9 +110,9 @@ def percentiles_figure(
     with rc_context(STYLE):
         figure = blank(ACROSS, width / ratio + 0.5)
         panels = figure.subplots(1, len(values), squeeze=False).ravel()
-        for axes, (quantity, found) in zip(panels, values.items()):
+        for axes, (quantity, raster) in zip(panels, values.items()):
             draw_terrain(axes, ground, part, labels=False)
-            shown = np.where(found > 0.0, found, np.nan)
+            shown = np.where(raster > 0.0, raster, np.nan)
             drawn = draw_values(axes, ground, shown, cmap=VALUES[quantity], vmin=0.0)
             draw_outlines(axes, outlines)
             figure.colorbar(drawn, ax=axes, shrink=0.8, pad=0.02)

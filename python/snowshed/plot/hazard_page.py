@@ -6,14 +6,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 from snowshed.io.atomic import write_text
-from snowshed.io.raster import Raster
+from snowshed.io.raster.raster import Raster
 from snowshed.plot.hazard_figure import part_shown, percentiles_figure, probability_figure
 from snowshed.plot.html_page import Grid, Picture, template
 from snowshed.plot.terrain_map import Outline
 
-#: How figures of slides are called on the page.
+#: Titles of the summary's quantities on the page.
 NAMES = {
     "run_out_m": "run-out, m",
     "drop_m": "drop, m",
@@ -27,26 +27,26 @@ NAMES = {
 
 @dataclass(frozen=True)
 class HazardPage:
-    """What the page of maps of probability tells.
+    """Content of the page of maps of probability.
 
     Attributes
     ----------
     title, sentence, uncertainty
-        Of the page; what the maps say, and how sure it is, in a sentence each.
+        Title of the page; a sentence about the maps, and one about their uncertainty.
     ground, outlines
         The terrain, and corners of the release areas, in map coordinates, m.
     probabilities
-        Maps by what they are the probability of; the first is that of being reached.
+        Maps by their event; the first is the probability of being reached.
     percentiles
-        By percentile and quantity.
+        Rasters by percentile and quantity.
     areas
         The area by probability.
     ranges, figures
-        What varied, from where to where; and the 5th, 50th and 95th percentile of figures.
+        Ranges of the varied parameters, and the 5th, 50th and 95th percentile of figures.
     runs, failed
-        How many slides, and how many more failed.
+        Number of slides in the maps, and number of failed ones.
     notes
-        Where slides leave what the method was made for.
+        Warnings where slides violate the method's assumptions.
     """
 
     title: str
@@ -122,7 +122,7 @@ class HazardPage:
 
     def _figure_table(self) -> Grid:
         rows = [
-            (NAMES.get(name, name), *(f"{found[share]:,.4g}" for share in ("p5", "p50", "p95")))
-            for name, found in self.figures.items()
+            (NAMES.get(name, name), *(f"{quantiles[share]:,.4g}" for share in ("p5", "p50", "p95")))
+            for name, quantiles in self.figures.items()
         ]
         return Grid(("figure", "5 %", "50 %", "95 %"), rows, "lrrr")

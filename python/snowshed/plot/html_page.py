@@ -1,4 +1,4 @@
-"""Pages that need no other file: tables of texts, embedded figures, one look for all reports."""
+"""Self-contained pages: tables of texts, embedded figures, one style for all reports."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from snowshed._core import InputError
+from snowshed.base.messages import printable
 from snowshed.io.atomic import replacing
-from snowshed.io.printable import printable
 
 if TYPE_CHECKING:
     import jinja2
@@ -41,7 +41,7 @@ class Grid:
     Attributes
     ----------
     head, rows
-        Texts; every row as long as the head.
+        Rows of texts; every row as long as the head.
     align
         A letter for each column: "l" for words, at the left, "r" for numbers.
     groups
@@ -66,7 +66,7 @@ class Picture:
     Attributes
     ----------
     name, title, caption
-        Of the file without its ending; what it shows, in a few words and in a sentence.
+        Name of the file without its suffix; title in a few words, and caption in a sentence.
     png, width
         The picture, and how wide it should be, in CSS pixels.
     """
@@ -87,7 +87,7 @@ class Picture:
 
     @classmethod
     def read(cls, file: Path, title: str, caption: str, *, dpi: float) -> Picture:
-        """Return a PNG file, drawn with so many dots per inch, as a picture.
+        """Return a PNG file as a picture, drawn with a resolution in dots per inch.
 
         Raises
         ------
@@ -115,19 +115,19 @@ def write_pictures(pictures: Iterable[Picture], folder: Path) -> None:
 
 
 def _shown(value: object) -> object:
-    """Return what a page shows of a value; what is markup already is ours."""
+    """Return a value as text on a page; existing markup stays."""
     return printable(value) if isinstance(value, str) and not hasattr(value, "__html__") else value
 
 
 def template(package: str, name: str) -> jinja2.Template:
     """Return a page's template out of a package's folder ``templates``.
 
-    What it shows passes `printable`. It may extend ``page.html.j2`` and import the macros of
+    Its texts pass `printable`. It may extend ``page.html.j2`` and import the macros of
     ``parts.html.j2``.
     """
     import jinja2
 
-    loaders = [jinja2.PackageLoader(one) for one in dict.fromkeys((package, "snowshed.plot"))]
+    loaders = [jinja2.PackageLoader(name) for name in dict.fromkeys((package, "snowshed.plot"))]
     environment = jinja2.Environment(
         loader=jinja2.ChoiceLoader(loaders),
         autoescape=True,

@@ -10,7 +10,7 @@ import numpy as np
 
 from snowshed.scene.schema import parameter_units
 
-#: Units of the schema, as they are shown.
+#: Units of the schema, and their form on display.
 SHOWN_UNITS: Mapping[str, str] = {"degrees": "°", "kg/m3": "kg/m³", "m/s2": "m/s²"}
 
 
@@ -21,13 +21,13 @@ class Label:
     Attributes
     ----------
     name
-        In words.
+        Name of the parameter.
     symbol
-        Short, as the thesis writes it; the name where there is none.
+        Short symbol, as in the thesis; otherwise the name.
     unit
-        Of the values as they are shown; empty for plain numbers.
+        Unit of the values on display; empty for plain numbers.
     scale
-        By how much values in SI units are divided to be shown.
+        Divisor from values in SI units to values on display.
     """
 
     name: str
@@ -104,9 +104,9 @@ def label(path: str) -> Label:
     >>> label("events.rest_speed").axis
     'events.rest_speed, m/s'
     """
-    known = LABELS.get(path, Label(path))
-    unit = known.unit or parameter_units().get(path, "")
-    return Label(known.name, known.symbol or known.name, SHOWN_UNITS.get(unit, unit), known.scale)
+    entry = LABELS.get(path, Label(path))
+    unit = entry.unit or parameter_units().get(path, "")
+    return Label(entry.name, entry.symbol or entry.name, SHOWN_UNITS.get(unit, unit), entry.scale)
 
 
 def settings(values: Mapping[str, float]) -> str:

@@ -22,7 +22,7 @@ STRESSES = {
     "side_stress_pa": "on the sides",
     "shear_stress_pa": "shear, top plate",
 }
-SMALL = 0.01  # of the largest energy: what is less is not drawn
+SMALL = 0.01  # smaller shares of the largest energy are not drawn
 KEY: dict[str, Any] = {
     "loc": "best", "frameon": True, "framealpha": 0.8, "edgecolor": "none"
 }  # fmt: skip
@@ -40,9 +40,9 @@ def loading_figure(curve: LoadingCurve, kinds: Sequence[str], title: str = "") -
     Parameters
     ----------
     curve
-        What it measured.
+        The curve of the test.
     kinds
-        Of its stages, in order.
+        Kinds of its stages, in order.
     title
         Written above, such as how a synthetic sample was made.
     """

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.figure import Figure
 
 from snowshed._core import Simulation
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 from snowshed.methods.registry import resolution_of
 from snowshed.plot.caption import scene_caption
 from snowshed.plot.figure_style import FAINT, INK, STACK, blank, describe, quiet
@@ -30,17 +31,17 @@ def scene_figure(scene: SceneLike) -> Figure:
     Parameters
     ----------
     scene
-        Anything that can be run.
+        Any scene that can run.
 
     Raises
     ------
     InputError
         If the scene is wrong.
     """
-    ready = resolve_scene(scene)
-    simulation = Simulation(ready.json, ready.base_dir)
+    resolved = resolve_scene(scene)
+    simulation = Simulation(resolved.core, resolved.base_dir)
     simulation.begin_event()
-    data = ready.data
+    data = resolved.data
     left, right, bottom, top = _limits(simulation, data)
     figure = blank(WIDTH, min(1.2 + (WIDTH - 1) * (top - bottom) / (right - left), 9.0))
     axes = figure.subplots()
@@ -67,7 +68,7 @@ def scene_figure(scene: SceneLike) -> Figure:
     return figure
 
 
-def _limits(simulation: Simulation, scene: dict[str, Any]) -> Limits:
+def _limits(simulation: Simulation, scene: Mapping[str, Any]) -> Limits:
     """Return a view of the snow, of what holds it, and of as much ground to either side."""
     snow = simulation.positions()[:, [0, 2]]
     low, high = snow.min(axis=0), snow.max(axis=0)
@@ -92,7 +93,7 @@ def _draw_obstacles(axes: Axes, simulation: Simulation) -> None:
         axes.contour(x, z, distance, [0.0], colors=[FAINT], linewidths=1.2, zorder=2)
 
 
-def _draw_panel(axes: Axes, simulation: Simulation, scene: dict[str, Any]) -> None:
+def _draw_panel(axes: Axes, simulation: Simulation, scene: Mapping[str, Any]) -> None:
     """Draw the panel's face, and the board below it as thick as the core makes it."""
     frame = simulation.panel_frame()
     if frame is None:
@@ -105,7 +106,7 @@ def _draw_panel(axes: Axes, simulation: Simulation, scene: dict[str, Any]) -> No
     axes.plot(*face[:, [0, 2]].T, color=INK, linewidth=3.5, zorder=4, label="panel")
 
 
-def _draw_ground(axes: Axes, scene: dict[str, Any], tilt: float) -> None:
+def _draw_ground(axes: Axes, scene: Mapping[str, Any], tilt: float) -> None:
     if not scene.get("ground"):
         return
     x = np.array(axes.get_xlim())
@@ -114,13 +115,13 @@ def _draw_ground(axes: Axes, scene: dict[str, Any], tilt: float) -> None:
     axes.plot(x, z, color=FAINT, linewidth=1.2, zorder=1)
 
 
-def _near_section(positions: Floats, scene: dict[str, Any]) -> Floats:
+def _near_section(positions: Floats, scene: Mapping[str, Any]) -> Floats:
     """Return the particles that lie within a cell of y = 0; in 2D all of them."""
     near: Floats = positions[np.abs(positions[:, 1]) <= resolution_of(scene)]
     return near
 
 
-def _dot(scene: dict[str, Any], width: float) -> float:
+def _dot(scene: Mapping[str, Any], width: float) -> float:
     """Return the area of a particle's dot, points squared, so that dots nearly touch."""
     count = scene.get("seeding", {}).get("particles_per_voxel", 1.0)
     spacing = resolution_of(scene) / count ** (1.0 / scene["dimension"])

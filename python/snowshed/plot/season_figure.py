@@ -11,7 +11,7 @@ from matplotlib import colormaps
 from matplotlib.dates import AutoDateLocator, ConciseDateFormatter, date2num
 from matplotlib.figure import Figure
 
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 from snowshed.plot.caption import scene_caption
 from snowshed.plot.figure_style import (
     BODY,
@@ -69,11 +69,11 @@ def season_figure(
     panel
         The panel's upper and lower edge, (x, z) in m.
     contact
-        The first contact of the snow with the panel; None: there is none.
+        The first contact of the snow with the panel, if any.
     title
         Above the figure, before the key numbers of the scene.
     snow
-        How well the snow of the season is known, in a line.
+        A line on the quality of the snow data.
     """
     figure = blank(*SIZE)
     load, stack, side = figure.subplots(3, 1, height_ratios=(1.0, 1.1, 1.2))
@@ -92,13 +92,13 @@ def season_figure(
         _plain(axes)
     first, last = (f"{moment:%Y-%m-%d}" for moment in (moments[0], moments[-1]))
     caption = scene_caption(dict(scene))
-    known = f"\n{snow}" if snow else ""
-    describe(figure, f"Season from {first} to {last}, {title}{known}\n{caption}")
+    snow_line = f"\n{snow}" if snow else ""
+    describe(figure, f"Season from {first} to {last}, {title}{snow_line}\n{caption}")
     return figure
 
 
 def _draw_panel_snow(axes: Axes, dates: Floats, table: pd.DataFrame) -> None:
-    """Draw what pulls at the snow on the panel and what holds it, and when it lets go."""
+    """Draw the forces that pull and hold the snow on the panel, and its releases."""
     released = (table["released"] == "yes").to_numpy()
     axes.vlines(dates, 0.0, table["driving_pa"], color=STACK, linewidth=3.0, label="downslope pull")
     axes.plot(
@@ -116,7 +116,7 @@ def _draw_panel_snow(axes: Axes, dates: Floats, table: pd.DataFrame) -> None:
         "v",
         color=INK,
         markersize=6,
-        label="lets go",
+        label="released",
     )
     axes.set_title("Snow on the panel: stress at its base, Pa", loc="left", color=INK, fontsize=11)
     most = max(table["driving_pa"].max(), table["resisting_pa"].max())

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from snowshed.methods.slide_maps import SlideMaps
+from snowshed.methods.slide.maps import SlideMaps
 from snowshed.plot.figure_style import INK, STYLE, blank
 from snowshed.plot.terrain_map import (
     Outline,
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 LEAST_SHOWN = 0.01  # m of snow
-#: What can be drawn: the name of the map, its label, its colours.
+#: Available maps: name, label, colours.
 PEAKS = {
     "peak_speed": ("peak speed, m/s", "YlOrRd"),
     "peak_thickness": ("peak thickness, m", "YlGnBu"),
@@ -34,18 +34,18 @@ PEAKS = {
 def slide_figure(
     maps: SlideMaps, outlines: Sequence[Outline], quantity: str = "peak_speed", area: float = 45.0
 ) -> Figure:
-    """Return the map of a slide: hillshade, contours, a peak value, and what was released.
+    """Return the map of a slide: hillshade, contours, a peak value, and the release areas.
 
     Parameters
     ----------
     maps
-        The maps (`snowshed.run.slides.slide_maps`).
+        The maps (`snowshed.methods.slide.maps.slide_maps`).
     outlines
         Corners of the release areas, in map coordinates, m.
     quantity
-        One of `PEAKS`.
+        Name in `PEAKS`.
     area
-        Of the figure's map, square inches.
+        Area of the figure's map, square inches.
     """
     from matplotlib import rc_context
 

@@ -1,4 +1,4 @@
-"""The page of a slide: what it came to, maps, the slide over time, and what it was made with."""
+"""The page of a slide: summary, maps, the slide over time, and its settings."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from matplotlib.colors import Normalize
 from matplotlib.image import imsave
 
 from snowshed.io.atomic import write_text
-from snowshed.io.raster import Raster
-from snowshed.methods.slide_frames import Frame
-from snowshed.methods.slide_maps import SlideMaps
-from snowshed.methods.slide_validity import ReleaseArea
+from snowshed.io.raster.raster import Raster
+from snowshed.methods.slide.frames import Frame
+from snowshed.methods.slide.maps import SlideMaps
+from snowshed.methods.slide.validity import ReleaseArea
 from snowshed.plot.figure_style import STYLE, blank
 from snowshed.plot.html_page import Grid, Picture, template
 from snowshed.plot.slide_figure import LEAST_SHOWN, PEAKS, slide_figure
@@ -49,11 +49,11 @@ class Film:
     Attributes
     ----------
     ground
-        PNG, in base64.
+        Picture of the ground as PNG, in base64.
     frames
-        PNG, in base64, with the times, s.
+        Pictures of the snow as PNG, in base64, with their times, s.
     width, ratio
-        Of the picture: CSS pixels, and width over height.
+        Width of the picture in CSS pixels, and its ratio of width to height.
     largest
         Thickness that has the last colour, m.
     colours
@@ -92,7 +92,7 @@ def write_slide_page(
     areas
         The release areas.
     figures
-        What the slide came to, as ``slide.json`` has it.
+        The summary of the slide, as in ``slide.json``.
     frames
         The snow over time.
     """
@@ -122,7 +122,7 @@ def headline(figures: Mapping[str, Any]) -> str:
 
     Examples
     --------
-    >>> headline({"run_out_m": 106.0, "drop_m": 75.2, "duration_s": 44.2, "peak_speed_m_s": 3.49,
+    >>> headline({"run_out_m": 106.0, "drop_m": 75.2, "sim_time_s": 44.2, "peak_speed_m_s": 3.49,
     ...           "peak_pressure_kpa": 3.65, "peak_thickness_m": 1.2, "reached_m2": 6900.0,
     ...           "ended": "rest"})[:54]
     'The snow came 106 m from the middle of the release and'
@@ -131,7 +131,7 @@ def headline(figures: Mapping[str, Any]) -> str:
     speed = figures["peak_speed_m_s"]
     return (
         f"The snow came {figures['run_out_m']:.0f} m from the middle of the release and "
-        f"{figures['drop_m']:.0f} m down {ended} after {figures['duration_s']:.0f} s; at most it "
+        f"{figures['drop_m']:.0f} m down {ended} after {figures['sim_time_s']:.0f} s; at most it "
         f"was {speed:.1f} m/s fast ({3.6 * speed:.0f} km/h), {figures['peak_thickness_m']:.1f} m "
         f"thick, and pressed with {figures['peak_pressure_kpa']:.1f} kPa."
     )
@@ -143,7 +143,7 @@ def _facts(figures: Mapping[str, Any]) -> list[tuple[str, str]]:
     return [
         ("run-out", f"{figures['run_out_m']:.1f} m from the middle of the release"),
         ("drop", f"{figures['drop_m']:.1f} m"),
-        ("duration", f"{figures['duration_s']:.1f} s, until {figures['ended'].replace('_', ' ')}"),
+        ("duration", f"{figures['sim_time_s']:.1f} s, until {figures['ended'].replace('_', ' ')}"),
         ("peak speed", f"{figures['peak_speed_m_s']:.2f} m/s"),
         ("peak pressure", f"{figures['peak_pressure_kpa']:.2f} kPa"),
         ("peak thickness", f"{figures['peak_thickness_m']:.2f} m"),
@@ -157,15 +157,15 @@ def _area_table(areas: Sequence[ReleaseArea]) -> Grid:
             "slope, °", "altitude, m")  # fmt: skip
     rows = [
         (
-            one.name,
-            f"{one.thickness:g}",
-            f"{one.area:,.0f}",
-            f"{one.sloping_area:,.0f}",
-            f"{one.volume:,.0f}",
-            f"{one.slope:.0f} ({one.flattest:.0f} to {one.steepest:.0f})",
-            f"{one.lowest:.0f} to {one.highest:.0f}",
+            area.name,
+            f"{area.thickness:g}",
+            f"{area.area:,.0f}",
+            f"{area.sloping_area:,.0f}",
+            f"{area.volume:,.0f}",
+            f"{area.slope:.0f} ({area.flattest:.0f} to {area.steepest:.0f})",
+            f"{area.lowest:.0f} to {area.highest:.0f}",
         )
-        for one in areas
+        for area in areas
     ]
     return Grid(head, rows, "lrrrrrr")
 
@@ -175,7 +175,7 @@ def _mass_table(figures: Mapping[str, Any]) -> Grid:
     left = figures["left_terrain_kg"]
     rows = [
         ("released", released),
-        ("taken up on the way", entrained),
+        ("entrained", entrained),
         ("left the terrain", 0.0 - left),
         ("on the terrain at the end", released + entrained - left),
     ]
@@ -183,12 +183,12 @@ def _mass_table(figures: Mapping[str, Any]) -> Grid:
 
 
 def _settings_table(scene: Mapping[str, Any]) -> Grid:
-    found = scene["numerics"]
+    settings = scene["numerics"]
     rows = [
-        (name, _shown(found[name]), one.unit, one.description)
-        for one in scene_parameters("slide")
-        for section, _, name in [one.path.partition(".")]
-        if section == "numerics" and name in found and name != "threads"
+        (name, _shown(settings[name]), parameter.unit, parameter.description)
+        for parameter in scene_parameters("slide")
+        for section, _, name in [parameter.path.partition(".")]
+        if section == "numerics" and name in settings and name != "threads"
     ]
     return Grid(("setting", "value", "unit", "meaning"), rows, "lrll")
 
@@ -234,7 +234,7 @@ def _film(maps: SlideMaps, outlines: Sequence[Outline], frames: Sequence[Frame])
     largest = _largest(frames)
     colours = mpl.colormaps[COLOURS]
     scale = [mpl.colors.to_hex(colours(share)) for share in np.linspace(0.15, 1.0, 8)]
-    shown = [(one.time, _overlay(one.window(rows, columns), largest)) for one in frames]
+    shown = [(frame.time, _overlay(frame.window(rows, columns), largest)) for frame in frames]
     encoded = base64.b64encode(file.getvalue()).decode()
     rings = [_in_percent(outline, part) for outline in outlines]
     return Film(encoded, shown, round(96 * width), width / height, largest, scale, rings)
@@ -251,12 +251,12 @@ def _in_percent(outline: Outline, part: Extent) -> str:
 
 def _largest(frames: Sequence[Frame]) -> float:
     """Return the thickness that hardly any snow exceeds, m."""
-    values = np.concatenate([one.thickness[one.thickness > LEAST_SHOWN] for one in frames])
+    values = np.concatenate([frame.thickness[frame.thickness > LEAST_SHOWN] for frame in frames])
     return float(np.quantile(values, 0.995)) if values.size else 1.0
 
 
 def _overlay(thickness: Any, largest: float) -> str:
-    """Return the snow as a PNG of one pixel a cell, clear where there is none."""
+    """Return the snow as a PNG with one pixel per cell, transparent without snow."""
     share = 0.15 + 0.85 * np.clip(thickness / largest, 0.0, 1.0)
     pixels = np.asarray(mpl.colormaps[COLOURS](share, bytes=True))
     pixels[..., 3] = np.where(thickness > LEAST_SHOWN, 225, 0)
@@ -283,13 +283,13 @@ def multiples_figure(
     Parameters
     ----------
     maps
-        Their terrain and place.
+        Terrain of the maps, with its position.
     outlines
         Corners of the release areas, in map coordinates, m.
     frames
         The snow over time; `count` of them are shown.
     count
-        How many.
+        Number of colours.
     """
     chosen = _moving(frames, count)
     rows, columns, part = _window(maps, outlines)
@@ -303,10 +303,10 @@ def multiples_figure(
         panels = figure.subplots(down, across, squeeze=False).ravel()
         for axes, frame in zip(panels, chosen):
             draw_terrain(axes, ground, part, labels=False)
-            whole = np.full(ground.heights.shape, np.nan)
+            thickness = np.full(ground.heights.shape, np.nan)
             cut = frame.window(rows, columns)
-            whole[rows, columns] = np.where(cut > LEAST_SHOWN, cut, np.nan)
-            drawn = draw_values(axes, ground, whole, cmap=COLOURS, norm=norm)
+            thickness[rows, columns] = np.where(cut > LEAST_SHOWN, cut, np.nan)
+            drawn = draw_values(axes, ground, thickness, cmap=COLOURS, norm=norm)
             draw_outlines(axes, outlines)
             axes.set_title(f"{frame.time:.0f} s" if frame.time >= 10 else f"{frame.time:.1f} s")
             axes.set(xticks=[], yticks=[])
@@ -319,15 +319,16 @@ def multiples_figure(
 def _moving(frames: Sequence[Frame], count: int) -> list[Frame]:
     """Return frames from the first to the last, closer together where the snow moves most.
 
-    Their times follow the way of the snow's middle, since a slide creeps for long at its end.
+    The times follow the path of the snow's centre, because a slide creeps for a long time at its
+    end.
     """
-    middles = np.array([_middle(one) for one in frames])
-    way = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(middles, axis=0).T))])
-    if way[-1] <= 0.0:
+    middles = np.array([_middle(frame) for frame in frames])
+    distance = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(middles, axis=0).T))])
+    if distance[-1] <= 0.0:
         return [frames[0], frames[-1]]
-    wanted = np.linspace(0.0, 0.999 * way[-1], count)
-    places = list(dict.fromkeys(np.searchsorted(way, wanted).tolist()))
-    return [frames[place] for place in [*places[:-1], len(frames) - 1]]
+    wanted = np.linspace(0.0, 0.999 * distance[-1], count)
+    indices = list(dict.fromkeys(np.searchsorted(distance, wanted).tolist()))
+    return [frames[place] for place in [*indices[:-1], len(frames) - 1]]
 
 
 def _middle(frame: Frame) -> tuple[float, float]:

@@ -13,13 +13,14 @@ from numpy.typing import NDArray
 
 import snowshed._core as _core
 from snowshed._core import InputError
-from snowshed.io.arrays import Floats, Integers
-from snowshed.io.raster import Raster
+from snowshed.base.arrays import Floats, Integers
+from snowshed.io.raster.raster import Raster
 from snowshed.methods.registry import resolution_of
 from snowshed.plot.surface_nets import surface_of
 from snowshed.scene.builders.slope import BOARD_CELLS
+from snowshed.scene.resolved import ResolvedScene
 
-ROUND = 24  # sides of what is round
+ROUND = 24  # number of sides of round shapes
 SAMPLES = 48  # of a solid that is sampled, along its longest side
 TERRAIN_NODES = 220  # along a side, at most
 MOST_TRIANGLES = 200_000  # of one mesh; larger ones are sampled
@@ -53,22 +54,22 @@ class Box:
 
 @dataclass(frozen=True)
 class Solid:
-    """Something that snow collides with.
+    """A solid that snow collides with.
 
     Attributes
     ----------
     name
-        What it is.
+        Name of the solid.
     kind
-        "ground", "panel" or "solid": how it is painted.
+        Kind, which decides the colour: "ground", "panel" or "solid".
     corners : (n, 3)
-        m, where it is before it moves.
+        Corners before any motion, m.
     triangles : (m, 3)
-        Which corners each has.
+        Corners of each triangle.
     motion
-        As in a scene; None if it stays.
+        Motion, as in a scene; None for a fixed solid.
     grid
-        Distance of lines drawn on it, m; 0: none.
+        Distance of lines on its surface, m; 0: no lines.
     """
 
     name: str
@@ -95,14 +96,14 @@ class Solid:
 def scene_solids(
     scene: Mapping[str, Any], base_dir: Path, snow: Box, terrain: Optional[Raster]
 ) -> tuple[list[Solid], Box]:
-    """Return the solids of a scene around its snow, and a box that holds all but the ground.
+    """Return the solids of a scene around its snow, and a box around all except the ground.
 
     Parameters
     ----------
     scene
         Complete data, as in scene.json.
     base_dir
-        Where relative names of files start.
+        Folder of relative file names.
     snow
         A box that holds the snow at all times.
     terrain
@@ -122,7 +123,7 @@ def scene_solids(
         focus = focus.joined(_below(focus, scene["ground"]["tilt"]))
     if terrain is not None:
         solids.insert(0, _terrain(terrain, focus))
-    return [_flattened(one) for one in solids] if flat else solids, focus
+    return [_flattened(solid) for solid in solids] if flat else solids, focus
 
 
 def _flattened(solid: Solid) -> Solid:
@@ -206,7 +207,7 @@ def _obstacles(scene: Mapping[str, Any], base_dir: Path, snow: Box) -> Iterator[
 def _parts(
     shape: Mapping[str, Any], scene: Mapping[str, Any], base_dir: Path, near: Box
 ) -> Iterator[Solid]:
-    """Yield the triangles of a shape; what has no simple form is sampled."""
+    """Yield the triangles of a shape; complex shapes are sampled."""
     kind = shape["type"]
     vector = {
         k: _in_space(shape[k]) for k in ("center", "size", "normal", "from", "to") if k in shape
@@ -225,14 +226,14 @@ def _parts(
     elif kind == "plate":
         yield _plate(vector["center"], vector["normal"], shape)
     elif kind == "union":
-        for one in shape["shapes"]:
-            yield from _parts(one, scene, base_dir, near)
-    elif kind == "mesh" and (found := _mesh(shape, base_dir)) is not None:
-        yield found
+        for part in shape["shapes"]:
+            yield from _parts(part, scene, base_dir, near)
+    elif kind == "mesh" and (surface := _mesh(shape, base_dir)) is not None:
+        yield surface
     else:
-        found = _sampled(shape, scene, base_dir, near)
-        if len(found.triangles):
-            yield found
+        surface = _sampled(shape, scene, base_dir, near)
+        if len(surface.triangles):
+            yield surface
 
 
 def _in_space(vector: Any) -> Floats:
@@ -251,7 +252,7 @@ def _sampled(
     shape: Mapping[str, Any], scene: Mapping[str, Any], base_dir: Path, near: Box
 ) -> Solid:
     """Return the surface of any shape where the snow may come, from samples of its distance."""
-    alone = _core.Simulation(_only(shape, scene), str(base_dir))
+    alone = _core.Simulation(_only(shape, scene).core, str(base_dir))
     spacing = float(near.size.max()) / SAMPLES
     flat = scene["dimension"] == 2
     axes = [
@@ -270,15 +271,13 @@ def _sampled(
     return Solid(shape["type"], "solid", corners, triangles)
 
 
-def _only(shape: Mapping[str, Any], scene: Mapping[str, Any]) -> str:
-    """Return the JSON of a scene with a shape and hardly any snow."""
-    import json
-
+def _only(shape: Mapping[str, Any], scene: Mapping[str, Any]) -> ResolvedScene:
+    """Return a scene with a shape and hardly any snow."""
     dimension = scene["dimension"]
     drop = {"type": "sphere", "center": [0.0] * dimension, "radius": 0.05}
     bare = {"snowshed": scene["snowshed"], "dimension": dimension, "numerics": {"dx": 0.05}}
     bare |= {"obstacles": [{"shape": dict(shape)}], "bodies": [{"shape": drop}]}
-    return str(_core.parse_scene(json.dumps(bare)))
+    return ResolvedScene.from_data(bare)
 
 
 def _box(name: str, kind: str, centre: Floats, edges: Any) -> Solid:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import json
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Optional
 
 import numpy as np
@@ -13,7 +13,8 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 import snowshed._core as _core
-from snowshed.io.arrays import Booleans, Floats
+from snowshed.base.arrays import Booleans, Floats
+from snowshed.base.core_simulation import AnySimulation, core_of
 from snowshed.methods.registry import resolution_of
 from snowshed.plot.caption import mean_damping_rate, scene_caption
 from snowshed.plot.figure_style import (
@@ -44,7 +45,9 @@ LOWEST, HIGHEST = 1.6, 5.0  # inches, of a view
 Limits = tuple[float, float, float, float]  # left, right, bottom, top
 
 
-def stack_figure(simulation: _core.Simulation, stack: StackMeasure) -> Figure:
+def stack_figure(
+    simulation: AnySimulation, stack: StackMeasure, scene: Mapping[str, Any]
+) -> Figure:
     """Draw the stack from the side: above with the panel it came from, below enlarged.
 
     Particles are coloured by the event that brought them; the outline, the panel and the ground
@@ -54,12 +57,15 @@ def stack_figure(simulation: _core.Simulation, stack: StackMeasure) -> Figure:
     Parameters
     ----------
     simulation
-        Gives the particles, the panel, the tilt of the ground, and the scene.
+        A `snowshed.Simulation`.
     stack
-        The measure of the same particles.
+        The measure of its particles.
+    scene
+        The data of the complete scene.
     """
+    simulation = core_of(simulation)
     tilt, frame = simulation.ground_tilt_deg, simulation.panel_frame()
-    level_ground = json.loads(simulation.scene).get("ground") is not None
+    level_ground = scene.get("ground") is not None
     views = [_filling(x) for x in (_scene_limits(stack, tilt, frame), _stack_limits(stack, tilt))]
     heights = [VIEW_WIDTH * _steepness(view) for view in views]
     figure = blank(WIDTH, sum(heights) + 1.9)
@@ -70,7 +76,7 @@ def stack_figure(simulation: _core.Simulation, stack: StackMeasure) -> Figure:
         if level_ground:
             _draw_ground(axes, tilt)
         _draw_obstacles(axes, simulation)
-        _draw_particles(axes, simulation, stack.members)
+        _draw_particles(axes, simulation, stack.members, _spacing(scene))
         _draw_scale(axes)
     if frame is not None:
         _draw_panel(overview, frame, tilt, measured=level_ground)
@@ -82,7 +88,7 @@ def stack_figure(simulation: _core.Simulation, stack: StackMeasure) -> Figure:
         title += ": no snow has come down"
     if _pictured(stack) is stack.body:
         title += f": its largest body; 97 % of the snow lies within {stack.length:.2f} m"
-    _caption(figure, simulation.scene, title, simulation.damping_rate_per_s)
+    _caption(figure, scene, title, simulation.damping_rate_per_s)
     return figure
 
 
@@ -97,7 +103,7 @@ def named_events(count: int) -> list[int]:
     return sorted({round(i) for i in np.linspace(1, count, min(count, MOST_NAMED))})
 
 
-def growth_figure(table: pd.DataFrame, scene: str) -> Figure:
+def growth_figure(table: pd.DataFrame, scene: Mapping[str, Any]) -> Figure:
     """Draw height, length, head and tail against the event; dashed: the largest connected body.
 
     Parameters
@@ -105,7 +111,7 @@ def growth_figure(table: pd.DataFrame, scene: str) -> Figure:
     table
         The table of events, as in ``events.csv``.
     scene
-        The scene as JSON text, for the caption.
+        The data of the complete scene, for the caption.
     """
     figure = blank(WIDTH, 6.6)
     for axes, name in zip(np.ravel(figure.subplots(2, 2, sharex=True)), QUANTITIES):
@@ -127,18 +133,22 @@ def growth_figure(table: pd.DataFrame, scene: str) -> Figure:
     return figure
 
 
-def _caption(figure: Figure, scene: str, title: str, damping_rate: Optional[float]) -> None:
-    describe(figure, f"{title}\n{scene_caption(json.loads(scene), damping_rate)}")
+def _caption(
+    figure: Figure, scene: Mapping[str, Any], title: str, damping_rate: Optional[float]
+) -> None:
+    describe(figure, f"{title}\n{scene_caption(scene, damping_rate)}")
 
 
 def _shades(count: int) -> list[Any]:
     return list(colormaps["viridis"](np.linspace(FIRST, LAST, count)))
 
 
-def _draw_particles(axes: Axes, simulation: _core.Simulation, stack: Booleans) -> None:
+def _draw_particles(
+    axes: Axes, simulation: _core.Simulation, stack: Booleans, spacing: float
+) -> None:
     """Draw particles in the size they have, those that lie nearest in front.
 
-    Those that are no part of the stack, because something holds them, are grey.
+    Particles outside the stack, because something holds them, are grey.
     """
     positions, events = simulation.positions(), simulation.events()
     if len(positions) == 0:
@@ -149,14 +159,14 @@ def _draw_particles(axes: Axes, simulation: _core.Simulation, stack: Booleans) -
     count = int(events.max())
     colours = np.array(_shades(count))[np.clip(events[shown], 1, count) - 1]
     colours[~stack[shown]] = to_rgba(HELD)
-    diameter = _points_per_metre(axes) * _spacing(json.loads(simulation.scene))
+    diameter = _points_per_metre(axes) * spacing
     size = float(np.clip(every * (0.8 * diameter) ** 2, 0.6, 60.0))
     x, _, z = positions[shown].T
     axes.scatter(x, z, s=size, c=colours, linewidths=0, rasterized=True, zorder=3)
 
 
-def _spacing(scene: dict[str, Any]) -> float:
-    """Return the mean distance of particles as they are seeded, m."""
+def _spacing(scene: Mapping[str, Any]) -> float:
+    """Return the mean distance of particles after seeding, m."""
     count: float = scene.get("seeding", {}).get("particles_per_voxel", 1.0)
     return float(resolution_of(scene) / count ** (1 / scene["dimension"]))
 
@@ -168,7 +178,7 @@ def _points_per_metre(axes: Axes) -> float:
 
 
 def _name_events(axes: Axes, simulation: _core.Simulation, *, apart: bool) -> None:
-    """Say which colour is which event, where there is air: at the upper right."""
+    """Draw a legend of the events in free space, at the upper right."""
     count = max(simulation.event, 1)
     shades = _shades(count)
     named = [(f"event {i}", shades[i - 1]) for i in named_events(count)]
@@ -198,7 +208,7 @@ def _draw_ground(axes: Axes, tilt: float) -> None:
 
 
 def _draw_obstacles(axes: Axes, simulation: _core.Simulation) -> None:
-    """Draw what the scene's obstacles are in the plane y = 0."""
+    """Draw the section of the scene's obstacles at y = 0."""
     x = np.linspace(*axes.get_xlim(), 600)
     z = np.linspace(*axes.get_ylim(), 400)
     points = np.stack(np.meshgrid(x, 0.0, z, indexing="ij"), axis=-1).reshape(-1, 3)
@@ -252,7 +262,7 @@ def _length_ends(shown: Extent) -> Floats:
 
 
 def _frame(shown: Extent) -> Floats:
-    """Return the lower ends and the top of what is shown, on levelled ground."""
+    """Return the lower ends and the top of the plot, on levelled ground."""
     top = _ground_at_crest(shown) + shown.height
     return np.vstack([_length_ends(shown), [[shown.crest, top]], _profile(shown)])
 

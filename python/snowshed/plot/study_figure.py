@@ -1,4 +1,4 @@
-"""The picture of a study: what its runs measured, over each parameter that varies."""
+"""The picture of a study: the results of its runs over each varied parameter."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
+from snowshed.base.formatting import plural
 from snowshed.plot.figure_style import BODY, STACK, STYLE, blank, headline
 from snowshed.plot.labels import label
 
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
 
-#: What is drawn of each method's runs, those that there are: two at most.
+#: Quantities of each method's runs to draw: at most two that exist.
 MEASURES = {
     "height_m": "height of the stack, m",
     "length_m": "length of the stack, m",
@@ -60,7 +61,7 @@ def study_figure(table: pd.DataFrame, axes: Sequence[str], title: str) -> Figure
     with rc_context(STYLE):
         rows, columns = max(len(measures), 1), max(len(shown), 1)
         figure = blank(1.2 + COLUMN * columns, 0.9 + ROW * rows)
-        count = "1 run" if len(last) == 1 else f"{len(last)} runs"
+        count = plural(len(last), "run")
         headline(figure, f"{title}: {count}, each after its last event")
         grid = figure.subplots(rows, columns, squeeze=False, sharey="row")
         for row, measure in enumerate(measures):
@@ -82,22 +83,22 @@ def _draw(axes: Axes, runs: pd.DataFrame, path: str, measure: str) -> None:
     import pandas as pd
 
     values = pd.to_numeric(runs[path], errors="coerce")
-    known = runs[path].map(str)
+    categories = runs[path].map(str)
     if values.notna().all() and runs[path].dtype != bool:
-        places = values / label(path).scale
-        if places.min() > 0 and places.max() > 30 * places.min():
+        positions = values / label(path).scale
+        if positions.min() > 0 and positions.max() > 30 * positions.min():
             axes.set_xscale("log")
     else:
-        names = list(dict.fromkeys(known))
-        places = known.map({name: float(place) for place, name in enumerate(names)})
+        names = list(dict.fromkeys(categories))
+        positions = categories.map({name: float(place) for place, name in enumerate(names)})
         axes.set_xticks(range(len(names)), [_short(name) for name in names])
         axes.set_xlim(-0.5, len(names) - 0.5)
-    found = runs[measure].astype(float)
-    axes.scatter(places, found, s=14, color=STACK, alpha=0.6, linewidths=0)
-    medians = found.groupby(np.round(places.astype(float), 12)).median()
+    results = runs[measure].astype(float)
+    axes.scatter(positions, results, s=14, color=STACK, alpha=0.6, linewidths=0)
+    medians = results.groupby(np.round(positions.astype(float), 12)).median()
     if 1 < len(medians) < len(runs):
         axes.plot(medians.index, medians, color=BODY, linewidth=1.2)
-    axes.set_ylim(bottom=min(0.0, float(found.min())))
+    axes.set_ylim(bottom=min(0.0, float(results.min())))
 
 
 def _short(name: str) -> str:

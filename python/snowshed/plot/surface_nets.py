@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from snowshed.io.arrays import Floats, Integers
+from snowshed.base.arrays import Floats, Integers
 
 EDGES = [
     (a, b) for a in range(8) for b in range(a + 1, 8) if (a ^ b) in (1, 2, 4)
@@ -25,7 +25,7 @@ def surface_of(distance: Floats) -> tuple[Floats, Integers]:
     Returns
     -------
     corners : (n, 3)
-        In samples from the first.
+        Vertices in units of samples, from the first.
     triangles : (m, 3)
 
     References
@@ -56,9 +56,9 @@ def surface_of(distance: Floats) -> tuple[Floats, Integers]:
     held = count > 0
     number = np.full(count.shape, -1)
     number[held] = np.arange(int(held.sum()))
-    places = np.argwhere(held) + total[held] / count[held][:, None]
+    vertices = np.argwhere(held) + total[held] / count[held][:, None]
     triangles = [_around(inside, number, axis) for axis in range(3)]
-    return places, np.concatenate(triangles)
+    return vertices, np.concatenate(triangles)
 
 
 def _around(inside: np.ndarray, number: Integers, axis: int) -> Integers:

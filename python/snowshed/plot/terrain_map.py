@@ -1,4 +1,4 @@
-"""Maps of terrain: hillshade, contours, what lies on it, and the part that is worth showing."""
+"""Maps of terrain: hillshade, contours, overlays, and the part to show."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from matplotlib.colors import LightSource
 
-from snowshed.io.arrays import Booleans, Floats
-from snowshed.io.raster import Raster
+from snowshed.base.arrays import Booleans, Floats
+from snowshed.io.raster.raster import Raster
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -20,7 +20,7 @@ Outline = Sequence[Sequence[float]]
 Extent = tuple[float, float, float, float]
 
 RELEASE = "#1f4e79"
-MARGIN = 0.18  # of what is shown, on either side
+MARGIN = 0.18  # margin on either side, relative to the shown part
 CONTOURS = 12  # at most
 HILLSHADE = ((315.0, 0.6), (225.0, 0.25), (45.0, 0.15))  # azimuths of the light, degrees, and share
 
@@ -46,7 +46,7 @@ def coordinates(ground: Raster) -> tuple[Floats, Floats]:
 
 
 def focus(ground: Raster, shown: Booleans, outlines: Sequence[Outline]) -> Extent:
-    """Return the part of a terrain with what is shown and the outlines, and a margin around."""
+    """Return the part of a terrain around a shown area and outlines, with a margin."""
     west, east, south, north = extent(ground)
     rows, columns = np.nonzero(shown)
     x = np.concatenate([ground.east + columns * ground.cell, *(_column(o, 0) for o in outlines)])
@@ -131,8 +131,8 @@ def _cropped(ground: Raster, part: Extent) -> Raster:
 
 def _levels(ground: Raster) -> tuple[float, Floats]:
     """Return a round interval and the contours at it that a terrain shows."""
-    known = ground.heights[~np.isnan(ground.heights)]
-    low, high = float(known.min()), float(known.max())
+    elevations = ground.heights[~np.isnan(ground.heights)]
+    low, high = float(elevations.min()), float(elevations.max())
     rounded = (0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0)
-    interval = next((one for one in rounded if (high - low) / one <= CONTOURS), 1000.0)
+    interval = next((step for step in rounded if (high - low) / step <= CONTOURS), 1000.0)
     return interval, interval * np.arange(np.ceil(low / interval), np.floor(high / interval) + 1)

@@ -1,4 +1,4 @@
-"""Scenes: what is to be simulated, as data.
+"""Scenes: simulations described as data.
 
 Examples
 --------
@@ -9,13 +9,10 @@ Examples
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-from snowshed.io.renamed import renamed
 from snowshed.methods.grains.settings import GrainsSettings
-from snowshed.methods.mpm import MpmSettings
-from snowshed.methods.mps import MpsSettings
-from snowshed.methods.slide import SlideSettings
+from snowshed.methods.mpm.settings import MpmSettings
+from snowshed.methods.mps.settings import MpsSettings
+from snowshed.methods.slide.settings import SlideSettings
 from snowshed.scene.components import (
     Area,
     Body,
@@ -66,6 +63,3 @@ __all__ = [
     "Snow",
     "Terrain",
 ]
-
-if not TYPE_CHECKING:
-    __getattr__ = renamed(__name__, {"InitialisedScene": ResolvedScene, "Numerics": MpmSettings})

@@ -1,10 +1,10 @@
-"""Which settings of a scene decide how accurate a run is, and not what is simulated."""
+"""The settings of a scene that decide the accuracy of a run, but not its subject."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from snowshed.io.json_file import JsonValue
+from snowshed.base.json_values import JsonValue
 from snowshed.methods.registry import DEFAULT, METHODS, NAME_KEY, SETTINGS_KEY
 from snowshed.scene.schema import Parameter, scene_parameters
 
@@ -34,7 +34,7 @@ NUMBERS: Sequence[str] = [
     if p.accuracy and p.kind == "number"
 ]
 
-#: Names that settings had in earlier versions, and thus in tables and records, to those of today.
+#: Former names of settings, which occur in tables and records, and their current names.
 FORMER_NAMES: Mapping[str, str] = {
     alias.rpartition(".")[2]: p.path.rpartition(".")[2]
     for p in scene_parameters()

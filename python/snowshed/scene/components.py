@@ -13,9 +13,9 @@ from pathlib import Path
 from typing import List, Literal, Optional, Union
 
 from snowshed._core import InputError, snow_preset
+from snowshed.base.paths import PathLike
+from snowshed.base.record import Alias, Record
 from snowshed.io.json_file import read_object
-from snowshed.io.paths import PathLike
-from snowshed.io.record import Alias, Record
 from snowshed.scene.shape import Shape, Vector
 
 SnowModel = Literal["cam_clay", "elastic"]
@@ -77,12 +77,12 @@ class Snow(Record):
 
     @classmethod
     def load(cls, file: PathLike) -> Snow:
-        """Read a snow from a JSON file: its keys, and if it likes ``provenance``, which may be any.
+        """Read snow parameters from a JSON file; an optional ``provenance`` entry is ignored.
 
         Raises
         ------
         InputError
-            If the file holds no such object, or unknown keys; it names the file.
+            If the file does not hold such an object, or unknown keys; the message names the file.
         OSError
             If it cannot be read.
         """

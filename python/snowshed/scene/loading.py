@@ -8,8 +8,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal, Optional
 
-from snowshed.io.paths import PathLike
-from snowshed.io.record import Record
+from snowshed.base.paths import PathLike
+from snowshed.base.record import Record
 
 LoadingKind = Literal["compress", "unload", "stretch", "shear", "isotropic", "penetrate", "hold"]
 

@@ -1,11 +1,11 @@
-"""What a run writes besides its tables."""
+"""The output of a run besides its tables."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import Optional
 
-from snowshed.io.record import Record
+from snowshed.base.record import Record
 
 
 @dataclass

@@ -2,20 +2,27 @@
 
 from __future__ import annotations
 
+import copy
 import json
 import os
+from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
+from typing import Any
 
-from snowshed._core import load_scene, parse_scene
+import snowshed._core as _core
+from snowshed._core import ParsedScene
+from snowshed.base.json_values import JsonObject, JsonValue, read_only
+from snowshed.base.paths import PathLike
 from snowshed.io.atomic import write_text
-from snowshed.io.json_file import JsonValue
-from snowshed.io.paths import PathLike
 
 
 @dataclass(frozen=True)
 class ResolvedScene:
     """A scene the core has validated and completed.
+
+    It is text only where it enters or leaves the process: `data` and `core` are made once.
 
     Attributes
     ----------
@@ -31,19 +38,55 @@ class ResolvedScene:
     @classmethod
     def parse(cls, text: str, base_dir: PathLike = ".") -> ResolvedScene:
         """Validate JSON text; raises InputError."""
-        return cls(parse_scene(text, os.fspath(base_dir)), os.fspath(base_dir))
+        folder = os.fspath(base_dir)
+        return cls._of(ParsedScene.parse(text, folder), folder)
+
+    @classmethod
+    def from_data(cls, data: Mapping[str, JsonValue], base_dir: PathLike = ".") -> ResolvedScene:
+        """Validate JSON data; raises InputError."""
+        return cls.parse(json.dumps(data), base_dir)
 
     @classmethod
     def load(cls, path: PathLike) -> ResolvedScene:
         """Read and validate a scene file; raises InputError."""
-        return cls(load_scene(os.fspath(path)), os.fspath(Path(path).parent))
+        return cls._of(ParsedScene.load(os.fspath(path)), os.fspath(Path(path).parent))
 
-    @property
-    def data(self) -> dict[str, JsonValue]:
-        """The complete scene as JSON data (a fresh copy)."""
-        data: dict[str, JsonValue] = json.loads(self.json)
+    @classmethod
+    def _of(cls, parsed: ParsedScene, folder: str) -> ResolvedScene:
+        scene = cls(parsed.json, folder)
+        vars(scene)["core"] = parsed
+        return scene
+
+    @cached_property
+    def core(self) -> ParsedScene:
+        """The scene as the core takes it, without parsing it again."""
+        return ParsedScene.parse(self.json, self.base_dir)
+
+    @cached_property
+    def data(self) -> Mapping[str, Any]:
+        """The complete scene as JSON data, which cannot be changed; `copied_data` can."""
+        data: Mapping[str, Any] = read_only(json.loads(self.json))
         return data
+
+    def copied_data(self) -> JsonObject:
+        """Return a copy of the data, which may be changed."""
+        return copy.deepcopy(dict(self.data))
+
+    def __getstate__(self) -> dict[str, str]:
+        """Return what is pickled: the text, not what was made of it."""
+        return {"json": self.json, "base_dir": self.base_dir}
 
     def save(self, path: PathLike) -> None:
         """Write the scene to a file."""
         write_text(path, self.json.rstrip() + "\n")
+
+
+def scene_data(text: str) -> dict[str, Any]:
+    """Return the data of a complete scene's text, as a study stores it."""
+    data: dict[str, Any] = json.loads(text)
+    return data
+
+
+def snows_of(simulation: _core.Simulation) -> list[dict[str, Any]]:
+    """Return the data of the different snows of a simulation, by their material ids."""
+    return [json.loads(snow) for snow in simulation.snows]

@@ -1,7 +1,7 @@
-"""Scenes: what is to be simulated, set value by value and then resolved by the core.
+"""Scenes: values that are set one by one, and resolved by the core.
 
-This takes the place of the thesis's Lua remote controller (A.3.1): values may be set, appended
-and overridden, the last one wins, then the scene is resolved.
+This replaces the thesis's Lua remote controller (A.3.1): values may be set, appended and
+overridden; the last one wins, then the scene is resolved.
 """
 
 from __future__ import annotations
@@ -17,17 +17,13 @@ from typing import Any, List, Optional, Union
 
 from snowshed._core import InputError
 from snowshed._core import preset as preset_text
+from snowshed.base.json_values import JsonObject, JsonValue
+from snowshed.base.paths import PathLike
+from snowshed.base.record import DEEPEST, Record, check_instead, check_once
 from snowshed.io.input_file import read_input
-from snowshed.io.json_file import JsonObject, JsonValue
 from snowshed.io.json_text import loads
-from snowshed.io.paths import PathLike
-from snowshed.io.record import DEEPEST, Record, check_instead, check_once
-from snowshed.methods.grains.settings import GrainsSettings
-from snowshed.methods.mpm import MpmSettings
-from snowshed.methods.mps import MpsSettings
-from snowshed.methods.registry import DEFAULT, NAME_KEY, SETTINGS_KEY, MethodName, settings_class
+from snowshed.methods.registry import DEFAULT, NAME_KEY, SETTINGS_KEY, method_named
 from snowshed.methods.settings import MethodSettings
-from snowshed.methods.slide import SlideSettings
 from snowshed.scene.components import (
     Body,
     Domain,
@@ -44,6 +40,7 @@ from snowshed.scene.components import (
 from snowshed.scene.loading import Cone, LoadingStage, Sample
 from snowshed.scene.output import Output
 from snowshed.scene.resolved import ResolvedScene
+from snowshed.scene.scene_html import scene_html
 from snowshed.scene.scene_paths import locate
 from snowshed.scene.scene_repr import scene_repr
 
@@ -54,14 +51,14 @@ ALWAYS = ("snow", "seeding", SETTINGS_KEY, "events", "output")
 NOT_GIVEN: Any = None
 
 SLIP_CHANGED = (
-    'condition "slip" lets no snow leave the surface but over its edge; '
-    'what it did up to version 1 of scenes is "separate" now'
+    '"slip" now holds snow on the surface except at its edge; '
+    'use "separate" for the behaviour of version 1'
 )
 
 
 @dataclass
 class Scene(Record):
-    """A scene in the making; fields that are None take the core's defaults. SI units.
+    """A scene under construction; fields that are None use the core's defaults. SI units.
 
     Attributes
     ----------
@@ -151,8 +148,8 @@ class Scene(Record):
     bodies: Optional[List[Body]] = None
     domain: Optional[Domain] = None
     seeding: Seeding = NOT_GIVEN
-    method: Optional[MethodName] = None
-    numerics: Union[MpmSettings, SlideSettings, GrainsSettings, MpsSettings] = NOT_GIVEN
+    method: Optional[str] = None
+    numerics: MethodSettings = NOT_GIVEN
     events: Events = NOT_GIVEN
     output: Output = NOT_GIVEN
 
@@ -218,7 +215,7 @@ class Scene(Record):
             If a scene has no such key, or its field does not take the value.
         """
         if key == SETTINGS_KEY and isinstance(value, Mapping):
-            value = settings_class(self.method).from_data(value, f"{path}/{key}")
+            value = method_named(self.method).settings.from_data(value, f"{path}/{key}")
         super().assign(key, value, path)
 
     def _keep(self, name: str, value: object, where: str) -> None:
@@ -233,11 +230,11 @@ class Scene(Record):
             if isinstance(held, MethodSettings) and held.to_data():
                 self._require_settings(held, value, where)
             else:
-                object.__setattr__(self, SETTINGS_KEY, settings_class(value)())
+                object.__setattr__(self, SETTINGS_KEY, method_named(value).settings())
         super()._keep(name, value, where)
 
     def _require_settings(self, settings: object, method: Optional[str], where: str) -> None:
-        kind = settings_class(method)
+        kind = method_named(method).settings
         if isinstance(settings, MethodSettings) and not isinstance(settings, kind):
             raise InputError(
                 f"{where}: the method {method or DEFAULT!r} takes {kind.__name__}, and these are "
@@ -272,14 +269,14 @@ class Scene(Record):
         Parameters
         ----------
         values
-            As of `update`: dotted paths, and nested mappings.
+            As for `update`: dotted paths, and nested mappings.
         **parts
             The same for names without a dot, such as ``panel={"tilt": 30}``.
 
         Raises
         ------
         InputError
-            As of `update`.
+            As for `update`.
 
         Examples
         --------
@@ -293,17 +290,25 @@ class Scene(Record):
         """Return the values that differ from the defaults, as calls that make them."""
         return scene_repr(self, ALWAYS)
 
+    def _repr_html_(self) -> str:
+        """Return a drawing and the text for notebooks; an incomplete scene has no drawing."""
+        try:
+            data: Mapping[str, Any] = self.resolve().data
+        except (InputError, OSError):
+            data = {}
+        return scene_html(data, repr(self))
+
     def set(self, path: str, value: object) -> Scene:
         """Set the value at a dotted path such as ``"snow.density"`` or ``"obstacles.0.friction"``.
 
-        Objects on the way that were not given are created. Returns the scene itself, which is
-        changed; `with_` returns a changed copy.
+        Missing objects along the path are created. Returns this scene, which is changed; `with_`
+        returns a changed copy.
 
         Raises
         ------
         InputError
-            If the path names nothing a scene has, or what is there takes no such value. The scene
-            is then as it was.
+            If the path does not exist, or the value is of a wrong type. The scene is then
+            unchanged.
         """
         with locate(self, path) as (record, key, where):
             record.assign(key, value, where)
@@ -315,23 +320,23 @@ class Scene(Record):
         Raises
         ------
         InputError
-            If the path names nothing a scene has, or something that is no list, or if the list
-            takes no such value. The scene is then as it was.
+            If the path does not exist, or is not a list, or the list does not accept the value. The
+            scene is then unchanged.
         """
         with locate(self, path) as (record, key, where):
             held = getattr(record, record.field_of(key, where))
             if not isinstance(held, (list, tuple, type(None))):
-                raise InputError(f"{where}/{key}: nothing can be appended to what is no list")
+                raise InputError(f"{where}/{key}: is not a list; cannot append")
             record.assign(key, [*(held or []), value], where)
         return self
 
     def update(self, values: Mapping[str, object]) -> Scene:
-        """Set several values; keys are dotted paths, and nested mappings go into what they name.
+        """Set several values; keys are dotted paths, values may be nested mappings.
 
         Raises
         ------
         InputError
-            As of `set`, or if the same is given by two names. The scene is then as it was.
+            As for `set`, or if a value is given by two names. The scene is then unchanged.
         """
         copy.deepcopy(self)._update(values, {})  # fails, if it must, before anything is changed
         self._update(values, {})
@@ -355,18 +360,18 @@ class Scene(Record):
                     record.assign(key, value, where)
 
     def resolve(self) -> ResolvedScene:
-        """Have the core validate the scene and fill its defaults.
+        """Validate the scene and fill its defaults, in the core.
 
         Raises
         ------
         InputError
-            Naming the JSON path, what is wrong with it, and what is allowed.
+            Naming the JSON path, the error, and the allowed values.
         """
         self._warn_of_slip()
         return ResolvedScene.parse(json.dumps(self.to_data()), self._base_dir)
 
     def _warn_of_slip(self) -> None:
-        """Say, for one version, that slip has another meaning; files tell it by their version."""
+        """Note, for one version, that slip has another meaning; files state it by their version."""
         parts = [self.panel, self.ground, *(self.obstacles or ())]
         if self.snowshed != 1 and any(part and part.condition == "slip" for part in parts):
             warnings.warn(SLIP_CHANGED, FutureWarning, stacklevel=3)
@@ -374,14 +379,14 @@ class Scene(Record):
     def record_type(self, key: str) -> Optional[type[Record]]:
         """Return the class of records under a key; that of the settings depends on the method."""
         if key == SETTINGS_KEY:
-            return settings_class(self.method)
+            return method_named(self.method).settings
         return super().record_type(key)
 
 
 def _refuse_null(data: JsonValue, where: str) -> None:
     """Refuse null: in a file, as for the core, a key that is not given is left out."""
     if data is None:
-        raise InputError(f"{where or '/'}: null is no value; leave the key out")
+        raise InputError(f"{where or '/'}: null is not a value; leave the key out")
     if where.count("/") > 2 * DEEPEST:
         raise InputError(f"{where[:100]}...: nested more than {DEEPEST} deep")
     items = enumerate(data) if isinstance(data, list) else ()
@@ -394,7 +399,7 @@ SceneLike = Union[Scene, ResolvedScene, Mapping[str, JsonValue], PathLike]
 
 
 def resolve_scene(scene: SceneLike) -> ResolvedScene:
-    """Return the complete scene of whatever stands for one.
+    """Return the complete scene of a `Scene`, JSON data, or a file.
 
     Parameters
     ----------
@@ -404,7 +409,7 @@ def resolve_scene(scene: SceneLike) -> ResolvedScene:
     Raises
     ------
     InputError
-        If the scene is wrong, or `scene` is none of these.
+        If the scene is wrong, or `scene` is of another type.
     OSError
         If the file cannot be read.
 

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from typing import List, Union
 
 from snowshed._core import InputError
-from snowshed.io.record import Record
+from snowshed.base.record import Record
 
 Holder = Union[Record, List[Record]]
 
@@ -16,7 +16,7 @@ Holder = Union[Record, List[Record]]
 def locate(scene: Record, path: str) -> Iterator[tuple[Record, str, str]]:
     """Yield the record that holds the last part of `path`, that part, and where it is.
 
-    A record on the way that was not given is created, and dropped again on an error.
+    A missing record along the path is created, and dropped again after an error.
     """
     *parents, key = path.split(".")
     holder: Holder = scene

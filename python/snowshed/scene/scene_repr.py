@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Collection
 
-from snowshed.io.json_file import JsonObject
-from snowshed.io.record import Record, call_text
+from snowshed.base.json_values import JsonObject
+from snowshed.base.record import Record, call_text
 from snowshed.methods.registry import DEFAULT, NAME_KEY
 from snowshed.scene.schema import properties, resolve, scene_schema, schema_of_method
 

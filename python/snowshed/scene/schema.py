@@ -10,7 +10,7 @@ from typing import Optional, cast
 
 from snowshed._core import scene_schema as schema_text
 from snowshed._core import update_version
-from snowshed.io.json_file import JsonObject, JsonValue
+from snowshed.base.json_values import JsonObject, JsonValue
 from snowshed.methods.registry import DEFAULT, METHODS, SETTINGS_KEY
 
 Node = Mapping[str, JsonValue]
@@ -18,7 +18,7 @@ Node = Mapping[str, JsonValue]
 
 @dataclass(frozen=True)
 class Parameter:
-    """One value of a scene that can be set.
+    """A value of a scene that can be set.
 
     Attributes
     ----------
@@ -27,11 +27,11 @@ class Parameter:
     kind
         number, integer, boolean, string, vector (of numbers) or list (of objects).
     description, unit, default
-        As in the schema; the unit is empty and the default None where there is none.
+        As in the schema; without them, the unit is empty and the default None.
     choices
-        What an enumeration may be; None for other parameters.
+        Allowed values of an enumeration; None for other parameters.
     aliases
-        Other dotted paths under which it may be given.
+        Other dotted paths of the value.
     accuracy
         Whether it trades accuracy for computing time.
     """
@@ -48,7 +48,7 @@ class Parameter:
 
 @functools.cache
 def scene_schema() -> JsonObject:
-    """Return the JSON Schema of a scene; it is shared, so leave it as it is."""
+    """Return the JSON Schema of a scene; it is shared, so do not change it."""
     return cast(JsonObject, json.loads(schema_text()))
 
 
@@ -82,7 +82,7 @@ def parameter_units() -> Mapping[str, str]:
 def schema_of_method(method: str) -> JsonObject:
     """Return the schema with the settings of one method, and only the parts that it takes.
 
-    It is shared, so leave it as it is.
+    The result is shared, so do not change it.
     """
     schema = scene_schema()
     parts = {
@@ -91,7 +91,11 @@ def schema_of_method(method: str) -> JsonObject:
         if method in _list(_object(part).get("x-methods", [method]))
     }
     settings = _object(parts[SETTINGS_KEY])
-    own = [one for one in _list(settings["anyOf"]) if _object(one).get("title") == method]
+    own = [
+        alternative
+        for alternative in _list(settings["anyOf"])
+        if _object(alternative).get("title") == method
+    ]
     parts[SETTINGS_KEY] = {**settings, "anyOf": own}
     return {**schema, "properties": parts}
 
@@ -137,11 +141,11 @@ def properties(schema: Node, node: Node) -> dict[str, JsonObject]:
     node
         The object's part of it.
     """
-    found: dict[str, JsonObject] = {}
+    variants: dict[str, JsonObject] = {}
     for part in _parts(schema, node):
         for name, inner in _object(part.get("properties")).items():
-            found.setdefault(name, _object(inner))
-    return found
+            variants.setdefault(name, _object(inner))
+    return variants
 
 
 def resolve(schema: Node, node: Node) -> JsonObject:

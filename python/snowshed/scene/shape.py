@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import List, Literal, Optional
 
-from snowshed.io.paths import PathLike
-from snowshed.io.record import Record
+from snowshed.base.paths import PathLike
+from snowshed.base.record import Record
 
 Vector = Sequence[float]
 ShapeType = Literal[

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from snowshed._core import InputError
-from snowshed.io.extras import require
+from snowshed.base.extras import require
 from snowshed.study.compute import compute
 from snowshed.study.errors import StudyError
 from snowshed.study.outcome import Outcome, Task

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import platform
 import shutil
 import tempfile
@@ -15,12 +14,13 @@ from typing import Any, Optional
 
 import snowshed._core as _core
 from snowshed._core import InputError
-from snowshed.io.notes import SnowshedNote
-from snowshed.run.interrupt import Interrupted
-from snowshed.run.method_runs import runs_of
-from snowshed.run.progress import Progress, Reporter
-from snowshed.run.results import RunFolder
-from snowshed.scene.scene import ResolvedScene
+from snowshed.base.interrupt import Interrupted
+from snowshed.base.notes import SnowshedNote
+from snowshed.base.progress import Progress, Reporter
+from snowshed.methods.registry import method_of
+from snowshed.results.folder import RunFolder
+from snowshed.running.run import run
+from snowshed.scene.resolved import ResolvedScene, scene_data
 from snowshed.study.aged_scene import taken_apart
 from snowshed.study.locks import holding
 from snowshed.study.outcome import Outcome, Task
@@ -54,7 +54,7 @@ def compute(task: Task, report: Optional[FractionReporter] = None) -> Outcome:
 
 
 def _compute(task: Task, folder: Path, report: Optional[FractionReporter]) -> Outcome:
-    if content_hash(json.loads(task.scene)) != task.hash:
+    if content_hash(scene_data(task.scene)) != task.hash:
         reason = (
             f"run {task.hash} is not what was registered: a file its scene names has changed, or "
             f"this is another version of snowshed ({_core.version})"
@@ -82,27 +82,30 @@ def _compute(task: Task, folder: Path, report: Optional[FractionReporter]) -> Ou
 def _run_or_resume(task: Task, folder: Path, report: Optional[Reporter]) -> None:
     """Run the events; an earlier attempt without a checkpoint is removed."""
     data, ageing = taken_apart(task.scene)
+    options: dict[str, Any] = {
+        "ageing": ageing, "progress": report, "pictures": False, "compact": True,
+    }  # fmt: skip
     if (folder / "scene.json").is_file():
         try:
             scene = ResolvedScene.load(folder / "scene.json")  # with the threads it had
-            runs_of(data).run(scene, folder, resume=True, ageing=ageing, progress=report)
+            run(scene, folder, resume=True, **options)
             return
         except InputError:
             pass
     shutil.rmtree(folder, ignore_errors=True)
     data["numerics"]["threads"] = task.threads
-    scene = ResolvedScene.parse(json.dumps(data))
-    runs_of(data).run(scene, folder, resume=False, ageing=ageing, progress=report)
+    scene = ResolvedScene.from_data(data)
+    run(scene, folder, **options)
 
 
 def _outcome(task: Task, folder: Path, error: Optional[str]) -> Outcome:
     """Return the outcome that the results folder records."""
     results = RunFolder(folder)
-    runs = runs_of(task.scene)
+    runs = method_of(taken_apart(task.scene)[0]).run_class()
     events = runs.rows(folder)
     status = "done" if error is None else "failed"
     begun = (folder / "scene.json").is_file()  # else it failed before there was anything
-    particles = dict(runs.kept(folder)) if task.keep_particles and begun else {}
+    particles = dict(runs.packed(folder)) if task.keep_particles and begun else {}
     facts = results.read_run()
     notes = tuple(facts.get("notes", ()))
     return Outcome(task.hash, status, events, _timing(facts), error, particles, notes)

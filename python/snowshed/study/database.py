@@ -23,7 +23,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from snowshed._core import InputError
-from snowshed.run.method_runs import column_types, runs_of
+from snowshed.methods.registry import DEFAULT, METHODS
 from snowshed.study import checksums
 from snowshed.study.errors import StudyError
 from snowshed.study.locks import owner_lives
@@ -35,10 +35,18 @@ APPLICATION = 0x534E4F57  # "SNOW": tells our databases from others
 VERSIONS = (1, 2)
 BUSY_S = 60.0  # s to wait for another process that is writing
 
-#: What is measured after an event, by any method, with the type it has in the store.
-STORED_TYPES: Mapping[str, str] = column_types()
+SQL_TYPES: Mapping[type, str] = {int: "INTEGER", float: "REAL", str: "TEXT"}
+
+#: What each method measures after an event: int, float or str.
+MEASURED: Mapping[str, Mapping[str, type]] = {
+    name: method.run_class().COLUMNS for name, method in METHODS.items()
+}
+#: What any method measures, with the type it has in the store.
+STORED_TYPES: Mapping[str, str] = {
+    name: SQL_TYPES[kind] for columns in MEASURED.values() for name, kind in columns.items()
+}
 #: Of these, what the default method measures.
-MEASURED_TYPES: Mapping[str, str] = {name: STORED_TYPES[name] for name in runs_of({}).columns}
+MEASURED_TYPES: Mapping[str, str] = {name: STORED_TYPES[name] for name in MEASURED[DEFAULT]}
 #: Facts about the computing of a run.
 TIMING: Mapping[str, str] = {
     "run_wall_s": "REAL",

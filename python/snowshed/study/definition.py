@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Optional
 
 from snowshed._core import InputError
+from snowshed.base.progress import Reporter
 from snowshed.io.atomic import write_text
-from snowshed.run.progress import Reporter
 from snowshed.scene.scene import PathLike, Scene
 from snowshed.study import session, study_file
 from snowshed.study.factors import SEED, Part, axis

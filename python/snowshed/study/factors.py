@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import Optional
 
 from snowshed._core import InputError
-from snowshed.io.messages import shortened
+from snowshed.base.messages import shortened
 
 LARGEST_COUNT = 1_000_000  # values of one factor; more is a slip of the pen
 SCALES = ("linear", "log")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Optional
 
-from snowshed.run.pool import Ended, Pool
+from snowshed.base.pool.pool import Ended, Pool
 from snowshed.study.compute import compute
 from snowshed.study.outcome import Outcome, Task
 

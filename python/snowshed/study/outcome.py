@@ -51,8 +51,8 @@ class Outcome:
     error
         Reason why the run is not done.
     particles
-        Those after each completed event, packed (see `snowshed.run.event_particles`), by events;
-        empty unless the task asked for them.
+        What each completed event left, packed (see `MethodRun.packed`), by events; empty unless
+        the task asked for it.
     notes
         What readers of the results should know, as run.json has it.
     """

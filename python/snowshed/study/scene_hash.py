@@ -20,7 +20,7 @@ from typing import Any, Optional
 
 import snowshed._core as _core
 from snowshed.io.input_file import read_regular
-from snowshed.run.ageing import Ageing
+from snowshed.running.ageing import Ageing
 from snowshed.scene.scene import ResolvedScene
 from snowshed.study.aged_scene import with_ageing
 
@@ -75,7 +75,7 @@ class Run:
         >>> one.hash == Run.of(lab.set("panel.tilt", 51).resolve()).hash
         False
         """
-        data = with_ageing(scene.data, ageing)
+        data = with_ageing(scene.copied_data(), ageing)
         data["numerics"]["threads"] = 0
         data["output"].update(snapshot_interval=0.0, film=False, energy=False)
         return cls(content_hash(data), json.dumps(data))

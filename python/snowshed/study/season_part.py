@@ -10,12 +10,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Optional, Union
 
 from snowshed._core import InputError
-from snowshed.run.season.accumulation import accumulate, stack_ageing
-from snowshed.run.season.settings import SeasonSettings
-from snowshed.run.season.slabs import season_scene
-from snowshed.run.season.weather import read_season
-from snowshed.run.season.weather_row import Weather
 from snowshed.scene.scene import PathLike, ResolvedScene
+from snowshed.season.accumulation import accumulate, stack_ageing
+from snowshed.season.settings import SeasonSettings
+from snowshed.season.slabs import season_scene
+from snowshed.season.weather import read_season
+from snowshed.season.weather_row import Weather
 from snowshed.study.scene_hash import Run
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ class SeasonPart:
     Attributes
     ----------
     weather
-        A season file, a DataFrame, or rows of `Weather`, as for `snowshed.run.season.run_season`.
+        A season file, a DataFrame, or rows of `Weather`, as for `snowshed.season.run_season`.
     settings
         Release, density, strength, settling; the same in all runs.
 
@@ -92,7 +92,7 @@ class SeasonPart:
         InputError
             If the scene has no panel, or no snow is released.
         """
-        data: dict[str, Any] = scene.data
+        data = scene.data
         if "panel" not in data:
             raise InputError("/panel: missing; a season needs a panel for the snow to gather on")
         days = accumulate(self.rows, self.settings, data["panel"]["tilt"], data["gravity"])

@@ -15,10 +15,10 @@ from typing import Optional
 
 import snowshed._core as _core
 from snowshed._core import InputError
-from snowshed.io.notes import tell
-from snowshed.run.interrupt import InterruptRequest, deferred_interrupts
-from snowshed.run.pool import available_cores
-from snowshed.run.progress import Progress, Reporter
+from snowshed.base.interrupt import InterruptRequest, deferred_interrupts
+from snowshed.base.notes import tell
+from snowshed.base.pool.pool import available_cores
+from snowshed.base.progress import Progress, Reporter
 from snowshed.scene.scene import PathLike
 from snowshed.study import cost_estimate
 from snowshed.study.errors import StudyError, StudyInterrupted
@@ -175,9 +175,9 @@ def _compute(
 def _tell_of_runs(notes: Counter[str]) -> None:
     """Say the notes on runs, those on most runs first."""
     for note, runs in notes.most_common(MOST_NOTES):
-        tell(f"{runs} {'run' if runs == 1 else 'runs'}: {note}", stacklevel=3)
+        tell(f"{runs} {'run' if runs == 1 else 'runs'}: {note}")
     if len(notes) > MOST_NOTES:
-        tell(f"{len(notes) - MOST_NOTES} further notes on runs", stacklevel=3)
+        tell(f"{len(notes) - MOST_NOTES} further notes on runs")
 
 
 def _check_version(store: Store, pending: Sequence[StoredRun]) -> None:

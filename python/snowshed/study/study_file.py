@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import Any, Optional, TypeVar
 
 from snowshed._core import InputError
+from snowshed.base.record import check_once
 from snowshed.io.input_file import read_input
-from snowshed.io.record import check_once
 from snowshed.io.toml import parse_toml, toml_lines, toml_value
 from snowshed.methods.registry import resolution_path
 from snowshed.scene.accuracy_settings import ACCURACY, FORMER_NAMES, accuracy_of

@@ -6,15 +6,15 @@ import json
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Optional
 
+from snowshed.base.messages import shortened
 from snowshed.io.json_file import is_number
-from snowshed.io.messages import shortened
-from snowshed.run.method_runs import COUNTS, runs_of
-from snowshed.run.results import WORDS
+from snowshed.methods.registry import method_of
 from snowshed.scene.accuracy_settings import NUMBERS, accuracy_of
+from snowshed.scene.resolved import scene_data
 from snowshed.scene.scene import PathLike
 from snowshed.scene.schema import current_path, with_current_names
 from snowshed.snow.stack.quantities import MEASURES, QUANTITIES
-from snowshed.study.database import STORED_TYPES, TIMING
+from snowshed.study.database import MEASURED, STORED_TYPES, TIMING
 from snowshed.study.factors import SEED
 from snowshed.study.store import Store, StoredRun
 
@@ -67,13 +67,16 @@ def read_table(
         name = store.named(study)
         rows = list(_rows(store, name))
         axes = store.axes(name)
-        scenes = [json.loads(run.scene) for run in store.runs(name)] or [{}]
-    measured = [column for scene in scenes for column in runs_of(scene).columns]
+        scenes = [scene_data(run.scene) for run in store.runs(name)] or [{}]
+    measured = [column for scene in scenes for column in MEASURED[method_of(scene).name]]
     settings = [column for scene in scenes for column in accuracy_of(scene)]
     columns = ["hash", *axes, "seed", "event", *measured, "error", "version", "dimension"]
     columns += [*settings, *(("wall_s", *RUN_TIMING) if timing else ())]
     table = pd.DataFrame(rows, columns=list(dict.fromkeys(columns)))  # axes may be among them
-    types: dict[str, Any] = {**dict.fromkeys(COUNTS, "Int64"), **dict.fromkeys(NUMBERS, float)}
+    types: dict[str, Any] = {
+        **dict.fromkeys(_of_type("INTEGER"), "Int64"),
+        **dict.fromkeys(NUMBERS, float),
+    }
     for column in measured:
         if column not in types and table[column].isna().all():  # the table of no stack at all
             types[column] = float
@@ -125,7 +128,7 @@ def _rows(store: Store, study: str) -> Iterator[dict[str, Any]]:
 
 def _facts(run: StoredRun, axes: Sequence[str]) -> dict[str, Any]:
     """Return the columns that all events of a run share."""
-    scene = with_current_names(json.loads(run.scene))
+    scene = with_current_names(scene_data(run.scene))
     facts = scene_columns(scene, axes)
     return {**facts, "hash": run.hash, "error": "", "version": run.version}
 
@@ -150,11 +153,12 @@ def _events(store: Store, study: str) -> dict[str, list[dict[str, Any]]]:
         " WHERE study = ? ORDER BY position, event.event",
         (study,),
     )
+    texts = _of_type("TEXT")
     events: dict[str, list[dict[str, Any]]] = {}
     for hash_, *values in rows:
         row = dict(zip(names, values))
         for name, value in row.items():
-            right = isinstance(value, str) if name in WORDS else is_number(value)
+            right = isinstance(value, str) if name in texts else is_number(value)
             if not (right or value is None):
                 raise store.damaged(f"run {hash_}, {name}: {shortened(repr(value))}")
         events.setdefault(hash_, []).append(row)
@@ -167,6 +171,10 @@ def _run_timings(store: Store, study: str) -> list[tuple[Any, ...]]:
         " WHERE study = ?",
         (study,),
     )
+
+
+def _of_type(kind: str) -> list[str]:
+    return [name for name, stored in STORED_TYPES.items() if stored == kind]
 
 
 def value_at(scene: Mapping[str, Any], path: str) -> Any:

@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 
 from snowshed.analysis.calibration.measurements import Measurement
-from snowshed.run.results import WORDS
+from snowshed.results.folder import WORDS
 from snowshed.study.database import MEASURED_TYPES
 from snowshed.study.outcome import Outcome
 from snowshed.study.store import Store

@@ -29,10 +29,11 @@ def run(*arguments):
 
 @pytest.fixture(scope="module")
 def evaluated(tmp_path_factory):
-    """The folder of a calibration on the thesis's grid, whose runs are made up."""
+    """The folder of a calibration on the corners of the grid, whose runs are made up."""
     folder = tmp_path_factory.mktemp("calibration")
     write_measurements(measured(TRUTH), folder / "stacks.csv")
-    fill(folder / "store", calibration_study(read_measurements(folder / "stacks.csv")))
+    study = calibration_study(read_measurements(folder / "stacks.csv"), quick=True)
+    fill(folder / "store", study)
     options = ("--stored", folder / "store", "-o", folder / "out")
     assert run("calibrate", folder / "stacks.csv", *options, "-q") == 0
     return folder
@@ -41,13 +42,13 @@ def evaluated(tmp_path_factory):
 def test_tables_and_figures(evaluated):
     out = evaluated / "out"
     ranking = pd.read_csv(out / "ranking.csv")
-    assert len(ranking) == 48 and ranking["rank"].tolist() == list(range(1, 49))
+    assert len(ranking) == 12 and ranking["rank"].tolist() == list(range(1, 13))
     ranges = pd.read_csv(out / "ranges.csv").set_index("parameter")
     assert list(ranges.index) == list(PARAMETERS)
     for path, true in zip(PARAMETERS, TRUTH):
         assert ranges.loc[path, "lower_95"] < true < ranges.loc[path, "upper_95"]
         assert ranges.loc[path, "best_set"] == ranking.loc[0, path]
-    assert len(pd.read_csv(out / "comparison.csv")) == 48 * 12
+    assert len(pd.read_csv(out / "comparison.csv")) == 12 * 12
     assert len(pd.read_csv(out / "surrogate.csv")) == 12
     assert set(pd.read_csv(out / "posterior.csv")) >= {COHESION, "discrepancy_height"}
     assert set(pd.read_csv(out / "rmse-statistics.csv")["score"]) == {
@@ -91,7 +92,7 @@ def test_without_a_library_nothing_is_computed(
 
 
 def test_what_it_prints(evaluated, capsys):
-    from snowshed.cli.display.calibration import print_calibration
+    from snowshed.cli.commands.calibrate import print_calibration
 
     stacks = read_simulated(evaluated / "store")
     measurements = read_measurements(evaluated / "stacks.csv")
@@ -104,7 +105,7 @@ def test_what_it_prints(evaluated, capsys):
 
 
 def test_runs_that_are_not_computed_are_told(evaluated, tmp_path, capsys):
-    from snowshed.cli.display.calibration import print_calibration
+    from snowshed.cli.commands.calibrate import print_calibration
 
     grid = calibration_study(read_measurements(evaluated / "stacks.csv"))
     fill(tmp_path / "store", grid, pending=40)
@@ -133,9 +134,9 @@ def test_plan_and_errors(tmp_path, capsys):
         ((tmp_path / "none.csv", "-o", tmp_path), "none.csv: No such file"),
         ((bad, "-o", tmp_path), "bad.csv, line 2: event: 'one' is not a number"),
         ((*options, "--stored", tmp_path / "nowhere"), "nowhere"),
-        ((*options, "--stored", tmp_path, "--plan"), "--plan does nothing with --stored"),
-        ((*options, "--study", tmp_path / "x", "--seeds", 3), "--seeds does nothing with --study"),
-        ((*options, "--name", "grid"), "--name is of a study given with --stored"),
+        ((*options, "--stored", tmp_path, "--plan"), "--dry-run has no effect with --stored"),
+        ((*options, "--study", tmp_path / "x", "--seeds", 3), "--seeds has no effect with --study"),
+        ((*options, "--name", "grid"), "--name needs --stored"),
         ((*options, "--quantity", "width", "--study", tmp_path / "no.toml"), "no.toml"),
     ):
         assert run("calibrate", *arguments) == 2

@@ -37,17 +37,17 @@ def test_the_surrogate_knows_runs_it_has_not_seen(surrogate):
 
 
 def test_known_snow_comes_back_inside_the_ranges(surrogate):
-    """Of the 95 % ranges of six snows nearly all hold the truth, and most of the 68 %."""
+    """Of the 95 % ranges of three snows nearly all hold the truth, and most of the 68 %."""
     random = np.random.default_rng(3)
     within = {"68": 0, "95": 0}
-    for number in range(6):
+    for number in range(3):
         snow = LOW + random.uniform(0.1, 0.9, 3) * (HIGH - LOW)
         ranges = posterior_of(surrogate, snow, random=100 + number).ranges()
         for level in within:
             inside = (ranges[f"lower_{level}"] <= snow) & (snow <= ranges[f"upper_{level}"])
             within[level] += int(inside.sum())
-    assert within["95"] >= 16  # of 18; fewer have a probability of 6 %
-    assert within["68"] >= 9  # fewer: 3 %
+    assert within["95"] >= 8  # of 9; fewer have a probability of 7 %
+    assert within["68"] >= 4  # fewer: 4 %
 
 
 def test_better_measurements_give_narrower_ranges(surrogate):
@@ -131,6 +131,7 @@ def test_chains_that_have_not_converged_are_told(surrogate):
     assert (ranges[columns] == good.diagnostics.loc[ranges.index, columns]).all(axis=None)
 
 
+@pytest.mark.slow  # the command's test asks for it too, on fewer parameter sets
 def test_the_default_number_of_steps_converges(surrogate):
     assert sample_posterior(surrogate, measured((0.55, 5.5e3, 0.12))).converged
 

@@ -6,12 +6,12 @@ from contextlib import closing
 import pytest
 from processes import kill_with_children, snowshed_command, wait_for
 
-from snowshed.run.season.generator import Climate, MonthClimate
+from snowshed.season.generator import Climate, MonthClimate
 from snowshed.study.database import FILE
 
 OFTEN = MonthClimate(0.08, 0.3, 1.5, 0.06, -4.0, 3.0)
 WINTERS = Climate({12: OFTEN, 1: OFTEN, 2: MonthClimate(0.0, 0.0, 1.0, 0.1, -4.0, 3.0)})
-PANEL = ("--slope-length", 0.6, "--tilt", 60, "--heights", "0.25,0.45,0.9", "--draws", 2)
+PANEL = ("--slope-length", 0.6, "--tilt", 60, "--heights", "0.25,0.45,0.9", "--draws", 1)
 STORE = f"runs-0.6-60/{FILE}"
 
 

@@ -4,7 +4,7 @@ import json
 
 import numpy as np
 import pytest
-from validation.rate_equations import RateEquations, evenly
+from validation.material_paths.rate_equations import RateEquations, evenly
 
 from snowshed import InputError, Snow
 from snowshed.analysis.grains.material import readings

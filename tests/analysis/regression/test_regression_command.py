@@ -42,7 +42,7 @@ def test_the_trial_is_small(capsys):
     shown = capsys.readouterr().out
     assert shown == geometry_study(trial=True).to_toml() and "numerics.dx = 0.05" in shown
     assert run("geometry", "--trial", "--dx", "0.02") == 2
-    assert "--dx does nothing with --trial" in capsys.readouterr().err
+    assert "--dx has no effect with --trial" in capsys.readouterr().err
     assert run("geometry", "--between", "melt") == 2
     assert "'melt' is unknown; allowed: carry, reseed" in capsys.readouterr().err
 
@@ -178,4 +178,4 @@ def test_an_interrupt_ends_with_130_and_says_how_to_go_on(regressed, tmp_path, m
 
     monkeypatch.setattr(pipeline, "cross_validate", interrupted)
     assert run("regress", regressed / "rows.csv", "-o", tmp_path / "out", *FEW) == 130
-    assert "the same command goes on with what" in capsys.readouterr().err
+    assert "the same command resumes from" in capsys.readouterr().err

@@ -136,7 +136,7 @@ def test_an_interrupted_regression_goes_on_where_it_was(tmp_path, monkeypatch):
         return compute(task, rows, scheme)
 
     monkeypatch.setattr(nested, "compute", compute_then_interrupt)
-    with pytest.raises(RegressionInterrupted, match="the same command goes on"):
+    with pytest.raises(RegressionInterrupted, match="the same command resumes"):
         run(tmp_path / "parts")
     written = list((tmp_path / "parts").rglob("*.npz"))
     assert len(done) == 3 and len(written) == 3

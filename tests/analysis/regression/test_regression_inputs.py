@@ -54,13 +54,13 @@ def test_a_prediction_takes_these_inputs(regressed):
 def test_questions_that_the_model_does_not_know_are_refused(regressed):
     file = regressed / "model.npz"
     sound = {"snow.cohesion": 0.1, "panel.friction": 0.2}
-    with pytest.raises(InputError, match=r"height: is no input of this model, which has snow\.co"):
+    with pytest.raises(InputError, match=r"height: not an input of this model; allowed: snow\.co"):
         predict(height=2, inputs=sound, events=1, model=file)
     with pytest.raises(InputError, match=r"panel\.friction: missing; needed are snow\.cohesion"):
         predict(inputs={"snow.cohesion": 0.1}, events=1, model=file)
     with pytest.raises(InputError, match=r"cohesion factor 0\.5 is outside the data"):
         predict(inputs={"snow.cohesion": 0.5, "panel.friction": 0.2}, events=1, model=file)
-    with pytest.raises(InputError, match=r"snow\.cohesion: is no input of this model"):
+    with pytest.raises(InputError, match=r"snow\.cohesion: not an input of this model"):
         predict(height=2, length=4, tilt=60, events=1, inputs={"snow.cohesion": 0.1})
     with pytest.raises(InputError, match=r"snow\.cohesion: nan is not a finite number"):
         predict(inputs={"snow.cohesion": np.nan, "panel.friction": 0.2}, events=1, model=file)
@@ -70,8 +70,8 @@ def test_questions_that_the_model_does_not_know_are_refused(regressed):
     ("inputs", "message"),
     [
         ((), "inputs: none"),
-        (("height",), "input: 'height' is no parameter"),
-        (("seeding.seed",), "input: 'seeding.seed' is no parameter"),
+        (("height",), "input: 'height' is not a parameter"),
+        (("seeding.seed",), "input: 'seeding.seed' is not a parameter"),
         (("snow.cohesion", "snow.cohesion"), "each once"),
         (("snow.cohesion",), "panel.friction: the rows have different values"),
         (("snow.density", *INPUTS), "snow.density"),

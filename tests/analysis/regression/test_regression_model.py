@@ -30,8 +30,8 @@ from snowshed.analysis.regression.spread import (
     stack_spread,
     unseen_panels,
 )
-from snowshed.analysis.regression.threads import one_thread
-from snowshed.cli.display.regression import print_prediction
+from snowshed.base.pool.threads import one_thread
+from snowshed.cli.commands.predict import print_prediction
 from snowshed.snow.stack.quantities import MEASURES
 
 NOISE = 0.003
@@ -206,7 +206,7 @@ def test_outside_the_data_nothing_is_answered_unless_forced(file, question, mess
         ({"events": 0}, "events: 0 is outside the allowed range"),
         ({"events": 1.5}, "events: 1.5 is not a whole number"),
         ({"height": None}, "height: missing; needed are height, length, tilt, events"),
-        ({"height": "tall"}, "height: not a number, nor numbers"),
+        ({"height": "tall"}, "height: neither a number nor an array of numbers"),
         ({"height": [[2, 3]]}, r"height: shape \(1, 2\); must be a number or a sequence"),
         ({"height": []}, "no panels"),
         ({"height": [2, 3], "tilt": [40, 50, 60]}, "tilt: 3 values, but height has 2"),
@@ -271,7 +271,7 @@ def test_panels_outside_the_data_are_named_and_marked(file):
         (lambda t: t.set_axis([7, 7]), "index holds 7 twice"),
         (lambda t: t[["tilt", *t]], "column 'tilt' occurs twice"),
         (lambda t: t.assign(height=[2, np.nan]), "panel 1, height: nan is not a positive length"),
-        (lambda t: t.to_numpy(), "panels: ndarray is no DataFrame; give arrays as height"),
+        (lambda t: t.to_numpy(), "panels: ndarray is not a DataFrame; give arrays as height"),
     ],
 )
 def test_tables_that_are_no_panels_are_refused(file, change, message):

@@ -5,7 +5,7 @@ import re
 from made_up_rows import few_inputs, made_up_rows, write_table
 from paths import ROOT
 
-DOCS = (ROOT / "docs" / "regression.md").read_text(encoding="utf-8")
+DOCS = (ROOT / "docs" / "guides" / "prediction.md").read_text(encoding="utf-8")
 
 
 def test_the_script_in_the_docs(tmp_path, monkeypatch, capsys):

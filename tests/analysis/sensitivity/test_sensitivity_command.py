@@ -8,7 +8,7 @@ import pytest
 from snowshed import Scene
 from snowshed.analysis.sensitivity import read_stored
 from snowshed.cli.main import main
-from snowshed.run.results import WORDS
+from snowshed.results.folder import WORDS
 from snowshed.study import Study
 from snowshed.study.database import MEASURED_TYPES
 from snowshed.study.outcome import Outcome
@@ -141,8 +141,8 @@ def test_what_is_wrong_is_said(tmp_path, capsys):
         (("--method", "s"), "give -o DIR"),
         (("--method", "x", *out), "method: 'x' is unknown"),
         (("--stored", tmp_path / "nothing", *out), "nothing"),
-        (("--stored", tmp_path, "--quick", *out), "--quick does nothing with --stored"),
-        (("--study", tmp_path, "--samples", 8, *out), "--samples does nothing with --study"),
+        (("--stored", tmp_path, "--quick", *out), "--quick has no effect with --stored"),
+        (("--study", tmp_path, "--samples", 8, *out), "--samples has no effect with --study"),
         (("--stored", tmp_path / "store", "--name", "x", *out), "x"),
         (
             ("--stored", tmp_path / "store", "--method", "sobol", *out),

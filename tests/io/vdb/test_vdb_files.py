@@ -9,10 +9,10 @@ from conftest import tiny_scene
 from snowshed import InputError, Scene, Shape, _core, measure_stack
 from snowshed.cli.main import main
 from snowshed.io.vdb import write_vdb
-from snowshed.io.vtp import read_particles
-from snowshed.run.conversion import outline_difference
-from snowshed.run.results import read_events
-from snowshed.run.vdb_export import export_folder
+from snowshed.io.vtk.vtp import read_particles
+from snowshed.results.folder import read_events
+from snowshed.results.vdb_export import export_folder
+from snowshed.running.conversion import outline_difference
 
 DX = 0.02  # of the tiny scene
 

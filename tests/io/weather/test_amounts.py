@@ -302,7 +302,7 @@ def test_a_day_that_is_there_twice_must_agree(layout, station):
     text = LAYOUTS[layout](rows.rsplit("\n", 2)[0] + "\n")
     again = LAYOUTS[layout](rows).splitlines()[-1]
     assert len(station(text + text.splitlines()[-1] + "\n").rows) == 2  # the same again
-    with pytest.raises(InputError, match="SNOW of 2024-01-02 is there twice with different"):
+    with pytest.raises(InputError, match="SNOW of 2024-01-02 occurs twice with different"):
         station(text + again + "\n")
 
 

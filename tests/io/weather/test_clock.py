@@ -82,7 +82,7 @@ def twice(form):
 
 @pytest.mark.parametrize("form", ["IMIS", "SMET", "MeteoSwiss"])
 def test_an_hour_of_local_time_that_is_there_twice_is_refused_by_name(form, station):
-    with pytest.raises(InputError, match=r"is not after .*this hour is there twice"):
+    with pytest.raises(InputError, match=r"is not after .*this hour occurs twice"):
         station(twice(form))
 
 
@@ -98,7 +98,7 @@ def test_an_hour_of_local_time_that_is_missing_is_told(step, station):
     times = [begin + timedelta(hours=step * n) for n in range(int(48 / step))]
     kept = [time for time in times if not (time.day == 31 and time.hour == 2)]
     read = station(imis([f"{time:%Y-%m-%d %H:%M}" for time in kept]))
-    assert any("is missing, as where summer time begins" in note for note in read.notes)
+    assert any("is missing, as at the beginning of summer time" in note for note in read.notes)
     whole = station(imis([f"{time:%Y-%m-%d %H:%M}" for time in times]))
     assert whole.notes == []
 
@@ -183,7 +183,7 @@ def test_actual_years_stay_as_they_are(form, rows, station):
 
 def test_two_typical_years_in_a_file_are_refused_by_the_hour_that_is_there_twice(station):
     rows = typical(YEARS, DEPTHS)
-    with pytest.raises(InputError, match=r"07-01 05:59 is there twice, as in line [0-9]+"):
+    with pytest.raises(InputError, match=r"07-01 05:59 occurs twice, also in line [0-9]+"):
         station(epw(rows + rows))
 
 

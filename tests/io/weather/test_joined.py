@@ -12,8 +12,8 @@ from weather_files import EPW
 
 from snowshed import InputError
 from snowshed.io.weather import read_stations
-from snowshed.run.season import read_season
-from snowshed.run.season.weather import read_weather
+from snowshed.season import read_season
+from snowshed.season.weather import read_weather
 
 BEGIN = datetime(2022, 12, 1)
 SNOW = meteoswiss("rre150d0;hns000d0;hto000d0", ["5.0;12;30", "0.0;0;30", "0;0;30"] * 4,
@@ -130,7 +130,7 @@ def test_what_goes_with_nothing_else_is_refused(written):
     with pytest.raises(InputError, match="201 weather files; at most 200"):
         read_stations([snow] * 201)
     frame = pd.DataFrame({"date": ["2024-01-01"], "snowfall_m": [0.1], "temperature_c": [-3.0]})
-    with pytest.raises(InputError, match="goes with weather files only"):
+    with pytest.raises(InputError, match="is allowed with weather files only"):
         read_weather(frame, temperature=snow)
 
 

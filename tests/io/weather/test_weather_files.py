@@ -10,9 +10,9 @@ from weather_files import FILES, METEOSWISS, NEW_SNOW, VARIANTS
 
 from snowshed import InputError
 from snowshed.io.weather import FORMATS, read_station
-from snowshed.run.season import read_season
-from snowshed.run.season.gauge import snow_fraction
-from snowshed.run.season.weather import read_weather
+from snowshed.season import read_season
+from snowshed.season.gauge import snow_fraction
+from snowshed.season.weather import read_weather
 from snowshed.snow.relations.new_snow import hedstrom_pomeroy_1998
 
 BY_RULE = 24.0 / hedstrom_pomeroy_1998(-7.0)  # m
@@ -111,7 +111,7 @@ def test_a_damaged_frame_is_refused_by_row_and_column(column, value, message):
         ("# iCSV 1.0 UTF-8 2DTIMESERIES\n", "line 1, column 5: 2DTIMESERIES holds profiles"),
         (
             weather_files.summaries(lambda *_: "0", weather_files.ORDERED),
-            "line 2, column TMAX: without a decimal in any row, its units cannot be told",
+            "line 2, column TMAX: without a decimal in any row, its units are ambiguous",
         ),
         (  # in mm or in inches: either has amounts with one decimal
             weather_files.summaries(
@@ -131,7 +131,7 @@ def test_a_damaged_frame_is_refused_by_row_and_column(column, value, message):
         ),
         (  # the data service writes whole degrees F in the order of the archive, too
             re.sub(r',"[^"]*_ATTRIBUTES"|,"[^"]*,7,0800"', "", weather_files.summaries()),
-            "line 2, column TMAX: without a decimal in any row, its units cannot be told",
+            "line 2, column TMAX: without a decimal in any row, its units are ambiguous",
         ),
         (
             weather_files.ICSV_UNITS.replace("|cm|", "|feet|"),

@@ -22,7 +22,7 @@ from benchmarks.engines.voxel_sample import VoxelSample
 
 from snowshed import GrainsSettings, LoadingStage
 from snowshed.methods.grains.curve import LoadingCurve
-from snowshed.run.grains import run_grains
+from snowshed.running.run import run
 from snowshed.scene.builders import grains_scene
 
 VOXEL = 5e-5  # m
@@ -67,7 +67,7 @@ def press_with_ours(labels, press, folder, step, number):
     stage = LoadingStage(kind="compress", speed=press.speed, strain=press.strain / PARTS)
     scene = grains_scene(file, VOXEL, [stage] * PARTS, settings=settings).update({"gravity": 0})
     out = folder / f"out-{number}"
-    run_grains(scene, out, pictures=False)
+    run(scene, out, pictures=False)
     curve = LoadingCurve.read(out / "curve.csv")
     area = VOXEL**2 * labels.shape[1] * labels.shape[2]
     return Record(curve["time_s"], area * curve["top_stress_pa"], curve["bonds"], 0.0)
@@ -123,7 +123,7 @@ def test_lammps_measures_the_same(labels, tmp_path):
 
 def test_the_sample_of_the_engines_is_ours(labels, tmp_path):
     """Spheres, bonds and masses, which engines are given, are those that the solver makes."""
-    from snowshed.run.simulation import Simulation
+    from snowshed.running.simulation import Simulation
 
     sample = VoxelSample.of_labels(labels, VOXEL)
     file = tmp_path / "labels.npy"

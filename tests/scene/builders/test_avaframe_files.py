@@ -6,8 +6,8 @@ import pytest
 from slide_files import write_polygons, write_project
 
 from snowshed import InputError
-from snowshed.io import limits
-from snowshed.io.notes import recorded
+from snowshed.base import limits
+from snowshed.base.notes import recorded
 from snowshed.scene.builders.avaframe import avaframe_simulations
 from snowshed.scene.builders.avaframe_files import copy_inputs, project_inputs
 

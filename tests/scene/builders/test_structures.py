@@ -157,7 +157,7 @@ def test_a_tracker_turns_to_its_tilt_and_dumps_its_snow():
             lambda: panel_table(
                 2, 0.0, module_length=1.0, height=0, tilt=5, snow=0.1, dx=0.02, posts=[0.0]
             ),
-            "posts: at 0 of its length the table is too low for a post",
+            "posts: the table is too low for a post at 0 of its length",
         ),
         (lambda: shed_roof(guards=[5.0], **ROOF), "guards: 5 m is outside the allowed range"),
         (lambda: shed_roof(overhang=1.5, **ROOF), "overhang: 1.5 m is outside the allowed range"),

@@ -5,7 +5,7 @@ import pytest
 from raster_files import CELL, SLOPE, grid_text, in_unit, scaled, write_geotiff
 
 from snowshed import InputError
-from snowshed.io.raster import Raster
+from snowshed.io.raster.raster import Raster
 from snowshed.scene.builders import on_terrain, single_panel, slide_scene
 from snowshed.scene.builders.terrain_checks import check_terrain, read_terrain
 
@@ -26,7 +26,7 @@ def sloping(change=None, fall=0.3, low=900.0, cell=CELL):
         (sloping(0.0, low=60.0), "elevations of 45 m beside 0 m"),
         (sloping(-100.0, low=100.0), "are some missing"),
         (sloping(1200.0), "beside 1200 m within 5 m"),
-        (sloping(-9999.0), r"elevations from -9999 to 900 m are none .* as that at \(50, 50\)"),
+        (sloping(-9999.0), r"-9999 to 900 m do not occur on Earth .* as that at \(50, 50\)"),
         (sloping(9999.0), "a missing value that the file does not declare as NODATA"),
     ],
     ids=["zero", "low zero", "below", "spike", "-9999", "9999"],
@@ -62,7 +62,7 @@ def test_a_steeper_slope_may_be_believed():
         ({"bands": np.stack([SLOPE, SLOPE])}, "has 2 bands"),
         ({"bands": SLOPE % 200, "dtype": "uint8"}, "numbers of 8 bits are those of a picture"),
         ({"bands": np.where(SLOPE[5, 5] == SLOPE, 0, SLOPE)}, "are some missing"),
-        ({"bands": SLOPE / 0.3048 * 12}, "none of the Earth"),
+        ({"bands": SLOPE / 0.3048 * 12}, "do not occur on Earth"),
     ],
     ids=["feet", "degrees", "bands", "picture", "zero", "inches"],
 )

@@ -6,7 +6,7 @@ from paths import ROOT
 from snowshed.scene.lua.limits import Limits
 from snowshed.scene.lua.vocabulary import SHAPES, SYMBOLS, WORDS
 
-DOCS = (ROOT / "docs" / "lua.md").read_text()
+DOCS = (ROOT / "docs" / "guides" / "lua.md").read_text()
 
 
 @pytest.mark.parametrize("word", WORDS)

@@ -12,7 +12,7 @@ from snowshed import InputError, Scene
 from snowshed.scene.lua import load_lua
 
 EXAMPLES = ROOT / "lua_compat" / "examples"
-DOCS = (ROOT / "docs" / "lua.md").read_text()
+DOCS = (ROOT / "docs" / "guides" / "lua.md").read_text()
 
 
 def scene_of(folder, init, update=None):

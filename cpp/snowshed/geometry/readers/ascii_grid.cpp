@@ -14,7 +14,7 @@
 namespace snowshed {
 namespace {
 
-// As LARGEST_TERRAIN in python/snowshed/io/limits.py, which says why.
+// As LARGEST_TERRAIN in python/snowshed/base/limits.py, which says why.
 constexpr double most_nodes = 25e6;
 constexpr double largest_side = 50'000;     // nodes
 constexpr double largest_coordinate = 1e8;  // m

@@ -30,7 +30,7 @@ enum class Preconditioner { jacobi, incomplete_cholesky, multigrid };
 
 /// Settings of the moving particle semi-implicit method, with the snow of Saito and others (2012,
 /// Annals of Glaciology 53(61)). Their growth coefficient, dilatant branch and thresholds of
-/// erosion are not printed: those here are ours, see docs/mps.md.
+/// erosion are not printed: those here are ours, see docs/methods/mps.md.
 struct Settings {
   double spacing = 0.01;        // m, l0, of particles
   double radius = 2.1;          // r_e over l0

@@ -10,10 +10,10 @@ import numpy as np
 
 from snowshed._core import InputError
 from snowshed.analysis.calibration.measurements import Measurement, to_table
-from snowshed.analysis.stack_table import StackTable
 from snowshed.scene.scene import PathLike
 from snowshed.snow.stack.quantities import QUANTITIES
 from snowshed.study.factors import SEED
+from snowshed.study.stack_table import StackTable
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -37,7 +37,7 @@ class Simulated:
         One row per run and event: ``set``, ``tilt``, ``event``, ``seed``, and the measures
         ``height``, ``length``, ``head``, ``tail`` in m.
     pending
-        Number of runs that are not computed yet, without the sets of which no run is computed.
+        Number of runs that are not computed yet, except sets without any computed run.
     """
 
     parameters: Sequence[str]
@@ -49,7 +49,7 @@ class Simulated:
 def read_simulated(
     folder: PathLike, study: Optional[str] = None, measure: str = "stack"
 ) -> Simulated:
-    """Read the stacks of a study from its store, as far as they are computed.
+    """Read the stacks of the computed runs of a study from its store.
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ def simulated(frame: pd.DataFrame, measure: str = "stack") -> Simulated:
     varied = table.varying(axes, "calibration")
     measured = table.measured(measure, QUANTITIES)
     if not varied:
-        raise InputError("nothing varies in it but tilt and seed, so that nothing is calibrated")
+        raise InputError("only tilt and seed vary in it, so nothing can be calibrated")
     numbered = frame.assign(**{SET: frame.groupby(varied, sort=False).ngroup() + 1})
     sets = numbered.drop_duplicates(SET).set_index(SET)[varied].astype(float)
     rows = measured.assign(**{SET: numbered[SET]}).rename(columns={TILT: "tilt"})
@@ -107,30 +107,30 @@ def compare(stacks: Simulated, measurements: Sequence[Measurement]) -> pd.DataFr
         If the study has no run for a measured tilt or event, naming the measurement's line; or if
         no set has all stacks that were measured.
     """
-    for one in measurements:
-        _check_simulated(stacks, one)
+    for measurement in measurements:
+        _check_simulated(stacks, measurement)
     keys = [SET, "tilt", "event"]
     means = stacks.rows.groupby(keys)[list(QUANTITIES)].mean().reset_index()
     means = means.melt(keys, var_name="quantity", value_name="simulated")
     both = to_table(measurements).merge(means, on=["tilt", "event", "quantity"])
     counts = both.groupby(SET)["simulated"].transform("size")
-    whole = both[counts == len(measurements)]
-    if whole.empty:
-        raise InputError(
-            f"none of the {len(stacks.sets)} parameter sets has all stacks that were measured"
-        )
-    return whole.sort_values([SET, "line", "quantity"], ignore_index=True)
+    complete = both[counts == len(measurements)]
+    if complete.empty:
+        raise InputError(f"none of the {len(stacks.sets)} parameter sets has all measured stacks")
+    return complete.sort_values([SET, "line", "quantity"], ignore_index=True)
 
 
-def _check_simulated(stacks: Simulated, one: Measurement) -> None:
+def _check_simulated(stacks: Simulated, measurement: Measurement) -> None:
     tilts = np.unique(stacks.rows["tilt"].to_numpy(float))
-    if one.tilt not in tilts:
+    if measurement.tilt not in tilts:
         listed = ", ".join(f"{tilt:g}" for tilt in tilts)
         raise InputError(
-            f"tilt {one.tilt:g}, measured in line {one.line}: no such run; there are: {listed}"
+            f"tilt {measurement.tilt:g}, measured in line {measurement.line}: no such run; there "
+            f"are: {listed}"
         )
     last = int(stacks.rows["event"].max())
-    if one.event > last:
+    if measurement.event > last:
         raise InputError(
-            f"event {one.event}, measured in line {one.line}: its runs have {last} events"
+            f"event {measurement.event}, measured in line {measurement.line}: its runs have "
+            f"{last} events"
         )

@@ -2,23 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Optional
 
 from snowshed._core import InputError
 from snowshed.analysis.calibration.measurements import Measurement
+from snowshed.analysis.calibration.parameter_ranges import CORNERS, GRID
 from snowshed.scene.components import Snow
 from snowshed.scene.scene import Scene
-from snowshed.scene.thesis_tables import CALIBRATION, COHESION, PRESSURE, SLOPE
 from snowshed.study.definition import Study
 
-#: The corners of the thesis's grid, for a trial.
-QUICK: Mapping[str, Sequence[float]] = {
-    SLOPE: (min(CALIBRATION[SLOPE]), max(CALIBRATION[SLOPE])),
-    PRESSURE: (min(CALIBRATION[PRESSURE]), max(CALIBRATION[PRESSURE])),
-    COHESION: CALIBRATION[COHESION],
-}
 SEEDS = 2
 
 
@@ -54,14 +48,14 @@ def calibration_study(
         {
             "snow": Snow.preset("reference").to_data(),
             "dimension": 2 if quick else 3,
-            "events.count": max(one.event for one in measurements),
+            "events.count": max(measurement.event for measurement in measurements),
             "numerics.dx": 0.03 if quick else 0.01,
         }
     )
-    tilts = sorted({one.tilt for one in measurements})
+    tilts = sorted({measurement.tilt for measurement in measurements})
     study = Study.product(
         scene,
-        {"panel.tilt": tilts, **(QUICK if quick else CALIBRATION)},
+        {"panel.tilt": tilts, **(CORNERS if quick else GRID)},
         name="calibration-quick" if quick else "calibration",
         seeds=range(1, (SEEDS if seeds is None else seeds) + 1),
     )

@@ -16,8 +16,8 @@ from snowshed.analysis.calibration.comparison import SET
 from snowshed.analysis.calibration.misfit import RANKED
 from snowshed.analysis.calibration.posterior import LEVELS, Posterior
 from snowshed.analysis.calibration.surrogate import EXTRA
-from snowshed.io.arrays import Booleans
-from snowshed.io.extras import require
+from snowshed.base.arrays import Booleans
+from snowshed.base.extras import require
 from snowshed.plot.figure_style import BODY, COLOURS, FAINT, INK, STYLE, blank, headline
 from snowshed.plot.labels import label
 
@@ -104,9 +104,9 @@ def _bars(
 
 
 def _name_sets(axes: Axes, rows: pd.DataFrame, parameters: Sequence[str], best: Booleans) -> None:
-    words = [label(path) for path in parameters]
+    labels = [label(path) for path in parameters]
     axes.set_xlabel(
-        " · ".join(f"{one.symbol} ({one.unit})" if one.unit else one.symbol for one in words)
+        " · ".join(f"{word.symbol} ({word.unit})" if word.unit else word.symbol for word in labels)
     )
     if len(rows) > NAMED:
         axes.set_xticks([])

@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Optional
 
 from snowshed._core import InputError
+from snowshed.base.formatting import number_in
+from snowshed.base.messages import quoted
 from snowshed.io.csv_table import Row, read_text_table
-from snowshed.io.messages import quoted
-from snowshed.io.number_text import number_in
 from snowshed.scene.scene import PathLike
 from snowshed.snow.stack.quantities import QUANTITIES
 
@@ -23,7 +23,7 @@ KEYS = ("tilt_deg", "event")
 ROUND = "round"
 STEEPEST = 90.0  # degrees, not allowed itself
 FARTHEST = 100.0  # m, of anything that is measured of a stack
-FAR = 3.0  # standard deviations by which length and tail - head may differ
+FAR = 3.0  # largest difference between length and tail - head, in standard deviations
 
 TEMPLATE_TILTS = (40, 50)
 TEMPLATE_EVENTS = 5
@@ -86,7 +86,7 @@ class Measurement:
     value, uncertainty
         The measured value and its standard deviation, m.
     line
-        Line in the file.
+        Line in the file, from 1.
     """
 
     tilt: float
@@ -99,7 +99,7 @@ class Measurement:
 
 
 def template() -> str:
-    """Return an empty file to fill in, for the tilts and events of the thesis's calibration.
+    """Return an empty measurements file for the tilts and events of the thesis's calibration.
 
     Examples
     --------
@@ -115,12 +115,12 @@ def template() -> str:
 
 
 def read_measurements(file: PathLike) -> list[Measurement]:
-    r"""Read measured stacks from a CSV file; `template` says what is in it.
+    r"""Read measured stacks from a CSV file; `template` describes its content.
 
     Raises
     ------
     InputError
-        Naming the file, the line, the column, what is wrong and what is allowed.
+        Naming the file, the line, the column, the error and the allowed values.
     OSError
         If the file cannot be read.
 
@@ -136,28 +136,28 @@ def read_measurements(file: PathLike) -> list[Measurement]:
     path = Path(file)
     hint = "`snowshed calibrate --template FILE` writes one to fill in"
     table = read_text_table(path, hint, _check_header)
-    found: list[Measurement] = []
+    measurements: list[Measurement] = []
     seen: dict[tuple[float, int, int], int] = {}
     for row in table.rows:
         if any(row.cells.values()):
-            found += _Row(row).measurements(seen)
-    if not found:
+            measurements += _Row(row).measurements(seen)
+    if not measurements:
         raise InputError(f"{path}: no measurement in it: all cells for measured values are empty")
-    return found
+    return measurements
 
 
 def to_table(measurements: Sequence[Measurement]) -> pd.DataFrame:
     """Return measurements as a table, one row each: the fields of `Measurement`."""
     import pandas as pd
 
-    return pd.DataFrame([vars(one) for one in measurements])
+    return pd.DataFrame([vars(measurement) for measurement in measurements])
 
 
 def _check_header(names: Sequence[str], where: str) -> None:
     for name in names:
         if name not in COLUMNS:
             raise InputError(
-                f"{where}: {quoted(name)} is no column; allowed: {', '.join(COLUMNS)} "
+                f"{where}: {quoted(name)} is not a column; allowed: {', '.join(COLUMNS)} "
                 "(separated by commas)"
             )
     for name in KEYS:
@@ -166,7 +166,7 @@ def _check_header(names: Sequence[str], where: str) -> None:
     measured = [q for q in QUANTITIES if measured_column(q) in names]
     if not measured:
         wanted = ", ".join(measured_column(quantity) for quantity in QUANTITIES)
-        raise InputError(f"{where}: no column of a measured value; there may be: {wanted}")
+        raise InputError(f"{where}: no column of a measured value; allowed: {wanted}")
     for quantity in measured:
         if uncertainty_column(quantity) not in names:
             raise InputError(
@@ -189,12 +189,12 @@ class _Row:
         """Return the measurements of the line; `seen` holds the line of every stack so far."""
         key = self._tilt(), self._whole("event"), self._whole(ROUND, 1)
         values = {quantity: self._value(quantity) for quantity in QUANTITIES}
-        found = [
+        measurements = [
             Measurement(*key, quantity, *value, self.row.number)
             for quantity, value in values.items()
             if value is not None
         ]
-        if found:
+        if measurements:
             earlier = seen.setdefault(key, self.row.number)
             if earlier != self.row.number:
                 raise self._error(
@@ -202,14 +202,14 @@ class _Row:
                     "already; give repetitions another round"
                 )
             self._check_ends(values)
-        return found
+        return measurements
 
     def _value(self, quantity: str) -> Optional[tuple[float, float]]:
         """Return the measured value and its uncertainty, or None if it was not measured."""
         column, uncertain = measured_column(quantity), uncertainty_column(quantity)
         if not self.cells.get(column):
             if self.cells.get(uncertain):
-                raise self._error(f"{uncertain}: an uncertainty, but {column} is empty")
+                raise self._error(f"{uncertain}: an uncertainty, although {column} is empty")
             return None
         value = self._number(column)
         if quantity in POSITIVE and value <= 0:

@@ -9,12 +9,12 @@ import numpy as np
 from snowshed._core import InputError
 from snowshed.analysis.calibration.comparison import SET, Simulated
 from snowshed.analysis.sensitivity.fixed_parameter import rescaled
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 
 if TYPE_CHECKING:
     import pandas as pd
 
-#: Quantities by which the thesis ranks; head and tail are only scored.
+#: Quantities that rank the sets in the thesis; head and tail are only scored.
 RANKED = ("height", "length")
 
 
@@ -47,7 +47,7 @@ def rank(stacks: Simulated, comparison: pd.DataFrame) -> pd.DataFrame:
 
     measured = [q for q in RANKED if (comparison["quantity"] == q).any()]
     if not measured:
-        raise InputError("neither height_m nor length_m was measured, by which the sets are ranked")
+        raise InputError("neither height_m nor length_m was measured, which rank the sets")
     scores = pd.DataFrame({"chi_square": _chi_square(comparison)})
     for quantity, rows in comparison.groupby("quantity", sort=False):
         for name, values in _scores(rows, relative=quantity in RANKED).items():
@@ -79,10 +79,10 @@ def _chi_square(rows: pd.DataFrame) -> pd.Series[float]:
 def _scores(rows: pd.DataFrame, *, relative: bool) -> dict[str, pd.Series[float]]:
     """Return the scores of one quantity, each indexed by the set."""
     difference = rows["value"] - rows["simulated"]
-    found = {
+    columns = {
         "mean_error_m": difference.abs().groupby(rows[SET]).mean(),
         "rmse_m": (difference**2).groupby(rows[SET]).mean() ** 0.5,
     }
     if relative:
-        found["relative_error"] = (difference / rows["value"]).groupby(rows[SET]).mean()
-    return found
+        columns["relative_error"] = (difference / rows["value"]).groupby(rows[SET]).mean()
+    return columns

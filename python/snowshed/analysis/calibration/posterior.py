@@ -28,8 +28,8 @@ import numpy as np
 from snowshed._core import InputError
 from snowshed.analysis.calibration.measurements import Measurement
 from snowshed.analysis.calibration.surrogate import EXTRA, Output, Surrogate
-from snowshed.io.arrays import Floats, Integers
-from snowshed.io.extras import require
+from snowshed.base.arrays import Floats, Integers
+from snowshed.base.extras import require
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -105,10 +105,10 @@ class Posterior:
         not independent; independent chains may differ a little more.
         """
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # what arviz has to say of its own next version
+            warnings.simplefilter("ignore")  # notes of arviz on its own next version
             arviz = require("arviz", EXTRA, PURPOSE)
-            found = arviz.summary(self.draws, kind="diagnostics", round_to="none")
-        columns: pd.DataFrame = found[[*DIAGNOSTICS]]
+            summary = arviz.summary(self.draws, kind="diagnostics", round_to="none")
+        columns: pd.DataFrame = summary[[*DIAGNOSTICS]]
         return columns
 
     def ranges(self) -> pd.DataFrame:
@@ -162,7 +162,12 @@ def outputs_of(measurements: Sequence[Measurement]) -> list[Output]:
     >>> outputs_of([Measurement(40, 1, round, "height", 0.05, 0.01) for round in (1, 2)])
     [('height', 40, 1)]
     """
-    return list(dict.fromkeys((one.quantity, one.tilt, one.event) for one in measurements))
+    return list(
+        dict.fromkeys(
+            (measurement.quantity, measurement.tilt, measurement.event)
+            for measurement in measurements
+        )
+    )
 
 
 def sample_posterior(
@@ -223,11 +228,11 @@ class _Density:
     Attributes
     ----------
     surrogate
-        Predicts the outputs.
+        Surrogate that predicts the outputs.
     quantities
         The measured ones; each has a discrepancy.
     output, quantity
-        Shape (m,): which output and which quantity each mean of rounds is of.
+        Shape (m,): output and quantity of each mean of rounds.
     values, variances
         Shape (m,): the means, m, and their variances by measuring and seeding, m².
     seedings
@@ -248,16 +253,24 @@ class _Density:
     @classmethod
     def of(cls, surrogate: Surrogate, measurements: Sequence[Measurement]) -> _Density:
         outputs = list(surrogate.outputs)
-        quantities = list(dict.fromkeys(one.quantity for one in measurements))
+        quantities = list(dict.fromkeys(measurement.quantity for measurement in measurements))
         rounds: dict[Output, list[Measurement]] = {}
-        for one in measurements:
-            rounds.setdefault((one.quantity, one.tilt, one.event), []).append(one)
+        for measurement in measurements:
+            rounds.setdefault(
+                (measurement.quantity, measurement.tilt, measurement.event), []
+            ).append(measurement)
         output = np.array([outputs.index(key) for key in rounds])
         seedings = surrogate.noises()[output]
         means = [_weighted(of_one, noise) for of_one, noise in zip(rounds.values(), seedings)]
         values, variances = np.array(means).T
         scales = {
-            name: np.mean([abs(one.value) for one in measurements if one.quantity == name])
+            name: np.mean(
+                [
+                    abs(measurement.value)
+                    for measurement in measurements
+                    if measurement.quantity == name
+                ]
+            )
             for name in quantities
         }
         return cls(
@@ -276,10 +289,10 @@ class _Density:
         unit, discrepancy = points[:, :count], points[:, count:]
         inside = ((unit >= 0) & (unit <= 1)).all(axis=1)
         inside &= ((discrepancy >= 0) & (discrepancy <= LARGEST_DISCREPANCY)).all(axis=1)
-        found = np.full(len(points), -np.inf)
+        logarithms = np.full(len(points), -np.inf)
         if inside.any():
-            found[inside] = self._log_density(unit[inside], discrepancy[inside])
-        return found
+            logarithms[inside] = self._log_density(unit[inside], discrepancy[inside])
+        return logarithms
 
     def _log_density(self, unit: Floats, discrepancy: Floats) -> Floats:
         means, variances = self.surrogate.predict(unit)
@@ -306,8 +319,8 @@ class _Density:
 
 def _weighted(rounds: Sequence[Measurement], seeding: float) -> tuple[float, float]:
     """Return mean and variance of rounds, weighted by the inverse of their variances."""
-    weights = 1 / (np.array([one.uncertainty for one in rounds]) ** 2 + seeding)
-    mean = weights @ np.array([one.value for one in rounds]) / weights.sum()
+    weights = 1 / (np.array([measurement.uncertainty for measurement in rounds]) ** 2 + seeding)
+    mean = weights @ np.array([measurement.value for measurement in rounds]) / weights.sum()
     return float(mean), float(1 / weights.sum())
 
 

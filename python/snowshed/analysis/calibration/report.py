@@ -1,4 +1,4 @@
-"""From measurements and a stored study to ranking, parameter ranges and figures."""
+"""Ranking, parameter ranges and figures from measurements and a stored study."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from snowshed.analysis.calibration.measurements import Measurement
 from snowshed.analysis.calibration.misfit import RANKED, rank, statistics
 from snowshed.analysis.calibration.posterior import STEPS, Posterior, outputs_of, sample_posterior
 from snowshed.analysis.calibration.surrogate import EXTRA, Surrogate
+from snowshed.base.extras import require
 from snowshed.io.atomic import replacing
 from snowshed.io.csv_table import write_csv
-from snowshed.io.extras import require
 from snowshed.scene.scene import PathLike
 from snowshed.snow.stack.quantities import QUANTITIES
 
@@ -102,7 +102,7 @@ def _used(measurements: Sequence[Measurement], quantities: Sequence[str]) -> lis
             raise InputError(f"quantity: {quantity!r} is unknown; allowed: {allowed}")
     if {"length", "head", "tail"} <= set(quantities):
         raise InputError("quantity: length is tail - head; give two of length, head and tail")
-    used = [one for one in measurements if one.quantity in quantities]
+    used = [measurement for measurement in measurements if measurement.quantity in quantities]
     if not used:
         raise InputError(f"none of {', '.join(quantities)} was measured")
     return used
@@ -126,7 +126,7 @@ def evaluate(
     measure: str = "stack",
     quantities: Sequence[str] = RANKED,
 ) -> Calibration:
-    """Calibrate with a stored study, as far as it is computed, and write tables and figures.
+    """Calibrate with the computed runs of a stored study, and write tables and figures.
 
     Parameters
     ----------
@@ -146,31 +146,35 @@ def evaluate(
     InputError
         As for `read_simulated` and `calibrate`.
     """
-    found = calibrate(measurements, read_simulated(stored, study, measure), quantities=quantities)
-    write(found, Path(folder))
-    return found
+    calibration = calibrate(
+        measurements, read_simulated(stored, study, measure), quantities=quantities
+    )
+    write(calibration, Path(folder))
+    return calibration
 
 
-def write(found: Calibration, folder: Path) -> None:
+def write(calibration: Calibration, folder: Path) -> None:
     """Write the tables and figures of a calibration into a folder."""
     from snowshed.analysis.calibration import figures
     from snowshed.plot.figure_style import save
 
-    posterior, parameters = found.posterior, found.stacks.parameters
+    posterior, parameters = calibration.posterior, calibration.stacks.parameters
     bands = figures.predicted_bands(posterior)
     tables = {
-        "ranking": found.ranked,
-        "rmse-statistics": statistics(found.ranked).reset_index(),
-        "comparison": found.comparison,
-        "ranges": found.ranges,
+        "ranking": calibration.ranked,
+        "rmse-statistics": statistics(calibration.ranked).reset_index(),
+        "comparison": calibration.comparison,
+        "ranges": calibration.ranges,
         "posterior": posterior.table(),
         "surrogate": posterior.surrogate.accuracy(),
     }
     drawings = {
-        "relative-error": figures.relative_error_figure(found.ranked, parameters),
-        "rmse": figures.rmse_figure(found.ranked, parameters),
-        "fit": figures.fit_figure(found.comparison, int(found.best["set"]), posterior, bands),
-        "posterior": figures.posterior_figure(posterior, found.best),
+        "relative-error": figures.relative_error_figure(calibration.ranked, parameters),
+        "rmse": figures.rmse_figure(calibration.ranked, parameters),
+        "fit": figures.fit_figure(
+            calibration.comparison, int(calibration.best["set"]), posterior, bands
+        ),
+        "posterior": figures.posterior_figure(posterior, calibration.best),
     }
     folder.mkdir(parents=True, exist_ok=True)
     for name, table in tables.items():

@@ -16,8 +16,8 @@ import numpy as np
 
 from snowshed._core import InputError
 from snowshed.analysis.calibration.comparison import SET, Simulated
-from snowshed.io.arrays import Floats
-from snowshed.io.extras import require
+from snowshed.base.arrays import Floats
+from snowshed.base.extras import require
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -84,8 +84,8 @@ class Process:
     def predict(self, at: Floats) -> tuple[Floats, Floats]:
         """Return mean and variance of single runs at points of the unit cube, m and m²."""
         across = self.kernel(at, self.points)
-        known = ((across @ self.inverse) * across).sum(axis=1)
-        variance = np.maximum(self.kernel.diag(at) - known, 0.0) + self.noise
+        explained = ((across @ self.inverse) * across).sum(axis=1)
+        variance = np.maximum(self.kernel.diag(at) - explained, 0.0) + self.noise
         mean = across @ (self.inverse @ self.values)
         return self.mean + self.deviation * mean, self.deviation**2 * variance
 
@@ -159,13 +159,13 @@ class Surrogate:
 
     def predict(self, unit: Floats) -> tuple[Floats, Floats]:
         """Return mean and variance of single runs, shapes (outputs, n), m and m²."""
-        found = [process.predict(unit) for process in self.processes]
-        means, variances = zip(*found)
+        predictions = [process.predict(unit) for process in self.processes]
+        means, variances = zip(*predictions)
         return np.array(means), np.array(variances)
 
     def noises(self) -> Floats:
         """Return the part of these variances that the seeding causes, shape (outputs,)."""
-        return np.array([one.deviation**2 * one.noise for one in self.processes])
+        return np.array([process.deviation**2 * process.noise for process in self.processes])
 
     def accuracy(self) -> pd.DataFrame:
         """Return the accuracy of every output for runs that it has not seen (leave one run out).
@@ -173,10 +173,10 @@ class Surrogate:
         Returns
         -------
         pandas.DataFrame
-            ``quantity``, ``tilt``, ``event``; ``rmse_m``; ``noise_m``: the part of it that the
-            surrogate attributes to the seeding; ``explained``: 1 - (RMSE / deviation of the
-            runs)²; ``within_two``: part of the runs within two predicted standard deviations,
-            0.95 if these are right.
+            ``quantity``, ``tilt``, ``event``; ``rmse_m``; ``noise_m``: the share of the RMSE that
+            the surrogate attributes to the seeding; ``explained``: 1 - (RMSE / deviation of the
+            runs)²; ``within_two``: share of the runs within two predicted standard deviations, 0.95
+            if these are right.
         """
         import pandas as pd
 

@@ -1,4 +1,4 @@
-"""How high a panel's lower edge must be, so that the snow it sheds does not reach it."""
+"""The height of a panel's lower edge that its shed snow does not reach."""
 
 from snowshed.analysis.clearance.answer import Answer, clearance_of
 from snowshed.analysis.clearance.design import Design, Ranges

@@ -1,14 +1,15 @@
-"""The answer: the lowest height of the lower edge at which the snow stays clear of it.
+"""The answer: the lowest height of the lower edge that shed snow does not reach.
 
-Every case (a winter with drawn values) is simulated at the candidate heights that decide where its
-snow first reaches the edge, by bisection: a higher edge is not reached before a lower one. The runs
-are those of a study, kept in a store, so that an interrupted answer goes on to the same result.
+Every case (a winter with drawn values) is simulated at candidate heights, which bisection selects:
+a higher edge is never reached before a lower one. The runs are those of a study, kept in a store,
+so that an interrupted answer resumes to the same result.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from operator import attrgetter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Optional
 
@@ -19,11 +20,12 @@ from snowshed.analysis.clearance.design import Design, Ranges
 from snowshed.analysis.clearance.seasons import Case, Outcome, cases_of
 from snowshed.analysis.clearance.statistics import Level, Share, levels_of, shares_of
 from snowshed.analysis.clearance.winters import Winter
-from snowshed.io.arrays import Floats
-from snowshed.io.json_file import JsonValue
-from snowshed.run.progress import Reporter
-from snowshed.run.season.record import WinterList
-from snowshed.run.season.settings import SeasonSettings
+from snowshed.base.arrays import Floats
+from snowshed.base.formatting import plural
+from snowshed.base.json_values import JsonValue
+from snowshed.base.progress import Reporter
+from snowshed.season.record import WinterList
+from snowshed.season.settings import SeasonSettings
 from snowshed.study.session import compute_runs, expected_duration
 from snowshed.study.table import read_table
 
@@ -32,10 +34,12 @@ if TYPE_CHECKING:
 
 STUDY = "clearance"
 
+height_key = attrgetter("height")
+
 
 @dataclass(frozen=True)
 class Answer:
-    """What height of the lower edge a panel needs.
+    """The height of the lower edge that a panel needs.
 
     Attributes
     ----------
@@ -46,13 +50,13 @@ class Answer:
     cases
         Every winter with its draws.
     outcomes
-        For each case, what was simulated, by rising height.
+        The simulated outcomes of each case, by rising height.
     failed
-        Runs that could not be computed; their cases are left out.
+        Number of runs that could not be computed; their cases are left out.
     winters
         Names of the winters that count.
-    known
-        How well the snow of each winter of the file is known; None: not asked.
+    winter_list
+        All winters of the file, with the quality of their snow data, if given.
     """
 
     design: Design
@@ -61,21 +65,35 @@ class Answer:
     outcomes: Sequence[Sequence[Outcome]]
     failed: int = 0
     winters: Sequence[str] = field(default_factory=list)
-    known: Optional[WinterList] = None
+    winter_list: Optional[WinterList] = None
 
     @property
     def required(self) -> Floats:
         """The height that each case needs (n,), m."""
-        return np.array([required_height(found) for found in self.outcomes])
+        return np.array([required_height(outcomes) for outcomes in self.outcomes])
 
     @property
     def levels(self) -> list[Level]:
-        """The height that stays clear with 50, 90 and 98 % probability of a winter."""
+        """The heights that stay clear in 50, 90 and 98 % of winters."""
         return levels_of(self.required, self._winter_numbers)
+
+    def at(self, probability: float) -> Level:
+        """Return the height that stays clear with a probability of 0.5, 0.9 or 0.98 in a winter.
+
+        Raises
+        ------
+        InputError
+            If the probability is another.
+        """
+        levels = {level.probability: level for level in self.levels}
+        if probability not in levels:
+            allowed = ", ".join(f"{value:g}" for value in levels)
+            raise InputError(f"probability: {probability:g}; allowed: {allowed}")
+        return levels[probability]
 
     @property
     def shares(self) -> list[Share]:
-        """What the required height varies with, and how much, the largest first."""
+        """The causes of the variance of the required height, the largest first."""
         values = {
             name: np.array([case.values[name] for case in self.cases])
             for name in self.cases[0].values
@@ -88,16 +106,16 @@ class Answer:
         return int(np.argmax(self.required))
 
     def buried(self, height: float) -> float:
-        """Return the probability of a winter that snow reaches a lower edge at a height, m."""
+        """Return the probability that snow reaches a lower edge at a height, m, in a winter."""
         return float((self.required > height).mean())
 
     @property
-    def winters_in_words(self) -> str:
-        """From how many winters the answer is, such as "2 of 20 winters"."""
+    def winters_text(self) -> str:
+        """The number of winters behind the answer, such as "2 of 20 winters"."""
         number = len(self.winters)
-        if self.known is None or len(self.known.winters) == number:
-            return "1 winter" if number == 1 else f"{number} winters"
-        return self.known.words
+        if self.winter_list is None or len(self.winter_list.winters) == number:
+            return plural(number, "winter")
+        return self.winter_list.counted_text
 
     @property
     def _winter_numbers(self) -> Floats:
@@ -105,13 +123,13 @@ class Answer:
         return np.unique(names, return_inverse=True)[1].astype(float)
 
     def table(self) -> pd.DataFrame:
-        """Return one row per case and height that was simulated."""
+        """Return one row per case and simulated height."""
         import pandas as pd
 
         rows = []
-        for number, (case, found) in enumerate(zip(self.cases, self.outcomes), 1):
-            for one in found:
-                contact = one.contact
+        for number, (case, outcomes) in enumerate(zip(self.cases, self.outcomes), 1):
+            for outcome in outcomes:
+                contact = outcome.contact
                 rows.append(
                     {
                         "slope_length_m": self.design.slope_length,
@@ -120,38 +138,38 @@ class Answer:
                         "winter": case.winter.name,
                         **case.values,
                         "seed": case.seed,
-                        "height_m": one.height,
-                        "margin_m": one.margin,
+                        "height_m": outcome.height,
+                        "margin_m": outcome.margin,
                         "touched": int(contact is not None),
                         "first_contact": "" if contact is None else contact.date,
                         "cause": "" if contact is None else contact.cause,
-                        "required_m": required_height(found),
+                        "required_m": required_height(outcomes),
                     }
                 )
         return pd.DataFrame(rows)
 
 
-def required_height(found: Sequence[Outcome]) -> float:
-    """Return the height of the lower edge at which the snow just stays clear, m.
+def required_height(outcomes: Sequence[Outcome]) -> float:
+    """Return the lowest height of the lower edge that the snow does not reach, m.
 
-    Between the highest edge that it reaches and the next one it is interpolated; beyond the
-    heights that were simulated it follows from the margin at the nearest.
+    The height is interpolated between the highest edge that the snow reaches and the next one.
+    Beyond the simulated heights, it follows from the margin at the nearest.
 
     Examples
     --------
-    >>> from snowshed.run.season.clearance import Contact
+    >>> from snowshed.season.clearance import Contact
     >>> touched = Contact("2024-12-24", 1, "crest")
     >>> required_height([Outcome(1.0, -0.1, touched), Outcome(2.0, 0.9, None)])
     1.1
     """
-    reached = [one for one in found if one.contact is not None]
-    clear = [one for one in found if one.contact is None]
+    reached = [outcome for outcome in outcomes if outcome.contact is not None]
+    clear = [outcome for outcome in outcomes if outcome.contact is None]
     if not clear:
-        return max(reached, key=lambda one: one.height).height - reached[-1].margin
-    above = min(clear, key=lambda one: one.height)
+        return max(reached, key=height_key).height - reached[-1].margin
+    above = min(clear, key=height_key)
     if not reached:
         return max(above.height - above.margin, 0.0)
-    below = max(reached, key=lambda one: one.height)
+    below = max(reached, key=height_key)
     part = -below.margin / (above.margin - below.margin)
     return below.height + part * (above.height - below.height)
 
@@ -165,11 +183,11 @@ def clearance_of(
     ranges: Optional[Ranges] = None,
     settings: Optional[SeasonSettings] = None,
     scene: Optional[Mapping[str, JsonValue]] = None,
-    known: Optional[WinterList] = None,
+    winter_list: Optional[WinterList] = None,
     jobs: Optional[int] = None,
     progress: Optional[Reporter] = None,
 ) -> Answer:
-    """Return what height of the lower edge a panel needs.
+    """Return the height of the lower edge that a panel needs.
 
     Parameters
     ----------
@@ -180,26 +198,26 @@ def clearance_of(
     heights
         Candidates for the height of the lower edge above the ground, m.
     folder
-        Of the store of runs; an interrupted answer goes on there.
+        Folder of the store of runs; an interrupted answer resumes there.
     ranges
-        What nobody knows; None: the defaults.
+        Ranges of the uncertain snow parameters. [default: `Ranges()`]
     settings
-        Of the seasons, but for what varies; None: the defaults.
+        Settings of the seasons, except those that vary. [default: `SeasonSettings()`]
     scene
         Values of the scene by dotted path, such as ``numerics.dx``.
-    known
-        How well the snow of each winter of the file is known (`Record.winters`), for the words.
+    winter_list
+        All winters of the file (`Record.winters`), which the answer's text mentions.
     jobs
-        Local processes at once; None: as many as there are cores.
+        Local processes at once. [default: the number of cores]
     progress
         Called with a `Progress` a few times a second.
 
     Raises
     ------
     InputError
-        If a height is not one of a panel, or all runs failed.
+        If a height is outside the allowed range, or all runs failed.
     StudyError, StudyInterrupted
-        As of `Study.compute`; the same call goes on.
+        As from `Study.compute`; the same call resumes.
     """
     candidates = sorted(set(heights))
     if not candidates or not 0.0 < candidates[0] <= candidates[-1] <= 100.0:
@@ -211,17 +229,17 @@ def clearance_of(
         runs = search.runs()
         compute_runs(folder, STUDY, [], list(runs.values()), jobs=jobs, progress=progress)
         search.take(read_table(folder, STUDY))
-    kept = [number for number, found in enumerate(search.outcomes) if found]
-    if not kept:
+    complete = [number for number, outcomes in enumerate(search.outcomes) if outcomes]
+    if not complete:
         raise InputError(f"{folder}: all runs failed; see its table")
     return Answer(
         design,
         candidates,
-        [cases[number] for number in kept],
-        [sorted(search.outcomes[number], key=lambda one: one.height) for number in kept],
-        len(cases) - len(kept),
+        [cases[number] for number in complete],
+        [sorted(search.outcomes[number], key=height_key) for number in complete],
+        len(cases) - len(complete),
         [winter.name for winter in winters],
-        known,
+        winter_list,
     )
 
 
@@ -235,9 +253,9 @@ def forecast(
     scene: Optional[Mapping[str, Any]] = None,
     jobs: Optional[int] = None,
 ) -> tuple[float, int]:
-    """Return how long an answer will take, s, and of how many seasons it is.
+    """Return the expected time of an answer, s, and its number of seasons.
 
-    Parameters are those of `clearance_of`.
+    The parameters are those of `clearance_of`.
     """
     values = (ranges or Ranges()).drawn(len(winters))
     cases = cases_of(design, winters, values, settings or SeasonSettings(), scene or {})
@@ -259,11 +277,11 @@ class _Search:
 
     @property
     def rounds(self) -> int:
-        """How often each case is simulated, about."""
+        """Approximate number of simulations of each case."""
         return max(1, int(np.ceil(np.log2(len(self.heights) + 1) - 1e-9)))
 
     def open(self) -> list[tuple[int, int]]:
-        """Return the cases that are not decided, each with the height to simulate next."""
+        """Return the undecided cases, each with the index of the height to simulate next."""
         return [
             (number, (low + high) // 2)
             for number, (low, high) in enumerate(zip(self._low, self._high))
@@ -271,26 +289,26 @@ class _Search:
         ]
 
     def runs(self) -> dict[tuple[int, int], Any]:
-        """Return all runs so far, with those that are needed next."""
-        for number, place in self.open():
-            if self.cases[number].slides and (number, place) not in self._runs:
-                self._runs[number, place] = self.cases[number].run(self.heights[place])
+        """Return all runs so far, and those that are needed next."""
+        for number, index in self.open():
+            if self.cases[number].slides and (number, index) not in self._runs:
+                self._runs[number, index] = self.cases[number].run(self.heights[index])
         return self._runs
 
     def take(self, table: pd.DataFrame) -> None:
-        """Take what the runs gave, and halve what is open."""
+        """Read the outcomes of the runs, and halve the open intervals."""
         events = dict(tuple(table.groupby("hash"))) if len(table) else {}
         nothing = table.iloc[:0]
-        for number, place in self.open():
-            run = self._runs.get((number, place))
+        for number, index in self.open():
+            run = self._runs.get((number, index))
             rows = nothing if run is None else events.get(run.hash, nothing)
             if (rows["ended"] == "failed").any() or (run is not None and rows.empty):
                 self._low[number] = self._high[number]  # left out
                 self.outcomes[number] = []
                 continue
-            found = self.cases[number].outcome(self.heights[place], rows)
-            self.outcomes[number].append(found)
-            if found.contact is None:
-                self._high[number] = place
+            outcome = self.cases[number].outcome(self.heights[index], rows)
+            self.outcomes[number].append(outcome)
+            if outcome.contact is None:
+                self._high[number] = index
             else:
-                self._low[number] = place + 1
+                self._low[number] = index + 1

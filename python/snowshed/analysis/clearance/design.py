@@ -1,4 +1,4 @@
-"""What is asked: a panel, and the ranges of what nobody knows about its snow."""
+"""Inputs: the panel design and the ranges of uncertain snow parameters."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ from typing import Any
 import numpy as np
 
 from snowshed._core import InputError
-from snowshed.run.season.settings import SeasonSettings
 from snowshed.scene.components import Ground, Panel, Slab
 from snowshed.scene.scene import ResolvedScene, Scene
+from snowshed.season.settings import SeasonSettings
 
 FINEST, COARSEST, CELLS = 0.04, 0.1, 40  # m, m, cells along the slope
 
 Span = tuple[float, float]
 
-#: What nobody knows, and from where to where it varies by default.
+#: The uncertain snow parameters, and their default ranges.
 DEFAULT_RANGES: Mapping[str, Span] = {
     "friction": (0.3, 0.7),
     "adhesion": (0.0, 150.0),
@@ -30,7 +30,7 @@ MEANING: Mapping[str, str] = {
     "adhesion": "adhesion of snow to the panel, Pa",
     "sliding": "friction of sliding snow",
     "strength": "strength of the snow, as a multiple of that for its density",
-    "catch": "part of the snowfall that the panel catches",
+    "catch": "share of the snowfall that the panel catches",
 }
 LIMITS: Mapping[str, Span] = {
     "friction": (0.0, 10.0),
@@ -43,14 +43,14 @@ LIMITS: Mapping[str, Span] = {
 
 @dataclass(frozen=True)
 class Design:
-    """A panel whose lower edge is to be set.
+    """A panel whose lower edge needs a height.
 
     Attributes
     ----------
     slope_length
-        Along the slope, m.
+        Length along the slope, m.
     tilt
-        Degrees from the horizontal.
+        Tilt from the horizontal, degrees.
     """
 
     slope_length: float
@@ -70,22 +70,21 @@ class Design:
 
 @dataclass(frozen=True)
 class Ranges:
-    """What nobody knows about the snow on a panel, and from where to where it varies.
+    """Ranges of the uncertain snow parameters.
 
     Attributes
     ----------
     spans
-        By names in `MEANING`, the smallest and the largest value; the same twice for a value that
-        is known.
+        Smallest and largest value by names in `MEANING`; the same value twice if it is known.
     draws
-        How often each winter is simulated, each time with other values.
+        Number of simulations of each winter, each with other values.
     seed
-        Of the drawing.
+        Random seed of the values.
 
     Examples
     --------
-    >>> known = Ranges({"friction": (0.4, 0.4), "adhesion": (0.0, 0.0)}, draws=1)
-    >>> known.drawn(2)[0]["friction"], len(known.drawn(3))
+    >>> ranges = Ranges({"friction": (0.4, 0.4), "adhesion": (0.0, 0.0)}, draws=1)
+    >>> ranges.drawn(2)[0]["friction"], len(ranges.drawn(3))
     (0.4, 3)
     """
 
@@ -116,21 +115,21 @@ class Ranges:
         random = np.random.default_rng(self.seed)
         values: list[dict[str, float]] = [{} for _ in range(count)]
         for name, (low, high) in sorted(self.spans.items()):
-            place = (random.permutation(count) + random.random(count)) / count
-            for one, share in zip(values, place):
+            shares = (random.permutation(count) + random.random(count)) / count
+            for draw, share in zip(values, shares):
                 if name == "strength":  # a factor: as many below one as above
-                    one[name] = float(low * (high / low) ** share)
+                    draw[name] = float(low * (high / low) ** share)
                 else:
-                    one[name] = float(low + (high - low) * share)
+                    draw[name] = float(low + (high - low) * share)
         return values
 
 
 def season_settings(base: SeasonSettings, values: Mapping[str, float], dx: float) -> SeasonSettings:
     """Return the settings of a season with drawn values; thin releases slide together."""
-    known: dict[str, Any] = {
+    drawn: dict[str, Any] = {
         name: values[name] for name in ("friction", "adhesion", "catch") if name in values
     }
-    return replace(base, **known, pool_below=max(base.pool_below, 1.5 * dx))
+    return replace(base, **drawn, pool_below=max(base.pool_below, 1.5 * dx))
 
 
 def scene_of(
@@ -143,11 +142,11 @@ def scene_of(
     design, height
         The panel, and its lower edge above the ground, m.
     values
-        Drawn values of what is not known.
+        Drawn values of the uncertain parameters.
     seed
-        Of the particles' places.
+        Random seed of the particles' positions.
     base
-        Values of the scene by dotted path, that replace the defaults.
+        Values of the scene by dotted path, which replace the defaults.
     """
     scene = Scene(dimension=2, panel=Panel(), slab=Slab(thickness=0.1), ground=Ground())
     scene.update(
@@ -164,7 +163,7 @@ def scene_of(
         }
     )
     strength = values.get("strength", 1.0)
-    data: dict[str, Any] = scene.resolve().data
+    data = scene.resolve().data
     snow = data["snow"]
     if "preconsolidation_pressure" in snow:
         scene.set("snow.preconsolidation_pressure", strength * snow["preconsolidation_pressure"])

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Optional
 
-from snowshed.analysis.clearance import words
+from snowshed.analysis.clearance import answer_text
 from snowshed.analysis.clearance.answer import Answer
 from snowshed.analysis.clearance.design import Ranges
 from snowshed.analysis.clearance.statistics import burial_interval
@@ -15,7 +15,7 @@ from snowshed.io.atomic import write_text
 from snowshed.io.csv_table import write_csv
 from snowshed.plot.clearance_figure import burial_figure, causes_figure, design_figure
 from snowshed.plot.html_page import Grid, Picture, template
-from snowshed.run.season.quality_table import ALIGN, HEAD, quality_rows, title
+from snowshed.season.quality_table import ALIGN, HEAD, quality_rows, title
 
 
 def write_report(
@@ -23,18 +23,18 @@ def write_report(
 ) -> None:
     """Write clearance.html, clearance.csv and clearance.json into a folder.
 
-    Beside them stands a page for each panel on which the slide-offs of its worst winter move.
+    A page for each panel beside them shows the slide-offs of its worst winter in motion.
 
     Parameters
     ----------
     answers
-        One for each panel.
+        One answer for each panel.
     ranges
-        What varied.
+        The ranges of the uncertain parameters.
     folder
-        Where to.
+        The results folder.
     notes
-        On how the weather was read.
+        Notes from reading the weather.
     """
     import pandas as pd
 
@@ -44,27 +44,27 @@ def write_report(
     write_text(folder / "clearance.json", json.dumps(data, indent=2) + "\n")
     page = template("snowshed.plot", "clearance.html.j2").render(
         title="How high must the lower edge be?",
-        sentence=words.sentence(answers),
-        warnings=words.warnings(answers),
+        sentence=answer_text.sentence(answers),
+        warnings=answer_text.warnings(answers),
         panels=[_panel(answer, folder) for answer in answers],
         chart=_chart(answers) if len(answers) > 1 else None,
-        known=_known(answers[0]),
+        winter_table=_winter_table(answers[0]),
         notes=notes,
-        ranges=Grid(("not known", "from", "to"), words.range_rows(ranges), "lrr"),
-        assumptions=words.assumptions(answers[0]),
+        ranges=Grid(("uncertain parameter", "from", "to"), answer_text.range_rows(ranges), "lrr"),
+        assumptions=answer_text.assumptions(answers[0]),
     )
     write_text(folder / "clearance.html", page)
 
 
 def summary(answers: Sequence[Answer], ranges: Ranges, notes: Sequence[str] = ()) -> dict[str, Any]:
-    """Return the answer as JSON data; parameters as of `write_report`."""
-    known = answers[0].known
+    """Return the answer as JSON data; the parameters are those of `write_report`."""
+    record = answers[0].winter_list
     return {
-        "sentence": words.sentence(answers),
-        "warnings": words.warnings(answers),
+        "sentence": answer_text.sentence(answers),
+        "warnings": answer_text.warnings(answers),
         "notes": list(notes),
-        "coverage": None if known is None else known.coverage,
-        "winters_of_the_file": [] if known is None else known.data(),
+        "coverage": None if record is None else record.coverage,
+        "winters_of_the_file": [] if record is None else record.data(),
         "ranges": {name: list(span) for name, span in ranges.spans.items()},
         "draws": ranges.draws,
         "panels": [
@@ -82,21 +82,22 @@ def summary(answers: Sequence[Answer], ranges: Ranges, notes: Sequence[str] = ()
     }
 
 
-def _known(answer: Answer) -> Optional[tuple[str, Grid]]:
-    """Return the table of the winters of the file, and its title."""
-    if answer.known is None:
+def _winter_table(answer: Answer) -> Optional[tuple[str, Grid]]:
+    """Return the title and the table of the winters of the file."""
+    record = answer.winter_list
+    if record is None:
         return None
-    return title(answer.known), Grid(HEAD, quality_rows(answer.known), ALIGN)
+    return title(record), Grid(HEAD, quality_rows(record), ALIGN)
 
 
 def _panel(answer: Answer, folder: Path) -> dict[str, Any]:
-    """Return what the page says of a panel; its worst winter's moving view goes into the folder."""
-    levels = [(one.probability, one.height, one.low, one.high) for one in answer.levels]
-    shares = {words.cause_in_words(share.cause): share.part for share in answer.shares}
+    """Return the section of a panel, and write the moving view of its worst winter."""
+    levels = [(level.probability, level.height, level.low, level.high) for level in answer.levels]
+    shares = {answer_text.cause_label(share.cause): share.part for share in answer.shares}
     name = f"{answer.design.slope_length:g}-{answer.design.tilt:g}"
     causes: Optional[Picture] = None
     if shares:
-        caption = "Parts of the variance over all seasons; linear effects."
+        caption = "Shares of the variance over all seasons; linear effects."
         causes = Picture.drawn(causes_figure(shares), f"causes-{name}", "Causes", caption)
     view = folder / f"worst-winter-{name}.html"
     picture = _worst_picture(answer, view)
@@ -108,10 +109,10 @@ def _panel(answer: Answer, folder: Path) -> dict[str, Any]:
             burial_figure(answer.required, levels),
             f"burial-{name}",
             "Probability of burial",
-            "Steps: the seasons that were simulated. Points: the answer, with 90 % confidence.",
+            "Steps: the simulated seasons. Points: the answer, with 90 % confidence.",
         ),
         "causes": causes,
-        "advice": words.advice(answer),
+        "advice": answer_text.advice(answer),
         "worst": _worst(answer),
         "picture": picture,
         "view": view.name if picture else None,
@@ -121,15 +122,15 @@ def _panel(answer: Answer, folder: Path) -> dict[str, Any]:
 def _level_grid(answer: Answer) -> Grid:
     rows = [
         (
-            f"{100 * one.probability:g} %",
-            f"{one.height:.2f}",
-            f"{one.low:.2f} to {one.high:.2f}",
-            f"{one.return_period:.0f}",
-            "counted" if one.counted else "extrapolated (Gumbel)",
+            f"{100 * level.probability:g} %",
+            f"{level.height:.2f}",
+            f"{level.low:.2f} to {level.high:.2f}",
+            f"{level.return_period:.0f}",
+            "counted" if level.counted else "extrapolated (Gumbel)",
         )
-        for one in answer.levels
+        for level in answer.levels
     ]
-    head = ("stays clear in", "height, m", "90 % confidence, m", "buried once in years", "how")
+    head = ("stays clear in", "height, m", "90 % interval, m", "return period, years", "method")
     return Grid(head, rows, "lrrrl")
 
 
@@ -142,37 +143,34 @@ def _height_grid(answer: Answer) -> Grid:
         rows.append(
             (f"{height:g}", f"{100 * buried:.0f}", f"{100 * low:.0f} to {100 * high:.0f}", years)
         )
-    head = ("height, m", "buried in, %", "90 % confidence, %", "return period, years")
+    head = ("height, m", "buried in, %", "90 % interval, %", "return period, years")
     return Grid(head, rows, "rrrr")
 
 
 def _worst(answer: Answer) -> str:
-    case, found = answer.cases[answer.worst], answer.outcomes[answer.worst]
-    first = next((one for one in found if one.contact), None)
-    fell = f"{case.winter.name}: {case.winter.snowfall:.1f} m of new snow in all. "
+    case, outcomes = answer.cases[answer.worst], answer.outcomes[answer.worst]
+    first = next((outcome for outcome in outcomes if outcome.contact), None)
+    snowfall = f"{case.winter.name}: {case.winter.snowfall:.1f} m of new snow in all. "
     if first is None or first.contact is None:
-        return f"{fell}Its snow reaches none of the heights."
+        return f"{snowfall}Its snow reaches none of the heights."
     contact = first.contact
     return (
-        f"{fell}At {first.height:g} m, {contact.words} on {contact.date[:10]}; an edge at "
+        f"{snowfall}At {first.height:g} m, {contact.text} on {contact.date[:10]}; an edge at "
         f"{answer.required[answer.worst]:.2f} m would have stayed clear."
     )
 
 
 def _worst_picture(answer: Answer, view: Path) -> Optional[Picture]:
-    """Return the picture of the worst winter, simulated once more at its last height.
-
-    Its moving view is written to a page.
-    """
+    """Simulate the worst winter once more, write its moving view, and return its picture."""
     from tempfile import TemporaryDirectory
 
-    from snowshed.run.season.driver import run_season
-    from snowshed.run.view import write_view
+    from snowshed.results.view import write_view
+    from snowshed.season.driver import run_season
 
-    case, found = answer.cases[answer.worst], answer.outcomes[answer.worst]
+    case, outcomes = answer.cases[answer.worst], answer.outcomes[answer.worst]
     if not case.slides:
         return None
-    reached = [one.height for one in found if one.contact] or [found[0].height]
+    reached = [outcome.height for outcome in outcomes if outcome.contact] or [outcomes[0].height]
     with TemporaryDirectory() as folder:
         out = Path(folder) / "season"
         run_season(case.winter.days, case.panel(reached[-1]), out, settings=case.season)
@@ -186,13 +184,14 @@ def _worst_picture(answer: Answer, view: Path) -> Optional[Picture]:
 
 
 def _chart(answers: Sequence[Answer]) -> Picture:
-    found = []
+    heights = []
+    probability = answer_text.FIRST_PROBABILITY
     for answer in answers:
-        level = next(one for one in answer.levels if one.probability == words.OWNERS)
+        level = next(level for level in answer.levels if level.probability == probability)
         design = answer.design
-        found.append((design.slope_length, design.tilt, level.height, (level.low, level.high)))
+        heights.append((design.slope_length, design.tilt, level.height, (level.low, level.high)))
     return Picture.drawn(
-        design_figure(found, words.OWNERS),
+        design_figure(heights, probability),
         "designs",
         "Required height",
         "Bars: 90 % confidence over winters.",

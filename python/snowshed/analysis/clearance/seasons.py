@@ -1,4 +1,4 @@
-"""Seasons of a panel as runs of a study, and how near their snow comes to the lower edge.
+"""Seasons of a panel as runs of a study, and the margin of their snow to the lower edge.
 
 The slide-offs of a season are a scene, and are computed and kept by the engine of studies. Between
 them the simulated stack ages as in a season. The natural snow cover is added to it.
@@ -15,12 +15,12 @@ import numpy as np
 
 from snowshed.analysis.clearance.design import Design, scene_of, season_settings
 from snowshed.analysis.clearance.winters import Winter
-from snowshed.run.season.accumulation import Day, accumulate, stack_ageing
-from snowshed.run.season.clearance import Contact, first_contact
-from snowshed.run.season.settings import SeasonSettings
-from snowshed.run.season.slabs import season_scene
-from snowshed.run.season.table import season_table
 from snowshed.scene.scene import ResolvedScene
+from snowshed.season.accumulation import Day, accumulate, stack_ageing
+from snowshed.season.clearance import Contact, first_contact
+from snowshed.season.settings import SeasonSettings
+from snowshed.season.slabs import season_scene
+from snowshed.season.table import season_table
 from snowshed.study.scene_hash import Run
 
 if TYPE_CHECKING:
@@ -29,16 +29,16 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Outcome:
-    """How near the snow of a season comes to the lower edge of a panel.
+    """The margin between the snow of a season and the lower edge of a panel.
 
     Attributes
     ----------
     height
-        Of the edge above the ground, m.
+        Height of the edge above the ground, m.
     margin
-        Between the edge and the highest snow, less a cell, m; not above 0 if it touches the panel.
+        Distance from the highest snow to the edge, less a cell, m; not above 0 after a contact.
     contact
-        The first contact; None: there is none.
+        The first contact, if any.
     """
 
     height: float
@@ -48,18 +48,18 @@ class Outcome:
 
 @dataclass(frozen=True)
 class Case:
-    """A panel in a winter, with drawn values of what is not known.
+    """A panel in a winter, with drawn values of the uncertain parameters.
 
     Attributes
     ----------
     design, winter
-        What is simulated.
+        The panel and the winter.
     values
         The drawn values.
     seed
-        Of the particles' places.
+        Random seed of the particles' positions.
     settings
-        Of the season, but for the drawn values.
+        Settings of the season, except the drawn values.
     base
         Values of the scene that replace the defaults.
     """
@@ -96,14 +96,14 @@ class Case:
         return Run.of(scene, stack_ageing(self.days, self.season))
 
     def outcome(self, height: float, events: pd.DataFrame) -> Outcome:
-        """Return how near the snow comes.
+        """Return the outcome at a height.
 
         Parameters
         ----------
         height
-            Of the lower edge, m.
+            Height of the lower edge, m.
         events
-            The rows of the run's slide-offs; none if nothing slides.
+            The rows of the run's slide-offs; empty if nothing slides.
         """
         import pandas as pd
 
@@ -127,6 +127,6 @@ def cases_of(
     draws = len(values) // len(winters)
     seeds = np.random.default_rng(len(values)).integers(1, 2**31, len(values))
     return [
-        Case(design, winters[number // draws], one, int(seed), settings, base)
-        for number, (one, seed) in enumerate(zip(values, seeds))
+        Case(design, winters[number // draws], drawn, int(seed), settings, base)
+        for number, (drawn, seed) in enumerate(zip(values, seeds))
     ]

@@ -1,4 +1,4 @@
-"""Probabilities of winters, their uncertainty, and what the required height varies with."""
+"""Required heights by probability, their confidence, and the causes of their variance."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 
 PROBABILITIES = (0.5, 0.9, 0.98)
 RESAMPLES, SEED = 1000, 1
@@ -22,12 +22,12 @@ class Level:
     Attributes
     ----------
     probability
-        Of a winter.
+        Share of winters in which the edge stays clear.
     height, low, high
-        m; and between which it lies with 90 % confidence, as winters differ by chance.
+        The height and its 90 % confidence interval over winters, m.
     counted
-        Whether there are winters enough to count it; otherwise it is extrapolated with a Gumbel
-        distribution of the highest snow of a winter.
+        Whether the height is counted from enough winters; otherwise it is extrapolated with a
+        Gumbel distribution of the highest snow of a winter.
     """
 
     probability: float
@@ -44,7 +44,7 @@ class Level:
 
 @dataclass(frozen=True)
 class Share:
-    """How much of the variance of the required height goes with a cause, 0 to 1."""
+    """The share of a cause in the variance of the required height, 0 to 1."""
 
     cause: str
     part: float
@@ -58,8 +58,8 @@ def levels_of(required: Floats, winters: Floats) -> list[Level]:
     required : (n,)
         The height that each case needs, m.
     winters : (n,)
-        The number of its winter. Winters are resampled as a whole (bootstrap), since cases of the
-        same winter are not independent.
+        The winter of each case. Winters are resampled as a whole (bootstrap), because the cases of
+        a winter are not independent.
 
     Examples
     --------
@@ -75,14 +75,14 @@ def levels_of(required: Floats, winters: Floats) -> list[Level]:
         for _ in range(RESAMPLES)
     ]
     tail = 0.5 * (1.0 - CONFIDENCE)
-    found = []
+    levels = []
     for probability in PROBABILITIES:
         counted = len(names) * (1.0 - probability) >= 1.0 - 1e-9
         estimates = [_height(sample, probability, counted) for sample in samples]
         low, high = np.quantile(estimates, [tail, 1.0 - tail])
         height = _height(required, probability, counted)
-        found.append(Level(probability, height, float(low), float(high), counted))
-    return found
+        levels.append(Level(probability, height, float(low), float(high), counted))
+    return levels
 
 
 def _height(required: Floats, probability: float, counted: bool) -> float:
@@ -104,16 +104,16 @@ def gumbel_quantile(mean: float, deviation: float, probability: float) -> float:
 
 
 def burial_interval(buried: float, winters: int) -> tuple[float, float]:
-    """Return between which the probability of a burial lies with 90 % confidence.
+    """Return the 90 % confidence interval of the probability of a burial.
 
-    The interval of Clopper and Pearson (1934), over as many trials as there are winters.
+    The interval is that of Clopper and Pearson (1934), with one trial per winter.
 
     Parameters
     ----------
     buried
         Share of the cases in which the snow reaches the edge.
     winters
-        How many.
+        Number of winters.
 
     Examples
     --------
@@ -130,10 +130,10 @@ def burial_interval(buried: float, winters: int) -> tuple[float, float]:
 
 
 def shares_of(required: Floats, winters: Floats, values: Mapping[str, Floats]) -> list[Share]:
-    """Return how much of the variance of the required height goes with each cause.
+    """Return the share of each cause in the variance of the required height.
 
-    The height is fitted as a sum of linear effects of what is not known and an effect of each
-    winter. The rest is chance: the particles' places, and causes that act together.
+    The height is fitted as a sum of linear effects of the uncertain parameters and an effect of
+    each winter. The residual is chance: the particles' positions, and interactions of causes.
 
     Parameters
     ----------
@@ -148,7 +148,7 @@ def shares_of(required: Floats, winters: Floats, values: Mapping[str, Floats]) -
     >>> shares_of(2.0 * x, np.arange(40.0) % 4, {"adhesion": x})[0].cause
     'adhesion'
     """
-    varied = {name: one - one.mean() for name, one in values.items() if np.ptp(one) > 0.0}
+    varied = {name: x - x.mean() for name, x in values.items() if np.ptp(x) > 0.0}
     dummies = (winters[:, None] == np.unique(winters)).astype(float)
     dummies -= dummies.mean(axis=0)
     matrix = np.column_stack([*varied.values(), dummies])
@@ -157,12 +157,12 @@ def shares_of(required: Floats, winters: Floats, values: Mapping[str, Floats]) -
         return []
     effects, *_ = np.linalg.lstsq(matrix, required - required.mean(), rcond=None)
     parts = {
-        name: float((effect * one).var()) / spread
-        for (name, one), effect in zip(varied.items(), effects)
+        name: float((effect * x).var()) / spread
+        for (name, x), effect in zip(varied.items(), effects)
     }
     parts["winter"] = float((dummies @ effects[len(varied) :]).var()) / spread
     residual = float((required - required.mean() - matrix @ effects).var()) / spread
     parts["chance"] = residual
     total = sum(parts.values())
-    found = [Share(name, part / total) for name, part in parts.items()]
-    return sorted(found, key=lambda share: -share.part)
+    shares = [Share(name, part / total) for name, part in parts.items()]
+    return sorted(shares, key=lambda share: -share.part)

@@ -1,4 +1,4 @@
-"""Weather of many years, cut into winters, of which those count whose snow was observed."""
+"""Weather of many years, cut into winters: those with observed snow count."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from snowshed._core import InputError
-from snowshed.io.notes import tell
-from snowshed.run.season.quality import COVERAGE
-from snowshed.run.season.record import Record, WinterList, percent
-from snowshed.run.season.weather_row import Weather
+from snowshed.base.notes import tell
+from snowshed.season.quality import COVERAGE
+from snowshed.season.record import Record, WinterList, percent
+from snowshed.season.weather_row import Weather
 
 
 @dataclass(frozen=True)
@@ -21,7 +21,7 @@ class Winter:
     name
         Such as "2001/02", or "2001" in the south.
     days
-        Its rows, in order.
+        The rows of the winter, in order.
     """
 
     name: str
@@ -34,11 +34,11 @@ class Winter:
 
 
 def winters_of(season: Sequence[Weather], coverage: float = COVERAGE) -> list[Winter]:
-    """Return the winters of many years of weather whose snow was observed.
+    """Return the winters with observed snow in many years of weather.
 
     Years are cut in the station's summer, on 1 July in the north and on 1 January in the south.
-    Winters whose snow was observed on less than the asked share of the days of the station's snow
-    season are left out, and named in a note.
+    A winter is left out, and named in a note, if its snow was observed on too small a share of the
+    days of the station's snow season.
 
     Parameters
     ----------
@@ -54,35 +54,36 @@ def winters_of(season: Sequence[Weather], coverage: float = COVERAGE) -> list[Wi
 
     Examples
     --------
-    >>> from snowshed.run.season.generator import EXAMPLE_CLIMATE
+    >>> from snowshed.season.generator import EXAMPLE_CLIMATE
     >>> [winter.name for winter in winters_of(EXAMPLE_CLIMATE.winters(2, seed=1))]
     ['2001/02', '2002/03']
     """
-    found = Record(season).winters(coverage)
-    winters = counted(found)
-    for note in found.notes:
+    record = Record(season).winters(coverage)
+    winters = counted(record)
+    for note in record.notes:
         tell(note)
     return winters
 
 
-def counted(found: WinterList) -> list[Winter]:
+def counted(winter_list: WinterList) -> list[Winter]:
     """Return the winters that count.
 
     Parameters
     ----------
-    found
+    winter_list
         From `Record.winters`.
 
     Raises
     ------
     InputError
-        If none does, with the share of each.
+        If no winter counts; the message lists the share of each.
     """
-    winters = [Winter(winter.name, winter.rows) for winter in found.counted]
+    winters = [Winter(winter.name, winter.rows) for winter in winter_list.counted]
     if not winters:
         raise InputError(
-            f"the weather: no winter whose snow was observed on {percent(found.coverage)} of the "
-            f"days {found.season.words}: {found.left_out_words}; give a longer record, a "
+            "the weather: no winter has snow observed on "
+            f"{percent(winter_list.coverage)} of the "
+            f"days {winter_list.season.text}: {winter_list.excluded_text}; give a longer record, a "
             "smaller --coverage, or another column (--snow-from)"
         )
     return winters

@@ -1,1 +1,1 @@
-"""Questions to loading tests of grains: what matters for the strength, and which snow it makes."""
+"""Analyses of loading tests of grains: sensitivity of the strength, and fitted snow."""

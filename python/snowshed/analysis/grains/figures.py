@@ -27,7 +27,7 @@ def sensitivity_figure(comparison: pd.DataFrame, title: str = "") -> Figure:
     comparison
         From `compare_variants`.
     title
-        What the snow is; stands before the rest.
+        Title of the snow.
     """
     names = [name for name in dict.fromkeys(comparison["variant"]) if name != BASE]
     varied = list(dict.fromkeys(comparison["varied"]))

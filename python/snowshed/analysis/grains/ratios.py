@@ -1,4 +1,4 @@
-"""Stresses of variants over those of the base, sample by sample, with their scatter."""
+"""Ratios of the stresses of variants to those of the base, sample by sample, with their scatter."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from snowshed._core import InputError
 from snowshed.analysis.grains.variants import BASE
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -36,7 +36,7 @@ class LogMean:
     error
         NaN with fewer than two.
     count
-        Values that it is the mean of.
+        Number of values in the mean.
     """
 
     mean: float
@@ -46,10 +46,10 @@ class LogMean:
     @classmethod
     def of(cls, values: Sequence[float]) -> LogMean:
         """Return the mean of the logarithms of those values that are positive."""
-        known = np.array([value for value in values if np.isfinite(value) and value > 0])
-        if not known.size:
+        positive = np.array([value for value in values if np.isfinite(value) and value > 0])
+        if not positive.size:
             return cls(np.nan, np.nan, 0)
-        logs = np.log(known)
+        logs = np.log(positive)
         error = float(logs.std(ddof=1) / np.sqrt(len(logs))) if len(logs) > 1 else np.nan
         return cls(float(logs.mean()), error, len(logs))
 
@@ -116,7 +116,7 @@ def compare_variants(table: pd.DataFrame) -> pd.DataFrame:
             logs = LogMean.of(values.tolist())
             ratio = LogMean.of(paired_ratios(table, variant, stress).tolist())
             low, high = ratio.interval()
-            known = variant != BASE and ratio.count > 1
+            has_scatter = variant != BASE and ratio.count > 1
             rows.append(
                 {
                     "variant": variant,
@@ -128,7 +128,7 @@ def compare_variants(table: pd.DataFrame) -> pd.DataFrame:
                     "ratio": ratio.value,
                     "low": low,
                     "high": high,
-                    "distinct": bool(not low <= 1.0 <= high) if known else None,
+                    "distinct": bool(not low <= 1.0 <= high) if has_scatter else None,
                 }
             )
     return pd.DataFrame(rows)
@@ -136,11 +136,11 @@ def compare_variants(table: pd.DataFrame) -> pd.DataFrame:
 
 def paired_ratios(table: pd.DataFrame, variant: str, stress: str, base: str = BASE) -> Floats:
     """Return a stress of a variant over that of another, for each sample that has both, (n,)."""
-    one, other = (
+    first, other = (
         table[table["variant"] == name].set_index("sample")[stress].astype(float)
         for name in (variant, base)
     )
-    both = [sample for sample in one.index if sample in other.index]
-    top, bottom = one.loc[both].to_numpy(), other.loc[both].to_numpy()
+    both = [sample for sample in first.index if sample in other.index]
+    top, bottom = first.loc[both].to_numpy(), other.loc[both].to_numpy()
     positive = (top > 0) & (bottom > 0)
     return np.asarray(top[positive] / bottom[positive])

@@ -10,17 +10,16 @@ import numpy as np
 
 import snowshed._core as _core
 from snowshed._core import InputError
-from snowshed.io.array_arguments import positive
-from snowshed.io.arrays import AnyIntegers, Labels
+from snowshed.analysis.tomography.downscaling import downscaled
+from snowshed.analysis.tomography.ice_image import IceImage
+from snowshed.base.arrays import AnyIntegers, Labels, positive
+from snowshed.base.notes import tell
+from snowshed.base.paths import PathLike
 from snowshed.io.atomic import replacing
-from snowshed.io.notes import tell
-from snowshed.io.paths import PathLike
 from snowshed.io.voxels.array_files import open_npy
-from snowshed.methods.grains.image.downscaling import downscaled
-from snowshed.methods.grains.image.ice_image import IceImage
-from snowshed.methods.grains.image.sample_folder import LABELS, find_sample
+from snowshed.methods.grains.sample_folder import LABELS, find_sample
 
-#: Voxels along an edge without which a sample is none.
+#: Least number of voxels of a sample along an edge.
 LEAST_VOXELS = 6
 LARGEST_LABEL = 2**31 - 1
 
@@ -32,13 +31,13 @@ class LabelledSample:
     Attributes
     ----------
     name
-        Of the sample; its file is called so.
+        Name of the sample and its file.
     labels : (nz, ny, nx)
         0 air, else a grain.
     voxel_size
         Edge of a voxel, m: the diameter of the spheres.
     source
-        How it was made, if it is synthetic and that is known; else empty.
+        Origin of a synthetic sample, if known.
     """
 
     name: str
@@ -65,24 +64,24 @@ class LabelledSample:
         Raises
         ------
         InputError
-            If there are no labels, or nothing says how large a voxel is, or its grains are not as
-            large as those of snow.
+            If there are no labels, the voxel size is unknown, or the grains are implausibly large
+            or small.
         OSError
             If the file cannot be read.
         """
-        found = find_sample(path, LABELS)
-        size = found.voxel_size if voxel_size is None else voxel_size
+        sample = find_sample(path, LABELS)
+        size = sample.voxel_size if voxel_size is None else voxel_size
         if size is None:
-            raise InputError(f"{found.file}: how large is a voxel? Give its edge in m (--voxel)")
+            raise InputError(f"{sample.file}: how large is a voxel? Give its edge in m (--voxel)")
         positive("voxel size", size)
-        opened = open_npy(found.file)
+        opened = open_npy(sample.file)
         if opened.dtype.kind not in "iu":
-            raise InputError(f"{found.file}: no labels; they are whole numbers (nz, ny, nx)")
+            raise InputError(f"{sample.file}: no labels; they are whole numbers (nz, ny, nx)")
         labels = opened.layers(0, opened.shape[0])
-        labels = _checked_labels(found.file, labels, split_labels)
-        _check_voxel_size(found.file, labels, size)
-        named = found.file.resolve().parent if found.file.name == LABELS else found.file
-        return cls(named.stem, labels, size, found.source)
+        labels = _checked_labels(sample.file, labels, split_labels)
+        _check_voxel_size(sample.file, labels, size)
+        named = sample.file.resolve().parent if sample.file.name == LABELS else sample.file
+        return cls(named.stem, labels, size, sample.source)
 
     @property
     def ice_fraction(self) -> float:
@@ -91,13 +90,14 @@ class LabelledSample:
 
     @property
     def grains(self) -> int:
-        """How many grains there are."""
+        """Number of grains."""
         return int(np.count_nonzero(np.unique(self.labels)))
 
     def coarser(self, factor: int) -> LabelledSample:
         """Return the sample with voxels `factor` times as large, and the same ice fraction.
 
-        Where there is ice, `downscaled` decides; it belongs to the grain that has most of it there.
+        `downscaled` decides which voxels are ice; a voxel belongs to the grain with the most ice in
+        it.
 
         Examples
         --------
@@ -120,8 +120,8 @@ class LabelledSample:
             )
         image = downscaled(IceImage(self.labels > 0, self.voxel_size, self.name), factor)
         nz, ny, nx = counts
-        whole = self.labels[: nz * factor, : ny * factor, : nx * factor]
-        blocks = whole.reshape(nz, factor, ny, factor, nx, factor).transpose(0, 2, 4, 1, 3, 5)
+        divisible = self.labels[: nz * factor, : ny * factor, : nx * factor]
+        blocks = divisible.reshape(nz, factor, ny, factor, nx, factor).transpose(0, 2, 4, 1, 3, 5)
         labels = np.zeros(image.ice.shape, dtype=self.labels.dtype)
         labels[image.ice] = _most_frequent(blocks[image.ice].reshape(-1, factor**3))
         name = f"{self.name}-coarser{factor}"
@@ -144,8 +144,8 @@ class LabelledSample:
                 f"{LEAST_VOXELS} along an edge"
             )
         cut = tuple(
-            slice((whole - length) // 2, (whole - length) // 2 + length)
-            for whole, length in zip(self.labels.shape, lengths)
+            slice((size - length) // 2, (size - length) // 2 + length)
+            for size, length in zip(self.labels.shape, lengths)
         )
         return replace(self, name=f"{self.name}-middle{part:g}", labels=self.labels[cut])
 
@@ -184,18 +184,18 @@ def _checked_labels(file: Path, labels: AnyIntegers, split: bool) -> Labels:
     """Return labels as the core takes them; tell where one lies in several places."""
     if int(labels.min()) < 0 or int(labels.max()) > LARGEST_LABEL:
         raise InputError(f"{file}: no labels; 0 is air, grains are 1 to {LARGEST_LABEL:,}")
-    known = labels.astype(np.int32)
+    labelled = labels.astype(np.int32)
     try:
-        note = _core.label_note(known, split)
+        note = _core.label_note(labelled, split)
     except InputError as error:
         raise InputError(f"{file}: {error}") from None
     if note:
         tell(f"{file}: {note}")
-    return _core.split_labels(known) if split else known
+    return _core.split_labels(labelled) if split else labelled
 
 
 def _check_voxel_size(file: Path, labels: AnyIntegers, voxel_size: float) -> None:
-    """Raise InputError unless grains are as large as those of snow, as every test checks."""
+    """Raise InputError unless the grains have plausible sizes for snow."""
     voxels = np.unique(labels[labels > 0], return_counts=True)[1]
     if not len(voxels):
         raise InputError(f"{file}: no grain in the image: every voxel is 0, which is air")

@@ -1,4 +1,4 @@
-"""From computed variants of a loading test to the table and the figure of what matters."""
+"""The table and the figure of the parameters that matter, from computed loading tests."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ TESTS, TABLE, FIGURE = "tests.csv", "sensitivity.csv", "sensitivity.png"
 
 
 def evaluate_sensitivity(comparison: Comparison, runs: Path, folder: Path) -> pd.DataFrame:
-    """Evaluate variants, as far as they are computed; write the table and the figure.
+    """Evaluate the computed variants; write the table and the figure.
 
     Parameters
     ----------
@@ -25,12 +25,12 @@ def evaluate_sensitivity(comparison: Comparison, runs: Path, folder: Path) -> pd
     runs
         Folder of the store.
     folder
-        For ``tests.csv`` (every test), ``sensitivity.csv`` and ``sensitivity.png``.
+        Folder for ``tests.csv`` (every test), ``sensitivity.csv`` and ``sensitivity.png``.
 
     Returns
     -------
     pandas.DataFrame
-        As of `compare_variants`.
+        As from `compare_variants`.
 
     Raises
     ------
@@ -41,9 +41,9 @@ def evaluate_sensitivity(comparison: Comparison, runs: Path, folder: Path) -> pd
     from snowshed.plot.figure_style import save
 
     tests = comparison.table(runs)
-    found = compare_variants(tests)
+    table = compare_variants(tests)
     folder.mkdir(parents=True, exist_ok=True)
     write_csv(tests, folder / TESTS)
-    write_csv(found, folder / TABLE)
-    save(sensitivity_figure(found, comparison.scene.title or ""), folder / FIGURE)
-    return found
+    write_csv(table, folder / TABLE)
+    save(sensitivity_figure(table, comparison.scene.title or ""), folder / FIGURE)
+    return table

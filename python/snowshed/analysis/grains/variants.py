@@ -1,4 +1,4 @@
-"""Variants of a loading test, each of which differs from the base in one thing."""
+"""Variants of a loading test; each differs from the base in one parameter."""
 
 from __future__ import annotations
 
@@ -32,13 +32,13 @@ class Variant:
     Attributes
     ----------
     name
-        In words: what differs, and its value.
+        Label: the varied parameter, and its value.
     varied
-        What differs: a name that several variants share.
+        Name of the varied parameter, which several variants share.
     samples
         Files of the samples, which correspond to those of the base one by one.
     voxel_size
-        Of the samples, m.
+        Voxel size of the samples, m.
     changes
         Values of the scene that differ from the base, by their dotted paths.
     """
@@ -68,11 +68,11 @@ class Comparison:
     Attributes
     ----------
     scene
-        What all have in common.
+        Common scene of all variants.
     variants
         The base first.
     name
-        Of the study.
+        Name of the study.
     """
 
     scene: Scene
@@ -81,7 +81,7 @@ class Comparison:
 
     def study(self) -> Study:
         """Return the study that computes all variants."""
-        return Study(self.scene, [one.part for one in self.variants], self.name)
+        return Study(self.scene, [variant.part for variant in self.variants], self.name)
 
     def hashes(self) -> dict[tuple[str, int], str]:
         """Return the hash of each test, by its variant's name and its sample's number."""
@@ -120,7 +120,7 @@ class Comparison:
         return pd.DataFrame(rows, columns=list(dict.fromkeys([*KEYS, "hash", *done.columns])))
 
 
-#: Changes of the settings that are tried: what they are called, the paths, and the factors.
+#: Tried changes of the settings: label, paths, and factors.
 SETTINGS = (
     ("friction", ("friction",), (0.5, 2.5)),
     ("elastic modulus", ("elastic_modulus",), (0.1, 0.3)),
@@ -145,18 +145,18 @@ def sensitivity_variants(
     Parameters
     ----------
     samples
-        Of one snow and voxel size; each is loaded with every variant.
+        Samples of one snow and voxel size; each is loaded with every variant.
     folder
-        For the samples' files.
+        Folder for the samples' files.
     stage
         The test.
     settings
-        Of the base.
+        Settings of the base.
     coarser
-        By how much the base's voxels are larger than those of the samples. One more is a variant.
+        Ratio of voxel sizes of base and samples. The next larger ratio is a variant.
     finer
-        Whether one less is a variant, too, which takes far longer: spheres half as large are four
-        times as many, and take twice as many steps.
+        Whether the next smaller ratio is a variant, too, which takes far longer: spheres of half
+        the size are four times as many, and need twice as many steps.
 
     Raises
     ------
@@ -173,12 +173,12 @@ def sensitivity_variants(
     >>> [one.name for one in found.variants][:4]
     ['base', 'friction 0.1', 'friction 0.5', 'elastic modulus 1e+08 Pa']
     """
-    base = [one.coarser(coarser) for one in samples]
-    files = [one.write(folder) for one in base]
+    base = [sample.coarser(coarser) for sample in samples]
+    files = [sample.write(folder) for sample in base]
     voxel = base[0].voxel_size
-    title = "synthetic snow" if any(one.source for one in samples) else ""
+    title = "synthetic snow" if any(sample.source for sample in samples) else ""
     scene = grains_scene(files[0], voxel, [stage], settings=settings, title=title)
-    full: Any = scene.resolve().data
+    full = scene.resolve().data
 
     variants = [Variant(BASE, BASE, files, voxel)]
     for varied, names, factors in SETTINGS:
@@ -186,7 +186,7 @@ def sensitivity_variants(
             changes = {name: _scaled(full["numerics"][name], factor) for name in names}
             if changes.get("density_scaling", 1.0) >= 1.0:  # ice is not made lighter
                 paths = {f"numerics.{name}": value for name, value in changes.items()}
-                words = _words(varied, next(iter(changes.values())))
+                words = _variant_title(varied, next(iter(changes.values())))
                 variants.append(Variant(words, varied, files, voxel, paths))
     for factor in SPEEDS:
         speed = _scaled(full["loading"][0]["speed"], factor)
@@ -194,7 +194,7 @@ def sensitivity_variants(
         variants.append(Variant(words, "speed", files, voxel, path))
     for times in ([coarser - 1] if finer else []) + [coarser + 1]:
         variants.append(other_spheres(samples, folder, times))
-    small = [one.middle(HALF).write(folder) for one in base]
+    small = [sample.middle(HALF).write(folder) for sample in base]
     variants.append(Variant("volume / 8", "volume", small, voxel))
     return Comparison(scene, variants, "grains-sensitivity")
 
@@ -209,9 +209,9 @@ def other_spheres(samples: Sequence[LabelledSample], folder: Path, times: int) -
     """
     if times < 1:
         raise InputError("finer spheres: the samples have no finer voxels; needs coarser above 1")
-    other = [one.coarser(times) for one in samples]
+    other = [sample.coarser(times) for sample in samples]
     size = other[0].voxel_size
-    files = [one.write(folder) for one in other]
+    files = [sample.write(folder) for sample in other]
     return Variant(f"spheres {1e6 * size:g} um", "sphere size", files, size)
 
 
@@ -220,7 +220,7 @@ def _scaled(value: float, factor: float) -> float:
     return float(f"{value * factor:.12g}")
 
 
-def _words(varied: str, value: float) -> str:
+def _variant_title(varied: str, value: float) -> str:
     unit = {"elastic modulus": " Pa", "strength of bonds": " Pa"}.get(varied, "")
     times = "x " if varied == "density of ice" else ""
     return f"{varied} {times}{value:g}{unit}"

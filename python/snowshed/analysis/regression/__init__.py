@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 else:
 
     def __getattr__(name):
-        """Import what needs scikit-learn, which is an extra, only when it is asked for."""
+        """Import modules that need scikit-learn, an extra, on first use."""
         if name == "EpsilonSVR":
             from snowshed.analysis.regression.svr import EpsilonSVR
 

@@ -1,6 +1,6 @@
 """The data set that comes with snowshed: 122 panels, both ways between events, and its model.
 
-How it was computed is told in ``data/README.md``.
+``data/README.md`` describes its computation.
 """
 
 from __future__ import annotations
@@ -11,9 +11,9 @@ from snowshed.analysis.regression.geometry import check_between
 from snowshed.analysis.regression.rows import StackRows, read_rows
 
 FOLDER = Path(__file__).with_name("data")
-#: The models of its rows; what ``snowshed predict`` asks if it is given no other.
+#: Models of its rows, the default of ``snowshed predict``.
 MODEL = FOLDER / "geometry-model.npz"
-#: The way between events that the models are of: the one that comes nearest to Table 5.3.1.
+#: Treatment of the stack between events in the models: the one nearest to Table 5.3.1.
 MODEL_BETWEEN = "carry"
 
 

@@ -11,7 +11,7 @@ from scipy import optimize, spatial
 
 from snowshed.analysis.regression.rows import INPUTS
 from snowshed.analysis.regression.scaling import Scaling
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 from snowshed.plot.labels import label, settings
 
 #: A value just beyond a range must not read like its end.
@@ -31,14 +31,14 @@ class Domain:
     inputs
         All rows, shape (n, k), the columns of `names`.
     names
-        What the inputs are; the event is the first.
+        Names of the inputs; the event is the first.
     """
 
     inputs: Floats
     names: Sequence[str] = INPUTS
 
     def objections(self, questions: Floats) -> list[str]:
-        """Say in words why questions lie outside the data; an empty list: all lie inside.
+        """Return the reasons why questions lie outside the data; empty if all lie inside.
 
         Parameters
         ----------
@@ -54,28 +54,28 @@ class Domain:
         ['panel height 3 m is outside the data, which reach from 1 to 2 m']
         """
         questions = np.atleast_2d(questions)
-        found = [text for question in questions for text in self._ranges(question)]
-        if not found:
-            # Most events have the same panels, which are looked at once.
+        objections = [text for question in questions for text in self._ranges(question)]
+        if not objections:
+            # Most events have the same panels, which are checked once.
             asked: dict[tuple[bytes, bytes], tuple[Floats, Floats]] = {}
             for question in questions:
                 panels = self._by_event.get(question[0], self.inputs[:0, 1:])
                 asked.setdefault((question[1:].tobytes(), panels.tobytes()), (question, panels))
-            found = [text for one in asked.values() for text in self._misplaced(*one)]
-        return list(dict.fromkeys(found))
+            objections = [text for group in asked.values() for text in self._misplaced(*group)]
+        return list(dict.fromkeys(objections))
 
     def _ranges(self, question: Floats) -> list[str]:
-        found = []
+        objections = []
         low, high = self.inputs.min(axis=0), self.inputs.max(axis=0)
         for name, value, least, most in zip(self.names, question, low, high):
             margin = TOLERANCE * max(1.0, abs(most))
             if not least - margin <= value <= most + margin:
-                known = label(name)
-                given, end = (known.quantity(number, DIGITS) for number in (value, most))
-                reach = f"reach from {known.value(least, DIGITS)} to {end}"
+                parameter = label(name)
+                given, end = (parameter.quantity(number, DIGITS) for number in (value, most))
+                reach = f"reach from {parameter.value(least, DIGITS)} to {end}"
                 reach = f"have {end} only" if least == most else reach
-                found.append(f"{known.name} {given} is outside the data, which {reach}")
-        return found
+                objections.append(f"{parameter.name} {given} is outside the data, which {reach}")
+        return objections
 
     def _misplaced(self, question: Floats, panels: Floats) -> list[str]:
         """Say where a question within all ranges lies among the panels that have its event."""

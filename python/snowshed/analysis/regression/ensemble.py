@@ -9,7 +9,7 @@ import numpy as np
 
 from snowshed.analysis.regression.fold_result import FoldResult
 from snowshed.analysis.regression.kernels import kernel_matrix
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 
 
 @dataclass(frozen=True)
@@ -57,10 +57,12 @@ class Ensemble:
         numpy.ndarray
             Shape (m, q), standardised.
         """
-        found = np.empty((len(self.intercepts), len(inputs)))
+        predictions = np.empty((len(self.intercepts), len(inputs)))
         different, which = np.unique(self.rates, axis=0, return_inverse=True)
         for number, rates in enumerate(different):
             models = np.ravel(which) == number
             kernel = kernel_matrix(inputs, self.points, rates)
-            found[models] = self.coefficients[models] @ kernel.T + self.intercepts[models, None]
-        return found
+            predictions[models] = (
+                self.coefficients[models] @ kernel.T + self.intercepts[models, None]
+            )
+        return predictions

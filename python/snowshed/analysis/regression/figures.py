@@ -15,7 +15,7 @@ from snowshed.analysis.regression.fold_result import FoldResult
 from snowshed.analysis.regression.model_file import Member
 from snowshed.analysis.regression.rows import INPUTS, TARGETS, StackRows
 from snowshed.analysis.regression.scaling import Scaling
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 from snowshed.plot import figure_style
 from snowshed.plot.figure_style import FAINT, INK, STYLE, blank, headline
 from snowshed.plot.labels import label
@@ -221,8 +221,8 @@ def _vary(
     questions = np.tile(here, (ALONG, 1))
     questions[:, number] = np.linspace(x.min(), x.max(), ALONG)
     scaled = Scaling.of(rows.inputs).scaled(questions)
-    found = member.ensemble.predict(scaled) * member.deviation + member.mean
-    mean, deviation = found.mean(axis=0), found.std(axis=0)
+    predicted = member.ensemble.predict(scaled) * member.deviation + member.mean
+    mean, deviation = predicted.mean(axis=0), predicted.std(axis=0)
     axes.plot(questions[:, number], mean, color=shade, linewidth=1.3)
     band = (mean - deviation, mean + deviation)
     axes.fill_between(questions[:, number], *band, color=shade, alpha=0.2, linewidth=0)
@@ -262,13 +262,13 @@ def _parameter_word(name: str, inputs: Sequence[str]) -> str:
 
 
 def _quantity(target: str) -> str:
-    words = {"ratio": "height / length"}.get(target, target)
-    return f"{words}, {TARGETS[target]}" if TARGETS[target] else words
+    title = {"ratio": "height / length"}.get(target, target)
+    return f"{title}, {TARGETS[target]}" if TARGETS[target] else title
 
 
 def _at(name: str, value: float) -> str:
-    known = label(name)
-    return f"{known.name.removeprefix('panel ')} {known.quantity(value)}"
+    parameter = label(name)
+    return f"{parameter.name.removeprefix('panel ')} {parameter.quantity(value)}"
 
 
 def _in_threes(texts: Sequence[str]) -> list[Sequence[str]]:

@@ -12,10 +12,10 @@ import numpy as np
 
 from snowshed._core import InputError
 from snowshed.analysis.regression.kernels import Expansion
+from snowshed.base.arrays import Floats, Integers
+from snowshed.base.damage import DAMAGED
 from snowshed.io.array_archive import open_archive
-from snowshed.io.arrays import Floats, Integers
 from snowshed.io.atomic import replacing
-from snowshed.io.damage import DAMAGED
 from snowshed.io.input_file import read_regular
 
 NUMBERS = ("inner_score", "development_score", "validation_score", "fits", "elapsed_s")
@@ -36,9 +36,9 @@ class FoldResult:
     fits, elapsed_s
         Models fitted, and the processor time of search and training, s.
     validation, held_out
-        Rows that it never saw, and what it predicts for them, in the target's unit: shape (v,).
+        Held-out rows, and the predictions for them, in the target's unit: shape (v,).
     predictions
-        For all rows after it was trained anew on all of them (5.2.4), shape (n,).
+        Predictions for all rows after training on all of them (5.2.4), shape (n,).
     expansion
         The model that was trained on all rows; None if it is not a sum of kernels.
     """
@@ -69,7 +69,7 @@ class FoldResult:
 
     @classmethod
     def load(cls, path: Path, points: Floats) -> Optional[FoldResult]:
-        """Read a result; None if there is none, or it cannot be read.
+        """Read a result; None if it is missing, or cannot be read.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""The nested cross-validation of section 5.2.3: which rows train, test and validate."""
+"""The nested cross-validation of section 5.2.3: training, test and validation rows."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from snowshed._core import InputError
 from snowshed.analysis.regression.rows import StackRows
-from snowshed.io.arrays import Integers
+from snowshed.base.arrays import Integers
 
 Split = tuple[Integers, Integers]
 BY = ("rows", "panels")
@@ -29,7 +29,7 @@ class ShuffledGroupKFold:
     n_splits
         Number of folds.
     seeds
-        What the random order depends on.
+        Seeds of the random order.
 
     Examples
     --------
@@ -88,11 +88,11 @@ class CrossValidation:
     rounds, folds, inner_folds
         Section 5.2.3: 10 repetitions of a 10-fold outer loop around a 5-fold inner loop.
     seed
-        Of the random splits.
+        Random seed of the splits.
     by
         "rows", as in the thesis: rows are split, so that other events of a validation row's panel
         may be trained on. "panels": all events of a panel stay together, so that the validation
-        score is that of a panel never seen.
+        score is that of an unseen panel.
     """
 
     rounds: int = 10
@@ -109,7 +109,7 @@ class CrossValidation:
             raise InputError(f"by: {self.by!r} is unknown; allowed: {', '.join(BY)}")
 
     def check(self, rows: StackRows) -> None:
-        """Raise an InputError if there are too few rows or panels for so many folds."""
+        """Raise an InputError if there are too few rows or panels for the number of folds."""
         panels = rows.panel_count
         if panels < 2:
             raise InputError("all rows are of one panel; at least 2 panels are needed")

@@ -14,7 +14,7 @@ from sklearn.gaussian_process.kernels import RBF, ConstantKernel, Sum, WhiteKern
 
 from snowshed.analysis.regression.folds import ShuffledGroupKFold
 from snowshed.analysis.regression.kernels import Expansion
-from snowshed.io.arrays import Floats, Integers
+from snowshed.base.arrays import Floats, Integers
 
 #: Bounds of the hyper-parameters.
 LENGTHS = (1e-2, 1e3)
@@ -44,7 +44,7 @@ class GaussianProcess:
         return LikelihoodSearch()
 
     def estimator(self, parameters: Mapping[str, float]) -> GaussianProcessRegressor:
-        """Return the process with these hyper-parameters, which training leaves as they are."""
+        """Return the process with these hyper-parameters, which training does not change."""
         lengths = [value for name, value in parameters.items() if name.startswith("length_")]
         covariance = _covariance(parameters["amplitude"], np.array(lengths), parameters["noise"])
         return GaussianProcessRegressor(covariance, alpha=0.0, optimizer=None)

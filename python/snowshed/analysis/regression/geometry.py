@@ -6,21 +6,29 @@ from collections.abc import Mapping, Sequence
 from math import ceil, inf
 
 from snowshed._core import InputError
-from snowshed.analysis.deviations import DEVIATIONS, deviating_settings, deviations_named
+from snowshed.analysis.regression.deviations import (
+    DEVIATIONS,
+    deviating_settings,
+    deviations_named,
+)
 from snowshed.scene.accuracy_settings import ACCURACY
 from snowshed.scene.components import Snow
 from snowshed.scene.scene import Scene
-from snowshed.scene.thesis_tables import (
-    PANEL_HEIGHTS,
-    PANEL_LENGTHS,
-    STEEP_HEIGHTS,
-    STEEP_LENGTHS,
-    STEEP_TILTS,
-)
 from snowshed.study.definition import Study
 from snowshed.study.factors import SEED, Factor, axis
 
-#: How snow goes from one event to the next; each is a study of its own.
+#: Heights and lengths of the panels at 40 degrees, m, and those of steeper ones.
+FLAT_HEIGHTS = (1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0)
+FLAT_LENGTHS = (0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 6.0, 8.0, 10.0)
+STEEP_HEIGHTS = (2.0, 3.0, 4.0)
+STEEP_LENGTHS = (0.5, 1.5, 2.0, 4.0, 8.0)
+FLAT_TILT, STEEP_TILTS = 40.0, (50.0, 60.0, 70.0)  # degrees
+#: Tilts, heights and lengths whose combinations are the panels.
+GRIDS = (
+    ((FLAT_TILT,), FLAT_HEIGHTS, FLAT_LENGTHS),
+    (STEEP_TILTS, STEEP_HEIGHTS, STEEP_LENGTHS),
+)
+#: Treatments of the stack between events; each is a separate study.
 BETWEEN = ("carry", "reseed")
 #: The panel's friction, which the thesis does not print. Of 0.3 to 0.8, which were tried on some of
 #: the panels, it gives ratios of height to length nearest to Table 5.3.1.
@@ -32,7 +40,6 @@ DAMPING_RATE = 190.0
 #: short panels scatter most, and long panels take longest. What one more stack takes from the
 #: scatter of the rows for its time asks for about as many.
 SHARES: Mapping[float, int] = {1.0: 1, 2.0: 3, 4.0: 6, inf: 16}
-FLAT_TILT = 40.0  # degrees, of the panels with all heights and lengths
 DESCRIPTION = "The geometry data set: 122 panels, 5 events each, 610 rows (Tables 5.1.1 and 5.2.1)."
 
 
@@ -53,22 +60,22 @@ def geometry_study(
     Parameters
     ----------
     between
-        "carry": the stack's particles stay as they are; "reseed": the stack is filled anew, as the
-        thesis does.
+        "carry": the stack's particles stay unchanged; "reseed": the stack is filled with new
+        particles, as in the thesis.
     friction
         Coulomb coefficient of the panel.
     dx
         Size of the grid cells, m. The trial has its own.
     seeds
-        How many stacks for each panel up to 1 m; they differ in the chance placement of the
-        particles. Longer panels take more time and scatter less: those up to 2 m have a third as
-        many, up to 4 m a sixth, the others a sixteenth, rounded up.
+        Number of stacks for each panel up to 1 m, with different random seedings. Longer panels
+        take more time and scatter less: panels up to 2 m have a third as many, up to 4 m a sixth,
+        the others a sixteenth, rounded up.
     deviations
-        Names of `snowshed.analysis.deviations` to undo, or "all": what the thesis does instead.
-        They go before `between` and `dx`; the trial has none.
+        Names of `snowshed.analysis.regression.deviations`, or "all": settings of the published
+        study. They go before `between` and `dx`; the trial has none.
     trial
-        A few panels on a coarse grid, which take seconds, to try the way from study to prediction;
-        its numbers mean nothing.
+        Whether to return a trial: a few panels on a coarse grid, which take seconds; its numbers
+        are meaningless.
 
     Raises
     ------
@@ -84,13 +91,13 @@ def geometry_study(
     scene = Scene.preset("geometry").update({"snow": Snow.preset("calibrated").to_data()})
     if trial:
         return _trial(scene, between, friction, seeds)
-    changes = deviating_settings(5, deviations)
+    changes = deviating_settings(deviations)
     between = str(changes.pop("events.between", between))
     scene.update(
         {
             "dimension": 2,
             "events.count": 5,
-            "events.max_time": 30.0,  # s; 10 m at 40 degrees alone take 9 s
+            "events.max_time": 30.0,  # s; 10 m at 40 degrees take 9 s
             "seeding.particles_per_voxel": 4,  # the fewest in 2D (A.3.2)
             "numerics.dx": dx,
             **({} if "numerics.flip_ratio" in changes else {"numerics.damping_rate": DAMPING_RATE}),
@@ -98,20 +105,16 @@ def geometry_study(
         }
     )
     shown = {"panel.friction": friction, "events.between": between}
-    shown.update({path: one for path, one in changes.items() if path not in ACCURACY.values()})
+    shown.update({path: value for path, value in changes.items() if path not in ACCURACY.values()})
     common = [axis(path, [value]) for path, value in shown.items()]  # which the table shows
-    grids = (
-        ((FLAT_TILT,), PANEL_HEIGHTS, PANEL_LENGTHS),
-        (STEEP_TILTS, STEEP_HEIGHTS, STEEP_LENGTHS),
-    )
     parts = [
         [*common, *_panels(tilts, heights, some), axis(SEED, _seeds(seeds, share))]
-        for tilts, heights, lengths in grids
+        for tilts, heights, lengths in GRIDS
         for share in SHARES.values()
-        if (some := [one for one in lengths if _share(one) == share])
+        if (some := [length for length in lengths if _share(length) == share])
     ]
     undone = deviations_named(deviations)
-    others = [one.name for one in undone if one.simulated and one.name != between]
+    others = [name for name in undone if DEVIATIONS[name] and name != between]
     name = ["thesis"] if len(undone) == len(DEVIATIONS) else [between, *others]
     return Study(scene, parts, "-".join(["geometry", *name]), description=DESCRIPTION)
 
@@ -134,7 +137,7 @@ def _trial(scene: Scene, between: str, friction: float, seeds: int) -> Study:
         f"geometry-trial-{between}",
         range(1, seeds + 1),
         "A trial of the geometry data set: 9 panels on a coarse grid, 3 events each, 27 rows. "
-        "It shows the way from study to prediction; its numbers mean nothing.",
+        "It shows the steps from study to prediction; its numbers are meaningless.",
     )
 
 
@@ -149,7 +152,7 @@ def _panels(
 
 
 def check_between(between: str) -> None:
-    """Raise an InputError unless there is such a way between events."""
+    """Raise an InputError for an unknown treatment between events."""
     if between not in BETWEEN:
         raise InputError(f"between: {between!r} is unknown; allowed: {', '.join(BETWEEN)}")
 

@@ -8,19 +8,19 @@ import numpy as np
 from sklearn.base import clone
 from sklearn.ensemble import GradientBoostingRegressor
 
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 
 
 class StagedGradientBoosting(GradientBoostingRegressor):
-    """scikit-learn's gradient boosting, of which a search sees each stage of a single fit."""
+    """scikit-learn's gradient boosting, whose search sees each stage of a single fit."""
 
-    #: What `path_predictions` varies.
+    #: Hyper-parameters that `path_predictions` varies.
     path_parameters = ("n_estimators",)
 
     def path_predictions(
         self, X: Floats, y: Floats, at: Floats, grid: Mapping[str, Sequence[int]]
     ) -> Iterator[Floats]:
-        """Train the largest ensemble of a grid; yield what it predicted with fewer trees.
+        """Train the largest ensemble of a grid; yield its predictions with fewer trees.
 
         Parameters
         ----------

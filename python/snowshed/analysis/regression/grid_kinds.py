@@ -20,7 +20,7 @@ Model = Union[EpsilonSVR, StagedGradientBoosting]
 EPSILON = tuple(10.0**power for power in range(-4, 3))
 C = tuple(10.0**power for power in range(-3, 5))
 GAMMA = tuple(10.0**power for power in range(-4, 3))
-#: Of the boosted trees.
+#: Grid of the boosted trees.
 DEPTHS = (2, 3, 4)
 TREES = tuple(range(10, 401, 10))
 
@@ -34,7 +34,7 @@ class GridKind:
     name, title, cost_s
         See `Kind`.
     model
-        The estimator, with what is the same for all points of the grid.
+        The estimator, with the common parameters of all points of the grid.
     grid
         Values of each hyper-parameter.
     """
@@ -55,7 +55,7 @@ class GridKind:
         return model
 
     def expansion(self, model: object) -> Optional[Expansion]:
-        """Return a trained model as a sum of kernels; None: it is none."""
+        """Return a trained model as a sum of kernels, if it is one."""
         return model.expansion_ if isinstance(model, EpsilonSVR) else None
 
 

@@ -2,7 +2,7 @@
 
 libsvm's decomposition changes two multipliers at a time. With a large C and few inputs it takes
 millions of such changes; here a dozen Newton steps suffice, each a Cholesky factorisation of a
-matrix of the size of the training set, whatever the parameters.
+matrix of the size of the training set, for any parameters.
 """
 
 from __future__ import annotations
@@ -13,11 +13,11 @@ from typing import Any
 import numpy as np
 from scipy.linalg import lapack
 
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 
 MOST_STEPS = 80
-INTERIOR = 0.995  # part of the way to the boundary that a step takes
-SMALLEST_PART = 1e-8  # of a step; a smaller one advances nothing
+INTERIOR = 0.995  # largest share of the distance to the boundary in a step
+SMALLEST_PART = 1e-8  # smallest step that makes progress
 ROUNDING = 1e-12  # of the largest diagonal element of the kernel
 DIVERGED = 1e6  # times the smallest residual so far
 USELESS = 1e-2  # a residual that is no fit
@@ -79,7 +79,7 @@ def solve(
     c, epsilon
         Bound of the multipliers, and half width of the tube in which errors cost nothing.
     tolerance
-        Of the gap between primal and dual objective, relative.
+        Tolerance of the relative gap between primal and dual objective.
 
     Raises
     ------
@@ -103,7 +103,7 @@ class _Iteration:
         self._factorise, self._substitute = lapack.dpotrf, lapack.dpotrs
         self._kernel = np.asfortranarray(kernel)
         self._matrix = np.empty_like(self._kernel)
-        # Rounding may make eigenvalues of a singular kernel negative; what the next step corrects.
+        # Rounding may make eigenvalues of a singular kernel negative; the next step corrects this.
         self._rounding = ROUNDING * float(np.abs(np.diagonal(kernel)).max())
         self._y, self._c, self._epsilon = y, c, epsilon
         start = np.full(len(y), min(0.5 * c, 1.0))
@@ -114,18 +114,18 @@ class _Iteration:
 
     def run(self, tolerance: float) -> SupportVectors:
         """Iterate to the tolerance, or to where rounding lets it come no nearer."""
-        best, found = np.inf, self._function()
+        best, solution = np.inf, self._function()
         for _ in range(MOST_STEPS):
             residual = self._residuals()
             if residual < best:
-                best, found = residual, self._function()
+                best, solution = residual, self._function()
             if residual <= tolerance or residual > DIVERGED * best or not self._step():
                 break
         if not best <= USELESS:
             raise FloatingPointError(
                 f"the fit did not converge: C {self._c:g}, epsilon {self._epsilon:g}"
             )
-        return found
+        return solution
 
     def _function(self) -> SupportVectors:
         return SupportVectors(self._alpha.value - self._star.value, self._intercept)
@@ -203,7 +203,7 @@ class _Iteration:
         )
 
     def _aims(self, now: _Bounds, earlier: _Bounds, centring: float) -> tuple[Floats, Floats]:
-        """Return what the multipliers of the bounds would change by if alpha stayed."""
+        """Return the change of the bounds' multipliers at constant alpha."""
         lower = (centring - earlier.value * earlier.lower) / now.value - now.lower
         upper = (centring - earlier.room * earlier.upper) / now.room - now.upper
         return lower, upper

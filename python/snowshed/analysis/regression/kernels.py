@@ -6,18 +6,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 
 #: Kernel values below are zero: arithmetic with numbers near the smallest ones is slow.
 NOTHING = 1e-100
 
 
-def kernel_matrix(one: Floats, other: Floats, rates: Floats) -> Floats:
+def kernel_matrix(first: Floats, other: Floats, rates: Floats) -> Floats:
     """Return k(x, x') for all pairs.
 
     Parameters
     ----------
-    one, other
+    first, other
         Points, shapes (m, k) and (n, k).
     rates
         Shape (k,): exp(-sum_d rates_d (x_d - x'_d)^2), the RBF kernel whose gamma may differ from
@@ -37,9 +37,9 @@ def kernel_matrix(one: Floats, other: Floats, rates: Floats) -> Floats:
     [[1.0, 0.5], [0.5, 1.0]]
     """
     if len(rates) == 0:
-        return np.asarray(one @ other.T)
-    squares = np.zeros((len(one), len(other)))
-    for rate, a, b in zip(rates, one.T, other.T):
+        return np.asarray(first @ other.T)
+    squares = np.zeros((len(first), len(other)))
+    for rate, a, b in zip(rates, first.T, other.T):
         squares += rate * (a[:, None] - b[None, :]) ** 2
     values = np.exp(-squares)
     values[values < NOTHING] = 0.0

@@ -8,8 +8,8 @@ from typing import Optional, Protocol
 from snowshed._core import InputError
 from snowshed.analysis.regression.folds import ShuffledGroupKFold
 from snowshed.analysis.regression.kernels import Expansion
-from snowshed.io.arrays import Floats, Integers
-from snowshed.io.extras import require
+from snowshed.base.arrays import Floats, Integers
+from snowshed.base.extras import require
 
 Parameters = Mapping[str, float]
 
@@ -37,7 +37,7 @@ class Searcher(Protocol):
 
 
 class Kind(Protocol):
-    """A kind of model: how its hyper-parameters are chosen, and what is trained with them."""
+    """A kind of model: the choice of its hyper-parameters, and its training."""
 
     @property
     def name(self) -> str:
@@ -58,7 +58,7 @@ class Kind(Protocol):
         """Return the model with these hyper-parameters, not trained."""
 
     def expansion(self, model: Regressor) -> Optional[Expansion]:
-        """Return a trained model as a sum of kernels; None: it is none."""
+        """Return a trained model as a sum of kernels, if it is one."""
 
 
 def kinds() -> dict[str, Kind]:
@@ -69,7 +69,7 @@ def kinds() -> dict[str, Kind]:
     InputError
         If scikit-learn (extra ``regression``) is not installed.
     """
-    require("sklearn", "regression", "regression")  # of which the modules below are made
+    require("sklearn", "regression", "regression")  # imported late: these modules import this one
     from snowshed.analysis.regression import grid_kinds
     from snowshed.analysis.regression.gaussian_process import GaussianProcess
 

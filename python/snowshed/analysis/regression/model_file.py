@@ -18,10 +18,10 @@ from snowshed.analysis.regression.ensemble import Ensemble
 from snowshed.analysis.regression.rows import INPUTS, TARGETS, is_input
 from snowshed.analysis.regression.scaling import Scaling
 from snowshed.analysis.regression.spread import INTERVAL, SPREAD, Spread
+from snowshed.base.arrays import Floats
+from snowshed.base.damage import DAMAGED
 from snowshed.io.array_archive import open_archive
-from snowshed.io.arrays import Floats
 from snowshed.io.atomic import replacing
-from snowshed.io.damage import DAMAGED
 from snowshed.io.input_file import read_regular
 from snowshed.scene.accuracy_settings import FORMER_NAMES
 from snowshed.scene.scene import PathLike
@@ -47,9 +47,9 @@ class Member:
     ensemble
         In standardised inputs and targets.
     mean, deviation
-        Of the target, in its unit: what standardised it, (5.2.12).
+        Mean and deviation of the target, which standardise it, (5.2.12), in its unit.
     spread
-        Of its predictions.
+        Spread of its predictions.
     """
 
     ensemble: Ensemble
@@ -67,15 +67,15 @@ class StackModel:
     inputs
         All rows the models come from, shape (n, k), the columns of `names`.
     members
-        By target and kind.
+        Models by target and kind.
     title
-        What the data are, for people.
+        Title of the data.
     measure
         "stack" or "body", as for `read_rows`.
     settings
-        What all rows have in common, as in `StackRows`.
+        Common settings of all rows, as in `StackRows`.
     names
-        What the inputs are; the event is the first.
+        Names of the inputs; the event is the first.
     """
 
     inputs: Floats
@@ -133,12 +133,12 @@ def save_model(model: StackModel, file: PathLike) -> None:
 
 
 def load_model(file: PathLike) -> StackModel:
-    """Read a model. Nothing in the file is executed, whoever made it.
+    """Read a model. Nothing in the file is executed.
 
     Raises
     ------
     InputError
-        If it is no model, is damaged, or holds values that no model has; it names file and key.
+        If it is not a model, is damaged, or holds invalid values; the message names file and key.
     """
     path = Path(file)
     try:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict
 from functools import partial
@@ -16,12 +15,12 @@ from snowshed.analysis.regression.kinds import Kind
 from snowshed.analysis.regression.rows import StackRows
 from snowshed.analysis.regression.scaling import Scaling
 from snowshed.analysis.regression.task import Task, compute
-from snowshed.analysis.regression.threads import one_thread
-from snowshed.io.atomic import LEFTOVER, remove_leftovers, write_text
-from snowshed.io.json_file import read_object
-from snowshed.run.interrupt import InterruptRequest, deferred_interrupts
-from snowshed.run.pool import Ended, Pool
-from snowshed.run.progress import Progress, Reporter
+from snowshed.base.interrupt import InterruptRequest, deferred_interrupts
+from snowshed.base.pool.pool import Ended, Pool
+from snowshed.base.pool.threads import one_thread
+from snowshed.base.progress import Progress, Reporter
+from snowshed.io.atomic import remove_leftovers
+from snowshed.io.folders import claim_folder
 from snowshed.study.locks import holding, is_held
 
 IDENTITY = "regression.json"
@@ -36,7 +35,7 @@ class RegressionInterrupted(KeyboardInterrupt):
     """A regression was interrupted; the folds that were done are kept in its folder."""
 
     def __init__(self, folder: Path) -> None:
-        super().__init__(f"interrupted; the same command goes on with what {folder} holds")
+        super().__init__(f"interrupted; the same command resumes from {folder}")
 
 
 def cross_validate(
@@ -56,9 +55,9 @@ def cross_validate(
     rows
         The data set.
     folder
-        Where each fold's result is kept as soon as it is done.
+        Folder for each fold's result, written as soon as it is done.
     targets, kinds
-        What to predict, with which kinds of model.
+        Quantities to predict, and kinds of model.
     scheme
         Rounds and folds.
     jobs
@@ -134,25 +133,15 @@ class _Tracker:
 
 
 def _claim(folder: Path, rows: StackRows, scheme: CrossValidation) -> None:
-    """Note what the folder's results belong to, or refuse a folder of others.
+    """Record the subject of the folder's results, or refuse a folder with other results.
 
     Each round splits the rows by itself, so that their number may grow.
     """
     folds = asdict(scheme)
     del folds["rounds"]
     identity = {"format": FORMAT, "rows": rows.digest, "folds": folds}
-    path = folder / IDENTITY
-    if path.is_file():
-        if read_object(path) != identity:
-            raise InputError(
-                f"{folder}: holds a regression of another table, with other folds, or by another "
-                "version of snowshed; take a new folder"
-            )
-        return
-    if folder.exists() and any(not LEFTOVER.match(one.name) for one in folder.iterdir()):
-        raise InputError(f"{folder}: not empty, and holds no regression")
-    folder.mkdir(parents=True, exist_ok=True)
-    write_text(path, json.dumps(identity, indent=1) + "\n")
+    others = "of another table, with other folds, or by another version of snowshed"
+    claim_folder(folder, IDENTITY, identity, "regression", others)
 
 
 def _computed(
@@ -193,7 +182,7 @@ def _outcome(ended: Ended[Task, None]) -> Task:
 
 
 def _end(pool: Pool[Task, None], folder: Path) -> None:
-    """End the processes, whatever they do, and remove what they have half written."""
+    """End the processes immediately, and remove their unfinished files."""
     pool.close()
     remove_leftovers(folder)
 

@@ -13,7 +13,7 @@ from sklearn.utils.validation import check_is_fitted
 from snowshed.analysis.regression.folds import ShuffledGroupKFold
 from snowshed.analysis.regression.score import median_absolute_error
 from snowshed.analysis.regression.support_vectors import NotConvergedError
-from snowshed.io.arrays import Floats, Integers
+from snowshed.base.arrays import Floats, Integers
 
 Value = Union[int, float]
 Grid = Mapping[str, Sequence[Value]]
@@ -36,10 +36,10 @@ class PathEstimator(Protocol):
 class PathSearchCV(MetaEstimatorMixin, BaseEstimator):
     """Cross-validated grid search with the interface of scikit-learn's `GridSearchCV`.
 
-    `GridSearchCV` trains every point of the grid by itself. This one asks the estimator for the
-    predictions along its path, which for a support vector machine takes a fraction of the time,
-    and for boosted trees the time of the largest ensemble alone. The score is the negative median
-    absolute error, mean over the folds; a point that does not converge is never chosen.
+    `GridSearchCV` trains every point of the grid separately. This search asks the estimator for the
+    predictions along its path, which takes a fraction of the time for a support vector machine, and
+    the time of the largest ensemble for boosted trees. The score is the negative median absolute
+    error, mean over the folds; a point that does not converge is never chosen.
 
     Parameters
     ----------
@@ -89,8 +89,8 @@ class PathSearchCV(MetaEstimatorMixin, BaseEstimator):
             estimator = clone(self.estimator).set_params(**point)
             by_fold = [
                 [
-                    -median_absolute_error(found - y[test])
-                    for found in estimator.path_predictions(X[train], y[train], X[test], path)
+                    -median_absolute_error(predictions - y[test])
+                    for predictions in estimator.path_predictions(X[train], y[train], X[test], path)
                 ]
                 for train, test in splits
             ]

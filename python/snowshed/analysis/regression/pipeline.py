@@ -1,4 +1,4 @@
-"""From a table of stacks to models, tables and figures: what ``snowshed regress`` does."""
+"""Models, tables and figures from a table of stacks, for ``snowshed regress``."""
 
 from __future__ import annotations
 
@@ -15,14 +15,15 @@ from snowshed.analysis.regression.folds import CrossValidation
 from snowshed.analysis.regression.kinds import Kind, kinds_named
 from snowshed.analysis.regression.model_file import STORED_KINDS, Member, StackModel, save_model
 from snowshed.analysis.regression.nested import Results, cross_validate
+from snowshed.analysis.regression.published import compare_with_published, published
 from snowshed.analysis.regression.rows import INPUTS, TARGETS, StackRows
 from snowshed.analysis.regression.spread import stack_spread, unseen_panels
-from snowshed.analysis.regression.threads import one_thread
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
+from snowshed.base.pool.pool import available_cores
+from snowshed.base.pool.threads import one_thread
+from snowshed.base.progress import Reporter
 from snowshed.io.atomic import write_text
 from snowshed.io.csv_table import write_csv
-from snowshed.run.pool import available_cores
-from snowshed.run.progress import Reporter
 from snowshed.scene.scene import PathLike
 
 if TYPE_CHECKING:
@@ -43,9 +44,9 @@ class TargetReport:
     quartiles, errors
         Tables 5.3.1 and 5.3.2; see `snowshed.analysis.regression.summary`.
     expression
-        The linear model as a formula; empty if there is none.
+        The linear model as a formula; otherwise empty.
     checks
-        For the ratio, in words, whether the thesis's claims hold.
+        Verdicts on published claims about the ratio, a sentence each.
     """
 
     target: str
@@ -65,6 +66,7 @@ def regress(
     jobs: Optional[int] = None,
     title: str = "",
     measure: str = "stack",
+    figures: bool = True,
     progress: Optional[Reporter] = None,
 ) -> list[TargetReport]:
     """Regress stacks on panels, and write models, tables and figures.
@@ -76,15 +78,17 @@ def regress(
     folder
         Results folder: new, empty, or one whose regression was interrupted.
     targets
-        Of "ratio", "height", "length"; none: all.
+        Some of "ratio", "height", "length". [default: all]
     models
-        Of "linear", "rbf", "gaussian-process", "gradient-boosting"; none: all.
+        Some of "linear", "rbf", "gaussian-process", "gradient-boosting". [default: all]
     scheme
-        Rounds and folds; None: those of section 5.2.3.
+        Rounds and folds. [default: those of section 5.2.3]
     jobs
-        Processes; None: as many as there are cores.
+        Number of processes. [default: the number of cores]
     title, measure
-        What the data are, and what of the stack was measured; kept in the model file.
+        Title of the data, and measure of the stack; kept in the model file.
+    figures
+        Whether figures are drawn.
     progress
         Called after each outer fold.
 
@@ -98,7 +102,7 @@ def regress(
     InputError
         If a name is unknown, there are too few rows, or the folder holds something else.
     RegressionInterrupted
-        On Ctrl-C; the same call goes on.
+        On Ctrl-C; the same call resumes.
     """
     if jobs is not None and jobs < 1:
         raise InputError(f"jobs: {jobs} is not positive")
@@ -117,15 +121,23 @@ def regress(
         progress=progress,
     )
     with one_thread():
-        return _Output(rows, Path(folder), kinds, results).write(chosen, title, measure)
+        output = _Output(rows, Path(folder), kinds, results, figures=figures)
+        return output.write(chosen, title, measure)
 
 
 class _Output:
     """Turns the folds' results into files."""
 
     def __init__(
-        self, rows: StackRows, folder: Path, kinds: Mapping[str, Kind], results: Results
+        self,
+        rows: StackRows,
+        folder: Path,
+        kinds: Mapping[str, Kind],
+        results: Results,
+        *,
+        figures: bool,
     ) -> None:
+        self._figures = figures
         self._rows, self._folder, self._kinds, self._results = rows, folder, kinds, results
         self._titles = {name: kind.title for name, kind in kinds.items()}
 
@@ -157,13 +169,13 @@ class _Output:
         for task, result in self._results.items():
             if (task.target, task.kind) == (target, kind):
                 rounds.setdefault(task.round, []).append(result.parameters)
-        found = unseen_panels(self._kinds[kind], list(rounds.values()), self._rows, target)
+        errors = unseen_panels(self._kinds[kind], list(rounds.values()), self._rows, target)
         ensemble = Ensemble.of(results)
         values = self._rows.targets[target]
         unit = float(values.std()) or 1.0
         deviation = ensemble.predict(ensemble.points).std(axis=0) * unit
-        spread = stack_spread(self._rows, target, found, deviation)
-        return Member(ensemble, float(values.mean()), unit, spread), found - values
+        spread = stack_spread(self._rows, target, errors, deviation)
+        return Member(ensemble, float(values.mean()), unit, spread), errors - values
 
     def _report(
         self,
@@ -179,7 +191,7 @@ class _Output:
         quartiles = summary.quartile_table(elected, values, target)
         comparable = (
             target == "ratio"
-            and len(values) == summary.THESIS_ROWS
+            and len(values) == published().rows
             and tuple(self._rows.names) == INPUTS
         )
         errors = summary.error_table(elected, self._rows, target, unseen)
@@ -188,7 +200,7 @@ class _Output:
             quartiles,
             errors,
             summary.linear_expression(linear, self._rows, target) if linear else "",
-            tuple(summary.thesis_checks(quartiles, errors)) if comparable else (),
+            tuple(compare_with_published(quartiles, errors)) if comparable else (),
         )
         write_csv(report.quartiles.reset_index(), folder / "quartiles.csv", float_format="%.6g")
         write_csv(report.errors.reset_index(), folder / "errors.csv", float_format="%.6g")
@@ -197,7 +209,8 @@ class _Output:
         if report.expression:
             write_text(folder / "linear.txt", report.expression + "\n")
         of_target = {kind: member for (name, kind), member in members.items() if name == target}
-        self._draw(report, elected, of_target)
+        if self._figures:
+            self._draw(report, elected, of_target)
         return report
 
     def _draw(

@@ -15,7 +15,7 @@ from snowshed.analysis.regression.model_file import StackModel, load_model
 from snowshed.analysis.regression.questions import Numbers, Questions
 from snowshed.analysis.regression.scaling import Scaling
 from snowshed.analysis.regression.spread import INTERVAL, SPREAD
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 from snowshed.plot.labels import settings
 from snowshed.scene.scene import PathLike
 
@@ -44,11 +44,11 @@ class Prediction:
     kind, title
         The kind of model, and what data it comes from.
     measure, settings
-        What of the snow was measured, and what the data have in common, as in `StackModel`.
+        Measure of the snow, and common settings of the data, as in `StackModel`.
     objections
-        Why panels lie outside the data, in words; empty: all lie inside.
+        Reasons why panels lie outside the data; empty if all lie inside.
     asked
-        The inputs of the first panel, in words.
+        The inputs of the first panel, as text.
     """
 
     table: pd.DataFrame
@@ -72,7 +72,7 @@ class Prediction:
         target
             "ratio", "height" or "length".
         column
-            Of `table`.
+            Column of `table`.
 
         Returns
         -------
@@ -120,14 +120,14 @@ def predict(
         Instead of a table: of the panel, its lower edge above the ground, and along the slope, m.
         Each of the four is a number, or a sequence or array with one for each panel.
     tilt
-        Of the panel from the horizontal, degrees.
+        Tilt of the panel from the horizontal, degrees.
     events
         Slide-offs, 1 or more; each is answered, from the first on.
     inputs
-        Of a model with other inputs: their values by their paths, such as "snow.cohesion".
+        Values of further inputs of the model by their paths, such as "snow.cohesion".
     model
-        A model file of ``snowshed regress``, or what `load_model` made of it, which spares reading
-        it for every question; None: the one that comes with snowshed.
+        A model file of ``snowshed regress``, or its content from `load_model`, which saves reading
+        it for every question. [default: the model in the package]
     kind
         "rbf", "gaussian-process" or "linear"; None: the first of these that the file holds.
     extrapolate
@@ -171,10 +171,10 @@ def _shipped() -> StackModel:
 
 
 def _objections(model: StackModel, questions: Questions) -> dict[int, list[str]]:
-    """Return, for the panels that lie outside the data, why, by their numbers."""
+    """Return the reasons for panels outside the data, by their numbers."""
     starts = np.flatnonzero(np.diff(questions.panel)) + 1
-    found = map(model.domain.objections, np.split(questions.inputs, starts))
-    return {number: texts for number, texts in enumerate(found) if texts}
+    objections = map(model.domain.objections, np.split(questions.inputs, starts))
+    return {number: texts for number, texts in enumerate(objections) if texts}
 
 
 def _told(outside: Mapping[int, list[str]], number: int, questions: Questions) -> list[str]:
@@ -192,7 +192,7 @@ def _refusal(outside: Mapping[int, list[str]], questions: Questions) -> str:
         shown.append(f"and {len(outside) - SHOWN} more panels")
     this = "this panel" if len(outside) == 1 else "these panels"
     return (
-        f"{subject} outside the data: {'; '.join(shown)}; no model can be trusted there. Simulate "
+        f"{subject} outside the data: {'; '.join(shown)}; no model is reliable there. Simulate "
         f"{this} (snowshed panel), or force an answer with --extrapolate"
     )
 
@@ -219,8 +219,8 @@ def _answers(model: StackModel, kind: str, questions: Questions) -> pd.DataFrame
 def _columns(model: StackModel, target: str, kind: str, scaled: Floats) -> dict[str, Floats]:
     """Return the numbers of one target, each with a value for every event."""
     member = model.members[target, kind]
-    found = member.ensemble.predict(scaled) * member.deviation + member.mean
-    value, deviation = found.mean(axis=0), found.std(axis=0)
+    predicted = member.ensemble.predict(scaled) * member.deviation + member.mean
+    value, deviation = predicted.mean(axis=0), predicted.std(axis=0)
     spread = member.spread.half_width(value, deviation, SPREAD)
     reach = member.spread.half_width(value, deviation, INTERVAL)
     return {

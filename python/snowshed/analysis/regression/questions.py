@@ -10,7 +10,7 @@ import numpy as np
 
 from snowshed._core import InputError
 from snowshed.analysis.regression.rows import INPUTS
-from snowshed.io.arrays import Booleans, Floats, Integers
+from snowshed.base.arrays import Booleans, Floats, Integers
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -36,7 +36,7 @@ class Questions:
     labels
         One for each of the p panels: the index of the table, or 0, 1, ...
     panel
-        Which panel each event belongs to, counted from 0, shape (n,).
+        Panel of each event, counted from 0, shape (n,).
     inputs
         Shape (n, k), the inputs of the model that is asked.
     """
@@ -60,9 +60,9 @@ class Questions:
             One row for each panel, with a column for each input (by its short name, or its path)
             and ``events``, in any order and no other.
         columns
-            The same as numbers, or as many as there are panels; None beside a table.
+            The same as numbers, or one value per panel; None beside a table.
         inputs
-            What the model takes; the event is the first.
+            Inputs of the model; the event is the first.
 
         Raises
         ------
@@ -97,7 +97,7 @@ def _columns_of(table: pd.DataFrame, allowed: Sequence[str]) -> dict[str, Option
 
     if not isinstance(table, pd.DataFrame):
         raise InputError(
-            f"panels: {type(table).__name__} is no DataFrame; give arrays as "
+            f"panels: {type(table).__name__} is not a DataFrame; give arrays as "
             f"{', '.join(allowed[:-1])} and {EVENTS}"
         )
     names = list(table.columns)
@@ -117,7 +117,7 @@ def _stacked(columns: Mapping[str, Optional[Numbers]], names: Sequence[str]) -> 
     arrays = {}
     for name, value in columns.items():
         if name not in names and value is not None:
-            raise InputError(f"{name}: is no input of this model, which has {', '.join(names)}")
+            raise InputError(f"{name}: not an input of this model; allowed: {', '.join(names)}")
     for name in names:
         value = columns.get(name)
         if value is None:
@@ -125,7 +125,7 @@ def _stacked(columns: Mapping[str, Optional[Numbers]], names: Sequence[str]) -> 
         try:
             arrays[name] = np.asarray(value, dtype=float)
         except (TypeError, ValueError):
-            raise InputError(f"{name}: not a number, nor numbers") from None
+            raise InputError(f"{name}: neither a number nor an array of numbers") from None
         if arrays[name].ndim > 1:
             raise InputError(f"{name}: shape {arrays[name].shape}; must be a number or a sequence")
     lengths = {name: array.size for name, array in arrays.items() if array.ndim}

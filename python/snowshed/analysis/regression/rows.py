@@ -11,17 +11,17 @@ from typing import Optional
 import numpy as np
 
 from snowshed._core import InputError
-from snowshed.analysis.stack_table import StackTable
-from snowshed.io.arrays import Floats, Integers
+from snowshed.base.arrays import Floats, Integers
 from snowshed.scene.scene import PathLike
 from snowshed.snow.stack.quantities import Measure, measure_named
 from snowshed.study.factors import SEED
+from snowshed.study.stack_table import StackTable
 
 #: The inputs of section 5.2.2 with the tilt of section 5.1.3; columns of a study's table.
 INPUTS = ("event", "panel.height", "panel.length", "panel.tilt")
-#: What can be predicted, and its unit.
+#: Targets, and their units.
 TARGETS: Mapping[str, str] = {"ratio": "", "height": "m", "length": "m"}
-#: What of a stack is regressed.
+#: Columns of a stack that are regressed.
 STACK = ("height", "length")
 PATH = re.compile(r"[a-z]\w{0,60}(\.\w{1,60}){1,6}", re.ASCII)
 #: Kernel matrices grow with the square of the rows, the time to fit with their cube.
@@ -41,13 +41,14 @@ class StackRows:
         height in m, stack length in m, of up to m stacks that differ in their seeds only; NaN where
         a row has fewer.
     left_out
-        How many rows of the table had no stack: the run failed, or the snow stayed on the panel.
+        Number of rows of the table without a stack: the run failed, or the snow stayed on the
+        panel.
     moving
-        How many stacks were not at rest when the time of their event was over.
+        Number of stacks that were still moving at the time limit of their event.
     settings
         Parameters and settings that all rows have in common, by their columns, as text.
     names
-        What the inputs are: "event", and parameters of the scene by their paths.
+        Names of the inputs: "event", and parameters of the scene by their paths.
     """
 
     inputs: Floats
@@ -59,7 +60,7 @@ class StackRows:
 
     @property
     def targets(self) -> Mapping[str, Floats]:
-        """For each name of `TARGETS` what is regressed, shape (n,).
+        """Values of each name of `TARGETS`, shape (n,).
 
         The mean stack: mean height, mean length, and the ratio of these. A mean of ratios would be
         led by the few stacks that by chance are short.
@@ -83,11 +84,11 @@ class StackRows:
 
     @property
     def most_seeds(self) -> int:
-        """How many stacks the row has that has most."""
+        """Largest number of stacks of a row."""
         return int(np.isfinite(self.stacks["ratio"]).sum(axis=1).max(initial=0))
 
     def of_one_seed(self) -> StackRows:
-        """Return the rows with the first stack of each alone, as the thesis has them.
+        """Return the rows with only the first stack of each, as in the thesis.
 
         Examples
         --------
@@ -103,7 +104,7 @@ class StackRows:
 
     @property
     def panels(self) -> Integers:
-        """Which panel each row belongs to, counted from 0: shape (n,)."""
+        """Panel of each row, counted from 0: shape (n,)."""
         _, which = np.unique(self.inputs[:, 1:], axis=0, return_inverse=True)
         return np.asarray(which, dtype=np.int64).reshape(-1)
 
@@ -148,7 +149,7 @@ def read_rows(
         A CSV file, or a Parquet file (.parquet); or the folder of a study's store.
     measure
         One of `snowshed.snow.stack.quantities.MEASURES`. "stack": height and length of 97 % of the
-        snow, as the thesis measures, by the reading of A.4.2 that the table names; "body": of the
+        snow, as the thesis measures, by the trimming rule that the table names; "body": of the
         largest connected body; "outermost_first" or "equal_pace": as "stack", by that reading.
     where
         Columns and the value they must have: only these rows are read.
@@ -178,7 +179,7 @@ def rows_of(inputs: Floats, height: Floats, length: Floats) -> StackRows:
     inputs
         Shape (n, 4), the columns of `INPUTS`.
     height, length
-        Of the stack, shape (n,), m.
+        Height and length of the stack, shape (n,), m.
 
     Examples
     --------
@@ -209,7 +210,7 @@ def _input_names(inputs: Sequence[str]) -> tuple[str, ...]:
     for name in inputs:
         if not is_input(name):
             raise InputError(
-                f"input: {name!r} is no parameter of a scene, such as {', '.join(INPUTS[1:])}"
+                f"input: {name!r} is not a parameter of a scene, such as {', '.join(INPUTS[1:])}"
             )
     if not inputs or len(set(inputs)) < len(inputs):
         raise InputError(f"inputs: {', '.join(inputs) or 'none'}; needed: one or more, each once")
@@ -227,17 +228,19 @@ def _rows(table: StackTable, measure: Measure, names: Sequence[str]) -> StackRow
     _check_enough(len(table.frame), left_out)
     settings = table.common_settings(names)
     inputs = np.column_stack([table.numbers(name) for name in names])
-    height, length = (table.numbers(measure.column(one), positive=True) for one in STACK)
+    height, length = (table.numbers(measure.column(quantity), positive=True) for quantity in STACK)
     events = inputs[:, 0]
     _check_seeds(table, inputs)
     table.refuse(INPUTS[0], (events < 1) | (events % 1 != 0), "a whole number, 1 or more")
-    found = rows_of(inputs, height, length)
-    _check_enough(len(found), left_out)
-    if len(found) > MOST_ROWS:
-        raise InputError(f"{len(found)} rows; at most {MOST_ROWS} are allowed")
+    selected = rows_of(inputs, height, length)
+    _check_enough(len(selected), left_out)
+    if len(selected) > MOST_ROWS:
+        raise InputError(f"{len(selected)} rows; at most {MOST_ROWS} are allowed")
     frame = table.frame
     moving = int((frame["ended"] == "time_limit").sum()) if "ended" in frame else 0
-    return replace(found, left_out=left_out, moving=moving, settings=settings, names=tuple(names))
+    return replace(
+        selected, left_out=left_out, moving=moving, settings=settings, names=tuple(names)
+    )
 
 
 def _check_enough(rows: int, left_out: int) -> None:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 
 
 @dataclass(frozen=True)

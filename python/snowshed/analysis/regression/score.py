@@ -1,10 +1,10 @@
-"""The score by which models are chosen and compared."""
+"""The score that chooses and compares models."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 
 
 def median_absolute_error(errors: Floats) -> float:

@@ -16,7 +16,7 @@ from snowshed.analysis.regression.folds import ShuffledGroupKFold
 from snowshed.analysis.regression.kinds import Kind, Parameters
 from snowshed.analysis.regression.rows import StackRows
 from snowshed.analysis.regression.scaling import Scaling
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 
 #: Part of the cases that lie within the spread, and within the interval.
 SPREAD, INTERVAL = 0.68, 0.90
@@ -36,7 +36,7 @@ class Spread:
     floor, slope
         a, in the target's unit, and b.
     factors
-        For each part of the cases how many scales they lie within.
+        Number of scales that contain a share of the cases, for each share.
     """
 
     floor: float
@@ -89,13 +89,13 @@ def unseen_panels(
     Parameters
     ----------
     kind
-        Of the models.
+        Kind of the models.
     elected
         For each round, the hyper-parameters that its outer folds elected.
     rows, target
         The data.
     seed
-        Of the splits into groups of panels.
+        Random seed of the splits into groups of panels.
 
     Returns
     -------
@@ -106,14 +106,14 @@ def unseen_panels(
     values = rows.targets[target]
     scaling = Scaling.of(values[:, None])
     scaled = scaling.scaled(values[:, None])[:, 0]
-    found = np.empty((len(elected), len(rows)))
+    predictions = np.empty((len(elected), len(rows)))
     for number, choices in enumerate(elected):
         folds = ShuffledGroupKFold(min(len(choices), rows.panel_count), (seed, number, 1))
         splits = folds.split(inputs, groups=rows.panels)
         for (train, held_out), parameters in zip(splits, choices):
             model = kind.estimator(parameters).fit(inputs[train], scaled[train])
-            found[number, held_out] = model.predict(inputs[held_out])
-    return np.asarray(found.mean(axis=0) * scaling.deviation[0] + scaling.mean[0])
+            predictions[number, held_out] = model.predict(inputs[held_out])
+    return np.asarray(predictions.mean(axis=0) * scaling.deviation[0] + scaling.mean[0])
 
 
 def stack_spread(rows: StackRows, target: str, predictions: Floats, deviations: Floats) -> Spread:
@@ -124,8 +124,8 @@ def stack_spread(rows: StackRows, target: str, predictions: Floats, deviations: 
     rows, target
         The data.
     predictions, deviations
-        For each row, shape (n,): what models say that have not seen its panel, and how much the
-        models that answer differ.
+        Predictions of models that have not seen the row's panel, and spread of the answering
+        models, for each row, shape (n,).
     """
     stacks = rows.stacks[target]
     row, repetition = np.nonzero(np.isfinite(stacks))

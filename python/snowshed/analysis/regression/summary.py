@@ -1,4 +1,4 @@
-"""The tables of section 5.3: scores, quartiles, errors, cost, and the linear model's expression."""
+"""The tables of a regression: scores, quartiles, errors, cost, and the linear expression."""
 
 from __future__ import annotations
 
@@ -10,40 +10,26 @@ import numpy as np
 from snowshed.analysis.regression.ensemble import Ensemble
 from snowshed.analysis.regression.fold_result import FoldResult
 from snowshed.analysis.regression.nested import Results
+from snowshed.analysis.regression.published import published
 from snowshed.analysis.regression.rows import TARGETS, StackRows
 from snowshed.analysis.regression.scaling import Scaling
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 
 if TYPE_CHECKING:
     import pandas as pd
 
-#: Table 5.3.1: quartiles of the predicted ratio, the last one the largest value.
-THESIS_QUARTILES: Mapping[str, tuple[float, ...]] = {
-    "rbf": (0.057, 0.092, 0.142, 0.240),
-    "linear": (0.064, 0.101, 0.139, 0.255),
-}
-#: Table 5.3.2: mean absolute error of the ratio, and its standard deviation.
-THESIS_ERRORS: Mapping[str, tuple[float, float]] = {
-    "rbf": (0.004, 0.005),
-    "linear": (0.015, 0.013),
-}
 QUARTILES = ("Q1", "Q2", "Q3", "Q4")
-#: What the thesis's claims mean for numbers of our own: the RBF kernel's mean absolute error at
-#: most this, the linear kernel's so many times as large, quartiles off by this part at most.
-#: They are about a data set of so many rows; of another one they mean nothing.
-THESIS_ROWS = 610
-LARGEST_RBF_ERROR, LINEAR_WORSE, QUARTILES_OFF = 0.004, 2.5, 0.20
 
 Elected = Mapping[str, Sequence[FoldResult]]
 
 
 def elected_models(results: Results, target: str) -> dict[str, list[FoldResult]]:
     """Return for each kind of model the results of its folds, in order."""
-    found: dict[str, list[FoldResult]] = {}
+    by_kind: dict[str, list[FoldResult]] = {}
     for task, result in results.items():
         if task.target == target:
-            found.setdefault(task.kind, []).append(result)
-    return found
+            by_kind.setdefault(task.kind, []).append(result)
+    return by_kind
 
 
 def score_table(results: Results) -> pd.DataFrame:
@@ -80,14 +66,15 @@ def held_out_errors(results: Sequence[FoldResult], values: Floats) -> Floats:
 
 
 def quartile_table(elected: Elected, values: Floats, target: str) -> pd.DataFrame:
-    """Return Table 5.3.1: quartiles of the mean predictions, of the data, and the thesis's."""
+    """Return quartiles of the mean predictions, of the data, and published ones of the ratio."""
     import pandas as pd
 
+    printed = published().quartiles if target == "ratio" else {}
     rows = {"data": quartiles(values)}
     for kind, results in elected.items():
         rows[kind] = quartiles(mean_prediction(results))
-        if target == "ratio" and kind in THESIS_QUARTILES:
-            rows[f"{kind}, thesis"] = THESIS_QUARTILES[kind]
+        if kind in printed:
+            rows[f"{kind}, thesis"] = printed[kind]
     table = pd.DataFrame.from_dict(rows, orient="index", columns=list(QUARTILES))
     return table.rename_axis("model")
 
@@ -106,32 +93,35 @@ def quartiles(values: Floats) -> tuple[float, ...]:
 def error_table(
     elected: Elected, data: StackRows, target: str, unseen: Mapping[str, Floats]
 ) -> pd.DataFrame:
-    """Return Table 5.3.2 with what it does not say: errors on rows and panels not trained on.
+    """Return the errors on all rows, beside published ones, and on rows and panels not trained on.
 
     Parameters
     ----------
     elected, data, target
-        The folds' results by kind of model, and what they are about.
+        The folds' results by kind of model, and their task.
     unseen
-        For kinds of model the errors on panels of which they saw no event.
+        Errors on unseen panels, by kind of model.
     """
     import pandas as pd
 
     values, scatter = data.targets[target], data.scatter(target)
+    known = published()
+    printed = known.errors if target == "ratio" else {}
+    nothing = (np.nan, np.nan)
     rows = []
     for kind, results in elected.items():
         errors = np.abs([result.predictions - values for result in results])
-        thesis = THESIS_ERRORS.get(kind) if target == "ratio" else None
+        printed_error, printed_deviation = printed.get(kind, nothing)
         panels = np.abs(unseen[kind]) if kind in unseen else None
         rows.append(
             {
                 "model": kind,
                 "mean_absolute_error": errors.mean(),
                 "standard_deviation": errors.std(),
-                "thesis_error": np.nan if thesis is None else thesis[0],
-                "thesis_deviation": np.nan if thesis is None else thesis[1],
+                "thesis_error": printed_error,
+                "thesis_deviation": printed_deviation,
                 "relative_error": errors.mean() / np.median(mean_prediction(results)),
-                "thesis_relative_error": np.nan if thesis is None else thesis_relative_error(kind),
+                "thesis_relative_error": known.relative_error(kind) if kind in printed else np.nan,
                 "most_seeds": data.most_seeds,
                 "held_out_error": np.abs(held_out_errors(results, values)).mean(),
                 "unseen_panel_error": np.nan if panels is None else panels.mean(),
@@ -142,53 +132,6 @@ def error_table(
             }
         )
     return pd.DataFrame(rows).set_index("model")
-
-
-def thesis_relative_error(kind: str) -> float:
-    """Return the thesis's mean absolute error over its median prediction.
-
-    Examples
-    --------
-    >>> round(thesis_relative_error("rbf"), 3)
-    0.043
-    """
-    return THESIS_ERRORS[kind][0] / THESIS_QUARTILES[kind][1]
-
-
-def thesis_checks(quartiles: pd.DataFrame, errors: pd.DataFrame) -> list[str]:
-    """Return in words whether the claims of section 5.3.2 hold for the ratio.
-
-    Parameters
-    ----------
-    quartiles, errors
-        As `quartile_table` and `error_table` return them for the ratio.
-    """
-    checks = []
-    error = errors["mean_absolute_error"]
-    if "rbf" in error:
-        rbf = float(error["rbf"])
-        checks.append((rbf <= LARGEST_RBF_ERROR, f"RBF error {rbf:.4f}, "
-                       f"at most {LARGEST_RBF_ERROR}"))  # fmt: skip
-        part, most = float(errors["relative_error"]["rbf"]), thesis_relative_error("rbf")
-        checks.append((part <= most, f"RBF error {part:.1%} of the median prediction, "
-                       f"at most {most:.1%}"))  # fmt: skip
-        if "linear" in error:
-            times = float(error["linear"]) / rbf
-            checks.append((times >= LINEAR_WORSE, f"linear error {times:.1f} times the RBF's, "
-                           f"at least {LINEAR_WORSE}"))  # fmt: skip
-    for kind in (kind for kind in THESIS_QUARTILES if kind in quartiles.index):
-        ours = quartiles.loc[kind].to_numpy(dtype=float)
-        off = float(np.abs(ours / np.array(THESIS_QUARTILES[kind]) - 1).max())
-        checks.append((off <= QUARTILES_OFF, f"{kind} quartiles off by up to {off:.0%} from "
-                       f"Table 5.3.1, at most {QUARTILES_OFF:.0%}"))  # fmt: skip
-    lines = [f"{'holds' if good else 'DOES NOT HOLD'}: {words}" for good, words in checks]
-    most = int(errors["most_seeds"].max())
-    if most > 1:
-        lines.append(
-            f"note: the rows are means of up to {most} stacks, the thesis's are single stacks, "
-            "which scatter more; --one-seed compares like with like"
-        )
-    return lines
 
 
 def linear_expression(results: Sequence[FoldResult], rows: StackRows, target: str) -> str:

@@ -11,7 +11,7 @@ from sklearn.svm import SVR
 
 from snowshed._core import InputError
 from snowshed.analysis.regression.interior_point import SupportVectors, solve
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 
 #: Changes of multipliers that libsvm is allowed; beyond, the interior point method is faster.
 LIBSVM_ITERATIONS = 2500
@@ -29,9 +29,9 @@ def fit_along_c(
 ) -> Iterator[SupportVectors]:
     """Fit an epsilon-SVR for each of several C, cheaper than one by one.
 
-    scikit-learn's SVR (libsvm) solves what it can solve quickly, an interior point method the rest.
-    Where no multiplier reaches its bound, a larger bound changes nothing, and the fit is reused;
-    where the tube holds all targets, the flattest function is a constant.
+    scikit-learn's SVR (libsvm) solves the quick cases, an interior point method the others. If no
+    multiplier reaches its bound, a larger bound changes nothing, and the fit is reused; if the tube
+    contains all targets, the flattest function is a constant.
 
     Parameters
     ----------
@@ -56,9 +56,9 @@ def fit_along_c(
     quick, fit, earlier = True, None, 0.0
     for c in bounds:
         if fit is None or not np.abs(fit.coefficients).max() <= (1 - AT_BOUND) * earlier:
-            found = _libsvm(kernel, y, c, epsilon) if quick else None
-            quick = found is not None
-            fit = found or _exact(kernel, y, c, epsilon)
+            solution = _libsvm(kernel, y, c, epsilon) if quick else None
+            quick = solution is not None
+            fit = solution or _exact(kernel, y, c, epsilon)
         earlier = c
         yield fit
 
@@ -71,7 +71,7 @@ def fit_one(kernel: Floats, y: Floats, epsilon: float, c: float) -> SupportVecto
 def _exact(kernel: Floats, y: Floats, c: float, epsilon: float) -> SupportVectors:
     try:
         return solve(kernel, y, c, epsilon)
-    except FloatingPointError:  # one point of many: the search goes on without it
+    except FloatingPointError:  # a failed point: the search continues without it
         return SupportVectors(np.full(len(y), np.nan), float("nan"))
 
 

@@ -12,7 +12,7 @@ from sklearn.utils.validation import check_is_fitted, validate_data
 from snowshed._core import InputError
 from snowshed.analysis.regression.kernels import Expansion, kernel_matrix
 from snowshed.analysis.regression.support_vectors import NotConvergedError, fit_along_c, fit_one
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 
 KERNELS = ("linear", "rbf")
 
@@ -55,7 +55,7 @@ class EpsilonSVR(RegressorMixin, BaseEstimator):
     0.84
     """
 
-    #: What `path_predictions` varies.
+    #: Hyper-parameters that `path_predictions` varies.
     path_parameters = ("epsilon", "C")
 
     def __init__(
@@ -85,10 +85,10 @@ class EpsilonSVR(RegressorMixin, BaseEstimator):
         points, targets = validate_data(self, X, y, y_numeric=True, dtype=np.float64)
         targets = np.asarray(targets, dtype=np.float64)
         rates = self._rates(points)
-        found = fit_one(kernel_matrix(points, points, rates), targets, self.epsilon, self.C)
-        if np.isnan(found.intercept):
+        solution = fit_one(kernel_matrix(points, points, rates), targets, self.epsilon, self.C)
+        if np.isnan(solution.intercept):
             raise NotConvergedError(f"the {self._words()} does not converge on these rows")
-        self.expansion_ = Expansion(points, found.coefficients, found.intercept, rates)
+        self.expansion_ = Expansion(points, solution.coefficients, solution.intercept, rates)
         return self
 
     def predict(self, X: ArrayLike) -> Floats:

@@ -15,7 +15,7 @@ from snowshed.analysis.regression.score import median_absolute_error
 
 @dataclass(frozen=True)
 class Task:
-    """Which fold of what; `round` and `fold` count from 0."""
+    """A fold of a task; `round` and `fold` count from 0."""
 
     target: str
     kind: str
@@ -48,8 +48,8 @@ def compute(task: Task, rows: StackRows, scheme: CrossValidation) -> FoldResult:
     search.fit(inputs[development], targets[development], groups=groups[development])
     elapsed = time.process_time() - start
 
-    found = search.best_estimator_.predict(inputs)
-    errors = (found - targets) * unit
+    predictions = search.best_estimator_.predict(inputs)
+    errors = (predictions - targets) * unit
     final = kind.estimator(search.best_params_).fit(inputs, targets)
     return FoldResult(
         search.best_params_,
@@ -59,7 +59,7 @@ def compute(task: Task, rows: StackRows, scheme: CrossValidation) -> FoldResult:
         search.n_fits_ + 1,
         elapsed,
         validation,
-        found[validation] * unit + offset,
+        predictions[validation] * unit + offset,
         final.predict(inputs) * unit + offset,
         kind.expansion(final),
     )

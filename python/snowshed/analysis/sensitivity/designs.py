@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from typing import Optional
 
 from snowshed._core import InputError
+from snowshed.analysis.sensitivity.parameter_ranges import GROUPS, PAIRS, VALUES
 from snowshed.analysis.sensitivity.sampling import SAMPLERS
 from snowshed.scene.components import Snow
 from snowshed.scene.scene import Scene
-from snowshed.scene.thesis_tables import GROUPS, PAIRS, SENSITIVITY
 from snowshed.study.definition import Study
 from snowshed.study.factors import Factor, Part, axis
 
@@ -77,7 +77,8 @@ def sensitivity_study(
         "s": single-parameter variation (3.3); "fixation": single-parameter fixation (3.4);
         "sobol" or "morris": a sample of the same ranges.
     quick
-        Whether to use 2D, a coarse grid and two events, for a trial whose numbers mean little.
+        Whether to use 2D, a coarse grid and two events, for a trial whose numbers are not
+        meaningful.
     seeds
         Seedings of each point, for "s" and "fixation".
     samples
@@ -118,7 +119,7 @@ def _parts(method: str, samples: int) -> list[Part]:
         return [[Factor(SAMPLERS[method](samples))]]
     if method == "s":
         return [[axis(path, values)] for path, values in PAIRS.items()]
-    return [[axis(path, SENSITIVITY[path]) for path in group] for group in GROUPS.values()]
+    return [[axis(path, VALUES[path]) for path in group] for group in GROUPS.values()]
 
 
 def _checked(name: str, given: Optional[int], default: int) -> int:

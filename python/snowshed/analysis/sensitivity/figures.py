@@ -14,7 +14,7 @@ from matplotlib.patches import Patch
 
 from snowshed.analysis.sensitivity.single_parameter import CONFIDENT
 from snowshed.analysis.sensitivity.stored import TARGETS
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 from snowshed.plot.figure_style import COLOURS, FAINT, INK, STYLE, blank, headline
 from snowshed.plot.labels import label
 from snowshed.study.factors import SEED
@@ -36,7 +36,7 @@ def local_index_figure(table: pd.DataFrame) -> Figure:
         From `local_index`.
     """
     events, parameters = _unique(table, "event"), _unique(table, "parameter")
-    known = bool(table["standard_error"].notna().any())
+    has_errors = bool(table["standard_error"].notna().any())
     with matplotlib.rc_context(STYLE):
         figure = blank(8.4, 6.2)
         headline(figure, "Single-parameter sensitivity index S")
@@ -52,8 +52,8 @@ def local_index_figure(table: pd.DataFrame) -> Figure:
             Patch(color=colour, label=f"event {event}")
             for event, colour in zip(events, _shades(len(events)))
         ]
-        keys += [Line2D([], [], color=INK, label="95 % by seeding noise")] if known else []
-        keys += [Patch(fill=False, ec=FAINT, label="not distinct from 0")] if known else []
+        keys += [Line2D([], [], color=INK, label="95 % by seeding noise")] if has_errors else []
+        keys += [Patch(fill=False, ec=FAINT, label="not distinct from 0")] if has_errors else []
         figure.legend(handles=keys, loc="outside lower center", ncols=len(keys))
     return figure
 
@@ -61,8 +61,8 @@ def local_index_figure(table: pd.DataFrame) -> Figure:
 def _draw_indices(axes: Axes, rows: pd.DataFrame, number: int, events: int, colour: Any) -> None:
     """Draw the bars of one event, the `number`-th of `events`; hollow if noise could cause them."""
     width = BARS / events
-    places = _places(len(rows), events, number)
-    for place, (_, row) in zip(places, rows.iterrows()):
+    positions = _bar_positions(len(rows), events, number)
+    for place, (_, row) in zip(positions, rows.iterrows()):
         doubtful = row["distinct"] is not None and not row["distinct"]
         fill = "white" if doubtful else colour
         axes.bar(place, row["s"], width, color=fill, edgecolor=colour, linewidth=1.2)
@@ -73,8 +73,8 @@ def _draw_indices(axes: Axes, rows: pd.DataFrame, number: int, events: int, colo
 
 def _pair_label(table: pd.DataFrame, parameter: str) -> str:
     row = table[table["parameter"] == parameter].iloc[0]
-    known = label(parameter)
-    return f"{known.symbol}\n{known.change(row['nominal'], row['altered'])}"
+    parameter_label = label(parameter)
+    return f"{parameter_label.symbol}\n{parameter_label.change(row['nominal'], row['altered'])}"
 
 
 def fixation_figure(table: pd.DataFrame, group: str) -> Figure:
@@ -127,7 +127,7 @@ def _draw_lines(axes: Axes, lines: pd.DataFrame, events: Sequence[int]) -> None:
 
 
 def sobol_figure(table: pd.DataFrame) -> Figure:
-    """Draw first-order and total Sobol indices; the line is what the seeding alone explains.
+    """Draw first-order and total Sobol indices; the line is the share of the seeding.
 
     Parameters
     ----------
@@ -137,7 +137,7 @@ def sobol_figure(table: pd.DataFrame) -> Figure:
     events, parameters = _unique(table, "event"), _unique(table, "parameter")
     with matplotlib.rc_context(STYLE):
         figure = blank(1.4 + 2.6 * len(events), 6.0)
-        headline(figure, "Sobol indices: part of the variance of the stack")
+        headline(figure, "Sobol indices: shares of the variance of the stack")
         grid = figure.subplots(2, len(events), sharey=True, sharex=True, squeeze=False)
         for row, target in zip(grid, TARGETS):
             for axes, event in zip(row, events):
@@ -157,10 +157,12 @@ def sobol_figure(table: pd.DataFrame) -> Figure:
 
 def _draw_shares(axes: Axes, rows: pd.DataFrame, parameters: Sequence[str]) -> None:
     for number, (kind, colour) in enumerate(zip(("first", "total"), COLOURS)):
-        places = _places(len(parameters), 2, number)
-        axes.bar(places, rows[kind], BARS / 2, color=colour)
+        positions = _bar_positions(len(parameters), 2, number)
+        axes.bar(positions, rows[kind], BARS / 2, color=colour)
         interval = rows[f"{kind}_interval"]
-        axes.errorbar(places, rows[kind], interval, fmt="none", ecolor=INK, linewidth=1, capsize=2)
+        axes.errorbar(
+            positions, rows[kind], interval, fmt="none", ecolor=INK, linewidth=1, capsize=2
+        )
     if SEED in parameters:
         axes.axhline(float(rows["total"].iloc[parameters.index(SEED)]), **_noise_look())
     axes.axhline(0, color=INK, linewidth=0.8)
@@ -227,7 +229,7 @@ def _noise_look() -> dict[str, Any]:
 
 def _noise_key() -> Line2D:
     look = _noise_look()
-    return Line2D([], [], **look, label="what the seeding alone does: no effect below")
+    return Line2D([], [], **look, label="seeding alone: smaller values are no effects")
 
 
 def _unique(table: pd.DataFrame, column: str) -> list[Any]:
@@ -241,7 +243,7 @@ def _select(
     return rows.set_index("parameter").reindex(list(parameters))
 
 
-def _places(groups: int, bars: int, number: int) -> Floats:
+def _bar_positions(groups: int, bars: int, number: int) -> Floats:
     """Return where the bars of one kind stand, in groups around 0, 1, 2, ..."""
     return np.asarray(np.arange(groups) + BARS * ((number + 0.5) / bars - 0.5), dtype=float)
 

@@ -9,9 +9,9 @@ import numpy as np
 
 from snowshed._core import InputError
 from snowshed.analysis.sensitivity.noise import noise_of
+from snowshed.analysis.sensitivity.parameter_ranges import GROUPS
 from snowshed.analysis.sensitivity.stored import TARGETS, StoredRuns
-from snowshed.io.arrays import Floats
-from snowshed.scene.thesis_tables import GROUPS
+from snowshed.base.arrays import Floats
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -50,10 +50,10 @@ def fixation(stored: StoredRuns) -> pd.DataFrame:
     Returns
     -------
     pandas.DataFrame
-        ``group``, ``parameter``, ``value``, ``event``, ``target``; ``points``: over how many;
+        ``group``, ``parameter``, ``value``, ``event``, ``target``; ``points``: number of points;
         ``mean_m``, ``deviation_m``, ``lowest_m``, ``highest_m``; ``mean`` and ``deviation`` of the
         rescaled target (3.4.1, over the group and all events); ``noise``: the standard deviation of
-        the mean of one point by the seeding alone, rescaled likewise; NaN if not known.
+        the mean of one point from the seeding, also rescaled; NaN if unknown.
 
     Raises
     ------
@@ -88,10 +88,10 @@ def _group(
     points = rows.groupby(keys)[target].agg(["mean", "count"]).reset_index()
     points["rescaled"] = rescaled(points["mean"].to_numpy(float))
     span = float(points["mean"].max() - points["mean"].min()) or 1.0
-    found = []
+    rows_of_values = []
     for parameter in group:
         for (value, event), held in points.groupby([parameter, "event"]):
-            found.append(
+            rows_of_values.append(
                 {
                     "group": name,
                     "parameter": parameter,
@@ -108,7 +108,7 @@ def _group(
                     "noise": noise[event, target] / span / np.sqrt(held["count"].mean()),
                 }
             )
-    return pd.DataFrame(found)
+    return pd.DataFrame(rows_of_values)
 
 
 def _with_others_kept(stored: StoredRuns, group: Sequence[str]) -> pd.DataFrame:

@@ -16,8 +16,8 @@ import numpy as np
 from snowshed._core import InputError
 from snowshed.analysis.sensitivity.sampling import EXTRA, LEVELS, problem
 from snowshed.analysis.sensitivity.stored import TARGETS, StoredRuns
-from snowshed.io.arrays import Booleans, Floats
-from snowshed.io.extras import require
+from snowshed.base.arrays import Booleans, Floats
+from snowshed.base.extras import require
 from snowshed.study.factors import SEED
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ RESAMPLES = 500  # of the bootstrap
 CONFIDENCE = 0.95
 RANDOM = 1
 FEWEST = 2  # blocks
-SAME_STEP = 1e-3  # part by which steps may differ: files hold rounded numbers
+SAME_STEP = 1e-3  # relative difference of equal steps: files hold rounded numbers
 
 
 def sobol_indices(stored: StoredRuns) -> pd.DataFrame:
@@ -52,7 +52,7 @@ def sobol_indices(stored: StoredRuns) -> pd.DataFrame:
         if np.ptp(values[chosen]) == 0:  # no variance to share out
             columns = ("first", "first_interval", "total", "total_interval")
             return dict.fromkeys(columns, np.full(len(design.names), np.nan))
-        found = analyzer.analyze(
+        indices = analyzer.analyze(
             problem(design.names),
             values[chosen],
             calc_second_order=False,
@@ -61,10 +61,10 @@ def sobol_indices(stored: StoredRuns) -> pd.DataFrame:
             seed=RANDOM,
         )
         return {
-            "first": found["S1"],
-            "first_interval": found["S1_conf"],
-            "total": found["ST"],
-            "total_interval": found["ST_conf"],
+            "first": indices["S1"],
+            "first_interval": indices["S1_conf"],
+            "total": indices["ST"],
+            "total_interval": indices["ST_conf"],
         }
 
     return _analyzed(stored, design, analyze)
@@ -97,7 +97,7 @@ def morris_effects(stored: StoredRuns) -> pd.DataFrame:
     scale = LEVELS / (2 * (LEVELS - 1)) / steps  # SALib takes steps to be those of its levels
 
     def analyze(chosen: Booleans, values: Floats) -> dict[str, Floats]:
-        found = analyzer.analyze(
+        effects = analyzer.analyze(
             problem(design.names),
             unit[chosen],
             values[chosen] / values[chosen].mean(),
@@ -107,10 +107,10 @@ def morris_effects(stored: StoredRuns) -> pd.DataFrame:
             seed=RANDOM,
         )
         return {
-            "effect": found["mu"] * scale,
-            "strength": found["mu_star"] * scale,
-            "strength_interval": found["mu_star_conf"] * scale,
-            "spread": found["sigma"] * scale,
+            "effect": effects["mu"] * scale,
+            "strength": effects["mu_star"] * scale,
+            "strength_interval": effects["mu_star_conf"] * scale,
+            "spread": effects["sigma"] * scale,
         }
 
     return _analyzed(stored, design, analyze)
@@ -136,7 +136,7 @@ class _Design:
 
     @classmethod
     def of(
-        cls, stored: StoredRuns, more: int, is_block: Callable[[Booleans], bool], words: str
+        cls, stored: StoredRuns, more: int, is_block: Callable[[Booleans], bool], unit: str
     ) -> _Design:
         """Return the design of a study's points.
 
@@ -149,12 +149,12 @@ class _Design:
         is_block
             Function that tells from the changes between neighbouring points whether they are a
             block.
-        words
+        unit
             Name of the design, for messages.
         """
         names = list(stored.axes)
         points = stored.points[names].to_numpy(float)
-        _check_blocks(points, len(names) + more, is_block, words)
+        _check_blocks(points, len(names) + more, is_block, unit)
         return cls(names, points, len(names) + more)
 
 
@@ -174,7 +174,7 @@ def _analyzed(
     """
     import pandas as pd
 
-    found: list[dict[str, Any]] = []
+    table_rows: list[dict[str, Any]] = []
     for event, target, values in _values(stored):
         complete = np.isfinite(values.reshape(-1, design.size)).all(axis=1)
         if complete.sum() < FEWEST:
@@ -186,12 +186,12 @@ def _analyzed(
         for number, name in enumerate(design.names):
             row = {"parameter": name, "event": event, "target": target}
             row.update({column: float(of[number]) for column, of in columns.items()})
-            found.append({**row, "blocks": int(complete.sum())})
-    return pd.DataFrame(found)
+            table_rows.append({**row, "blocks": int(complete.sum())})
+    return pd.DataFrame(table_rows)
 
 
 def _values(stored: StoredRuns) -> Iterator[tuple[int, str, Floats]]:
-    """Yield each event's measures in the order of the points, NaN where there is none."""
+    """Yield each event's measures in the order of the points, NaN for missing ones."""
     for event in stored.events:
         rows = stored.rows[stored.rows["event"] == event].set_index("hash")
         for target in TARGETS:
@@ -245,12 +245,12 @@ def _even_steps(names: Sequence[str], points: Floats) -> tuple[Floats, Floats]:
 def _is_saltelli(changes: Booleans) -> bool:
     """Return whether A is followed by A with each input of B in turn, and by B.
 
-    From A to the first of them the first input changes, from one to the next two neighbours, and
-    from the last one to B all but the last.
+    The first input changes from A to the first point, two neighbours change from each point to the
+    next, and all inputs except the last change from the last point to B.
     """
     count = changes.shape[1]
-    one = np.eye(count, dtype=bool)
-    expected = np.vstack([one[:1], one[:-1] | one[1:], ~one[-1:]])
+    identity = np.eye(count, dtype=bool)
+    expected = np.vstack([identity[:1], identity[:-1] | identity[1:], ~identity[-1:]])
     return bool((changes == expected).all())
 
 

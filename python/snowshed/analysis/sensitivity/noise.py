@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from snowshed.analysis.sensitivity.stored import TARGETS, StoredRuns
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -39,7 +39,7 @@ def seeding_noise(stored: StoredRuns) -> pd.DataFrame:
     """
     import pandas as pd
 
-    found = []
+    scatter = []
     for event, rows in stored.rows.groupby("event"):
         points = rows.groupby(stored.parameters) if stored.parameters else rows.groupby("event")
         for target in TARGETS:
@@ -49,7 +49,7 @@ def seeding_noise(stored: StoredRuns) -> pd.DataFrame:
             there = means > 0  # where all snow stays on the panel nothing is relative to it
             relative = (residuals / means)[there].to_numpy()
             groups = int((points[target].mean() > 0).sum())
-            found.append(
+            scatter.append(
                 {
                     "event": int(str(event)),
                     "target": target,
@@ -58,7 +58,7 @@ def seeding_noise(stored: StoredRuns) -> pd.DataFrame:
                     "freedom": freedom,
                 }
             )
-    return pd.DataFrame(found).set_index(["event", "target"])
+    return pd.DataFrame(scatter).set_index(["event", "target"])
 
 
 def noise_of(stored: StoredRuns, column: str) -> dict[tuple[Any, str], float]:

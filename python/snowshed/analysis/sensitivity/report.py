@@ -1,4 +1,4 @@
-"""From a stored study to the tables and figures of a method."""
+"""Tables and figures of a sensitivity method from a stored study."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def evaluate(
     measure: str = "stack",
     note: Optional[Callable[[str], None]] = None,
 ) -> pd.DataFrame:
-    """Evaluate a stored study, as far as it is computed, and write tables and figures.
+    """Evaluate the computed runs of a stored study, and write tables and figures.
 
     Parameters
     ----------

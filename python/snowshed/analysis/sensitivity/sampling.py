@@ -12,18 +12,18 @@ from typing import Any
 import numpy as np
 
 from snowshed._core import InputError
-from snowshed.io.arrays import Floats
-from snowshed.io.extras import require
-from snowshed.scene.thesis_tables import HARDENING, SENSITIVITY
+from snowshed.analysis.sensitivity.parameter_ranges import HARDENING, VALUES
+from snowshed.base.arrays import Floats
+from snowshed.base.extras import require
 from snowshed.study.factors import SEED, Span
 
 EXTRA = "sensitivity"
 LEVELS = 4  # of Morris's grid
-RANDOM = 1  # seed of the samples: the same sample whenever it is asked for
+RANDOM = 1  # seed of the samples, so that they are reproducible
 #: Ranges of Table 3.2.1; the hardening factor spans a decade, and so is sampled by its logarithm.
 SPANS: Mapping[str, Span] = {
     path: Span(min(values), max(values), "log" if path == HARDENING else "linear")
-    for path, values in SENSITIVITY.items()
+    for path, values in VALUES.items()
 }
 
 Columns = dict[str, list[float]]

@@ -9,8 +9,8 @@ import numpy as np
 
 from snowshed._core import InputError
 from snowshed.analysis.sensitivity.noise import noise_of
+from snowshed.analysis.sensitivity.parameter_ranges import PAIRS
 from snowshed.analysis.sensitivity.stored import TARGETS, StoredRuns
-from snowshed.scene.thesis_tables import PAIRS
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -37,7 +37,7 @@ def local_index(stored: StoredRuns) -> pd.DataFrame:
     Raises
     ------
     InputError
-        If no two runs differ in one parameter alone.
+        If no two runs differ in exactly one parameter.
 
     Examples
     --------
@@ -50,7 +50,7 @@ def local_index(stored: StoredRuns) -> pd.DataFrame:
     import pandas as pd
 
     noise = noise_of(stored, "noise")
-    found = [
+    indices = [
         {**_index(pairs, pair, target, noise[event, target]), **names}
         for parameter in stored.parameters
         for pair in [_pair(stored, parameter)]
@@ -61,10 +61,10 @@ def local_index(stored: StoredRuns) -> pd.DataFrame:
         for target in TARGETS
         for names in [{"parameter": parameter, "event": event, "target": target}]
     ]
-    if not found:
+    if not indices:
         raise InputError("no two of its runs differ in one parameter alone, which S needs")
     columns = ["parameter", "event", "target"]
-    table = pd.DataFrame(found)
+    table = pd.DataFrame(indices)
     return table[[*columns, *(name for name in table if name not in columns)]]
 
 
@@ -96,8 +96,8 @@ def _index(
     noise: float,
 ) -> dict[str, Any]:
     change = (pair[1] - pair[0]) / pair[0]
-    responses = np.array([[one[target].mean(), two[target].mean()] for one, two in pairs])
-    counts = np.array([[len(one), len(two)] for one, two in pairs])
+    responses = np.array([[low[target].mean(), two[target].mean()] for low, two in pairs])
+    counts = np.array([[len(low), len(two)] for low, two in pairs])
     nominal, altered = responses.T
     with np.errstate(divide="ignore", invalid="ignore"):  # where there is no stack: NaN
         scores = (altered - nominal) / nominal / change

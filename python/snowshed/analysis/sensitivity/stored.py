@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Optional
 
 from snowshed._core import InputError
-from snowshed.analysis.stack_table import StackTable
 from snowshed.scene.scene import PathLike
 from snowshed.study.factors import SEED
+from snowshed.study.stack_table import StackTable
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -61,7 +61,7 @@ class StoredRuns:
 def read_stored(
     folder: PathLike, study: Optional[str] = None, measure: str = "stack"
 ) -> StoredRuns:
-    """Read the runs of a study, as far as they are computed.
+    """Read the computed runs of a study.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ def read_stored(
     Raises
     ------
     InputError
-        If there is no such study, nothing of it is computed, or an axis does not hold numbers.
+        If there is no such study, none of its runs is computed, or an axis does not hold numbers.
     """
     table = StackTable.read(folder, study)
     try:

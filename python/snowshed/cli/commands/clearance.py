@@ -1,51 +1,67 @@
-"""The command ``snowshed clearance``; slow imports are made when it runs."""
+"""The command ``snowshed clearance``: slow modules are imported when it runs."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Optional
 
 import click
 
 from snowshed._core import InputError
+from snowshed.base.formatting import about, plural
+from snowshed.cli.common_options import (
+    PATH,
+    ResultsFolder,
+    dry_run_option,
+    quiet_option,
+    resume_option,
+)
 from snowshed.cli.exit_codes import Stopped
-from snowshed.cli.quiet import quiet_option
-from snowshed.cli.terminal import say
+from snowshed.cli.terminal import plain_table, say, wide_console
 from snowshed.cli.weather_options import weather_options
-from snowshed.io.formatting import about
+from snowshed.cli.winters_table import print_quality
 
 if TYPE_CHECKING:
     from snowshed.analysis.clearance import Answer, Design, Ranges, Winter
-    from snowshed.run.season.record import Record, WinterList
+    from snowshed.season.record import Record, WinterList
 
-EXAMPLE = "example"  # in place of a file: made winters
-PATH = click.Path(path_type=Path)
+EXAMPLE = "example"  # in place of a file: synthetic winters
 
 
 @click.command()
 @click.argument("weather", metavar="WEATHER...", type=PATH, nargs=-1, required=True)
-@click.option("--slope-length", required=True, help="Along the slope, m; several: 3,4,5.")
-@click.option("--tilt", required=True, help="Degrees from the horizontal; several: 40,60.")
+@click.option(
+    "--slope-length", required=True, help="Length of the panel along the slope, m; a list: 3,4,5."
+)
+@click.option("--tilt", required=True, help="Tilt from the horizontal, degrees; a list: 40,60.")
 @click.option(
     "--heights",
     default="1:4:0.5",
     show_default=True,
-    help="Candidate heights of the lower edge, m: one, a list, or FROM:TO:STEP.",
+    help="Candidate heights of the lower edge, m: a number, a list, or FROM:TO:STEP.",
 )
 @click.option(
     "--range",
     "spans",
     multiple=True,
     metavar="NAME=LOW:HIGH",
-    help="What is not known: friction, adhesion, sliding, strength, catch. May be repeated; "
-    "NAME=VALUE sets a known value.",
+    help="Range of an uncertain parameter: friction, adhesion, sliding, strength, catch. "
+    "Repeatable; NAME=VALUE sets a known value.",
 )
 @click.option("--draws", type=int, default=3, show_default=True, help="Seasons for each winter.")
-@click.option("--seed", type=int, default=1, show_default=True, help="Of the drawing.")
+@click.option("--seed", type=int, default=1, show_default=True, help="Random seed.")
 @weather_options
-@click.option("--jobs", type=int, help="Processes at once.  [default: cores]")
-@click.option("-o", "--output", "folder", type=PATH, required=True, help="Results folder.")
-@click.option("--dry-run", is_flag=True, help="Say how long it takes, and end.")
+@click.option("--jobs", type=int, help="Processes at once.  [default: the number of cores]")
+@click.option(
+    *("-o", "--output", "folder"),
+    type=PATH,
+    required=True,
+    cls=ResultsFolder,
+    help="Results folder.",
+)
+@resume_option
+@dry_run_option()
 @quiet_option
 def clearance(
     weather: tuple[Path, ...],
@@ -63,13 +79,12 @@ def clearance(
     dry_run: bool,
     quiet: bool,
 ) -> None:
-    """Find how high the lower edge must be, so that shed snow does not reach it.
+    """Find how high the lower edge must be to stay clear of shed snow.
 
     WEATHER holds years of daily data, in any format that ``snowshed season`` reads, or is the word
-    example: ten made winters. Several files of one station are read as one: those of its snow and
-    its temperature, or of its years. The seasons of all winters whose snow was observed are
-    simulated over the ranges of what nobody knows of the snow. The same command goes on with an
-    interrupted answer.
+    example: ten synthetic winters. Several files of one station are joined: its snow and its
+    temperature, or its years. The seasons of all winters with observed snow are simulated over
+    the ranges of the uncertain snow parameters. After an interruption, the same command resumes.
 
     \b
     Example:
@@ -78,6 +93,7 @@ def clearance(
     from snowshed.analysis.clearance import Design, Ranges
     from snowshed.analysis.clearance.answer import forecast
     from snowshed.analysis.clearance.design import DEFAULT_RANGES
+    from snowshed.analysis.clearance.report import write_report
     from snowshed.analysis.clearance.winters import counted
 
     ranges = Ranges({**DEFAULT_RANGES, **dict(map(_span, spans))}, draws, seed)
@@ -88,33 +104,31 @@ def clearance(
     ]
     candidates = numbers("--heights", heights)
     record = _record(weather, snow_from, temperature)
-    known = record.winters(coverage)
-    notes = [*record.notes, *known.notes]
+    winter_list = record.winters(coverage)
+    notes = [*record.notes, *winter_list.notes]
     for note in () if quiet else notes:
         say(f"note: {note}")
-    winters = counted(known)
+    winters = counted(winter_list)
     if dry_run or not quiet:
-        plans = [forecast(one, winters, candidates, ranges=ranges, jobs=jobs) for one in designs]
-        seconds, seasons = sum(plan[0] for plan in plans), sum(plan[1] for plan in plans)
+        costs = [
+            forecast(design, winters, candidates, ranges=ranges, jobs=jobs) for design in designs
+        ]
+        seconds, seasons = (sum(values) for values in zip(*costs))
         say(
-            f"{known.words}, {len(designs)} {'panel' if len(designs) == 1 else 'panels'}, about "
-            f"{seasons} seasons: {about(seconds)}"
+            f"{winter_list.counted_text}, {plural(len(designs), 'panel')}, "
+            f"about {seasons} seasons: {about(seconds)}"
         )
     if dry_run:
         return
-    answers = _answers(designs, known, winters, candidates, ranges, folder, jobs, quiet=quiet)
-    from snowshed.analysis.clearance.report import write_report
-
+    answers = _answers(designs, winter_list, winters, candidates, ranges, folder, jobs, quiet=quiet)
     write_report(answers, ranges, folder, notes)
     if not quiet:
-        from snowshed.cli.display.clearance import print_answers
-
         print_answers(answers, folder)
 
 
 def _answers(
     designs: list[Design],
-    known: WinterList,
+    winter_list: WinterList,
     winters: list[Winter],
     heights: list[float],
     ranges: Ranges,
@@ -128,33 +142,33 @@ def _answers(
     from snowshed.study.errors import StudyInterrupted
 
     folder.mkdir(parents=True, exist_ok=True)
-    options: dict[str, Any] = {"ranges": ranges, "jobs": jobs, "known": known}
-    found = []
+    options: dict[str, Any] = {"ranges": ranges, "jobs": jobs, "winter_list": winter_list}
+    answers = []
     try:
-        for one in designs:
-            store = folder / f"runs-{one.slope_length:g}-{one.tilt:g}"
+        for design in designs:
+            store = folder / f"runs-{design.slope_length:g}-{design.tilt:g}"
             with progress_bar(quiet=quiet) as progress:
-                found.append(
-                    clearance_of(one, winters, heights, store, progress=progress, **options)
+                answers.append(
+                    clearance_of(design, winters, heights, store, progress=progress, **options)
                 )
     except StudyInterrupted:
-        raise Stopped("interrupted; go on with the same command") from None
-    return found
+        raise Stopped("interrupted; resume with the same command") from None
+    return answers
 
 
 def _record(weather: tuple[Path, ...], snow_from: str, temperature: Optional[Path]) -> Record:
-    from snowshed.run.season.generator import EXAMPLE_CLIMATE
-    from snowshed.run.season.record import Record
-    from snowshed.run.season.weather import read_record
+    from snowshed.season.generator import EXAMPLE_CLIMATE
+    from snowshed.season.record import Record
+    from snowshed.season.weather import read_record
 
-    if [str(one) for one in weather] != [EXAMPLE]:
+    if [str(file) for file in weather] != [EXAMPLE]:
         return read_record(weather, snow_from, temperature)
     rows = EXAMPLE_CLIMATE.winters(10, seed=7)
-    return Record(rows, ["the weather is that of ten made winters (generator of Richardson 1981)"])
+    return Record(rows, ["the weather is ten synthetic winters (generator of Richardson 1981)"])
 
 
 def numbers(option: str, text: str) -> list[float]:
-    """Return the numbers of an option: one, some with commas, or FROM:TO:STEP.
+    """Return the numbers of an option: a number, a list with commas, or FROM:TO:STEP.
 
     Examples
     --------
@@ -184,3 +198,28 @@ def _span(text: str) -> tuple[str, tuple[float, float]]:
         raise InputError(
             f"--range: {text!r}; needed: NAME=LOW:HIGH, such as friction=0.3:0.6"
         ) from None
+
+
+def print_answers(answers: Sequence[Answer], folder: Path) -> None:
+    """Print the answer in a sentence, and the heights for each panel and probability."""
+    from snowshed.analysis.clearance import answer_text
+
+    console = wide_console(120)
+    console.print(answer_text.sentence(answers))
+    head = ("slope\nlength, m", "tilt\ndegrees", "stays\nclear", "height\nm", "90 % interval\nm")
+    table = plain_table("Height of the lower edge", head, padding=0)
+    for answer in answers:
+        for level in answer.levels:
+            table.add_row(
+                f"{answer.design.slope_length:g}",
+                f"{answer.design.tilt:g}",
+                f"{100 * level.probability:g} %",
+                f"{level.height:.2f}",
+                f"{level.low:.2f} to {level.high:.2f}",
+            )
+    console.print(table)
+    if answers[0].winter_list is not None:
+        print_quality(console, answers[0].winter_list)
+    for warning in answer_text.warnings(answers):
+        console.print(f"note: {warning}")
+    console.print(f"clearance.html and clearance.csv in {folder}")

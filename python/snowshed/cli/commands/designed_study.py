@@ -12,26 +12,25 @@ from typing import Any, Optional, TypeVar
 
 import click
 
-from snowshed.cli.commands.study import compute_study, print_plan
-from snowshed.cli.quiet import quiet_option
+from snowshed.cli.common_options import PATH, dry_run_option, quiet_option, resume_option
+from snowshed.cli.compute_study import compute_study, print_study_cost
 from snowshed.snow.stack.quantities import MEASURES
 from snowshed.study.definition import Study
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
-PATH = click.Path(path_type=Path)
 STUDY = "study.toml"
 RUNS = "runs"
 #: Options without effect beside another one, by the names of their parameters.
 USELESS: Mapping[str, Sequence[str]] = {
-    "stored": ["file", "plan_only", "quick", "seeds", "samples", "jobs"],
+    "stored": ["file", "dry_run", "quick", "seeds", "samples", "jobs"],
     "file": ["quick", "seeds", "samples"],
 }
 
 
 def measure_help() -> str:
     """Return the help on the values of ``--measure``."""
-    return " or ".join(f"{one.name} ({one.label})" for one in MEASURES.values()) + "."
+    return " or ".join(f"{measure.name} ({measure.label})" for measure in MEASURES.values()) + "."
 
 
 def design_options(command: Command) -> Command:
@@ -50,12 +49,8 @@ def design_options(command: Command) -> Command:
             "--stored", type=PATH, help="Folder of a stored study: evaluate it, compute nothing."
         ),
         click.option("--study", "file", type=PATH, help="Study file to compute instead."),
-        click.option(
-            "--plan",
-            "plan_only",
-            is_flag=True,
-            help="Only say how many runs there are, and how long they take.",
-        ),
+        resume_option,
+        dry_run_option("Print the number of runs and their estimated time and exit."),
         click.option("--seeds", type=int, help="Seedings of each point.  [default: see the docs]"),
         click.option(
             "--quick", is_flag=True, help="A small study on a coarse 2D grid: minutes, not days."
@@ -79,9 +74,9 @@ def check_options(context: click.Context) -> Path:
         raise click.UsageError("give -o DIR, the folder of the results")
     for option, useless in USELESS.items():
         if context.params[option] is not None:
-            _refuse(context, useless, f"does nothing with {_flag(context, option)}")
+            _refuse(context, useless, f"has no effect with {_flag(context, option)}")
     if context.params["stored"] is None:
-        _refuse(context, ["name"], "is of a study given with --stored")
+        _refuse(context, ["name"], "needs --stored")
     return folder
 
 
@@ -92,7 +87,8 @@ def _refuse(context: click.Context, names: Sequence[str], reason: str) -> None:
 
 
 def _flag(context: click.Context, name: str) -> str:
-    return next(one.opts[-1] for one in context.command.params if one.name == name)
+    parameters = {parameter.name: parameter for parameter in context.command.params}
+    return max(parameters[name].opts, key=len)
 
 
 def chosen_study(context: click.Context, folder: Path, design: Callable[[], Study]) -> Study:
@@ -109,12 +105,12 @@ def chosen_study(context: click.Context, folder: Path, design: Callable[[], Stud
 def computed(context: click.Context, study: Study, folder: Path) -> Optional[tuple[Path, str]]:
     """Compute the missing runs of a study; return the folder of its store, and its name there.
 
-    Returns None if the command should only estimate the time. If runs fail or are interrupted, the
-    command ends with the exit codes of ``snowshed study run``, and the same command goes on.
+    Returns None after a dry run. If runs fail or are interrupted, the command ends with the exit
+    codes of ``snowshed study run``, and the same command resumes.
     """
     jobs, quiet = context.params["jobs"], context.params["quiet"]
-    if context.params["plan_only"]:
-        print_plan(study, jobs)
+    if context.params["dry_run"]:
+        print_study_cost(study, jobs)
         return None
     compute_study(study, folder / RUNS, quiet=quiet, jobs=jobs)
     return folder / RUNS, study.name

@@ -7,17 +7,15 @@ from typing import Optional
 
 import click
 
+from snowshed.cli.common_options import PATH, quiet_option
 from snowshed.cli.exit_codes import Stopped
-from snowshed.cli.quiet import quiet_option
-
-PATH = click.Path(path_type=Path)
 
 
 @click.command()
 @click.argument("results", type=PATH)
-@click.option("--events", type=int, default=1, show_default=True, help="How many events follow.")
-@click.option("--snow", metavar="NAME", help="Other snow of their slabs: a name, or a JSON file.")
-@click.option("--thickness", type=float, help="Other thickness of their slabs, m.")
+@click.option("--events", type=int, default=1, show_default=True, help="Number of further events.")
+@click.option("--snow", metavar="NAME", help="Other snow for their slabs: a name, or a JSON file.")
+@click.option("--thickness", type=float, help="Other thickness for their slabs, m.")
 @click.option(
     "-o", "--output", "folder", type=PATH, required=True, help="Results folder, new or empty."
 )
@@ -30,26 +28,25 @@ def extend(
     folder: Path,
     quiet: bool,
 ) -> None:
-    """Let more slabs slide off after a finished run, into a new folder; RESULTS stays as it is.
+    """Add slide-offs to a finished run, in a new folder; RESULTS stays as it is.
 
     \b
     Example:
       snowshed extend results --events 3 -o longer
       snowshed extend results --snow reference --thickness 0.03 -o other
     """  # noqa: D301 - click wants the control character
-    from snowshed.cli import console
+    from snowshed.base.interrupt import Interrupted
     from snowshed.cli.progress import progress_bar
-    from snowshed.run.extension import extend_run
-    from snowshed.run.interrupt import Interrupted
+    from snowshed.cli.run_output import print_events
+    from snowshed.results.reader import Results
+    from snowshed.running.extension import extend_run
     from snowshed.scene.components import Snow
 
     other = None if snow is None else Snow.named(snow)
     try:
         with progress_bar(quiet=quiet) as progress:
-            table = extend_run(
-                results, folder, events, snow=other, thickness=thickness, progress=progress
-            )
+            extend_run(results, folder, events, snow=other, thickness=thickness, progress=progress)
     except Interrupted as interrupted:
         raise Stopped(str(interrupted)) from None
     if not quiet:
-        console.print_events(table, folder)
+        print_events(Results(folder))

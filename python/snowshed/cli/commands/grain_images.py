@@ -12,26 +12,30 @@ from typing import TYPE_CHECKING, Any, Optional, TypeVar
 import click
 
 from snowshed._core import InputError
-from snowshed.cli.quiet import quiet_option
-from snowshed.io.messages import quoted
-from snowshed.methods.grains.image.segmentation import SegmentationSettings
+from snowshed.analysis.tomography.segmentation import SegmentationSettings
+from snowshed.base.formatting import number, percent
+from snowshed.base.messages import quoted
+from snowshed.cli.common_options import PATH, given_values, quiet_option
+from snowshed.cli.run_output import print_rows
+from snowshed.cli.terminal import PlainConsole
 
 if TYPE_CHECKING:
-    from snowshed.methods.grains.image.threshold import Crop
+    from snowshed.analysis.tomography.sample import SampleNumbers
+    from snowshed.analysis.tomography.threshold import Crop, ReadImage
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
-PATH = click.Path(path_type=Path)
+FEW_GRAINS = 1000  # fewer do not represent a snow
 VOXEL = "Edge of a voxel [m]."
 HELP = {
-    "depth": "How much deeper than the neck a grain's maximum of the distance from the air must "
-    "be [voxels] (watershed).",
+    "depth": "Least difference between the distances from the air in a grain's middle and in its "
+    "neck [voxels] (watershed).",
     "smoothing": "Standard deviation of the Gaussian that smooths the surface [voxels] "
     "(curvature).",
     "neck_curvature": "Smaller principal curvature below which the surface is a neck [1/voxel] "
     "(curvature).",
-    "contiguity": "Part of a grain's surface that a contact may take; more is one grain.",
-    "smallest": "Voxels of the smallest grain.",
+    "contiguity": "Largest share of a grain's surface that a contact takes; beyond, grains merge.",
+    "smallest": "Size of the smallest grain [voxels].",
 }
 
 
@@ -48,7 +52,7 @@ def output_options(command: Command) -> Command:
 
 
 def segmentation_options(command: Command) -> Command:
-    """Add the options of how grains are told apart."""
+    """Add the options that separate grains."""
     for field in reversed(fields(SegmentationSettings)):
         if field.name in HELP:
             name = "--" + field.name.replace("_", "-")
@@ -64,7 +68,7 @@ def segmentation_options(command: Command) -> Command:
         type=click.Choice(["watershed", "curvature"]),
         default="watershed",
         show_default=True,
-        help="What cuts the ice into grains.",
+        help="Method that cuts the ice into grains.",
     )(command)
 
 
@@ -76,15 +80,15 @@ def segmentation_options(command: Command) -> Command:
     default=(48, 48, 48),
     show_default=True,
     metavar="NX NY NZ",
-    help="Voxels along x, y and z.",
+    help="Size of the image along x, y and z [voxels].",
 )
 @click.option("--voxel", type=float, default=5e-5, show_default=True, help=VOXEL)
-@click.option("--density", type=float, help="Density of the snow [kg/m3]; or --ice-fraction.")
-@click.option("--ice-fraction", type=float, help="Volume of ice over that of the snow.")
+@click.option("--density", type=float, help="Density of the snow [kg/m3], or give --ice-fraction.")
+@click.option("--ice-fraction", type=float, help="Ratio of the volumes of ice and snow.")
 @click.option(
     "--specific-surface",
     type=float,
-    help="Surface of the ice over its mass [m2/kg]; or --correlation-length.",
+    help="Specific surface of the ice [m2/kg], or give --correlation-length.",
 )
 @click.option("--correlation-length", type=float, help="Wavelength of the field [m].")
 @click.option(
@@ -92,17 +96,21 @@ def segmentation_options(command: Command) -> Command:
     type=float,
     default=1.0,
     show_default=True,
-    help="Length of the ice along z over that along x and y.",
+    help="Ratio of the ice's correlation lengths along z and along x and y.",
 )
 @click.option(
     "--spheres",
     type=float,
     metavar="DIAMETER",
-    help="Make a pack of sintered spheres instead, of this mean diameter [m].",
+    help="Mean diameter of sintered spheres [m]; makes a pack of these instead.",
 )
-@click.option("--neck", type=float, help="Radius of the necks over that of spheres. [default: 0.4]")
-@click.option("--spread", type=float, help="Half-width of the diameters over their mean.")
-@click.option("--seed", type=int, default=0, show_default=True, help="Of what is random.")
+@click.option("--neck", type=float, help="Ratio of the radii of necks and spheres.  [default: 0.4]")
+@click.option(
+    "--spread",
+    type=float,
+    help="Half-width of the distribution of diameters, relative to the mean.",
+)
+@click.option("--seed", type=int, default=0, show_default=True, help="Random seed.")
 @output_options
 def synthetic(
     folder: Path, quiet: bool, shape: tuple[int, int, int], voxel: float,
@@ -115,15 +123,14 @@ def synthetic(
       snowshed grains synthetic --density 300 --specific-surface 15 -o snow
       snowshed grains synthetic --density 300 --spheres 5e-4 --neck 0.4 -o spheres
     """  # noqa: D301 - click wants the control character
-    from snowshed.cli.display.grain_images import print_sample
-    from snowshed.methods.grains.image.gaussian_snow import gaussian_snow
-    from snowshed.methods.grains.image.segmentation import known_grains
-    from snowshed.methods.grains.image.sphere_snow import sphere_snow
-    from snowshed.run.grain_images import check_new, write_grains, write_ice
+    from snowshed.analysis.tomography.gaussian_snow import gaussian_snow
+    from snowshed.analysis.tomography.sample import check_new, write_grains, write_ice
+    from snowshed.analysis.tomography.segmentation import known_grains
+    from snowshed.analysis.tomography.sphere_snow import sphere_snow
 
     check_new(folder)
     nx, ny, nz = shape
-    given = {name: value for name, value in options.items() if value is not None}
+    given = given_values(options)
     wrong = [
         f"--{name.replace('_', '-')}"
         for name in ("neck", "spread", "specific_surface", "correlation_length")
@@ -131,14 +138,14 @@ def synthetic(
     ]
     if wrong:
         kind = "a Gaussian random field" if spheres is None else "a pack of spheres"
-        raise InputError(f"{', '.join(wrong)}: not taken by {kind}")
+        raise InputError(f"{', '.join(wrong)}: no option of {kind}")
     facts = {"voxel": voxel, "seed": given["seed"]}
     if spheres is None:
         image = gaussian_snow((nz, ny, nx), voxel, **given)
         numbers = write_ice(folder, image, facts)
     else:
         if given.pop("anisotropy") != 1.0:
-            raise InputError("--anisotropy: not taken by a pack of spheres")
+            raise InputError("--anisotropy: no option of a pack of spheres")
         if "neck" in given:
             given["neck_ratio"] = given.pop("neck")
         image = sphere_snow((nz, ny, nx), voxel, diameter=spheres, **given)
@@ -149,34 +156,36 @@ def synthetic(
 
 @click.command("segment")
 @click.argument("image", type=PATH)
-@click.option("--voxel", type=float, help=f"{VOXEL[:-1]}; files with a header know it.")
+@click.option("--voxel", type=float, help=f"{VOXEL[:-1]}; files with a header contain it.")
 @click.option(
     "--threshold",
     type=float,
-    help="What is above is ice. [default: halfway between two values, or Otsu's]",
+    help="Value above which a voxel is ice.  [default: midway between two values, or Otsu's]",
 )
 @click.option("--dark-ice", is_flag=True, help="Ice is below the threshold.")
 @click.option(
     "--crop",
     metavar="X0:X1,Y0:Y1,Z0:Z1",
-    help="Voxels that are kept: the first, and the one after the last.",
+    help="Voxels to keep: the first, and the one after the last.",
 )
 @click.option(
     "--downscale",
     type=int,
     default=1,
     show_default=True,
-    help="Voxels along an edge that become one; the ice fraction stays.",
+    help="Number of voxels along an edge to merge; the ice fraction stays.",
 )
-@click.option("--all-parts", is_flag=True, help="Keep ice that is not connected, too.")
-@click.option("--raw-shape", type=int, nargs=3, metavar="NX NY NZ", help="Voxels of a .raw file.")
+@click.option("--all-parts", is_flag=True, help="Keep disconnected ice, too.")
+@click.option(
+    "--raw-shape", type=int, nargs=3, metavar="NX NY NZ", help="Size of a .raw file [voxels]."
+)
 @click.option(
     "--raw-type",
     metavar="TYPE",
-    help="Numbers of a .raw file, such as uint16, or uint16-be if big-endian.",
+    help="Number type of a .raw file, such as uint16, or uint16-be if big-endian.",
 )
 @segmentation_options
-@click.option("--threads", type=int, default=0, help="Threads; 0: all.")
+@click.option("--threads", type=int, default=0, help="Number of threads; 0: all.")
 @click.option("--surface", is_flag=True, help="Write the surface for ParaView, too.")
 @output_options
 def segment_command(
@@ -184,21 +193,20 @@ def segment_command(
 ) -> None:
     """Find the grains in an image of snow.
 
-    IMAGE is a TIFF stack, a folder of numbered TIFF, PNG or BMP slices, or a .mhd, .mha, .raw or
-    .npy file, or a folder that ``grains synthetic`` wrote.
+    IMAGE is a TIFF stack, a folder of numbered TIFF, PNG or BMP slices, a .mhd, .mha, .raw or .npy
+    file, or a folder from ``grains synthetic``.
 
     \b
     Examples:
       snowshed grains segment slices --voxel 1e-5 --downscale 2 -o sample
       snowshed grains segment snow.mhd --threshold 32000 --method curvature -o sample
     """  # noqa: D301 - click wants the control character
-    from snowshed.cli.display.grain_images import print_image, print_sample
+    from snowshed.analysis.tomography.sample import check_new
+    from snowshed.analysis.tomography.segmented_file import plan_text, segment_image
+    from snowshed.analysis.tomography.threshold import ImageSettings
     from snowshed.cli.progress import progress_bar
     from snowshed.io.voxels.open_voxels import open_voxels
-    from snowshed.methods.grains.image.sample_folder import SNOW, find_sample
-    from snowshed.methods.grains.image.threshold import ImageSettings
-    from snowshed.run.grain_images import check_new
-    from snowshed.run.image_segmentation import plan_text, segment_image
+    from snowshed.methods.grains.sample_folder import SNOW, find_sample
 
     check_new(folder)
     names = {field.name for field in fields(SegmentationSettings)}
@@ -206,18 +214,18 @@ def segment_command(
         threads=threads or os.cpu_count() or 1,
         **{name: value for name, value in options.items() if name in names},
     )
-    known = find_sample(image, SNOW)
+    sample = find_sample(image, SNOW)
     wanted = ImageSettings(
-        voxel_size=known.voxel_size if options["voxel"] is None else options["voxel"],
+        voxel_size=sample.voxel_size if options["voxel"] is None else options["voxel"],
         threshold=options["threshold"],
         dark_ice=options["dark_ice"],
         crop=_crop(options["crop"]),
         downscale=options["downscale"],
         connected=not options["all_parts"],
-        synthetic_source=known.source,
+        synthetic_source=sample.source,
     )
     raw_shape = options["raw_shape"]
-    file = open_voxels(known.file, raw_shape and raw_shape[::-1], options["raw_type"])
+    file = open_voxels(sample.file, raw_shape and raw_shape[::-1], options["raw_type"])
     plan = plan_text(file, wanted)
     with progress_bar(quiet=quiet, announce=lambda _: plan) as progress:
         numbers, read = segment_image(
@@ -229,11 +237,61 @@ def segment_command(
 
 
 def _crop(text: Optional[str]) -> Optional[Crop]:
-    """Return the crop along z, y and x that an option gives along x, y and z."""
+    """Return the crop along z, y and x from an option along x, y and z."""
     if text is None:
         return None
-    found = re.fullmatch(r"(\d{1,9}):(\d{1,9}),(\d{1,9}):(\d{1,9}),(\d{1,9}):(\d{1,9})", text)
-    if found is None:
+    match = re.fullmatch(r"(\d{1,9}):(\d{1,9}),(\d{1,9}):(\d{1,9}),(\d{1,9}):(\d{1,9})", text)
+    if match is None:
         raise InputError(f"--crop {quoted(text)}: X0:X1,Y0:Y1,Z0:Z1 is needed")
-    x0, x1, y0, y1, z0, z1 = map(int, found.groups())
+    x0, x1, y0, y1, z0, z1 = map(int, match.groups())
     return (z0, z1), (y0, y1), (x0, x1)
+
+
+def print_image(read: ReadImage) -> None:
+    """Print the threshold of an image and the ice that is left out."""
+    console = PlainConsole(soft_wrap=True)
+    console.print(f"ice from a value of {number(read.threshold)} ({read.chosen})")
+    if read.lost:
+        console.print(f"left out: {percent(read.lost)} of the ice, which is disconnected")
+
+
+def print_sample(numbers: SampleNumbers, folder: Path) -> None:
+    """Print the numbers of an image of snow."""
+    ice, grains = numbers.ice, numbers.grains
+    rows = {
+        "source": ice.source,
+        "voxels": f"{' x '.join(map(str, ice.voxels))} of {_length(ice.voxel_size_m)}",
+        "ice fraction": f"{ice.ice_fraction:.4f}",
+        "density": f"{ice.density_kg_m3:.1f} kg/m3",
+        "specific surface": f"{ice.specific_surface_m2_kg:.2f} m2/kg (Crofton, 13 directions)",
+        "optical diameter": _length(ice.optical_diameter_m),
+        "correlation length": _along(
+            ice.correlation_length_x_m, ice.correlation_length_y_m, ice.correlation_length_z_m
+        ),
+        "mean chord of ice": _along(ice.ice_chord_x_m, ice.ice_chord_y_m, ice.ice_chord_z_m),
+        "mean chord of pores": _along(ice.pore_chord_x_m, ice.pore_chord_y_m, ice.pore_chord_z_m),
+    }
+    if grains is not None:
+        rows |= {
+            "grains": f"{grains.grains:,}, median diameter {_length(grains.median_diameter_m)}",
+            "contacts": f"{grains.contacts:,}, mean area "
+            f"{number(1e6 * grains.mean_contact_area_m2)} mm2",
+            "coordination": f"{grains.mean_coordination:.2f}",
+            "bonded surface": percent(grains.bonded_surface),
+        }
+    print_rows("Sample", rows)
+    console = PlainConsole(soft_wrap=True)
+    if grains is not None and grains.grains < FEW_GRAINS:
+        console.note(
+            f"{grains.grains:,} grains; a sample needs {FEW_GRAINS:,} or more to represent a snow"
+        )
+    console.print(f"sample and slices.png in {folder}")
+
+
+def _length(metres: float) -> str:
+    return f"{number(1e3 * metres)} mm"
+
+
+def _along(x: float, y: float, z: float) -> str:
+    x_text, y_text, z_text = (number(1e3 * value) for value in (x, y, z))
+    return f"{x_text}, {y_text}, {z_text} mm along x, y, z"

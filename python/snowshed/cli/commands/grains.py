@@ -1,33 +1,33 @@
-"""The commands of grains: ``snowshed grains``."""
+"""The commands ``snowshed grains …``: loading tests of segmented snow."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any, Optional, TypeVar
 
 import click
 
 from snowshed.cli.commands.grain_images import segment_command, synthetic
 from snowshed.cli.commands.grains_studies import material, sensitivity
-from snowshed.cli.commands.run import run_options
+from snowshed.cli.common_options import PATH, given_values, run_options
+from snowshed.cli.dry_run import print_cost
 from snowshed.cli.run_scene import run_scene
 from snowshed.cli.settings_options import settings_options
-from snowshed.methods.grains.image.sample_folder import LABELS
+from snowshed.methods.grains.sample_folder import LABELS
 from snowshed.methods.grains.settings import GrainsSettings
-from snowshed.scene.builders.grains import example_grains, grains_scene
+from snowshed.scene.builders.grains import grains_scene
 from snowshed.scene.loading import Cone, LoadingKind, LoadingStage
 from snowshed.scene.output import Output
 from snowshed.scene.scene import ResolvedScene
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
-PATH = click.Path(path_type=Path)
-
 
 @click.group()
 def grains() -> None:
-    """Find the grains in an image of snow, and load the snow grain by grain.
+    """Segment images of snow into grains, and run loading tests of them.
 
     \b
     Examples:
@@ -40,38 +40,40 @@ def grains() -> None:
 def loading_command(
     kind: LoadingKind, text: str, *, stress: str = "", speed: float = 0.02, strain: float = 0.3
 ) -> click.Command:
-    """Return the command of tests of one stage.
+    """Return the command of loading tests with one stage.
 
     Parameters
     ----------
     kind
-        Of the stage.
+        Kind of the stage.
     text
-        What the command does.
+        Help of the command.
     stress
-        What its option ``--stress`` is; empty: it has none.
+        Help of the option ``--stress``; empty for a command without it.
     speed, strain
-        Defaults of the stage: m/s, and way over height.
+        Defaults of the stage: m/s, and distance over height.
     """
 
     def run(
-        folder: Path, resume: bool, quiet: bool, labels: Path, voxel: Optional[float], energy: bool,
-        snapshots: float, split_labels: bool, speed: float, strain: float, stress: float = 0.0,
-        **values: Any,
+        folder: Path, resume: bool, dry_run: bool, quiet: bool, labels: Path,
+        voxel: Optional[float], energy: bool, snapshots: float, split_labels: bool, speed: float,
+        strain: float, stress: float = 0.0, **values: Any,
     ) -> None:  # fmt: skip
-        cone = _given({"radius": values.pop("radius", None),
-                       "half_angle": values.pop("half_angle", None)})  # fmt: skip
+        cone = given_values({name: values.pop(name, None) for name in ("radius", "half_angle")})
         stage = LoadingStage(kind=kind, speed=speed, strain=strain, stress=stress or None)
         scene = grains_scene(
             labels,
             voxel,
             [stage],
             cone=Cone(**cone) if cone else None,
-            settings=GrainsSettings(**_given(values)),
+            settings=GrainsSettings(**given_values(values)),
             output=Output(energy=energy, snapshot_interval=snapshots),
             split_labels=split_labels or None,
-        )
-        run_scene(scene.resolve(), folder, resume, quiet)
+        ).resolve()
+        if dry_run:
+            print_cost(scene)
+        else:
+            run_scene(scene, folder, resume, quiet)
 
     if kind == "penetrate":
         run = settings_options("grains", "cone")(run)
@@ -80,16 +82,16 @@ def loading_command(
         run = click.option("--stress", type=float, default=0.0, help=f"{stress} [Pa].")(run)
     for option in (
         click.option("--snapshots", type=float, default=0.0,
-                     help="Simulated time between snapshots of the spheres; 0: none [s]."),
-        click.option("--energy", is_flag=True, help="Keep the energy balance."),
+                     help="Simulated time between snapshots of the spheres [s]; 0: no snapshots."),
+        click.option("--energy", is_flag=True, help="Compute the energy balance."),
         click.option("--strain", type=float, default=strain, show_default=True,
-                     help="Way over the sample's height at which the test ends."),
+                     help="Distance over the sample's height at which the test ends."),
         click.option("--speed", type=float, default=speed, show_default=True,
-                     help="Speed of what moves [m/s]."),
+                     help="Speed of the moving plate or cone [m/s]."),
         click.option("--split-labels", is_flag=True,
-                     help="Make each piece of a label that lies in several places a grain."),
+                     help="Turn each piece of a disconnected label into a grain."),
         click.option("--voxel", type=float,
-                     help="Edge of a voxel; a folder of `grains segment` knows it [m]."),
+                     help="Edge of a voxel [m]; a folder of `grains segment` contains it."),
     ):  # fmt: skip
         run = option(run)
     run = run_options(run)
@@ -97,15 +99,11 @@ def loading_command(
     return click.command(kind, help=text)(run)
 
 
-def _given(values: dict[str, Any]) -> dict[str, Any]:
-    return {name: value for name, value in values.items() if value is not None}
-
-
 for command in (
     loading_command(
         "compress",
         "Press the top plate down onto a sample.",
-        stress="Stress on the top plate at which the test ends before; 0: none",
+        stress="Stress on the top plate that ends the test earlier; 0: no limit",
     ),
     loading_command(
         "stretch", "Pull the top plate up from a sample (with --bonded-plates).", strain=0.05
@@ -118,7 +116,7 @@ for command in (
     loading_command(
         "isotropic",
         "Compress a sample from all six sides.",
-        stress="Stress at which the test ends before; 0: none",
+        stress="Stress that ends the test earlier; 0: no limit",
     ),
     loading_command("penetrate", "Push a cone down into a sample.", strain=0.5),
 ):
@@ -131,8 +129,14 @@ grains.add_command(segment_command)
 
 @grains.command()
 @run_options
-def example(folder: Path, resume: bool, quiet: bool) -> None:
-    """Compress a small sample that is made for it, in seconds."""
+def example(folder: Path, resume: bool, dry_run: bool, quiet: bool) -> None:
+    """Compress a small synthetic sample, in seconds."""
+    from snowshed.analysis.tomography.example import example_grains  # loads scipy's images
+
+    if dry_run:
+        with TemporaryDirectory() as temporary:
+            print_cost(example_grains(Path(temporary) / "sample").resolve())
+        return
     if resume:
         run_scene(ResolvedScene.load(folder / "scene.json"), folder, resume, quiet)
         return

@@ -7,10 +7,8 @@ from typing import Optional
 
 import click
 
-from snowshed.cli.quiet import quiet_option
+from snowshed.cli.common_options import PATH, quiet_option
 from snowshed.cli.terminal import say
-
-PATH = click.Path(path_type=Path)
 
 
 @click.command()
@@ -19,16 +17,18 @@ PATH = click.Path(path_type=Path)
     "-o",
     "--output",
     type=PATH,
-    help="Folder for the files; default: grid in the results folder.",
+    help="Folder for the files.  [default: grid in the results folder]",
 )
-@click.option("--snapshots", is_flag=True, help="The snapshots instead of the ends of events.")
+@click.option(
+    "--snapshots", is_flag=True, help="Write the snapshots instead of the ends of events."
+)
 @quiet_option
 def grid(results: Path, output: Optional[Path], snapshots: bool, quiet: bool) -> None:
     """Write mass, velocity and density at the nodes of the grid as VTK images (.vti).
 
-    They are computed from the stored particles of a run by the material point method.
+    The fields are computed from the stored particles of a run by the material point method.
     """
-    from snowshed.run.grid_export import export_grids
+    from snowshed.results.grid_export import export_grids
 
     for file in export_grids(results, output, snapshots=snapshots):
         if not quiet:

@@ -10,10 +10,11 @@ from typing import Optional
 import click
 
 from snowshed._core import InputError
-from snowshed.cli.commands.run import PATH, run_options
+from snowshed.cli.common_options import PATH, run_options
+from snowshed.cli.dry_run import print_cost
 from snowshed.cli.run_scene import run_scene
 from snowshed.cli.terminal import say
-from snowshed.run.results import check_empty
+from snowshed.io.folders import check_empty
 from snowshed.scene.lua.builder import LuaRun
 from snowshed.scene.lua.loading import load_lua
 
@@ -25,7 +26,7 @@ from snowshed.scene.lua.loading import load_lua
     "--to-json",
     "file",
     type=PATH,
-    help="Write the scene to this file; if the scripts name runs, one file each to this folder.",
+    help="Write the scene to this file; if the scripts name runs, a file for each to this folder.",
 )
 @partial(run_options, required=False)
 def lua(
@@ -34,23 +35,27 @@ def lua(
     file: Optional[Path],
     folder: Optional[Path],
     resume: bool,
+    dry_run: bool,
     quiet: bool,
 ) -> None:
     """Run a scene that Lua scripts describe, or write it as JSON.
 
-    UPDATE runs after INIT, and its values override earlier ones. Needs the extra snowshed[lua].
+    UPDATE runs after INIT, and its values override those of INIT. Needs the extra snowshed[lua].
     """
-    if file is None and folder is None:
+    if file is None and folder is None and not dry_run:
         raise click.UsageError("give -o DIR to run the scene, or --to-json FILE to write it")
     runs = _load(init, update, quiet=quiet)
     if file is not None:
         _save_all(runs, file)
-    if folder is not None:
+    if dry_run:
+        for run in runs:
+            print_cost(run.scene)
+    elif folder is not None:
         _run_all(runs, folder, resume=resume, quiet=quiet)
 
 
 def _load(init: Path, update: Optional[Path], *, quiet: bool) -> list[LuaRun]:
-    """Load the scenes; what the scripts print goes to stderr."""
+    """Load the scenes; the output of the scripts goes to stderr."""
 
     def echo(line: str) -> None:
         say(line, err=True)
@@ -64,9 +69,7 @@ def _save_all(runs: Sequence[LuaRun], path: Path) -> None:
         runs[0].scene.save(path)
         return
     if path.exists() and not path.is_dir():
-        raise InputError(
-            f"--to-json: {path} is a file; the scripts name {len(runs)} run(s), which need a folder"
-        )
+        raise InputError(f"--to-json: {path} is a file; {len(runs)} named runs need a folder")
     path.mkdir(parents=True, exist_ok=True)
     for run in runs:
         run.scene.save(path / f"{run.name}.json")
@@ -75,7 +78,7 @@ def _save_all(runs: Sequence[LuaRun], path: Path) -> None:
 def _run_all(runs: Sequence[LuaRun], folder: Path, *, resume: bool, quiet: bool) -> None:
     """Run the scene into `folder`; named runs have folders of their names inside it.
 
-    Resuming also starts named runs that had not begun.
+    Resuming also starts named runs that have not begun.
     """
     if not runs[0].name:
         run_scene(runs[0].scene, folder, resume, quiet)

@@ -1,7 +1,8 @@
-"""The command ``snowshed season``; slow imports are made when it runs."""
+"""The command ``snowshed season``: slow modules are imported when it runs."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Optional, Union
@@ -9,34 +10,58 @@ from typing import TYPE_CHECKING, Any, Optional, Union
 import click
 
 from snowshed._core import InputError
+from snowshed.base.interrupt import Interrupted
+from snowshed.cli.common_options import PATH, ResultsFolder, dry_run_option, quiet_option
+from snowshed.cli.dry_run import print_cost
 from snowshed.cli.exit_codes import Stopped
-from snowshed.cli.quiet import quiet_option
 from snowshed.cli.scene_options import (
     in_terms_of_options,
     path_of,
     scene_from_options,
     scene_options,
 )
+from snowshed.cli.terminal import plain_table, say, wide_console
 from snowshed.cli.weather_options import weather_options
-from snowshed.run.interrupt import Interrupted
-from snowshed.run.season.settings import SeasonSettings
+from snowshed.cli.winters_table import print_quality
 from snowshed.scene.scene import Scene
+from snowshed.season.settings import SeasonSettings
 
 if TYPE_CHECKING:
-    from snowshed.run.season.driver import SeasonResult
     from snowshed.scene.scene import ResolvedScene
+    from snowshed.season.driver import SeasonResult
 
-PATH = click.Path(path_type=Path)
 DEFAULTS = SeasonSettings()
 
-# Values that the season file decides, and that need not be given.
-DECIDED = {"slab.thickness": 0.1}
+#: Values that the season file determines, so that they need not be given.
+DETERMINED = {"slab.thickness": 0.1}
+
+SEASON_TABLE = {
+    "date": ("date", "{}"),
+    "event": ("event", "{}"),
+    "released": ("released", "{}"),
+    "snowfall\nm": ("snowfall_m", "{:.2f}"),
+    "density\nkg/m3": ("density_kg_m3", "{:.0f}"),
+    "on panel\nm": ("panel_snow_m", "{:.3f}"),
+    "pull\nPa": ("driving_pa", "{:.0f}"),
+    "hold\nPa": ("resisting_pa", "{:.0f}"),
+    "stack\nheight, m": ("stack_height_m", "{:.2f}"),
+    "stack\nlength, m": ("stack_length_m", "{:.2f}"),
+    "cover\nm": ("cover_m", "{:.2f}"),
+    "clearance\nm": ("clearance_m", "{:.2f}"),
+    "to crest\nm": ("crest_clearance_m", "{:.2f}"),
+}
+MOST_ROWS = 60  # a longer table shows its releases only
+SETTLED = {"settled\nheight, m": ("settled_height_m", "{:.2f}")}
 
 
 @click.command()
 @click.argument("season_files", metavar="FILE...", type=PATH, nargs=-1, required=True)
 @click.option(
-    "-o", "--output", "folder", type=PATH, required=True, help="Results folder, new or empty."
+    *("-o", "--output", "folder"),
+    type=PATH,
+    required=True,
+    cls=ResultsFolder,
+    help="Results folder, new or empty.",
 )
 @click.option("--scene", "scene_file", type=PATH, help="Scene file to start from.")
 @click.option(
@@ -44,40 +69,40 @@ DECIDED = {"slab.thickness": 0.1}
     type=float,
     default=DEFAULTS.friction,
     show_default=True,
-    help="Static Coulomb coefficient that the snow must overcome to let go.",
+    help="Static Coulomb coefficient between snow and panel: snow slides above it.",
 )
 @click.option(
     "--adhesion",
     type=float,
     default=DEFAULTS.adhesion,
     show_default=True,
-    help="What else holds the snow, Pa.",
+    help="Adhesion of the snow to the panel, Pa.",
 )
 @click.option(
     "--catch",
     type=float,
     default=DEFAULTS.catch,
     show_default=True,
-    help="Part of the snowfall that stays on the panel.",
+    help="Share of the snowfall that stays on the panel.",
 )
 @click.option(
     "--new-snow",
     default=DEFAULTS.density,
     show_default=True,
     metavar="NAME",
-    help="Relation for rows without a density: hedstrom-pomeroy-1998, jordan-1999, vionnet-2012.",
+    help="Relation for days without a density: hedstrom-pomeroy-1998, jordan-1999, vionnet-2012.",
 )
 @click.option(
     "--settling",
     metavar="NAME",
     default=DEFAULTS.settling,
     show_default=True,
-    help="Law by which snow settles: vionnet-2012, essery-2013, or none.",
+    help="Law of settling: vionnet-2012, essery-2013, or none.",
 )
 @click.option(
     "--sintering",
     metavar="NAME",
-    help="Law by which broken snow in the stack regains strength between events: "
+    help="Law of sintering, by which broken snow in the stack regains strength between events: "
     "van-herwijnen-2013, podolskiy-2014.  [default: none]",
 )
 @click.option(
@@ -86,15 +111,14 @@ DECIDED = {"slab.thickness": 0.1}
     metavar="HOURS",
     default=DEFAULTS.strength_age,
     show_default=True,
-    help="Age of bonds that have the strength of the snow that slides.",
+    help="Age at which bonds have the strength of the sliding snow.",
 )
 @click.option(
     "--strength",
     metavar="NAME",
     default=DEFAULTS.strength,
     show_default=True,
-    help="Relation by which the strength of a slab follows from its density: sigrist-2006, or "
-    "none.",
+    help="Relation of a slab's strength to its density: sigrist-2006, or none.",
 )
 @click.option(
     "--cover",
@@ -104,7 +128,8 @@ DECIDED = {"slab.thickness": 0.1}
     help="Natural snow cover below the stack: weather (from the file), none, or a depth in m.",
 )
 @weather_options
-@click.option("--resume", is_flag=True, help="Go on with an interrupted season.")
+@click.option("--resume", is_flag=True, help="Resume an interrupted season.")
+@dry_run_option("Print the releases, and the cost of the slide-offs, and exit.")
 @quiet_option
 @scene_options
 def season(
@@ -124,6 +149,7 @@ def season(
     snow_from: str,
     temperature: Optional[Path],
     resume: bool,
+    dry_run: bool,
     quiet: bool,
     preset: Optional[str],
     snow_preset: Optional[str],
@@ -131,11 +157,11 @@ def season(
 ) -> None:
     """Simulate a season: snow accumulates on a panel, is released, and piles up below it.
 
-    FILE is that of a weather station (SMET, iCSV, EPW, TMY3, GHCN-daily, ACIS, MeteoSwiss, IMIS),
-    or a table with the columns date, snowfall_m, temperature_c and, if known, density_kg_m3,
-    friction, adhesion_pa and snow_depth_m. Several FILEs of one station are read as one: those of
-    its snow and its temperature, or of its years. The panel, the ground and the method are
-    described by the same options as in ``snowshed panel``; --friction is that of sliding snow.
+    FILE comes from a weather station (SMET, iCSV, EPW, TMY3, GHCN-daily, ACIS, MeteoSwiss, IMIS),
+    or is a table with the columns date, snowfall_m, temperature_c and, if known, density_kg_m3,
+    friction, adhesion_pa and snow_depth_m. Several FILEs of one station are joined: its snow and
+    its temperature, or its years. The options of ``snowshed panel`` describe the panel, the ground
+    and the method; --friction is that of sliding snow.
 
     \b
     Example:
@@ -154,15 +180,16 @@ def season(
     )
     scene = _scene(scene_file, preset, snow_preset, options)
     reading = {"coverage": coverage, "snow_from": snow_from, "temperature": temperature}
+    if dry_run:
+        _print_cost(season_files, scene, settings, reading, quiet=quiet)
+        return
     result = _run(season_files, scene, folder, settings, reading, resume=resume, quiet=quiet)
     if not quiet:
-        from snowshed.cli.display.season import print_season
-
         print_season(result, folder)
 
 
 def none_or(name: Optional[str]) -> Optional[str]:
-    """Return the name, or None where it is "none"."""
+    """Return the name, or None if it is "none"."""
     return None if name == "none" else name
 
 
@@ -178,13 +205,13 @@ def _scene(
     file: Optional[Path], preset: Optional[str], snow_preset: Optional[str], options: dict[str, Any]
 ) -> ResolvedScene:
     if file is not None and (preset or snow_preset):
-        raise click.UsageError("--scene does not go with --preset or --snow")
+        raise click.UsageError("--scene cannot be combined with --preset or --snow")
     given = _given(options)
     scene = Scene.load(file) if file else scene_from_options(preset, snow_preset, {})
     if scene.slab is not None:
         scene.slab.layers = None
     try:
-        for path, value in {**DECIDED, **given}.items():
+        for path, value in {**DETERMINED, **given}.items():
             scene.set(path, value)
         return scene.resolve()
     except InputError as error:
@@ -213,7 +240,7 @@ def _run(
     quiet: bool,
 ) -> SeasonResult:
     from snowshed.cli.progress import progress_bar
-    from snowshed.run.season.driver import run_season
+    from snowshed.season.driver import run_season
 
     options = {**reading, "resume": resume}
     try:
@@ -222,4 +249,68 @@ def _run(
                 season_files, scene, folder, settings=settings, progress=progress, **options
             )
     except Interrupted:
-        raise Stopped("interrupted; go on with the same command and --resume") from None
+        raise Stopped("interrupted; resume with the same command and --resume") from None
+
+
+def _print_cost(
+    season_files: tuple[Path, ...],
+    scene: ResolvedScene,
+    settings: SeasonSettings,
+    reading: Mapping[str, Any],
+    *,
+    quiet: bool,
+) -> None:
+    """Print the number of releases and the cost of their slide-offs."""
+    from snowshed.season.driver import plan_season
+
+    plan = plan_season(season_files, scene, settings=settings, **reading)
+    for note in () if quiet else plan.record.notes:
+        say(f"note: {note}")
+    say(f"{sum(day.released for day in plan.days)} releases in {len(plan.days)} days")
+    if plan.slides is not None:
+        print_cost(plan.slides)
+
+
+def print_season(result: SeasonResult, folder: Path) -> None:
+    """Print the table, the event that buries the panel, and notes on the limits of the results."""
+    from snowshed.season.driver import verdict
+
+    console = wide_console(120)
+    columns = dict(SEASON_TABLE)
+    if (result.table["settled_height_m"] < result.table["stack_height_m"]).any():
+        columns.update(SETTLED)
+    table = plain_table("Season", columns, padding=0)
+    rows, left_out = _rows(result)
+    for row in rows:
+        table.add_row(*(_cell(row[name], form) for name, form in columns.values()))
+    if rows:
+        console.print(table)
+    if left_out:
+        console.print(f"{left_out} rows without a release are in season.csv")
+    print_quality(console, result.winters, judged=False)
+    for line in (verdict(result), *(f"note: {note}" for note in result.notes)):
+        console.print(line)
+    console.print(f"season.csv and season.png in {folder}")
+    if result.simulated:
+        console.print(f"the snow in motion: snowshed view {folder}")
+
+
+def _rows(result: SeasonResult) -> tuple[list[dict[str, Any]], int]:
+    """Return the rows to print, and the number of left-out rows without a release."""
+    table = result.table
+    if len(table) > MOST_ROWS:
+        table = table[table["released"] == "yes"].head(MOST_ROWS)
+    rows = [{str(name): value for name, value in row.items()} for row in table.to_dict("records")]
+    return rows, len(result.table) - len(table)
+
+
+def _cell(value: Any, form: str) -> str:
+    missing = not isinstance(value, str) and (value is None or not math.isfinite(_number(value)))
+    return "" if missing else form.format(value)
+
+
+def _number(value: Any) -> float:
+    try:
+        return float(value)
+    except TypeError:  # pandas' mark for a missing integer
+        return math.nan

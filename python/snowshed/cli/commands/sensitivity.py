@@ -1,10 +1,11 @@
-"""The command ``snowshed sensitivity``; slow imports are made when it runs."""
+"""The command ``snowshed sensitivity``: slow modules are imported when it runs."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
-from typing import Any, Optional
+from typing import TYPE_CHECKING, Any, Optional
 
 import click
 
@@ -14,7 +15,12 @@ from snowshed.cli.commands.designed_study import (
     computed,
     design_options,
 )
-from snowshed.cli.terminal import say
+from snowshed.cli.terminal import plain_table, say, wide_console
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+WIDE = 0.25  # half width of an interval that is too wide for an index between 0 and 1
 
 
 @click.command()
@@ -44,8 +50,8 @@ def sensitivity(
 ) -> None:
     """Find the snow parameters that matter for the stack, compared with its noise.
 
-    Computes the missing runs into DIR/runs, and evaluates them. After an interruption the same
-    command goes on. With --stored it evaluates the store of another study.
+    Computes the missing runs into DIR/runs, and evaluates them. After an interruption, the same
+    command resumes. With --stored it evaluates the store of another study.
 
     \b
     Example:
@@ -53,17 +59,81 @@ def sensitivity(
     """  # noqa: D301 - click wants the control character
     from snowshed.analysis.sensitivity.designs import sensitivity_study
     from snowshed.analysis.sensitivity.report import evaluate
-    from snowshed.cli.display.sensitivity import print_table
 
     folder = check_options(context)
     if stored is None:
         design = partial(sensitivity_study, method, quick=quick, seeds=seeds, samples=samples)
-        found = computed(context, chosen_study(context, folder, design), folder)
-        if found is None:
+        runs = computed(context, chosen_study(context, folder, design), folder)
+        if runs is None:
             return
-        stored, name = found
+        stored, name = runs
     note = None if quiet else lambda text: say(f"note: {text}", err=True)
     table = evaluate(stored, folder, method, study=name, measure=measure, note=note)
     if not quiet:
-        print_table(method, table)
+        print_indices(method, table)
         say(f"tables and figures in {folder}")
+
+
+def _local(row: Any) -> str:
+    doubtful = row["distinct"] is not None and not row["distinct"]
+    return f"{row['s']:+.3f} ± {row['standard_error']:.3f}{' ?' if doubtful else '  '}"
+
+
+def _fixed(row: Any) -> str:
+    return f"{row['mean_m']:.3f} ± {row['deviation_m']:.3f}"
+
+
+def _shares(row: Any) -> str:
+    return f"{row['first']:+.2f} / {row['total']:.2f}"
+
+
+def _effects(row: Any) -> str:
+    return f"{row['strength']:.3f} ± {row['strength_interval']:.3f}"
+
+
+CELLS: Mapping[str, tuple[str, Callable[[Any], str]]] = {
+    "s": ("Index S ± standard error from seeding noise", _local),
+    "fixation": ("Mean ± standard deviation over the others, m", _fixed),
+    "sobol": ("First order / total Sobol index", _shares),
+    "morris": ("Strength μ* of effects ± 95 %, relative to the mean", _effects),
+}
+NOTES = {
+    "s": "? may be noise: zero lies within 1.96 standard errors",
+    "fixation": "the seeding alone: see noise.csv",
+    "sobol": "the total index of the seeding is noise: smaller indices are no effects",
+    "morris": "the strength of the seeding is noise: smaller strengths are no effects",
+}
+
+
+def print_indices(method: str, table: pd.DataFrame) -> None:
+    """Print the indices of a method: a line per parameter, a column per event."""
+    from snowshed.analysis.sensitivity.stored import TARGETS
+
+    title, cell = CELLS[method]
+    events = list(dict.fromkeys(table["event"]))
+    console = wide_console()
+    for target in TARGETS:
+        indices = plain_table(f"{title}: {target}")
+        indices.add_column("parameter", no_wrap=True)
+        for event in events:
+            indices.add_column(f"event {event}", justify="right", no_wrap=True)
+        rows = table[table["target"] == target]
+        keys = ["parameter", *(["value"] if "value" in table else [])]
+        for key, rows_of_key in rows.groupby(keys, sort=False):
+            by_event = {row["event"]: cell(row) for _, row in rows_of_key.iterrows()}
+            indices.add_row(_name(key), *(by_event.get(event, "") for event in events))
+        console.print(indices)
+    console.print(f" {NOTES[method]}")
+    if method == "sobol" and table["total_interval"].median() > WIDE:
+        blocks = int(table["blocks"].min())
+        console.print(
+            f" {blocks} blocks are too few: the 95 % intervals are wider than the indices"
+        )
+
+
+def _name(key: Any) -> str:
+    from snowshed.plot.labels import label
+
+    path, *values = key
+    parameter = label(path)
+    return " ".join([parameter.symbol, *(parameter.quantity(value) for value in values)])

@@ -1,48 +1,57 @@
-"""The command of snow slides: ``snowshed slide``."""
+"""The command ``snowshed slide``."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any, Optional
 
 import click
 
 from snowshed._core import InputError
-from snowshed.cli.commands.run import run_options
 from snowshed.cli.commands.slide_ranges import (
     RangeOptions,
     range_options,
     run_project_ranges,
     run_ranges,
 )
+from snowshed.cli.common_options import PATH, given_values, run_options
+from snowshed.cli.dry_run import print_cost
 from snowshed.cli.run_scene import run_scene
 from snowshed.cli.settings_options import settings_options
-from snowshed.cli.slide_files import WAYS, SlideFiles, refuse_changed_areas, removing_copies
-from snowshed.cli.slide_project import run_project, write_particles
+from snowshed.cli.slide_files import INPUTS, SlideFiles, refuse_changed_areas
+from snowshed.cli.slide_project import print_project_cost, run_project, write_particles
+from snowshed.scene.builders.terrain_copy import removing_copies
 from snowshed.scene.scene import ResolvedScene
-
-PATH = click.Path(path_type=Path)
 
 
 @click.command()
 @run_options
 @click.option("--terrain", type=PATH, help="Elevations: an ESRI ASCII grid or a GeoTIFF.")
-@click.option("--release", type=PATH, help="Polygons of the areas that break loose.")
+@click.option("--release", type=PATH, help="Polygons of the release areas.")
 @click.option("--thickness", type=float, help="Thickness of the released snow [m].")
-@click.option("--thickness-raster", type=PATH, help="The same in the cells of a raster.")
-@click.option("--entrainment-areas", type=PATH, help="Polygons where snow is taken up.")
+@click.option(
+    "--thickness-raster", type=PATH, help="Raster of the thickness of the released snow [m]."
+)
+@click.option("--entrainment-areas", type=PATH, help="Polygons of the entrainment areas.")
 @click.option("--resistance-areas", type=PATH, help="Polygons of forest.")
-@click.option("--layer", metavar="NAME", help="Layer of the release's GeoPackage.")
-@click.option("--entrainment-layer", metavar="NAME", help="The same of the areas of entrainment.")
-@click.option("--resistance-layer", metavar="NAME", help="The same of the areas of forest.")
-@click.option("--avaframe", type=PATH, help="An AvaFrame project, run as AvaFrame 2.1 does.")
-@click.option("--example", is_flag=True, help="A slide on a slope that is made for it.")
-@click.option("--compatible", is_flag=True, help="Do step by step what AvaFrame 2.1 does.")
-@click.option("--band", type=int, help="Band of the terrain, where a GeoTIFF has several.")
-@click.option("--thickness-band", type=int, help="Band of the raster of thickness.")
-@click.option("--max-slope", type=float, help="Steepest cliff under the release that is believed.")
-@click.option("--max-thickness", type=float, help="Largest thickness of snow that is believed [m].")
-@click.option("--max-cells", type=int, help="How many cells the terrain may have.")
+@click.option("--layer", metavar="NAME", help="Layer of the GeoPackage of release areas.")
+@click.option(
+    "--entrainment-layer", metavar="NAME", help="Layer of the GeoPackage of entrainment areas."
+)
+@click.option("--resistance-layer", metavar="NAME", help="Layer of the GeoPackage of forest.")
+@click.option("--avaframe", type=PATH, help="AvaFrame project to run as AvaFrame 2.1 does.")
+@click.option("--example", is_flag=True, help="Run the example: a slide on a synthetic slope.")
+@click.option("--compatible", is_flag=True, help="Reproduce the steps of AvaFrame 2.1.")
+@click.option("--band", type=int, help="Band of the terrain, if the GeoTIFF has several.")
+@click.option("--thickness-band", type=int, help="Band of the thickness raster.")
+@click.option(
+    "--max-slope", type=float, help="Steepest plausible cliff under the release [degrees]."
+)
+@click.option("--max-thickness", type=float, help="Largest plausible thickness of snow [m].")
+@click.option("--max-cells", type=int, help="Largest number of cells of the terrain.")
 @click.option("--max-time", type=float, help="Longest duration of the slide [s].")
 @click.option("--particles-at", metavar="STEPS", help="Write the particles after these steps.")
 @range_options
@@ -50,6 +59,7 @@ PATH = click.Path(path_type=Path)
 def slide(
     folder: Path,
     resume: bool,
+    dry_run: bool,
     quiet: bool,
     terrain: Optional[Path],
     release: Optional[Path],
@@ -83,56 +93,73 @@ def slide(
     """  # noqa: D301 - click wants the control character
     ranges = RangeOptions.taken_from(settings)
     steps = _steps(particles_at)
-    given = {name: value for name, value in settings.items() if value is not None}
-    limits = {"max_slope": max_slope, "max_thickness": max_thickness, "max_cells": max_cells}
+    given = given_values(settings)
     if compatible:
         given["mode"] = "compatible"
-    beliefs = {"--band": band, "--thickness-band": thickness_band, **{
-        f"--{name.replace('_', '-')}": value for name, value in limits.items()
-    }}  # fmt: skip
-    for option, value in beliefs.items():
-        if value is not None and (example or avaframe is not None):
-            raise InputError(f"{option}: only with --terrain")
-    named = {"release": layer, "entrainment": entrainment_layer, "resistance": resistance_layer}
-    layers = {part: name for part, name in named.items() if name is not None}
-    if avaframe is not None:
-        if layers:
-            raise InputError("--avaframe: keep one layer in each file of areas")
-        if terrain is not None or release is not None or thickness_raster is not None or example:
-            raise InputError(WAYS)
-        if entrainment_areas is not None or resistance_areas is not None:
-            raise InputError("--avaframe: areas are those of the project, in ENT and RES")
-        if ranges.sample is not None:
-            run_project_ranges(
-                avaframe, folder, ranges, quiet=quiet, settings=given, thickness=thickness,
-                max_time=max_time,
-            )  # fmt: skip
-            return
-        run_project(
-            avaframe, folder, resume=resume, quiet=quiet, settings=given, thickness=thickness,
-            max_time=max_time, steps=steps,
-        )  # fmt: skip
-        return
+    limits = {"max_slope": max_slope, "max_thickness": max_thickness, "max_cells": max_cells}
+    terrain_options = {"band": band, "thickness_band": thickness_band, **limits}
+    for name in given_values(terrain_options):
+        if example or avaframe is not None:
+            raise InputError(f"--{name.replace('_', '-')}: only with --terrain")
+    layers = given_values(
+        {"release": layer, "entrainment": entrainment_layer, "resistance": resistance_layer}
+    )
     files = SlideFiles(
         terrain, release, thickness_raster, entrainment_areas, resistance_areas, thickness,
         band, thickness_band, layers,
     )  # fmt: skip
-    with removing_copies(folder):
-        if resume and not files.any() and ranges.sample is None:
-            ready = ResolvedScene.load(folder / "scene.json")
-        else:
-            scene = files.scene(folder, example=example, settings=given, limits=limits)
-            if max_time is not None:
-                scene.set("events.max_time", max_time)
+    with _results_folder(folder, dry_run) as results:
+        if avaframe is not None:
+            _check_project_files(files, example=example)
+            project: dict[str, Any] = {
+                "quiet": quiet, "settings": given, "thickness": thickness, "max_time": max_time
+            }  # fmt: skip
             if ranges.sample is not None:
-                run_ranges(scene, folder, ranges, quiet=quiet)
-                return
-            ready = scene.resolve()
-            if resume:
-                refuse_changed_areas(ready, folder, files.of_areas())
-        run_scene(ready, folder, resume, quiet)
-    if steps:
-        write_particles(ready, folder, steps)
+                run_project_ranges(avaframe, results, ranges, dry_run=dry_run, **project)
+            elif dry_run:
+                print_project_cost(avaframe, results, **project)
+            else:
+                run_project(avaframe, results, resume=resume, steps=steps, **project)
+            return
+        with removing_copies(results):
+            if resume and not files.any() and ranges.sample is None and not dry_run:
+                resolved = ResolvedScene.load(results / "scene.json")
+            else:
+                scene = files.scene(results, example=example, settings=given, limits=limits)
+                if max_time is not None:
+                    scene.set("events.max_time", max_time)
+                if ranges.sample is not None:
+                    run_ranges(scene, results, ranges, dry_run=dry_run, quiet=quiet)
+                    return
+                resolved = scene.resolve()
+                if dry_run:
+                    print_cost(resolved)
+                    return
+                if resume:
+                    refuse_changed_areas(resolved, results, files.of_areas())
+            run_scene(resolved, results, resume, quiet)
+        if steps:
+            write_particles(resolved, results, steps)
+
+
+@contextmanager
+def _results_folder(folder: Path, dry_run: bool) -> Iterator[Path]:
+    """Yield the results folder; a dry run gets a temporary one, for its copies of files."""
+    if not dry_run:
+        yield folder
+        return
+    with TemporaryDirectory() as temporary:
+        yield Path(temporary) / "slide"
+
+
+def _check_project_files(files: SlideFiles, *, example: bool) -> None:
+    """Refuse files beside those of an AvaFrame project."""
+    if files.layers:
+        raise InputError("--avaframe: keep one layer in each file of areas")
+    if files.terrain or files.release or files.thickness_raster or example:
+        raise InputError(INPUTS)
+    if files.entrainment or files.resistance:
+        raise InputError("--avaframe: the project's folders ENT and RES hold the areas")
 
 
 def _steps(text: Optional[str]) -> list[int]:
@@ -141,7 +168,7 @@ def _steps(text: Optional[str]) -> list[int]:
     try:
         steps = [int(part) for part in text.split(",")]
     except ValueError:
-        raise InputError(f"--particles-at: {text!r} is no list of steps such as 1,100") from None
+        raise InputError(f"--particles-at: {text!r} is not a list of steps such as 1,100") from None
     if min(steps) < 0:
-        raise InputError(f"--particles-at: {min(steps)}; a number of steps is not negative")
+        raise InputError(f"--particles-at: {min(steps)}; a number of steps must not be negative")
     return steps

@@ -1,49 +1,50 @@
-"""Snow slides whose parameters are not known well: many runs, and maps of probability."""
+"""Snow slides with uncertain parameters: many runs, and maps of probability."""
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Optional
+from typing import TYPE_CHECKING, Any, Optional
 
 import click
 
 from snowshed._core import InputError
-from snowshed.cli.commands.study import compute_study, print_plan
+from snowshed.base.messages import suggestion
+from snowshed.cli.compute_study import compute_study, print_study_cost
 from snowshed.cli.exit_codes import Failed, Stopped
-from snowshed.cli.slide_files import removing_copies, terrain_copy
-from snowshed.cli.terminal import say
-from snowshed.io.messages import suggestion
-from snowshed.methods.slide import SlideSettings
+from snowshed.cli.terminal import PlainConsole, say
+from snowshed.methods.slide.settings import SlideSettings
+from snowshed.scene.builders.terrain_copy import removing_copies, terrain_copy
 from snowshed.scene.scene import Scene
 from snowshed.scene.schema import scene_parameters
 from snowshed.study.definition import Study
 from snowshed.study.factors import Factor, Span, latin_hypercube, sobol
 
+if TYPE_CHECKING:
+    from snowshed.analysis.hazard.maps import HazardMaps
+
 RUNS = "runs"
 STUDY = "slides"
 SAMPLINGS = {"latin-hypercube": latin_hypercube, "sobol": sobol}
-#: Symbols of the literature, for the names of settings.
+#: Symbols of the literature, and the settings that they stand for.
 SYMBOLS = {"mu": "friction", "xi": "turbulence", "E": "bond_modulus"}
-#: Stands for the thickness of all release areas.
+#: The thickness of all release areas.
 THICKNESS = "thickness"
 
 
 @dataclass(frozen=True)
 class RangeOptions:
-    """What the options of many slides say; see `range_options`."""
+    """The values of the options of many slides; see `range_options`."""
 
     sample: Optional[Factor]
     pressures: Sequence[float]
     reached_above: float
-    plan_only: bool
     jobs: Optional[int]
 
     @classmethod
     def taken_from(cls, options: dict[str, Any]) -> RangeOptions:
-        """Return the options of many slides, which are removed from those given.
+        """Return the options of many slides, and remove them from the given ones.
 
         Raises
         ------
@@ -59,17 +60,14 @@ class RangeOptions:
         return cls(
             draw(spans, runs, seed=seed) if spans else None,
             _pressures(options.pop("pressures")),
-            **{name: options.pop(name) for name in ("reached_above", "plan_only", "jobs")},
+            **{name: options.pop(name) for name in ("reached_above", "jobs")},
         )
 
 
 def range_options(command: Any) -> Any:
     """Add the options of many slides."""
     for option in (
-        click.option("--jobs", type=int, help="With --range: runs at once.  [default: the cores]"),
-        click.option(
-            "--plan", "plan_only", is_flag=True, help="With --range: only say how long it takes."
-        ),
+        click.option("--jobs", type=int, help="With --range: runs at once.  [default: cores]"),
         click.option(
             "--pressures", default="1,3,10", show_default=True, metavar="KPA,...",
             help="With --range: pressures whose exceedance is mapped.",
@@ -78,44 +76,45 @@ def range_options(command: Any) -> Any:
             "--reached-above", type=float, default=0.1, show_default=True,
             help="With --range: thickness above which a cell is reached [m].",
         ),
-        click.option("--sample-seed", type=int, default=1, help="With --range: another sample."),
+        click.option("--sample-seed", type=int, default=1, help="With --range: random seed."),
         click.option(
             "--sampling", type=click.Choice(list(SAMPLINGS)), default="latin-hypercube",
-            show_default=True, help="With --range: how the ranges are sampled.",
+            show_default=True, help="With --range: sampling of the ranges.",
         ),
         click.option(
-            "--runs", type=int, default=50, show_default=True, help="With --range: how many runs."
+            "--runs", type=int, default=50, show_default=True, help="With --range: number of runs."
         ),
         click.option(
             "--range", "ranges", multiple=True, metavar="NAME=LOW:HIGH",
-            help="Vary a setting, mu, xi, E or thickness, and map probabilities; may be repeated.",
+            help="Vary a setting, mu, xi, E or thickness, and map probabilities. Repeatable.",
         ),
     ):  # fmt: skip
         command = option(command)
     return command
 
 
-def run_ranges(scene: Scene, folder: Path, options: RangeOptions, *, quiet: bool) -> None:
+def run_ranges(
+    scene: Scene, folder: Path, options: RangeOptions, *, dry_run: bool, quiet: bool
+) -> None:
     """Compute the slides of a sample of the ranges, and write their maps of probability.
 
-    After an interruption the same command goes on.
+    After an interruption, the same command resumes.
     """
-    from snowshed.analysis.hazard_folder import write_hazard
-    from snowshed.cli.display.slide import print_hazard
+    from snowshed.analysis.hazard.folder import write_hazard
 
     study = _study(scene, options)
-    if options.plan_only:
-        print_plan(study, options.jobs)
+    if dry_run:
+        print_study_cost(study, options.jobs)
         return
     folder.mkdir(parents=True, exist_ok=True)
     study.save(folder / "study.toml")
     failure: Optional[Failed] = None
     try:
         compute_study(study, folder / RUNS, quiet=quiet, jobs=options.jobs, keep_particles=True)
-    except Failed as failed:  # the maps are of the others, and say so
+    except Failed as failed:  # the maps show the other runs, with a note
         failure = failed
     except Stopped:
-        raise Stopped("interrupted; the same command goes on") from None
+        raise Stopped("interrupted; resume with the same command") from None
     maps = write_hazard(
         folder, folder / RUNS, STUDY, reached=options.reached_above, pressures=options.pressures
     )
@@ -130,6 +129,7 @@ def run_project_ranges(
     folder: Path,
     options: RangeOptions,
     *,
+    dry_run: bool,
     quiet: bool,
     settings: Mapping[str, object],
     thickness: Optional[float],
@@ -145,16 +145,16 @@ def run_project_ranges(
         if max_time is not None:
             first.scene.set("events.max_time", max_time)
         if others and not quiet:
-            say(f"{first.release}, {first.sim_type}; {len(others)} others are left out")
-        run_ranges(first.scene, folder, options, quiet=quiet)
+            say(f"{first.release}, {first.sim_type}; {len(others)} other simulations are left out")
+        run_ranges(first.scene, folder, options, dry_run=dry_run, quiet=quiet)
 
 
 def _study(scene: Scene, options: RangeOptions) -> Study:
-    terrain = json.loads(scene.resolve().json)["terrain"]
+    terrain = scene.resolve().data["terrain"]
     columns: dict[str, Sequence[object]] = {}
     sample = {} if options.sample is None else options.sample.columns
     if THICKNESS in sample and terrain.get("thickness_file"):
-        raise InputError("--range thickness: the thickness is that of a raster, cell by cell")
+        raise InputError("--range thickness: a raster gives the thickness of each cell")
     for name, values in sample.items():
         for path in _paths(name, len(terrain["release"])):
             columns[path] = values
@@ -180,14 +180,17 @@ def _span(text: str) -> tuple[str, Span]:
 
 
 def _numbers() -> list[str]:
-    """Return the names of the settings that are numbers and leave the grid as it is."""
-    settings = (one for one in scene_parameters("slide") if one.path.startswith("numerics."))
-    names = [one.path.partition(".")[2] for one in settings if one.kind == "number"]
+    """Return the names of the numerical settings that do not change the grid."""
+    names = [
+        parameter.path.partition(".")[2]
+        for parameter in scene_parameters("slide")
+        if parameter.path.startswith("numerics.") and parameter.kind == "number"
+    ]
     return [name for name in names if name != SlideSettings.RESOLUTION]
 
 
 def _paths(name: str, areas: int) -> list[str]:
-    """Return where a parameter stands in a scene; the thickness in every release area."""
+    """Return the paths of a parameter in a scene; the thickness has one per release area."""
     if name == THICKNESS:
         return [f"terrain.release.{area}.thickness" for area in range(areas)]
     return [f"numerics.{name}"]
@@ -197,4 +200,25 @@ def _pressures(text: str) -> list[float]:
     try:
         return [float(part) for part in text.split(",")]
     except ValueError:
-        raise InputError(f"--pressures: {text!r} is no list of numbers such as 1,3,10") from None
+        raise InputError(f"--pressures: {text!r} is not a list of numbers such as 1,3,10") from None
+
+
+def print_hazard(maps: HazardMaps, folder: Path) -> None:
+    """Print the areas above each probability, and the folder of the maps."""
+    from rich.table import Table
+
+    from snowshed.analysis.hazard.maps import LEVELS, uncertainty
+
+    table = Table(title=f"{maps.runs} slides", box=None, title_justify="left")
+    table.add_column("area, m2, with a probability of", style="bold")
+    for level in LEVELS:
+        table.add_column(f"at least {100 * level:.0f} %", justify="right")
+    for exceedance in maps.exceedances:
+        areas = (f"{maps.area(exceedance, level):,.0f}" for level in LEVELS)
+        table.add_row(exceedance.label, *areas)
+    console = PlainConsole(soft_wrap=True)
+    console.print(table)
+    console.print(uncertainty(maps.runs))
+    if maps.failed:
+        console.print(f"note: {maps.failed} further runs failed and are left out")
+    console.print(f"maps, hazard.html and hazard.png in {folder}")

@@ -1,30 +1,41 @@
-"""The commands ``snowshed study ...``."""
+"""The commands ``snowshed study …``."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, contextmanager
+from collections import Counter
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Optional, TypeVar
 
 import click
 
 from snowshed._core import InputError
-from snowshed.cli.exit_codes import Failed, Stopped
-from snowshed.cli.quiet import quiet_notes_option, quiet_option
+from snowshed.base.formatting import plural
+from snowshed.cli.common_options import (
+    PATH,
+    ResultsFolder,
+    dry_run_option,
+    quiet_notes_option,
+    quiet_option,
+    resume_option,
+)
+from snowshed.cli.compute_study import (
+    compute_study,
+    outcome_as_exit_code,
+    print_failures,
+    print_outcome,
+    print_study_cost,
+    study_progress,
+)
 from snowshed.cli.terminal import PlainConsole, say, write_out
 from snowshed.io.atomic import write_text
-from snowshed.io.formatting import about
-from snowshed.run.progress import Reporter
 from snowshed.snow.stack.trimming import DEFAULT_TRIMMING, TRIMMINGS
 from snowshed.study.definition import Study
-from snowshed.study.errors import StudyInterrupted
 from snowshed.study.store import NO_STUDY, Store
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
-PATH = click.Path(path_type=Path)
-LISTED = 5  # failed runs that an error names; the output has them all
+FORMATS = ("csv", "parquet", "netcdf")
 
 
 def _computing_options(command: Command) -> Command:
@@ -58,10 +69,10 @@ def study() -> None:
 
 
 @study.command()
-@click.option("-o", "--output", "file", type=PATH, help="File to write; else stdout.")
+@click.option("-o", "--output", "file", type=PATH, help="File to write.  [default: stdout]")
 @quiet_notes_option
 def template(file: Optional[Path]) -> None:
-    """Write a study file with comments, to start from."""
+    """Write a commented study file to start from."""
     from snowshed.study.study_file import TEMPLATE
 
     if file is None:
@@ -70,29 +81,39 @@ def template(file: Optional[Path]) -> None:
         write_text(file, TEMPLATE)
 
 
-@study.command()
+@study.command(hidden=True)
 @click.argument("file", type=PATH)
 @click.option("--jobs", type=int, help="Runs at once.  [default: the number of cores]")
 def plan(file: Path, jobs: Optional[int]) -> None:
-    """Print the number and the expected time of a study's runs."""
-    print_plan(Study.load(file), jobs)
+    """Print the number and the expected time of a study's runs; see ``run --dry-run``."""
+    print_study_cost(Study.load(file), jobs)
 
 
 @study.command()
 @click.argument("file", type=PATH)
 @click.option(
-    "-o", "--output", "folder", type=PATH, required=True, help="Folder of the store, old or new."
+    *("-o", "--output", "folder"),
+    type=PATH,
+    required=True,
+    cls=ResultsFolder,
+    help="Folder of the store, old or new.",
 )
 @click.option(
     "--keep-particles", is_flag=True, help="Store particles too, for `snowshed study remeasure`."
 )
+@resume_option
+@dry_run_option("Print the number of runs and their estimated time and exit.")
 @_computing_options
-def run(file: Path, folder: Path, quiet: bool, **options: Any) -> None:
+def run(file: Path, folder: Path, dry_run: bool, quiet: bool, **options: Any) -> None:
     """Compute the missing runs of a study.
 
-    After an interruption the same command goes on.
+    After an interruption, the same command resumes.
     """
-    compute_study(Study.load(file), folder, quiet=quiet, **options)
+    study = Study.load(file)
+    if dry_run:
+        print_study_cost(study, options["jobs"])
+    else:
+        compute_study(study, folder, quiet=quiet, **options)
 
 
 @study.command()
@@ -103,20 +124,18 @@ def resume(folder: Path, name: Optional[str], quiet: bool, **options: Any) -> No
     """Compute the missing runs of the studies in a folder."""
     from snowshed.study import session
 
-    with _outcome_as_exit_code(), _progress(quiet) as progress:
+    with outcome_as_exit_code(), study_progress(quiet) as progress:
         session.resume(folder, name, progress=progress, **options)
     with Store.open(folder) as store:
         names = [name] if name else store.studies()
-    _finish(folder, names, quiet)
+    print_outcome(folder, names, quiet)
 
 
 @study.command()
 @click.argument("folder", type=PATH)
 def status(folder: Path) -> None:
     """Print the status of studies, also during their computation."""
-    from snowshed.cli.display.study import print_status
-
-    with _outcome_as_exit_code(), Store.open(folder) as store:
+    with outcome_as_exit_code(), Store.open(folder) as store:
         if not store.studies():
             raise InputError(f"{folder}: {NO_STUDY}")
         print_status(store)
@@ -128,19 +147,19 @@ def status(folder: Path) -> None:
 @click.option(
     "--format",
     "form",
-    type=click.Choice(["csv", "parquet", "netcdf"]),
-    help="[default: by the file's ending .csv, .parquet or .nc]",
+    type=click.Choice(FORMATS),
+    help="Format.  [default: from the suffix .csv, .parquet or .nc]",
 )
 @click.option("--study", "name", help="Name of the study, if the folder holds several.")
-@click.option("--timing", is_flag=True, help="Add wall times and what computed the runs.")
+@click.option("--timing", is_flag=True, help="Add wall times and the machine of each run.")
 @quiet_option
 def export(
     folder: Path, file: Path, form: Optional[str], name: Optional[str], timing: bool, quiet: bool
 ) -> None:
-    """Write a study's table to a file, as far as it is computed."""
+    """Write the table of the computed runs of a study to a file."""
     from snowshed.study.formats import export as write
 
-    with _outcome_as_exit_code():
+    with outcome_as_exit_code():
         write(folder, file, study=name, form=form, timing=timing)
         _warn_of_missing(folder, name, quiet)
 
@@ -153,8 +172,8 @@ def export(
 @click.option("--study", "name", help="Name of the study, if the folder holds several.")
 @quiet_option
 def picture(folder: Path, file: Optional[Path], name: Optional[str], quiet: bool) -> None:
-    """Draw what a study's runs measured over each parameter that varies."""
-    with _outcome_as_exit_code():
+    """Draw the results of a study over each parameter that varies."""
+    with outcome_as_exit_code():
         drawn = _draw(folder, file, name)
         if not quiet:
             say(drawn)
@@ -169,13 +188,13 @@ def picture(folder: Path, file: Optional[Path], name: Optional[str], quiet: bool
     type=click.Choice(list(TRIMMINGS)),
     default=DEFAULT_TRIMMING,
     show_default=True,
-    help="How A.4.2 is read: what height_m, length_m and the like are of.",
+    help="Trimming rule (thesis A.4.2) used for height_m, length_m, …",
 )
 @click.option(
     "--format",
     "form",
-    type=click.Choice(["csv", "parquet", "netcdf"]),
-    help="[default: by the file's ending .csv, .parquet or .nc]",
+    type=click.Choice(FORMATS),
+    help="Format.  [default: from the suffix .csv, .parquet or .nc]",
 )
 @click.option("--study", "name", help="Name of the study, if the folder holds several.")
 @quiet_option
@@ -189,7 +208,7 @@ def remeasure(
     from snowshed.study import remeasuring
     from snowshed.study.formats import write_table
 
-    with _outcome_as_exit_code():
+    with outcome_as_exit_code():
         write_table(lambda: remeasuring.remeasure(folder, name, trimming=trimming), file, form)
         _warn_of_missing(folder, name, quiet)
 
@@ -197,49 +216,19 @@ def remeasure(
 @study.command()
 @click.argument("folder", type=PATH)
 @click.argument("hash_", metavar="HASH")
-@click.option("-o", "--output", "file", type=PATH, help="File to write; else stdout.")
+@click.option("-o", "--output", "file", type=PATH, help="File to write.  [default: stdout]")
 @quiet_notes_option
 def scene(folder: Path, hash_: str, file: Optional[Path]) -> None:
     """Write the scene of one run, to repeat it alone.
 
-    HASH is the beginning of its hash.
+    HASH is the beginning of the run's hash.
     """
-    with _outcome_as_exit_code(), Store.open(folder) as store:
+    with outcome_as_exit_code(), Store.open(folder) as store:
         text = store.find(hash_).scene
     if file is None:
         write_out(text)
     else:
         write_text(file, text + "\n")
-
-
-def print_plan(study: Study, jobs: Optional[int]) -> None:
-    """Print the number of runs of a study, and their expected time."""
-    seconds, at_once = study.expected_duration(jobs=jobs)
-    count = len(study.runs())
-    say(f"{study.name}: {count} runs, {at_once} at once, {about(seconds)}")
-    say(f"varying: {', '.join(study.axes) or 'nothing'}")
-
-
-def compute_study(study: Study, folder: Path, *, quiet: bool, **options: Any) -> None:
-    """Compute what is missing of a study, with a progress bar, and say where its results are."""
-    with _outcome_as_exit_code(), _progress(quiet) as progress:
-        study.compute(folder, progress=progress, **options)
-    _finish(folder, [study.name], quiet)
-
-
-@contextmanager
-def _outcome_as_exit_code() -> Iterator[None]:
-    try:
-        yield
-    except StudyInterrupted as interrupted:
-        raise Stopped(str(interrupted)) from None
-
-
-def _progress(quiet: bool) -> AbstractContextManager[Optional[Reporter]]:
-    from snowshed.cli.display.study import announcement
-    from snowshed.cli.progress import LONG_PERIOD_S, progress_bar
-
-    return progress_bar(quiet=quiet, announce=announcement, speed_period_s=LONG_PERIOD_S)
 
 
 def _draw(folder: Path, file: Optional[Path], name: Optional[str]) -> Path:
@@ -249,30 +238,11 @@ def _draw(folder: Path, file: Optional[Path], name: Optional[str]) -> Path:
     from snowshed.study.table import read_table
 
     with Store.open(folder) as store:
-        found = store.named(name)
-        axes = store.axes(found)
+        study_name = store.named(name)
+        axes = store.axes(study_name)
     picture_file = file or folder / "study.png"
-    save(study_figure(read_table(folder, found), axes, found), picture_file)
+    save(study_figure(read_table(folder, study_name), axes, study_name), picture_file)
     return picture_file
-
-
-def _finish(folder: Path, names: list[str], quiet: bool) -> None:
-    """Print where the results are; fail if runs have failed."""
-    from snowshed.cli.display.study import print_failures
-
-    with _outcome_as_exit_code(), Store.open(folder) as store:
-        runs = {run.hash: run for name in names for run in store.runs(name)}
-    failed = [run for run in runs.values() if run.status == "failed"]
-    if not quiet:
-        print_failures(failed, PlainConsole(soft_wrap=True))
-        done = len(runs) - len(failed)
-        say(f"{done} of {len(runs)} runs done")
-        say(f"their table: snowshed study export {folder} -o table.csv")
-        say(f"their picture: snowshed study picture {folder}")
-    if failed:
-        listed = ", ".join(run.hash[:12] for run in failed[:LISTED])
-        listed += ", ..." if len(failed) > LISTED else ""
-        raise Failed(f"{len(failed)} of {len(runs)} runs failed: {listed}")
 
 
 def _warn_of_missing(folder: Path, name: Optional[str], quiet: bool) -> None:
@@ -283,3 +253,24 @@ def _warn_of_missing(folder: Path, name: Optional[str], quiet: bool) -> None:
     missing = sum(run.status == "pending" for run in runs)
     if missing:
         say(f"note: {missing} of {len(runs)} runs are not computed yet", err=True)
+
+
+def print_status(store: Store) -> None:
+    """Print the status of the runs, study by study."""
+    from snowshed.study.owner import is_alive
+
+    console = PlainConsole(soft_wrap=True)
+    for name in store.studies():
+        runs = store.runs(name)
+        console.print(f"{name}: {plural(len(runs), 'run')}", style="bold")
+        alive = {run.owner for run in runs if run.owner and is_alive(store, run.owner)}
+        kinds = Counter("running" if run.owner in alive else run.status for run in runs)
+        for status, meaning in (
+            ("done", "done"),
+            ("failed", "failed"),
+            ("running", "being computed now"),
+            ("pending", "to compute"),
+        ):
+            if kinds[status] or status == "done":
+                console.print(f"  {kinds[status]:6} {meaning}")
+        print_failures(runs, console)

@@ -7,29 +7,32 @@ from typing import Optional
 
 import click
 
-from snowshed.cli.quiet import quiet_option
+from snowshed.cli.common_options import PATH, quiet_option
 from snowshed.cli.terminal import say
 
 
 @click.command()
-@click.argument("results", type=click.Path(path_type=Path))
+@click.argument("results", type=PATH)
 @click.option(
     "-o",
     "--output",
-    type=click.Path(path_type=Path),
-    help="Folder for the files; default: vdb in the results folder.",
+    type=PATH,
+    help="Folder for the files.  [default: vdb in the results folder]",
 )
-@click.option("--snapshots", is_flag=True, help="The snapshots instead of the stack after events.")
-@click.option("--width", type=float, help="Of 2D results: width of the strip, m.")
+@click.option(
+    "--snapshots", is_flag=True, help="Write the snapshots instead of the stack after events."
+)
+@click.option("--width", type=float, help="Width of the strip for 2D results, m.")
 @quiet_option
 def vdb(
     results: Path, output: Optional[Path], snapshots: bool, width: Optional[float], quiet: bool
 ) -> None:
     """Write the snow of a results folder as OpenVDB files.
 
-    Each holds the stack as a level set, its density as a fog volume, and the particles as points.
+    Each file holds the stack as a level set, its density as a fog volume, and the particles as
+    points.
     """
-    from snowshed.run.vdb_export import Exported, export_folder
+    from snowshed.results.vdb_export import Exported, export_folder
 
     def show(exported: Exported) -> None:
         content = exported.content

@@ -7,20 +7,26 @@ from typing import Optional
 
 import click
 
+from snowshed.cli.common_options import PATH, quiet_option
 from snowshed.cli.progress import progress_bar
-from snowshed.cli.quiet import quiet_option
 from snowshed.cli.terminal import say
-
-PATH = click.Path(path_type=Path)
 
 
 @click.command()
 @click.argument("results", type=PATH)
-@click.option("-o", "--output", "page", type=PATH, help="The page; default: view.html in RESULTS.")
-@click.option("--video", type=PATH, help="A film.mp4 or film.gif, in place of the page.")
-@click.option("--seconds", type=float, help="How long the video is; default: 12 at most.")
-@click.option("--width", type=int, default=960, show_default=True, help="Of the video, pixels.")
-@click.option("--colour", help="What colours the video's snow, such as event or speed.")
+@click.option(
+    "-o", "--output", "page", type=PATH, help="Page to write.  [default: view.html in RESULTS]"
+)
+@click.option(
+    "--video", type=PATH, help="Video to write instead of the page: film.mp4 or film.gif."
+)
+@click.option("--seconds", type=float, help="Duration of the video, s.  [default: at most 12]")
+@click.option(
+    "--width", type=int, default=960, show_default=True, help="Width of the video, pixels."
+)
+@click.option(
+    "--colour", help="Quantity that colours the snow in the video, such as event or speed."
+)
 @quiet_option
 def view(
     results: Path,
@@ -31,7 +37,7 @@ def view(
     colour: Optional[str],
     quiet: bool,
 ) -> None:
-    """Write the moving view of a run or a season, one page that opens in any browser.
+    """Write the moving view of a run or a season: a page that opens in any browser.
 
     \b
     Example:
@@ -39,11 +45,11 @@ def view(
       snowshed view results --video film.mp4
     """  # noqa: D301 - click wants the control character
     if video is None:
-        from snowshed.run.view import write_view
+        from snowshed.results.view import write_view
 
         written = write_view(results, page)
     else:
-        from snowshed.run.video import write_video
+        from snowshed.results.video import write_video
 
         with progress_bar(quiet=quiet) as progress:
             written = write_video(

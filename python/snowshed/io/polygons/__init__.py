@@ -1,8 +1,8 @@
-"""Files of polygons: GeoPackage, ESRI Shapefile, GeoJSON; which one a file is, its content says.
+"""Files of polygons: GeoPackage, ESRI Shapefile, GeoJSON, recognised by their content.
 
-No other format is read. GDAL knows dozens, tells them by content whatever a file is called, and
-some are requests to other machines or names of other files. GeoPackage and GeoJSON are therefore
-read without GDAL, and a shapefile reaches it only after its head and index have been checked.
+No other format is read. GDAL knows dozens of formats, recognises them by content, and some are
+requests to other machines or names of other files. Therefore GeoPackage and GeoJSON are read
+without GDAL, and a shapefile reaches GDAL only after its head and index have been checked.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Optional
 
 from snowshed._core import InputError
-from snowshed.io.messages import quoted
+from snowshed.base.messages import quoted
 from snowshed.io.polygons.geojson import read_geojson
 from snowshed.io.polygons.geopackage import SQLITE, read_geopackage
 from snowshed.io.polygons.layer import PolygonLayer
@@ -30,12 +30,12 @@ def read_layer(path: Path, layer: Optional[str], option: str) -> PolygonLayer:
     layer
         Name of the layer to read; None: the only one.
     option
-        What names a layer, for the message where there are several.
+        Option that names a layer, for the message if there are several.
 
     Raises
     ------
     InputError
-        If it is no regular file, no such format, damaged, or has several layers.
+        If it is not a regular file, of another format, damaged, or has several layers.
     OSError
         If there is no such file, or it cannot be read.
     """

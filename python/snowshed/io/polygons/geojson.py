@@ -15,12 +15,12 @@ from typing import Any
 import numpy as np
 
 from snowshed._core import InputError
-from snowshed.io.arrays import Floats, Integers
-from snowshed.io.extras import require
+from snowshed.base.arrays import Floats, Integers
+from snowshed.base.extras import require
+from snowshed.base.limits import CORNERS, GEOJSON, POLYGONS
+from snowshed.base.messages import quoted, shortened
+from snowshed.io.coordinates.plain_systems import plain_system
 from snowshed.io.input_file import read_input
-from snowshed.io.limits import CORNERS, GEOJSON, POLYGONS
-from snowshed.io.messages import quoted, shortened
-from snowshed.io.plain_systems import plain_system
 from snowshed.io.polygons.layer import PolygonLayer, is_wanted
 
 GEOMETRIES = (
@@ -54,7 +54,7 @@ def read_geojson(path: Path) -> PolygonLayer:
     for number, feature in enumerate(features, 1):
         properties = feature.get("properties") or {}
         if not isinstance(properties, dict):
-            raise InputError(f"{path}, feature {number}: its properties are no object")
+            raise InputError(f"{path}, feature {number}: its properties are not an object")
         fields.update(dict.fromkeys(properties))
         records.append({key: value for key, value in properties.items() if is_wanted(key)})
         outlines.add(feature.get("geometry"), f"{path}, feature {number}")
@@ -81,8 +81,10 @@ def _features(content: Mapping[str, Any], path: Path) -> list[Mapping[str, Any]]
     kind = content.get("type")
     if kind == "FeatureCollection":
         features = content.get("features")
-        if not isinstance(features, list) or not all(isinstance(one, dict) for one in features):
-            raise InputError(f"{path}: not GeoJSON: its features are no list of objects")
+        if not isinstance(features, list) or not all(
+            isinstance(feature, dict) for feature in features
+        ):
+            raise InputError(f"{path}: not GeoJSON: its features are not a list of objects")
         return features
     if kind == "Feature":
         return [content]
@@ -95,7 +97,7 @@ def _features(content: Mapping[str, Any], path: Path) -> list[Mapping[str, Any]]
 
 
 class _Outlines:
-    """Collects the corners of rings, and makes all polygons at once."""
+    """Corners of rings, from which all polygons are made together."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -106,23 +108,23 @@ class _Outlines:
         self.feature_parts: list[int] = []  # how many polygons each has; -1 without a geometry
 
     def add(self, geometry: object, where: str) -> None:
-        """Take the polygon, or polygons, of a feature."""
+        """Collect the polygon, or polygons, of a feature."""
         if geometry is None:
             self.feature_parts.append(-1)
             return
         kind = geometry.get("type") if isinstance(geometry, dict) else None
         if kind not in GEOMETRIES or not isinstance(geometry, dict):
-            raise InputError(f"{where}: its geometry is none of GeoJSON")
+            raise InputError(f"{where}: not a GeoJSON geometry")
         coordinates = geometry.get("coordinates")
         if kind not in ("Polygon", "MultiPolygon"):
             raise InputError(f"{where}: not a polygon but a {kind}")
         parts = [coordinates] if kind == "Polygon" else coordinates
         if not isinstance(parts, list):
-            raise InputError(f"{where}: its coordinates are no list")
+            raise InputError(f"{where}: its coordinates are not a list")
         parts = [part for part in parts if part != []]
         for part in parts:
             if not isinstance(part, list):
-                raise InputError(f"{where}: its coordinates are no list of rings")
+                raise InputError(f"{where}: its coordinates are not a list of rings")
             for ring in part:
                 self._add_ring(ring, where)
             self.polygon_rings.append(len(part))
@@ -130,11 +132,11 @@ class _Outlines:
 
     def _add_ring(self, ring: object, where: str) -> None:
         if not isinstance(ring, list) or len(ring) < 3 or set(map(type, ring)) != {list}:
-            raise InputError(f"{where}: a ring is no list of three corners or more")
+            raise InputError(f"{where}: a ring is not a list of at least three corners")
         if len(self.x) + len(ring) > CORNERS:
             raise InputError(f"{self.path}: more than {CORNERS} corners; simplify the outlines")
         if min(map(len, ring)) < 2 or not set(map(type, chain.from_iterable(ring))) <= NUMBERS:
-            raise InputError(f"{where}: a corner is no list of two numbers or more")
+            raise InputError(f"{where}: a corner is not a list of at least two numbers")
         self.x += [corner[0] for corner in ring]
         self.y += [corner[1] for corner in ring]
         self.ring_sizes.append(len(ring))
@@ -157,16 +159,18 @@ class _Outlines:
             polygons = shapely.polygons(rings, indices=_numbers(self.polygon_rings))
         except (ValueError, shapely.errors.ShapelyError) as error:
             raise InputError(f"{self.path}: not a polygon: {error}") from None
-        found, first = [], 0
+        groups, first = [], 0
         for parts in self.feature_parts:
             own = polygons[first : first + max(parts, 0)]
             first += max(parts, 0)
-            found.append(None if parts < 0 else own[0] if parts == 1 else shapely.MultiPolygon(own))
-        return found
+            groups.append(
+                None if parts < 0 else own[0] if parts == 1 else shapely.MultiPolygon(own)
+            )
+        return groups
 
 
 def _numbers(counts: Sequence[int]) -> Integers:
-    """Return the number of the whole for each part, where wholes have so many parts."""
+    """Return the index of the whole for each part, from the number of parts of each whole."""
     numbers: Integers = np.repeat(np.arange(len(counts)), counts)
     return numbers
 
@@ -175,8 +179,8 @@ def _crs(content: Mapping[str, Any], farthest: Floats, path: Path) -> str:
     if "crs" not in content:
         if farthest[0] > 180 or farthest[1] > 90:
             raise InputError(
-                f"{path}: has no coordinate system; its numbers are not the degrees that GeoJSON "
-                f"has without one; {HOW}"
+                f"{path}: has no coordinate system; its numbers are not degrees, which GeoJSON "
+                f"requires without one; {HOW}"
             )
         return DEGREES
     system = content["crs"]
@@ -189,9 +193,9 @@ def _crs(content: Mapping[str, Any], farthest: Floats, path: Path) -> str:
     if kind == "link":
         raise InputError(f"{path}: crs: a link, which is not followed; {HOW}")
     name = properties.get("name" if kind == "name" else "code")
-    words = f"EPSG:{name}" if kind == "EPSG" else str(name)
-    code = CODES.fullmatch(words)
-    plain = plain_system(f"{code[1]}:{code[2]}" if code else words)
+    description = f"EPSG:{name}" if kind == "EPSG" else str(name)
+    code = CODES.fullmatch(description)
+    plain = plain_system(f"{code[1]}:{code[2]}" if code else description)
     if not plain:
-        raise InputError(f"{path}: crs: {quoted(words)} is no code such as EPSG:31287")
+        raise InputError(f"{path}: crs: {quoted(description)} is not a code such as EPSG:31287")
     return plain

@@ -1,4 +1,4 @@
-"""Polygons of a GeoPackage, read with SQLite alone: tables as they are, and nothing that computes.
+"""Polygons of a GeoPackage, read with SQLite only: plain tables, no computed ones.
 
 Views, triggers, virtual tables and generated columns are programs in the file. None is run.
 """
@@ -14,10 +14,8 @@ from tempfile import TemporaryDirectory
 from typing import Any, Optional
 
 from snowshed._core import InputError
-from snowshed.io.atomic import replacing
-from snowshed.io.coordinate_systems import system_of
-from snowshed.io.extras import require
-from snowshed.io.limits import (
+from snowshed.base.extras import require
+from snowshed.base.limits import (
     CORNERS,
     GEOPACKAGE_COPY,
     GEOPACKAGE_VALUE,
@@ -26,14 +24,16 @@ from snowshed.io.limits import (
     POLYGONS,
     SQL_STEPS,
 )
-from snowshed.io.messages import quoted
-from snowshed.io.notes import tell
-from snowshed.io.plain_systems import plain_system
+from snowshed.base.messages import quoted
+from snowshed.base.notes import tell
+from snowshed.io.atomic import replacing
+from snowshed.io.coordinates.plain_systems import plain_system
+from snowshed.io.coordinates.systems import system_of
 from snowshed.io.polygons.layer import PolygonLayer, is_wanted
 from snowshed.io.polygons.wkb import count_corners
 
 SQLITE = b"SQLite format 3\0"
-#: How files begin in which SQLite keeps changes: those to come, and those to take back.
+#: First bytes of files in which SQLite keeps changes: the write-ahead log and the rollback journal.
 LOG = (b"\x37\x7f\x06\x82", b"\x37\x7f\x06\x83")
 JOURNAL = (b"\xd9\xd5\x05\xf9\x20\xa1\x63\xd7",)
 TABLES = ("gpkg_contents", "gpkg_geometry_columns", "gpkg_spatial_ref_sys")
@@ -42,7 +42,7 @@ SURFACES = (
     *("POLYGON", "MULTIPOLYGON", "GEOMETRY", "GEOMETRYCOLLECTION", "SURFACE"),
     *("CURVEPOLYGON", "MULTISURFACE"),
 )
-#: What statements may do; everything else is denied.
+#: Allowed actions of statements; all others are denied.
 ACTIONS = (sqlite3.SQLITE_SELECT, sqlite3.SQLITE_READ, sqlite3.SQLITE_PRAGMA)
 FUNCTIONS = ("length", "typeof", "lower", "substr")
 #: Bytes that precede a geometry, by the code of its envelope.
@@ -61,7 +61,7 @@ def read_geopackage(path: Path, layer: Optional[str], option: str) -> PolygonLay
 
 @contextmanager
 def _opened(path: Path) -> Iterator[sqlite3.Connection]:
-    """Open a file so that nothing beside it is written; changes that wait in its log count."""
+    """Open a file without writing beside it; changes in its log count."""
     with TemporaryDirectory() as folder:
         log = _companion(path, "-wal", LOG)
         if _companion(path, "-journal", JOURNAL) is not None:
@@ -84,7 +84,7 @@ def _opened(path: Path) -> Iterator[sqlite3.Connection]:
 
 
 def _companion(path: Path, ending: str, begin: tuple[bytes, ...]) -> Optional[Path]:
-    """Return the file beside a database that holds changes; None where there are none."""
+    """Return the file of changes beside a database, if any."""
     file = path.with_name(path.name + ending)
     if not file.is_file():
         return None
@@ -134,15 +134,15 @@ class _Package:
         return PolygonLayer(shapes, [dict(zip(wanted, r)) for r in rows], names, self._crs(system))
 
     def _check_table(self, table: str) -> None:
-        """Refuse what is no table that stands in the file."""
-        found = self.connection.execute(
+        """Refuse everything except tables in the file."""
+        entry = self.connection.execute(
             "SELECT type, rootpage FROM sqlite_master WHERE lower(name) = lower(?)", (table,)
         ).fetchone()
-        if found is None:
+        if entry is None:
             raise InputError(f"{self.path}: not a GeoPackage: it has no table {quoted(table)}")
-        if found[0] != "table" or not found[1]:
+        if entry[0] != "table" or not entry[1]:
             raise InputError(
-                f"{self.path}: {quoted(table)} is a {found[0] if found[1] == 0 else 'program'}, "
+                f"{self.path}: {quoted(table)} is a {entry[0] if entry[1] == 0 else 'program'}, "
                 "which is not evaluated; save it as a table"
             )
 
@@ -156,15 +156,15 @@ class _Package:
         ).fetchall()
         if len(every) > LAYERS:
             raise InputError(f"{self.path}: more than {LAYERS} layers")
-        names = ", ".join(quoted(str(one[0])) for one in every[:20])
+        names = ", ".join(quoted(str(row[0])) for row in every[:20])
         if layer is not None:
-            found = [one for one in every if one[0] == layer]
-            if not found:
+            matching = [row for row in every if row[0] == layer]
+            if not matching:
                 raise InputError(
                     f"{self.path}: has no layer {quoted(layer)}; it has {names or 'none'}"
                 )
-            return str(found[0][0]), str(found[0][1]), found[0][3]
-        of_polygons = [one for one in every if str(one[2]).upper() in SURFACES]
+            return str(matching[0][0]), str(matching[0][1]), matching[0][3]
+        of_polygons = [row for row in every if str(row[2]).upper() in SURFACES]
         if not of_polygons:
             raise InputError(f"{self.path}: holds no layer of polygons")
         if len(of_polygons) > 1:
@@ -211,14 +211,14 @@ class _Package:
             raise InputError(f"{self.path}: a geometry is damaged: {error}") from None
 
     def _crs(self, system: object) -> str:
-        found = self.connection.execute(
+        row = self.connection.execute(
             "SELECT organization, organization_coordsys_id, definition FROM gpkg_spatial_ref_sys "
             "WHERE srs_id = ?",
             (system,),
         ).fetchone()
-        if found is None:
+        if row is None:
             raise InputError(f"{self.path}: does not describe its coordinate system {system}")
-        organization, number, definition = found
+        organization, number, definition = row
         plain = plain_system(str(definition))
         if str(organization).upper() == "EPSG" and isinstance(number, int):
             code = f"EPSG:{number}"
@@ -226,7 +226,7 @@ class _Package:
         if "undefined" in str(definition).lower()[:60]:
             return ""
         if not plain:
-            raise InputError(f"{self.path}: its coordinate system {system} is none that is read")
+            raise InputError(f"{self.path}: its coordinate system {system} is not supported")
         return plain
 
 
@@ -236,11 +236,11 @@ def _name(text: str) -> str:
 
 
 def _wkb(value: object, where: str) -> Optional[bytes]:
-    """Return the geometry in a value of a GeoPackage; None where there is none."""
+    """Return the geometry in a value of a GeoPackage, if any."""
     if value is None:
         return None
     if not isinstance(value, bytes) or value[:2] != b"GP" or len(value) < 8:
-        raise InputError(f"{where}: its geometry is none of a GeoPackage")
+        raise InputError(f"{where}: not a GeoPackage geometry")
     flags = value[3]
     begin = ENVELOPES.get(flags >> 1 & 7)
     if begin is None or flags & 0x20:

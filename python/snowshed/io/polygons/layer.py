@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-#: Fields are known by these words at their beginning; others are never read.
+#: Fields are read if their names begin with these words.
 WANTED = ("name", "thick", "d0")
 
 
@@ -17,13 +17,13 @@ class PolygonLayer:
     Attributes
     ----------
     shapes
-        Geometries of shapely, one for each feature; None where it has none.
+        Geometries of shapely, one for each feature; None for features without.
     records
-        Values of the fields that are wanted, by field; one for each feature.
+        Values of the requested fields, by field; one for each feature.
     fields
         Names of all fields of the file.
     crs
-        Coordinate system in words; empty where the file has none.
+        Coordinate system as text; empty if the file has none.
     """
 
     shapes: Sequence[Any]

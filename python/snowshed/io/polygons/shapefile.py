@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 
 from snowshed._core import InputError
-from snowshed.io.coordinate_systems import read_system
-from snowshed.io.extras import require
-from snowshed.io.gdal_fence import fenced_pyogrio
-from snowshed.io.limits import CORNERS, POLYGONS, RINGS
-from snowshed.io.messages import shortened
-from snowshed.io.notes import tell
+from snowshed.base.extras import require
+from snowshed.base.limits import CORNERS, POLYGONS, RINGS
+from snowshed.base.messages import shortened
+from snowshed.base.notes import tell
+from snowshed.io.coordinates.gdal_fence import fenced_pyogrio
+from snowshed.io.coordinates.systems import read_system
 from snowshed.io.polygons.layer import PolygonLayer, is_wanted
 
 #: The number of the format, and five that are not used.
@@ -52,7 +52,7 @@ def read_shapefile(path: Path) -> PolygonLayer:
             raise InputError(
                 f"{path}: not a file of polygons: {shortened(str(error), 300)}"
             ) from None
-    for warning in dict.fromkeys(shortened(str(one.message), 300) for one in said):
+    for warning in dict.fromkeys(shortened(str(caught.message), 300) for caught in said):
         tell(f"{path}: GDAL says: {warning}")
     rows = zip(*columns) if columns else [()] * len(shapes)
     names = [str(name) for name in meta["fields"]]
@@ -83,7 +83,7 @@ def _literally(name: str) -> str:
 
 
 def _check_sizes(path: Path, companions: dict[str, Path]) -> None:
-    """Refuse what holds no polygons, and too many, before GDAL reads them."""
+    """Refuse files without polygons, or with too many, before GDAL reads them."""
     content = np.memmap(path, dtype=np.uint8, mode="r")
     if len(content) < HEAD:
         raise InputError(f"{path}: not a file of polygons: cut off")
@@ -99,10 +99,10 @@ def _check_sizes(path: Path, companions: dict[str, Path]) -> None:
     entries = np.fromfile(index, dtype=">i4", count=2 * count, offset=HEAD)
     begins = 2 * entries[::2].astype(np.int64)
     # The number of rings and that of corners stand 44 bytes into a record.
-    whole = (begins >= HEAD) & (begins + 52 <= len(content))
-    places = begins[whole, None] + np.arange(44, 52)
-    rings, corners = content[places].view("<i4").astype(np.int64).T if len(places) else ([0], [0])
-    shapes = content[begins[whole, None] + np.arange(8, 12)].view("<i4").ravel()
+    complete = (begins >= HEAD) & (begins + 52 <= len(content))
+    offsets = begins[complete, None] + np.arange(44, 52)
+    rings, corners = content[offsets].view("<i4").astype(np.int64).T if len(offsets) else ([0], [0])
+    shapes = content[begins[complete, None] + np.arange(8, 12)].view("<i4").ravel()
     polygons = np.isin(shapes, OF_POLYGONS)
     if np.sum(np.asarray(corners)[polygons]) > CORNERS:
         raise InputError(f"{path}: more than {CORNERS} corners; simplify the outlines")

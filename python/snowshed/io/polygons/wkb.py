@@ -51,7 +51,7 @@ def count_corners(wkb: bytes, where: str) -> int:
 
 
 def _head(wkb: bytes, place: int) -> tuple[int, int, str, int]:
-    """Return kind, place of what follows, byte order and numbers of a corner."""
+    """Return the kind, the next offset, the byte order and the coordinates of a corner."""
     order = "<" if wkb[place : place + 1] == b"\1" else ">"
     (code,) = struct.unpack_from(f"{order}I", wkb, place + 1)
     place += 9 if code & 0x20000000 else 5  # an identifier of the coordinate system

@@ -1,4 +1,4 @@
-"""OpenVDB files of the snow, for Houdini, Blender and whatever else opens them."""
+"""OpenVDB files of the snow, for Houdini, Blender and other programs."""
 
 from snowshed.io.vdb.program import available
 from snowshed.io.vdb.writing import WrittenVdb, write_vdb

@@ -14,12 +14,12 @@ REFUSED = 2  # exit code; the reason is on standard output
 
 
 def available() -> bool:
-    """Say whether this snowshed was built with OpenVDB."""
+    """Return whether this snowshed was built with OpenVDB."""
     return os.access(PROGRAM, os.X_OK)
 
 
 def run_writer(path: Path, request: bytes) -> bytes:
-    """Have the program write a file and return what it answers.
+    """Let the program write a file, and return its answer.
 
     Raises
     ------

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from snowshed._core import InputError
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 from snowshed.io.atomic import replacing
 from snowshed.io.vdb.program import run_writer
 
@@ -27,7 +27,7 @@ class WrittenVdb:
     Attributes
     ----------
     volume
-        Of the solid, as OpenVDB measures its level set, m3 (per metre of width in 2D).
+        Volume of the solid, from its OpenVDB level set, m3 (per metre of width in 2D).
     mass
         Sum over the density volume, kg (per metre of width in 2D).
     surface_voxels, density_voxels
@@ -72,7 +72,7 @@ def write_vdb(
         Size of the simulation's grid cells, m: voxels of the density volume. Those of the level
         set are half as large.
     particles_per_voxel
-        As the snow was seeded; decides how far a particle reaches.
+        Seeding of the snow; decides the radius of a particle.
     width
         In 2D, the width of the strip about y = 0 that solid and density are drawn out over, m;
         rounded to an odd number of cells. Default: nine cells.
@@ -82,7 +82,7 @@ def write_vdb(
     Raises
     ------
     InputError
-        If snowshed was built without OpenVDB, arrays do not fit each other, or the particles are
+        If snowshed was built without OpenVDB, the lengths of arrays differ, or the particles make
         no solid.
     OSError
         If the file cannot be written.
@@ -125,8 +125,8 @@ def write_vdb(
 
 def _plain(array: NDArray[np.generic]) -> NDArray[np.generic]:
     """Return the array in a type that point data has."""
-    whole = np.issubdtype(array.dtype, np.integer)
-    return array.astype(np.int32 if whole else np.float32)
+    is_integer = np.issubdtype(array.dtype, np.integer)
+    return array.astype(np.int32 if is_integer else np.float32)
 
 
 def _odd_cells(width: Optional[float], dx: float) -> int:

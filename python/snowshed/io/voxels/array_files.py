@@ -1,4 +1,4 @@
-"""Images in NPY files, and in raw files whose size and type are known from elsewhere."""
+"""Images in NPY files, and in raw files of given size and type."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from numpy.lib import format as npy_format
 from numpy.typing import NDArray
 
 from snowshed._core import InputError
-from snowshed.io.damage import DAMAGED
+from snowshed.base.damage import DAMAGED
+from snowshed.base.messages import quoted
+from snowshed.base.notes import tell
 from snowshed.io.input_file import open_regular, stored_bytes
-from snowshed.io.messages import quoted
-from snowshed.io.notes import tell
 from snowshed.io.voxels.turned import Turn, turned
 from snowshed.io.voxels.voxel_file import VoxelFile, check_size, check_type, check_unpacked
 
@@ -101,16 +101,16 @@ def numbers_of(
     Parameters
     ----------
     name
-        What the image is called in messages.
+        Name of the image in messages.
     data
         The file.
     shape
-        Of the image.
+        Shape of the image.
     dtype
-        Of the numbers.
+        Type of the numbers.
     start
-        Bytes before the first number. Where there are some, what comes after the last number is
-        left out and told.
+        Bytes before the first number. With an offset, bytes after the last number are left out, and
+        a note reports them.
 
     Raises
     ------
@@ -138,11 +138,11 @@ def numbers_of(
     def read(low: int, high: int) -> NDArray[Any]:
         with open_regular(data) as file:
             file.seek(start + low * layer * dtype.itemsize)
-            found = np.fromfile(file, dtype, (high - low) * layer)
-        if len(found) < (high - low) * layer:
+            numbers = np.fromfile(file, dtype, (high - low) * layer)
+        if len(numbers) < (high - low) * layer:
             raise InputError(f"{data}: damaged: it has become shorter")
         if dtype.kind == "b":  # a byte may hold anything
-            found = found.view(np.uint8) != 0
-        return found.reshape(high - low, ny, nx)
+            numbers = numbers.view(np.uint8) != 0
+        return numbers.reshape(high - low, ny, nx)
 
     return VoxelFile(str(name), (nz, ny, nx), dtype, read)

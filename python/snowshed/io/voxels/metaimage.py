@@ -1,7 +1,7 @@
 """Images in MetaImage files: a text header (.mhd) beside the numbers, or before them (.mha).
 
-The fields mean what ITK takes them for (MetaIO, https://itk.org/Wiki/ITK/MetaIO/Documentation).
-Each field that changes the numbers or their places is honoured, or the file is refused.
+The fields have the meaning of ITK (MetaIO, https://itk.org/Wiki/ITK/MetaIO/Documentation). Every
+field that changes the numbers or their positions is honoured, or the file is refused.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import Optional
 
 import numpy as np
 
-from snowshed.io.notes import tell
+from snowshed.base.notes import tell
 from snowshed.io.voxels.array_files import number_type, numbers_of
 from snowshed.io.voxels.metaimage_fields import Fields
 from snowshed.io.voxels.packed_numbers import packed_numbers
@@ -21,7 +21,7 @@ from snowshed.io.voxels.text_numbers import text_numbers
 from snowshed.io.voxels.turned import Turn, turned
 from snowshed.io.voxels.voxel_file import VoxelFile, check_size
 
-#: ElementType of the format, and what it is here.
+#: ElementType of the format, and the type of NumPy.
 ELEMENTS = {
     "MET_UCHAR": "uint8",
     "MET_CHAR": "int8",
@@ -97,7 +97,7 @@ def _kind(fields: Fields) -> str:
         if fields.has(name)
     }
     if len(orders) > 1:
-        raise fields.wrong("ElementByteOrderMSB", "BinaryDataByteOrderMSB says something else")
+        raise fields.wrong("ElementByteOrderMSB", "BinaryDataByteOrderMSB contradicts it")
     return ELEMENTS[element] + ("-be" if True in orders else "")
 
 
@@ -141,7 +141,7 @@ def _data_file(fields: Fields) -> Path:
 def _header_size(
     fields: Fields, data: Path, start: int, shape: Optional[tuple[int, int, int]], kind: str
 ) -> int:
-    """Return how many bytes come before the numbers; -1 means: all but the numbers."""
+    """Return the number of bytes before the numbers; -1 means everything except the numbers."""
     text = fields.text("HeaderSize", "")
     if not re.fullmatch(r"-1|[0-9]{1,15}", text):
         raise fields.wrong("HeaderSize", "a number of bytes is needed")
@@ -156,7 +156,7 @@ def _header_size(
 
 
 def _tell_of_scale(fields: Fields) -> None:
-    """Say that the numbers are those of the file, where it has another scale for them."""
+    """Print a note that the file's scale is not applied to the numbers."""
     (slope,) = fields.numbers("ElementToIntensityFunctionSlope", 1, [1.0])
     (offset,) = fields.numbers("ElementToIntensityFunctionOffset", 1, [0.0])
     if slope <= 0:
@@ -174,7 +174,9 @@ def _spacing(fields: Fields) -> Optional[float]:
     if name is None:
         return None
     if name == "ElementSize":
-        tell(f"{fields.path}: ElementSize is taken for the spacing, as there is no ElementSpacing")
+        tell(
+            f"{fields.path}: ElementSize is used as the spacing, because ElementSpacing is missing"
+        )
     unit = fields.text("DistanceUnits", "mm").lower()
     unit = {"?": "mm", "\N{MICRO SIGN}m": "um", "\N{GREEK SMALL LETTER MU}m": "um"}.get(unit, unit)
     if unit not in UNITS:
@@ -195,8 +197,8 @@ def _turn(fields: Fields) -> Turn:
         return Turn()
     matrix = np.array(fields.numbers(name, 9)).reshape(3, 3)  # axis of the file, x y z
     steps = np.rint(matrix)
-    whole = np.abs(matrix - steps).max() < 1e-4 and (np.abs(steps).sum(axis=0) == 1).all()
-    if not whole or not (np.abs(steps).sum(axis=1) == 1).all():
+    along_axes = np.abs(matrix - steps).max() < 1e-4 and (np.abs(steps).sum(axis=0) == 1).all()
+    if not along_axes or not (np.abs(steps).sum(axis=1) == 1).all():
         raise fields.wrong(name, "the axes must be along x, y and z; resample the image")
     axes, mirrored = [], []
     for axis in (2, 1, 0):  # of the image: z, y, x

@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Optional
 
 from snowshed._core import InputError
+from snowshed.base.messages import quoted
 from snowshed.io.input_file import open_regular
-from snowshed.io.messages import quoted
 
 LONGEST_HEADER = 1 << 16
 LAST = "ElementDataFile"
@@ -19,7 +19,7 @@ LAST = "ElementDataFile"
 
 @dataclass(frozen=True)
 class Fields:
-    """What a header says; every error names the field and what it holds.
+    """Fields of a header; every error names the field and its content.
 
     Attributes
     ----------
@@ -28,7 +28,7 @@ class Fields:
     values
         Texts by the names of the fields.
     end
-        Where the header ends, bytes.
+        End of the header, bytes.
     """
 
     path: Path
@@ -76,18 +76,18 @@ class Fields:
         return next((name for name in names if name in self.values), None)
 
     def text(self, name: str, default: str) -> str:
-        """Return a field as it is."""
+        """Return the text of a field."""
         return self.values.get(name, default)
 
     def flag(self, name: str, default: bool) -> bool:
         """Return a field that is True or False."""
         if name not in self.values:
             return default
-        words = {"true": True, "t": True, "1": True, "false": False, "f": False, "0": False}
-        found = words.get(self.values[name].lower())
-        if found is None:
+        truths = {"true": True, "t": True, "1": True, "false": False, "f": False, "0": False}
+        truth = truths.get(self.values[name].lower())
+        if truth is None:
             raise self.wrong(name, "True or False is needed")
-        return found
+        return truth
 
     def whole(self, name: str, default: int) -> int:
         """Return a field that is a whole number from 0."""
@@ -111,11 +111,11 @@ class Fields:
         return numbers
 
     def wrong(self, name: str, needed: str) -> InputError:
-        """Return the error that a field is not what is needed."""
+        """Return the error for a field with a wrong value."""
         return InputError(f"{self.path}: {name} {quoted(self.values.get(name, ''))}: {needed}")
 
 
 def _parted(line: str) -> tuple[str, str, str]:
     """Return name, separator and value of a line; both = and : separate, as in MetaIO."""
-    found = re.match(r"([^=:]*)([=:])(.*)", line, re.DOTALL)
-    return (found[1].strip(), found[2], found[3].strip()) if found else (line, "", "")
+    match = re.match(r"([^=:]*)([=:])(.*)", line, re.DOTALL)
+    return (match[1].strip(), match[2], match[3].strip()) if match else (line, "", "")

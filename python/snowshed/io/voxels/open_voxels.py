@@ -1,4 +1,4 @@
-"""Opening a three-dimensional image by its name."""
+"""Opening a three-dimensional image."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Optional
 
 from snowshed._core import InputError
-from snowshed.io.notes import recorded
-from snowshed.io.paths import PathLike
+from snowshed.base.notes import recorded
+from snowshed.base.paths import PathLike
 from snowshed.io.voxels.array_files import open_npy, open_raw
 from snowshed.io.voxels.metaimage import open_metaimage
 from snowshed.io.voxels.pictures import open_slices, open_stack
@@ -27,7 +27,7 @@ RAW = ".raw"
 def open_voxels(
     path: PathLike, shape: Optional[tuple[int, int, int]] = None, kind: Optional[str] = None
 ) -> VoxelFile:
-    """Return an image, of which nothing but the size and the type has been read.
+    """Return an image, of which only the size and the type are read so far.
 
     Parameters
     ----------

@@ -12,33 +12,33 @@ import numpy as np
 from numpy.typing import NDArray
 
 from snowshed._core import InputError
+from snowshed.base.limits import MB
 from snowshed.io.input_file import open_regular
-from snowshed.io.limits import MB
 from snowshed.io.voxels.voxel_file import VoxelFile, check_unpacked
 
-PIECE = MB  # packed bytes that are read at once
+PIECE = MB  # packed bytes in a chunk
 EITHER = 47  # of zlib: a stream of zlib or of gzip, told by its head
 
 
 def packed_numbers(
     name: Path, data: Path, shape: tuple[int, int, int], dtype: np.dtype[Any], start: int, size: int
 ) -> VoxelFile:
-    """Return an image whose numbers are one stream of zlib; it is unpacked no farther than asked.
+    """Return an image whose numbers are one stream of zlib, unpacked only as far as needed.
 
     Parameters
     ----------
     name
-        What the image is called in messages.
+        Name of the image in messages.
     data
         The file.
     shape
         Voxels (nz, ny, nx).
     dtype
-        Of the numbers.
+        Type of the numbers.
     start
-        Where the stream begins, bytes.
+        Beginning of the stream, bytes.
     size
-        How long it is; 0: as long as the file.
+        Length of the packed bytes; 0: to the end of the file.
 
     Raises
     ------
@@ -56,7 +56,7 @@ def packed_numbers(
 
 
 class _PackedLayers:
-    """Reads layers; those that follow on the last ones are unpacked without beginning anew."""
+    """Reads layers; consecutive layers continue the unpacking."""
 
     def __init__(
         self, name: str, data: Path, shape: tuple[int, int, int], dtype: np.dtype[Any], start: int
@@ -73,17 +73,17 @@ class _PackedLayers:
         with open_regular(self.data) as file:
             while self.stream.done < low * layer:
                 self.stream.take(file, min(low * layer - self.stream.done, PIECE))
-            found = self.stream.take(file, (high - low) * layer)
-        return np.frombuffer(found, self.dtype).reshape(high - low, ny, nx)
+            unpacked = self.stream.take(file, (high - low) * layer)
+        return np.frombuffer(unpacked, self.dtype).reshape(high - low, ny, nx)
 
 
 class _Stream:
-    """What a stream unpacks to, from its beginning on.
+    """The unpacked bytes of a stream, from its beginning.
 
     Attributes
     ----------
     done
-        How many bytes were taken.
+        Number of bytes read.
     """
 
     def __init__(self, name: str, start: int) -> None:
@@ -95,18 +95,19 @@ class _Stream:
     def take(self, file: BinaryIO, count: int) -> bytearray:
         """Return the next bytes."""
         file.seek(self._next)
-        found = bytearray()
-        while len(found) < count:
+        unpacked = bytearray()
+        while len(unpacked) < count:
             packed = self._unpacker.unconsumed_tail or file.read(PIECE)
             if not packed or self._unpacker.eof:
                 raise InputError(
-                    f"{self.name}: damaged: {self.done + len(found):,} bytes unpacked; its header "
+                    f"{self.name}: damaged: {self.done + len(unpacked):,} bytes unpacked; its "
+                    "header "
                     "says more"
                 )
             try:
-                found += self._unpacker.decompress(packed, count - len(found))
+                unpacked += self._unpacker.decompress(packed, count - len(unpacked))
             except zlib.error as error:
                 raise InputError(f"{self.name}: damaged: {error}") from None
         self._next = file.tell()
         self.done += count
-        return found
+        return unpacked

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from snowshed._core import InputError
-from snowshed.io.notes import tell
+from snowshed.base.notes import tell
 from snowshed.io.voxels.voxel_file import VoxelFile, check_size, check_unpacked
 
 #: What the tag Orientation says: whether the stored picture is transposed, and then mirrored along
@@ -25,27 +25,27 @@ ORIENTATIONS = {
 
 @dataclass(frozen=True)
 class Picture:
-    """A picture of one number per pixel whose size is known, and which is read when it is needed.
+    """A picture of one number per pixel, of known size, read on demand.
 
     Attributes
     ----------
     name
-        For messages.
+        Name for messages.
     size
         Pixels along y and x, as stored.
     dtype
-        Of the numbers.
+        Type of the numbers.
     kind
-        What else all pictures of a stack must have in common, in words.
+        Further properties that all pictures of a stack share, as text.
     read
         Returns the numbers as stored.
     orientation
-        Where the stored rows and columns belong, one of `ORIENTATIONS`; None: it does not say, so
-        it is as the first picture.
+        Orientation of the stored rows and columns, one of `ORIENTATIONS`; None if the picture does
+        not state it, which means that of the first picture.
     stored
-        Bytes that it takes in its file.
+        Size in its file, bytes.
     notes
-        What was assumed.
+        Assumptions made in reading.
     """
 
     name: str
@@ -64,7 +64,7 @@ def stacked(
     voxel_size: Optional[float] = None,
     printed_size: Optional[float] = None,
 ) -> VoxelFile:
-    """Return the image of pictures that lie one on another, and tell what was assumed of them.
+    """Return the image of a stack of pictures, and print the assumptions.
 
     Raises
     ------
@@ -72,12 +72,12 @@ def stacked(
         If they differ, or are larger than any image of snow.
     """
     first = pictures[0]
-    for one in pictures[1:]:
-        _check_same(one, first)
+    for other in pictures[1:]:
+        _check_same(other, first)
     height, width = first.size
     check_size(name, (len(pictures), height, width))
     unpacked = len(pictures) * height * width * first.dtype.itemsize
-    check_unpacked(name, unpacked, sum(one.stored for one in pictures))
+    check_unpacked(name, unpacked, sum(picture.stored for picture in pictures))
     orientation = first.orientation or 1
     transposed = ORIENTATIONS[orientation][0]
     shape = (len(pictures), width, height) if transposed else (len(pictures), height, width)
@@ -87,13 +87,13 @@ def stacked(
         tell(f"{name}: turned as the tag Orientation ({orientation}) says")
 
     def read(low: int, high: int) -> NDArray[Any]:
-        found = np.empty((high - low, *shape[1:]), dtype=first.dtype.newbyteorder("="))
+        layers = np.empty((high - low, *shape[1:]), dtype=first.dtype.newbyteorder("="))
         for number, picture in enumerate(pictures[low:high]):
             pixels = picture.read()
             if pixels.shape != picture.size:
                 raise InputError(f"{picture.name}: damaged: {pixels.shape} pixels")
-            found[number] = oriented(pixels, orientation)
-        return found
+            layers[number] = oriented(pixels, orientation)
+        return layers
 
     return VoxelFile(name, shape, first.dtype, read, voxel_size, printed_size)
 
@@ -111,16 +111,19 @@ def oriented(pixels: NDArray[Any], orientation: int) -> NDArray[Any]:
     return pixels[:: -1 if upward else 1, :: -1 if leftward else 1]
 
 
-def _check_same(one: Picture, first: Picture) -> None:
-    known = Path(first.name).name
-    if one.size != first.size:
+def _check_same(picture: Picture, first: Picture) -> None:
+    first_name = Path(first.name).name
+    if picture.size != first.size:
         raise InputError(
-            f"{one.name}: {one.size[1]} x {one.size[0]} pixels; {known} has "
+            f"{picture.name}: {picture.size[1]} x {picture.size[0]} pixels; {first_name} has "
             f"{first.size[1]} x {first.size[0]}"
         )
-    if (one.kind, one.dtype) != (first.kind, first.dtype):
-        raise InputError(f"{one.name}: pixels of type {one.kind}; {known} has {first.kind}")
-    if (one.orientation or first.orientation or 1) != (first.orientation or 1):
+    if (picture.kind, picture.dtype) != (first.kind, first.dtype):
         raise InputError(
-            f"{one.name}: Orientation {one.orientation}; {known} has {first.orientation or 1}"
+            f"{picture.name}: pixels of type {picture.kind}; {first_name} has {first.kind}"
+        )
+    if (picture.orientation or first.orientation or 1) != (first.orientation or 1):
+        raise InputError(
+            f"{picture.name}: Orientation {picture.orientation}; {first_name} has "
+            f"{first.orientation or 1}"
         )

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Optional
 
 from snowshed._core import InputError
-from snowshed.io.limits import PAGES
-from snowshed.io.notes import tell
+from snowshed.base.limits import PAGES
+from snowshed.base.notes import tell
 from snowshed.io.voxels.picture import Picture, stacked
 from snowshed.io.voxels.plain_pictures import open_picture
 from snowshed.io.voxels.tiff_description import Description, described
@@ -17,11 +17,11 @@ from snowshed.io.voxels.tiff_pages import contiguous_copies, is_big_endian, page
 from snowshed.io.voxels.tiff_tags import Tags, read_pages
 from snowshed.io.voxels.voxel_file import VoxelFile
 
-#: What the ending of a slice says.
+#: Format of a slice by its suffix.
 FORMATS = {".tif": "TIFF", ".tiff": "TIFF", ".png": "PNG", ".bmp": "BMP"}
 #: Units of the tag ResolutionUnit, m.
 INCH, UNITS = 0.0254, {2: 0.0254, 3: 0.01}
-#: Dots per inch that programs write without knowing what a picture shows.
+#: Dots per inch that programs write by default, without knowing the picture.
 USUAL_DPI = (1, 72, 96, 100, 150, 200, 300, 600, 1200)
 
 
@@ -31,7 +31,7 @@ def open_stack(path: Path) -> VoxelFile:
     Raises
     ------
     InputError
-        If it is damaged, has colours, its pages differ or are no slices of one stack.
+        If it is damaged, has colours, or its pages differ or do not form one stack.
     OSError
         If it cannot be read.
     """
@@ -55,8 +55,8 @@ def open_slices(folder: Path) -> VoxelFile:
     Raises
     ------
     InputError
-        If slices are missing, of mixed types or sizes, or have colours, or other files have such
-        an ending.
+        If slices are missing, of mixed types or sizes, or have colours, or other files have the
+        same suffix.
     OSError
         If they cannot be read.
     """
@@ -97,12 +97,12 @@ def _pages(path: Path) -> tuple[list[Picture], Description, Optional[float]]:
 
 
 def _printed_size(tags: Tags) -> Optional[float]:
-    """Return the edge of a pixel by the tags of resolution, unless it is one of no meaning."""
+    """Return the edge of a pixel from the tags of resolution, if it is meaningful."""
     unit, across, along = UNITS.get(tags.number(296, 2)), tags.ratio(282), tags.ratio(283)
     if unit is None or across is None or along is None:
         return None
     if not isclose(across, along, rel_tol=1e-3):
-        tell(f"{tags.name}: its tags of resolution say that pixels are no squares; not applied")
+        tell(f"{tags.name}: its tags of resolution declare pixels that are not square; ignored")
         return None
     if any(isclose(across * INCH / unit, usual, rel_tol=1e-2) for usual in USUAL_DPI):
         return None
@@ -110,7 +110,7 @@ def _printed_size(tags: Tags) -> Optional[float]:
 
 
 def _numbered(folder: Path) -> list[Path]:
-    """Return the slices of a folder by their number, of which none is missing."""
+    """Return the slices of a folder by their number, without gaps."""
     paths = []
     for path in folder.iterdir():
         if path.suffix.lower() in FORMATS and not path.name.startswith("."):
@@ -123,19 +123,19 @@ def _numbered(folder: Path) -> list[Path]:
     if len(kinds) > 1:
         raise InputError(f"{folder}: slices of mixed types: {', '.join(sorted(kinds))}")
     numbers: dict[int, Path] = {}
-    words: dict[str, Path] = {}
+    named: dict[str, Path] = {}
     for path in sorted(paths):
-        found = re.search(r"(\d{1,12})\D*$", path.stem)
-        if found is None:
+        match = re.search(r"(\d{1,12})\D*$", path.stem)
+        if match is None:
             raise InputError(f"{path}: no number in its name; slices are ordered by their numbers")
-        number = int(found[1])
+        number = int(match[1])
         if number in numbers:
             raise InputError(f"{path}: has the number of {numbers[number].name}, {number}")
         numbers[number] = path
-        words.setdefault(path.stem[: found.start(1)] + "*" + path.stem[found.end(1) :], path)
-    if len(words) > 1:
-        one, other = [path.name for path in words.values()][:2]
-        tell(f"{folder}: its slices have several names, as {one} and {other}; all are one stack")
+        named.setdefault(path.stem[: match.start(1)] + "*" + path.stem[match.end(1) :], path)
+    if len(named) > 1:
+        first, other = [path.name for path in named.values()][:2]
+        tell(f"{folder}: its slices have several names, as {first} and {other}; all are one stack")
     order = sorted(numbers)
     for one_number, following in zip(order, order[1:]):
         if following != one_number + 1:

@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from snowshed._core import InputError
-from snowshed.io.damage import DAMAGED
-from snowshed.io.extras import require
+from snowshed.base.damage import DAMAGED
+from snowshed.base.extras import require
 from snowshed.io.input_file import open_regular
 from snowshed.io.voxels.picture import ORIENTATIONS, Picture
 from snowshed.io.voxels.voxel_file import check_size
@@ -51,7 +51,7 @@ def open_picture(path: Path, kind: str) -> Picture:
         orientation = image.getexif().get(ORIENTATION) if kind == "PNG" else None
         if orientation not in ORIENTATIONS:
             orientation = None
-        notes = ("the shades of its palette are taken for its numbers",)
+        notes = ("the shades of its palette are used as its numbers",)
         return Picture(
             str(path),
             (height, width),

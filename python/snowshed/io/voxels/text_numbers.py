@@ -1,4 +1,4 @@
-"""Numbers that a file holds as text, with white space between them."""
+"""Numbers as text, separated by white space."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from snowshed._core import InputError
+from snowshed.base.limits import MB, VOXELS_AS_TEXT
 from snowshed.io.input_file import open_regular
-from snowshed.io.limits import MB, VOXELS_AS_TEXT
 from snowshed.io.voxels.voxel_file import VoxelFile
 
 EXACT = 4  # bytes of the longest whole numbers that double holds exactly
@@ -25,15 +25,15 @@ def text_numbers(
     Parameters
     ----------
     name
-        What the image is called in messages.
+        Name of the image in messages.
     data
         The file.
     shape
         Voxels (nz, ny, nx).
     dtype
-        Of the numbers.
+        Type of the numbers.
     start
-        Where they begin, bytes.
+        Beginning of the numbers, bytes.
 
     Raises
     ------

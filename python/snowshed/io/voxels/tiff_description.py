@@ -1,7 +1,7 @@
-"""What the description of a TIFF file says of its pages: by ImageJ, OME, or tifffile.
+"""The description of a TIFF file's pages: by ImageJ, OME, or tifffile.
 
-Only what bears on the numbers and their places is read: how many slices there are, whether they are
-slices at all, and how large a voxel is. No other file that a description names is opened.
+Only facts about the numbers and their positions are read: the number of slices, whether they are
+slices at all, and the voxel size. No other file that a description names is opened.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from typing import Any, Optional
 from xml.etree import ElementTree
 
 from snowshed._core import InputError
-from snowshed.io.messages import quoted
+from snowshed.base.messages import quoted
 
 #: Units of length by their names in ImageJ and OME, m.
 UNITS = {
@@ -23,22 +23,22 @@ UNITS = {
     "\N{GREEK SMALL LETTER MU}m": 1e-6, "mm": 1e-3, "cm": 1e-2, "m": 1.0, "inch": 0.0254,
 }  # fmt: skip
 CUBIC = 1.001  # largest over smallest edge of what counts as a cube
-#: What a description calls the three ways in which pages may follow each other.
+#: Names in descriptions for the three dimensions along which pages may follow each other.
 KINDS = ("channels", "slices", "frames")
 
 
 @dataclass(frozen=True)
 class Description:
-    """What a description says.
+    """Content of a description.
 
     Attributes
     ----------
     slices
-        How many there are; None: it does not say.
+        Number of slices, if the file states it.
     voxel_size
         Edge of a voxel, m; None: it does not say.
     notes
-        What was assumed.
+        Assumptions made in reading.
     """
 
     slices: Optional[int] = None
@@ -47,12 +47,12 @@ class Description:
 
 
 def described(name: str, text: str, pixels_per_unit: Optional[float]) -> Description:
-    r"""Return what the description of a file says.
+    r"""Return the content of a file's description.
 
     Parameters
     ----------
     name
-        Of the file.
+        Name of the file.
     text
         The tag ImageDescription of its first page.
     pixels_per_unit
@@ -78,7 +78,7 @@ def described(name: str, text: str, pixels_per_unit: Optional[float]) -> Descrip
 
 
 def _stack(name: str, counts: Mapping[str, int]) -> tuple[int, tuple[str, ...]]:
-    """Return how many slices there are, of pages that follow each other in several ways."""
+    """Return the number of slices, from pages along several dimensions."""
     more = {kind: count for kind, count in counts.items() if count > 1}
     if len(more) > 1:
         said = " x ".join(f"{count} {kind}" for kind, count in more.items())
@@ -91,13 +91,13 @@ def _stack(name: str, counts: Mapping[str, int]) -> tuple[int, tuple[str, ...]]:
 
 def _cube(name: str, edges: list[Optional[float]]) -> Optional[float]:
     """Return the edge of a voxel; None unless all three are known."""
-    known = [edge for edge in edges if edge is not None and math.isfinite(edge) and edge > 0]
-    if len(known) < len(edges):
+    valid = [edge for edge in edges if edge is not None and math.isfinite(edge) and edge > 0]
+    if len(valid) < len(edges):
         return None
-    if max(known) > CUBIC * min(known):
-        said = " x ".join(f"{edge:.4g}" for edge in known)
+    if max(valid) > CUBIC * min(valid):
+        said = " x ".join(f"{edge:.4g}" for edge in valid)
         raise InputError(f"{name}: voxels of {said} m; they must be cubes: resample the image")
-    return float(f"{known[0]:.7g}")
+    return float(f"{valid[0]:.7g}")
 
 
 def _by_imagej(name: str, text: str, pixels_per_unit: Optional[float]) -> Description:
@@ -124,16 +124,16 @@ def _by_ome(name: str, text: str) -> Description:
         root = ElementTree.fromstring(text.strip().encode())
     except (ElementTree.ParseError, ValueError, RecursionError) as error:
         raise InputError(f"{name}: damaged: its description is no XML: {error}") from None
-    images = [one for one in root.iter() if _tag(one) == "Pixels"]
+    images = [element for element in root.iter() if _tag(element) == "Pixels"]
     if len(images) != 1:
         raise InputError(f"{name}: {len(images)} images by its description; one is needed")
     pixels = images[0]
-    files = {one.get("FileName") for one in pixels.iter() if _tag(one) == "UUID"}
+    files = {element.get("FileName") for element in pixels.iter() if _tag(element) == "UUID"}
     if len(files) > 1:
         raise InputError(f"{name}: one of {len(files)} files of an image; save it as one file")
-    data = [one for one in pixels.iter() if _tag(one) == "TiffData"]
-    for one in data:
-        shift = _count(one.get("FirstZ", "0")) - _count(one.get("IFD", "0"))
+    data = [element for element in pixels.iter() if _tag(element) == "TiffData"]
+    for entry in data:
+        shift = _count(entry.get("FirstZ", "0")) - _count(entry.get("IFD", "0"))
         if shift and max(_count(pixels.get(f"Size{axis}", "1")) for axis in "CT") == 1:
             raise InputError(f"{name}: its pages are not in the order of z; save it anew")
     sizes = zip(KINDS, "CZT")
@@ -167,7 +167,7 @@ def _tag(element: ElementTree.Element) -> str:
 
 
 def _count(text: Optional[str]) -> int:
-    """Return a count of a description; one that is none is refused."""
+    """Return a count in a description; raises InputError for other values."""
     if not re.fullmatch(r"[0-9]{1,9}", text or ""):
         raise InputError(f"{quoted(text or '')}: no count, in the description of a TIFF file")
     return int(text or "0")

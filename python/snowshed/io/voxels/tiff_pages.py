@@ -30,7 +30,7 @@ LARGEST_TILE = 1 << 20  # pixels, of an image that is smaller
 
 @dataclass(frozen=True)
 class Layout:
-    """Where the numbers of a page are.
+    """Positions of the numbers of a page.
 
     Attributes
     ----------
@@ -39,17 +39,17 @@ class Layout:
     piece
         The same of a strip or tile.
     tiled
-        Whether they are tiles, all of which are whole; the last strip may have fewer rows.
-    places, counts
+        Whether the segments are tiles, which all are complete; the last strip may have fewer rows.
+    offsets, counts
         First byte, and number of bytes, of each strip or tile, row by row.
     coding
-        How they are packed.
+        Coding of the pixels.
     """
 
     size: tuple[int, int]
     piece: tuple[int, int]
     tiled: bool
-    places: tuple[int, ...]
+    offsets: tuple[int, ...]
     counts: tuple[int, ...]
     coding: Coding
 
@@ -66,7 +66,7 @@ def page_picture(path: Path, tags: Tags, big_endian: bool) -> Picture:
     Raises
     ------
     InputError
-        If it is damaged, has colours, or is packed in a way that is not read.
+        If the page is damaged, has colours, or uses an unsupported compression.
     """
     name = tags.name
     height, width = tags.number(257, 0), tags.number(256, 0)
@@ -115,11 +115,11 @@ def _check_one_number(tags: Tags) -> None:
 
 
 def _dtype(tags: Tags, big_endian: bool) -> tuple[np.dtype[Any], tuple[str, ...]]:
-    """Return the type of the numbers, in the byte order of the file, and what was assumed."""
+    """Return the type of the numbers, in the byte order of the file, and assumptions."""
     bits, sample_format = tags.number(258, 1), tags.number(339, 1)
     kind = KINDS.get(sample_format, "")
-    known = {"u": (1, 2, 4, 8, 16, 32, 64), "i": (8, 16, 32, 64), "f": (16, 32, 64)}
-    if bits not in known.get(kind, ()):
+    supported = {"u": (1, 2, 4, 8, 16, 32, 64), "i": (8, 16, 32, 64), "f": (16, 32, 64)}
+    if bits not in supported.get(kind, ()):
         raise InputError(
             f"{tags.name}: numbers of {bits} bits, SampleFormat {sample_format}: whole numbers of "
             "1, 2, 4, 8, 16, 32 or 64 bits and floating-point numbers of 16, 32 or 64 are read"
@@ -147,7 +147,7 @@ def _palette(tags: Tags, dtype: np.dtype[Any]) -> tuple[NDArray[Any], tuple[str,
     shades = (red >> 8).astype(np.uint8) if count <= 256 else red.astype(np.uint16)
     if (shades == np.arange(count)).all():
         return shades, ()
-    return shades, ("the shades of its palette are taken for its numbers",)
+    return shades, ("the shades of its palette are used as its numbers",)
 
 
 def _layout(path: Path, tags: Tags, size: tuple[int, int], big_endian: bool) -> Layout:
@@ -155,34 +155,36 @@ def _layout(path: Path, tags: Tags, size: tuple[int, int], big_endian: bool) -> 
     height, width = size
     if tiled:
         piece = (tags.number(323, 0), tags.number(322, 0))
-        places, counts = tags.numbers(324), tags.numbers(325)
+        offsets, counts = tags.numbers(324), tags.numbers(325)
     else:
         piece = (min(tags.number(278, height), height), width)
-        places, counts = tags.numbers(273), tags.numbers(279)
+        offsets, counts = tags.numbers(273), tags.numbers(279)
     most_pixels = max(4 * height * width, LARGEST_TILE)
     if min(piece) < 1 or piece[0] * piece[1] > most_pixels:
         raise InputError(f"{tags.name}: damaged: strips or tiles of {piece[1]} x {piece[0]} pixels")
     coding = _coding(tags, big_endian)
     across, down = -(-width // piece[1]), -(-height // piece[0])
-    layout = Layout(size, piece, tiled, places, counts, coding)
-    if len(places) != across * down:
-        raise InputError(f"{tags.name}: damaged: {len(places)} strips or tiles for {across * down}")
-    whole = tuple(
-        layout.rows_of(number) * coding.row_bytes(piece[1]) for number in range(len(places))
+    layout = Layout(size, piece, tiled, offsets, counts, coding)
+    if len(offsets) != across * down:
+        raise InputError(
+            f"{tags.name}: damaged: {len(offsets)} strips or tiles for {across * down}"
+        )
+    lengths = tuple(
+        layout.rows_of(number) * coding.row_bytes(piece[1]) for number in range(len(offsets))
     )
     if coding.compression == segments.NONE:
-        counts = whole
-    if len(counts) != len(places):
+        counts = lengths
+    if len(counts) != len(offsets):
         raise InputError(f"{tags.name}: damaged: no lengths of its strips or tiles")
     end = path.stat().st_size
     most = coding.longest(*piece)
-    for place, count in zip(places, counts):
+    for place, count in zip(offsets, counts):
         if place < 8 or count < 1 or place + count > end or count > most:
             raise InputError(
                 f"{tags.name}: damaged: a strip or tile of {count:,} bytes at {place:,} in a file "
                 f"of {end:,}"
             )
-    return Layout(size, piece, tiled, places, counts, coding)
+    return Layout(size, piece, tiled, offsets, counts, coding)
 
 
 def _coding(tags: Tags, big_endian: bool) -> Coding:
@@ -232,22 +234,22 @@ class _Reader:
         layout = self.layout
         (height, width), (rows, columns) = layout.size, layout.piece
         across = -(-width // columns)
-        found: Optional[NDArray[Any]] = None
+        numbers: Optional[NDArray[Any]] = None
         with open_regular(self.path) as file:
-            for number, (place, count) in enumerate(zip(layout.places, layout.counts)):
+            for number, (place, count) in enumerate(zip(layout.offsets, layout.counts)):
                 packed = read_at(file, place, count, self.name)
                 y, x = number // across * rows, number % across * columns
                 there = layout.rows_of(number)
                 part = decoded(layout.coding, packed, there, columns, self.name)
                 if part.shape != (there, columns):
                     raise InputError(f"{self.name}: damaged: a strip of {part.shape} pixels")
-                if found is None:
-                    found = np.empty((height, width), part.dtype.newbyteorder("="))
+                if numbers is None:
+                    numbers = np.empty((height, width), part.dtype.newbyteorder("="))
                 part = part[: height - y, : width - x]
-                found[y : y + part.shape[0], x : x + part.shape[1]] = part
-        if found is None:
+                numbers[y : y + part.shape[0], x : x + part.shape[1]] = part
+        if numbers is None:
             raise InputError(f"{self.name}: damaged: it has no numbers")
-        return found if self.palette is None else self.palette[found]
+        return numbers if self.palette is None else self.palette[numbers]
 
 
 def is_big_endian(path: Path) -> bool:
@@ -257,22 +259,22 @@ def is_big_endian(path: Path) -> bool:
 
 
 def contiguous_copies(picture: Picture, count: int) -> list[Picture]:
-    """Return pictures that lie one after another in a file, of which the first alone is a page.
+    """Return consecutive pictures of a file in which only the first is a page.
 
     Raises
     ------
     InputError
-        If its numbers are packed or do not lie in one piece, or the file ends before.
+        If its numbers are compressed or not contiguous, or the file ends early.
     """
     reader = picture.read
     if not isinstance(reader, _Reader):
         raise TypeError("a page of a TIFF file is needed")
     layout = reader.layout
-    begins = layout.places[0]
-    ends = [place + length for place, length in zip(layout.places, layout.counts)]
-    whole = [*layout.places[1:], ends[-1]] == ends and layout.piece[1] == layout.size[1]
+    begins = layout.offsets[0]
+    ends = [place + length for place, length in zip(layout.offsets, layout.counts)]
+    contiguous = [*layout.offsets[1:], ends[-1]] == ends and layout.piece[1] == layout.size[1]
     length = ends[-1] - begins
-    if layout.coding.compression != segments.NONE or not whole:
+    if layout.coding.compression != segments.NONE or not contiguous:
         raise InputError(
             f"{picture.name}: {count} slices in one page, which are read only uncompressed and in "
             "one piece; save the image as a sequence of images, or as raw"
@@ -285,7 +287,7 @@ def contiguous_copies(picture: Picture, count: int) -> list[Picture]:
         )
     pictures = []
     for number in range(count):
-        places = tuple(place + number * length for place in layout.places)
-        moved = replace(reader, layout=replace(layout, places=places))
+        offsets = tuple(place + number * length for place in layout.offsets)
+        moved = replace(reader, layout=replace(layout, offsets=offsets))
         pictures.append(replace(picture, read=moved))
     return pictures

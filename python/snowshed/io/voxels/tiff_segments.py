@@ -1,8 +1,8 @@
 """The strips and tiles of a TIFF page: from packed bytes to numbers.
 
-zlib and lzma unpack no more than a strip holds. The other kinds of compression are left to libtiff,
-by way of Pillow: each strip is given to it as a small TIFF file of bytes, so that the type of the
-numbers does not matter.
+zlib and lzma unpack at most a strip. libtiff unpacks the other kinds of compression, through
+Pillow: it gets each strip as a small TIFF file of bytes, so that the type of the numbers does not
+matter.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from snowshed._core import InputError
-from snowshed.io.damage import DAMAGED
-from snowshed.io.extras import require
-from snowshed.io.messages import shortened
+from snowshed.base.damage import DAMAGED
+from snowshed.base.extras import require
+from snowshed.base.messages import shortened
 
 NONE, JPEG, PACKED_BY_LZMA = 1, 7, 34925
 DEFLATE = (8, 32946)
 FAX = (2, 3, 4)
-#: What libtiff unpacks: fax, LZW, JPEG, PackBits, Zstandard.
+#: Compressions that libtiff unpacks: fax, LZW, JPEG, PackBits, Zstandard.
 BY_LIBTIFF = (*FAX, 5, JPEG, 32773, 50000)
 READ = (NONE, *DEFLATE, PACKED_BY_LZMA, *BY_LIBTIFF)
 NO_PREDICTOR, DIFFERENCES, FLOAT_DIFFERENCES = 1, 2, 3
@@ -35,22 +35,22 @@ REVERSED_BITS = np.packbits(np.unpackbits(np.arange(256, dtype=np.uint8)).reshap
 
 @dataclass(frozen=True)
 class Coding:
-    """How the numbers of a page are packed.
+    """Coding of the numbers of a page.
 
     Attributes
     ----------
     compression, predictor
-        As TIFF numbers them.
+        Number of the compression in TIFF.
     bits
-        Of a number.
+        Bits of a number.
     dtype
-        Of a number, in the byte order of the file; of fewer than 8 bits uint8.
+        Type of a number, in the byte order of the file; uint8 for fewer than 8 bits.
     reversed_bits
         Whether the lowest bit of a byte comes first (FillOrder 2).
     tables
         Tables of JPEG that all strips share.
     options
-        Of fax (T4Options or T6Options).
+        Options of fax coding (T4Options or T6Options).
     """
 
     compression: int
@@ -123,10 +123,10 @@ def _by_libtiff(coding: Coding, packed: bytes, rows: int, columns: int) -> NDArr
         file = io.BytesIO(_one_strip(tags, packed, coding.tables))
         try:
             with pillow.open(file, formats=["TIFF"]) as image:
-                found = np.asarray(image)
+                pixels = np.asarray(image)
         except pillow.DecompressionBombError as error:
             raise ValueError(f"a strip or tile is too large: {error}") from None
-    return found.astype(np.uint8)
+    return pixels.astype(np.uint8)
 
 
 def _one_strip(tags: dict[int, int], packed: bytes, tables: Optional[bytes]) -> bytes:
@@ -143,29 +143,29 @@ def _one_strip(tags: dict[int, int], packed: bytes, tables: Optional[bytes]) -> 
 
 
 def _from_bits(rows: NDArray[np.uint8], bits: int, columns: int) -> NDArray[Any]:
-    """Return numbers of 1, 2 or 4 bits, of which the first is in the highest bits."""
+    """Return numbers of 1, 2 or 4 bits; the first is in the highest bits."""
     parts = [(rows >> shift) & ((1 << bits) - 1) for shift in range(8 - bits, -1, -bits)]
     return np.stack(parts, axis=-1).reshape(len(rows), -1)[:, :columns]
 
 
 def _numbers(coding: Coding, rows: NDArray[np.uint8], columns: int) -> NDArray[Any]:
     dtype = coding.dtype
-    if coding.predictor == FLOAT_DIFFERENCES:  # of bytes, of which the highest of all come first
+    if coding.predictor == FLOAT_DIFFERENCES:  # bytes, the highest ones of all numbers first
         planes = np.cumsum(rows, axis=1, dtype=np.uint8).reshape(len(rows), dtype.itemsize, -1)
         numbers = np.ascontiguousarray(planes.transpose(0, 2, 1)).view(f">f{dtype.itemsize}")
         return numbers.reshape(len(rows), columns)
     numbers = rows.view(dtype)
     if coding.predictor == DIFFERENCES:
-        whole = numbers.view(f"{dtype.str[0]}u{dtype.itemsize}")
+        integers = numbers.view(f"{dtype.str[0]}u{dtype.itemsize}")
         native = np.dtype(f"u{dtype.itemsize}")
-        return np.cumsum(whole, axis=1, dtype=native).view(dtype.newbyteorder("="))
+        return np.cumsum(integers, axis=1, dtype=native).view(dtype.newbyteorder("="))
     return numbers
 
 
 def read_at(file: BinaryIO, offset: int, count: int, name: str) -> bytes:
-    """Return bytes of a file, all of which must be there."""
+    """Return bytes of a file; raises InputError if some are missing."""
     file.seek(offset)
-    found = file.read(count)
-    if len(found) < count:
+    content = file.read(count)
+    if len(content) < count:
         raise InputError(f"{name}: damaged: the file ends before its numbers do")
-    return found
+    return content

@@ -1,4 +1,4 @@
-"""The pages of a TIFF file: their tags, as tifffile reads them, and what is made of them."""
+"""The pages of a TIFF file, and their tags from tifffile."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO, Optional, TypeVar
 
 from snowshed._core import InputError
-from snowshed.io.damage import DAMAGED
-from snowshed.io.extras import require
+from snowshed.base.damage import DAMAGED
+from snowshed.base.extras import require
+from snowshed.base.limits import PAGES, TAG
+from snowshed.base.messages import shortened
 from snowshed.io.input_file import open_regular
-from snowshed.io.limits import PAGES, TAG
-from snowshed.io.messages import shortened
 
 if TYPE_CHECKING:
     from tifffile import TiffFile, TiffPage
@@ -28,19 +28,19 @@ DIALECTS = (
     "is_lsm", "is_ndpi", "is_philips", "is_scanimage", "is_nih", "is_stk", "is_svs", "is_ome",
     "is_imagej", "is_micromanager", "is_mmstack", "is_sis", "is_fluoview", "is_tvips", "is_eer",
 )  # fmt: skip
-#: How often the bytes of a file may be read to find its pages: thrice do.
+#: Largest number of passes over a file to find its pages; three are normal.
 READ_OFTEN = 4
 
 
 class Tags:
-    """The tags of a page, as numbers and texts; what a damaged file has in their place is refused.
+    """The tags of a page, as numbers and texts; damaged values are refused.
 
     Parameters
     ----------
     page
-        As tifffile has it.
+        The page from tifffile.
     name
-        For messages.
+        Name for messages.
     """
 
     def __init__(self, page: TiffPage, name: str) -> None:
@@ -49,7 +49,7 @@ class Tags:
         self._tags = page.tags
 
     def value(self, code: int) -> Any:
-        """Return the value of a tag as it is; None: the page does not have it."""
+        """Return the value of a tag, if the page has it."""
         tag = self._tags.get(code)
         return None if tag is None else tag.value
 
@@ -59,7 +59,7 @@ class Tags:
         if value is None:
             return ()
         many = value if isinstance(value, (tuple, list)) else (value,)
-        if not all(isinstance(one, int) for one in many):
+        if not all(isinstance(value, int) for value in many):
             raise InputError(f"{self.name}: damaged: tag {code} holds {shortened(repr(value))}")
         return tuple(map(int, many))
 
@@ -106,7 +106,7 @@ def tiff_errors(path: Path) -> Iterator[None]:
 
 
 def read_pages(path: Path, look: Callable[[Tags], Page]) -> list[Page]:
-    """Return what is made of the tags of each page of a TIFF file, while it is open.
+    """Apply a function to the tags of each page of an open TIFF file, and return the results.
 
     Raises
     ------
@@ -123,24 +123,24 @@ def read_pages(path: Path, look: Callable[[Tags], Page]) -> list[Page]:
 
 
 def _tags(tiff: TiffFile, path: Path) -> Iterator[Tags]:
-    places: set[int] = set()
+    offsets: set[int] = set()
     while True:
-        name = f"{path}, page {len(places) + 1}"
+        name = f"{path}, page {len(offsets) + 1}"
         try:
-            page = tiff.pages[len(places)]
+            page = tiff.pages[len(offsets)]
         except IndexError:
             return
-        if len(places) == PAGES:
+        if len(offsets) == PAGES:
             raise InputError(f"{path}: more than {PAGES:,} pages")
         tags = Tags(page, name)  # type: ignore[arg-type]
-        if tags.offset in places:
+        if tags.offset in offsets:
             raise InputError(f"{name}: damaged: it is an earlier page again")
-        places.add(tags.offset)
+        offsets.add(tags.offset)
         yield tags
 
 
 class _Bounded(io.RawIOBase):
-    """A file of which no tag beyond `TAG` is read, and no byte too often."""
+    """A file that limits the tags that are read (`TAG`), and the passes over its bytes."""
 
     def __init__(self, file: BinaryIO) -> None:
         self._file = file

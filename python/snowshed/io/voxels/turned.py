@@ -1,4 +1,4 @@
-"""Images whose axes are stored in another order, or from the other end."""
+"""Images whose axes are stored in another order or direction."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from snowshed.io.voxels.voxel_file import VoxelFile
 
 @dataclass(frozen=True)
 class Turn:
-    """How the axes of an image follow from those of its file, both along z, y, x.
+    """The axes of an image in terms of those of its file, both in the order z, y, x.
 
     Attributes
     ----------
@@ -29,7 +29,7 @@ class Turn:
 
     @property
     def is_none(self) -> bool:
-        """Whether the image is as its file has it."""
+        """Whether the axes of the image are those of its file."""
         return self == Turn()
 
     def of(self, array: NDArray[Any]) -> NDArray[Any]:
@@ -40,14 +40,14 @@ class Turn:
         >>> Turn((0, 2, 1), (False, True, False)).of(np.arange(6).reshape(1, 2, 3)).tolist()
         [[[2, 5], [1, 4], [0, 3]]]
         """
-        steps = tuple(slice(None, None, -1 if one else 1) for one in self.mirrored)
+        steps = tuple(slice(None, None, -1 if mirrored else 1) for mirrored in self.mirrored)
         return np.transpose(array, self.axes)[steps]
 
 
 def turned(file: VoxelFile, turn: Turn) -> VoxelFile:
     """Return an image turned; of its file no more is held than some layers.
 
-    Where layers of the image are not layers of the file, each reading passes through all of it.
+    If layers of the image are not layers of the file, each reading passes through the whole file.
     """
     if turn.is_none:
         return file
@@ -67,11 +67,11 @@ def turned(file: VoxelFile, turn: Turn) -> VoxelFile:
         cut = [slice(None)] * 3
         cut[turn.axes[0]] = slice(first, end)
         shape = [high - low if axis == turn.axes[0] else file.shape[axis] for axis in range(3)]
-        found = np.empty(shape, dtype=file.dtype.newbyteorder("="))
+        turned = np.empty(shape, dtype=file.dtype.newbyteorder("="))
         for start in range(0, file.shape[0], file.layers_at_once):
             stop = min(start + file.layers_at_once, file.shape[0])
-            found[start:stop] = file.layers(start, stop)[tuple(cut)]
-        return turn.of(found)
+            turned[start:stop] = file.layers(start, stop)[tuple(cut)]
+        return turn.of(turned)
 
     read = layers if same_layers else cuts
     return VoxelFile(file.name, (nz, ny, nx), file.dtype, read, file.voxel_size, file.printed_size)

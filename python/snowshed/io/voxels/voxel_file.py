@@ -1,4 +1,4 @@
-"""A three-dimensional image whose size is known and whose layers are read when they are needed."""
+"""A three-dimensional image of known size, whose layers are read on demand."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from snowshed._core import InputError
-from snowshed.io.formatting import number
-from snowshed.io.limits import MB, UNPACKED_FREELY, UNPACKED_RATIO, VOXELS_AT_ONCE
-from snowshed.io.messages import shortened
+from snowshed.base.formatting import number
+from snowshed.base.limits import MB, UNPACKED_FREELY, UNPACKED_RATIO, VOXELS_AT_ONCE
+from snowshed.base.messages import shortened
 
 MOST_VOXELS = 1 << 32
 MOST_ALONG = 1 << 16
-#: What a voxel may hold, by NumPy's letter for its kind.
+#: Allowed kinds of voxels, by NumPy's letters.
 KINDS = "buif"
 
 
@@ -28,20 +28,20 @@ class VoxelFile:
     Attributes
     ----------
     name
-        Of the file or folder, for messages.
+        Name of the file or folder in messages.
     shape
         Voxels (nz, ny, nx).
     dtype
-        Of the numbers.
+        Type of the numbers.
     read_layers
         Called with the first layer and the one after the last; returns (n, ny, nx).
     voxel_size
         Edge of a voxel as the file says, m; None: it does not say.
     printed_size
-        Edge of a pixel by a resolution that may be meant for printers, m; None: there is none. It
-        is compared with the voxel size that is given, and never taken for it.
+        Edge of a pixel from a resolution that may be meant for printers, m, if any. It is compared
+        with the given voxel size, and never used instead of it.
     notes
-        What was told when it was opened.
+        Notes from opening the file.
     """
 
     name: str
@@ -58,7 +58,7 @@ class VoxelFile:
 
     @property
     def layers_at_once(self) -> int:
-        """How many layers to read at once, so that they take little memory."""
+        """Number of layers to read in one block, so that they occupy little memory."""
         _, ny, nx = self.shape
         return max(1, VOXELS_AT_ONCE // (ny * nx))
 
@@ -70,14 +70,14 @@ class VoxelFile:
         InputError
             If the file is damaged.
         """
-        found = self.read_layers(low, high)
-        if found.shape != (high - low, *self.shape[1:]):
-            raise InputError(f"{self.name}: layers {low} to {high - 1} have shape {found.shape}")
-        return found.astype(found.dtype.newbyteorder("="), copy=False)
+        layers = self.read_layers(low, high)
+        if layers.shape != (high - low, *self.shape[1:]):
+            raise InputError(f"{self.name}: layers {low} to {high - 1} have shape {layers.shape}")
+        return layers.astype(layers.dtype.newbyteorder("="), copy=False)
 
 
 def check_size(name: str, shape: tuple[int, ...]) -> None:
-    """Raise InputError unless a shape is that of a three-dimensional image of a sane size."""
+    """Raise InputError unless a shape is three-dimensional and of a plausible size."""
     if len(shape) != 3:
         raise InputError(f"{name}: {len(shape)} dimensions; an image of snow has 3 (nz, ny, nx)")
     if min(shape) < 1 or max(shape) > MOST_ALONG or prod(shape) > MOST_VOXELS:
@@ -88,7 +88,7 @@ def check_size(name: str, shape: tuple[int, ...]) -> None:
 
 
 def check_type(name: str, dtype: np.dtype[Any]) -> None:
-    """Raise InputError unless a type is that of numbers."""
+    """Raise InputError unless a type is numeric."""
     if dtype.kind not in KINDS or not 1 <= dtype.itemsize <= 8:
         raise InputError(
             f"{name}: values of type {shortened(str(dtype))}; whole numbers and floating-point "
@@ -102,11 +102,11 @@ def check_unpacked(name: str, unpacked: int, stored: int) -> None:
     Parameters
     ----------
     name
-        Of the file.
+        Name of the file.
     unpacked
-        Bytes of its numbers.
+        Size of its numbers, bytes.
     stored
-        Bytes that it takes on the disk.
+        Size on the disk, bytes.
 
     Examples
     --------
@@ -118,6 +118,7 @@ def check_unpacked(name: str, unpacked: int, stored: int) -> None:
     if unpacked > UNPACKED_FREELY and unpacked > UNPACKED_RATIO * stored:
         raise InputError(
             f"{name}: {number(stored / 1e6)} MB unpack to {number(unpacked / 1e6)} MB, more than "
-            f"{UNPACKED_RATIO} times as much, as no image of snow does; crop it, or save it "
+            f"{UNPACKED_RATIO} times as much, which is implausible for an image of snow; crop it, "
+            "or save it "
             f"uncompressed (up to {UNPACKED_FREELY // MB} MB, any compression is read)"
         )

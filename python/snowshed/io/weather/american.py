@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from datetime import datetime
 
 from snowshed._core import InputError
-from snowshed.io.messages import quoted
+from snowshed.base.messages import quoted
 from snowshed.io.weather.daily import COLUMNS, COUNTS, MISSING, TOTALS, Days, with_totals
 from snowshed.io.weather.observation import Quantity, Station, cells_of, split_cells, time_of
 
@@ -70,7 +70,7 @@ def read_dly(name: str, lines: Sequence[str]) -> Station:
         place = f"{name}, line {number}"
         if not DLY.match(line):
             raise InputError(
-                f"{place}, column 1: {quoted(line[:DLY_LINE])} is no station, year, month and "
+                f"{place}, column 1: {quoted(line[:DLY_LINE])} is not a station, year, month and "
                 "element"
             )
         same_station(line[:11], lines[0][:11], f"{place}, column station")
@@ -142,13 +142,13 @@ def is_acis(lines: Sequence[str]) -> bool:
 
 def read_acis(name: str, lines: Sequence[str]) -> Station:
     """Return ACIS columns as observations; raises InputError naming line and column."""
-    found = _acis_head(lines)
-    if found is None:
+    layout = _acis_head(lines)
+    if layout is None:
         raise InputError(
             f"{name}, line 2, column 1: rows of ACIS without the names of their columns; add a "
             "line above, such as Date,maxt,mint,pcpn,snow,snwd, in the order of your request"
         )
-    start, separator = found
+    start, separator = layout
     head = split_cells(lines[start], f"{name}, line {start + 1}", separator)
     columns = {i: ACIS[key] for i, key in enumerate(map(_key, head)) if key in ACIS}
     days = Days()
@@ -203,7 +203,7 @@ def _acis_head(lines: Sequence[str]) -> tuple[int, str] | None:
 
 
 def _is_bare_acis(lines: Sequence[str]) -> bool:
-    """Return whether a file is what the service answers: a station's name, then rows."""
+    """Return whether a file is an answer of the service: a station's name, then rows."""
     bare = len(lines) > 1 and BARE_TITLE.fullmatch(lines[0]) and BARE_ROW.fullmatch(lines[1])
     return bool(bare)
 

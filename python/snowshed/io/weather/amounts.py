@@ -1,7 +1,7 @@
-"""Amounts of water and snow as files tell them, and what of them fell between two readings.
+"""Amounts of water and snow in files, and the part of them between two readings.
 
-Totals may contain one another (1, 3, 6 and 24 hours), a counter may only rise, and every row may
-hold the sum of the last day. What is handed on does not overlap, so that it may be summed.
+Totals may overlap (1, 3, 6 and 24 hours), a counter may only rise, and every row may hold the sum
+of the last day. The resulting amounts do not overlap, so that they can be summed.
 """
 
 from __future__ import annotations
@@ -38,11 +38,11 @@ def without_overlap(
     Parameters
     ----------
     totals
-        In any order.
+        Totals in any order.
     step
         Hours of the shortest total.
     what
-        Their unit and quantity, for the notes.
+        Unit and quantity of the amounts, for the notes.
 
     Examples
     --------
@@ -96,7 +96,7 @@ def usual_step(times: Sequence[datetime]) -> float:
 
 
 def hours_before(times: Sequence[datetime]) -> list[float]:
-    """Return the hours since the row before; after a gap of more than a day those of usual rows.
+    """Return the hours since the previous row; after a gap of more than a day, those of usual rows.
 
     Examples
     --------

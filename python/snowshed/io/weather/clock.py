@@ -1,4 +1,4 @@
-"""One clock for all rows of a station: times with offsets, and hours that summer time moves."""
+"""One clock for all rows of a station: times with offsets, and hours shifted by summer time."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ SUNDAY = 6
 def on_one_clock(station: Station, source: str) -> Station:
     """Return a station whose rows have increasing times of one clock, without offsets.
 
-    Times with offsets are put on the clock of the smallest, which is that of standard time.
+    Times with offsets are converted to the smallest offset, which is standard time.
 
     Raises
     ------
     InputError
-        If only some times have offsets, or a time is not after the one before.
+        If only some times have offsets, or a time is not after the previous one.
     """
     rows, offset, notes = station.rows, station.utc_offset, [*station.notes]
     aware = rows[0].time.tzinfo is not None
@@ -82,7 +82,7 @@ def _check_order(rows: Sequence[Observation], source: str, step: float) -> None:
 
 
 def repeated_hour(earlier: datetime, later: datetime, step: float) -> str:
-    """Return what to add to a message where an hour may be there twice; nothing elsewhere.
+    """Return a hint if an hour may occur twice; otherwise nothing.
 
     Parameters
     ----------
@@ -94,13 +94,13 @@ def repeated_hour(earlier: datetime, later: datetime, step: float) -> str:
     Examples
     --------
     >>> time = datetime(2024, 10, 27, 2)
-    >>> repeated_hour(time, time, 1.0)[:27], repeated_hour(time, time, 24.0)
-    ('; this hour is there twice,', '')
+    >>> repeated_hour(time, time, 1.0)[:25], repeated_hour(time, time, 24.0)
+    ('; this hour occurs twice,', '')
     """
     back = (earlier - later) / HOUR
     if step < DAY and 0.0 <= back <= 1.0:
         return (
-            "; this hour is there twice, as where summer time ends: give times of standard time, "
+            "; this hour occurs twice, as at the end of summer time: give times of standard time, "
             "or times with offsets such as 2024-10-27T02:00+01:00"
         )
     return ""
@@ -120,5 +120,5 @@ def _of_missing_hours(rows: Sequence[Observation], step: float) -> list[str]:
     return [
         f"the hour after {missing[0]:%Y-%m-%d %H:%M} is missing"
         + (f", and {len(missing) - 1} more like it" if len(missing) > 1 else "")
-        + ", as where summer time begins; the times are taken as they stand"
+        + ", as at the beginning of summer time; the times are used unchanged"
     ]

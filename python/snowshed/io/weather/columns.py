@@ -1,4 +1,4 @@
-"""Which column of a file tells a quantity, where several do."""
+"""Choice of the column of a quantity, if several hold it."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ WORDS = {
 
 
 class Column(NamedTuple):
-    """A column of a file: its place from 0, its name, and what it holds."""
+    """A column of a file: its index, its name, and its quantity."""
 
     place: int
     title: str
@@ -28,12 +28,12 @@ class Column(NamedTuple):
 
 
 class Cells:
-    """The cells of some columns, of which each text is read once: most values come again.
+    """Cells of some columns; each text is parsed once, because most values repeat.
 
     Parameters
     ----------
     columns
-        To read.
+        Columns to read.
     missing
         Texts that stand for a missing value.
     """
@@ -47,13 +47,13 @@ class Cells:
     def read(self, cells: Sequence[str], place: str) -> list[Optional[float]]:
         """Return the values of a row; raises InputError naming the place and the column."""
         values = []
-        for (i, title, quantity), known in self.known:
+        for (i, title, quantity), parsed in self.known:
             text = cells[i]
-            if text not in known:
-                if len(known) >= MOST_KNOWN:
-                    known.clear()
-                known[text] = quantity.read(text, f"{place}, column {title}", self.missing)
-            values.append(known[text])
+            if text not in parsed:
+                if len(parsed) >= MOST_KNOWN:
+                    parsed.clear()
+                parsed[text] = quantity.read(text, f"{place}, column {title}", self.missing)
+            values.append(parsed[text])
         return values
 
 
@@ -73,12 +73,14 @@ def observations(
     Parameters
     ----------
     columns
-        By preference. Of several of a quantity the first is taken that has nine tenths of the
-        values of the fullest.
+        Columns by preference. Among several columns of a quantity, the first with at least nine
+        tenths of the values of the fullest is used.
     readings
-        Whose values are those of `columns`.
+        Values of the `columns`, row by row.
     """
-    counts = [sum(one.values[i] is not None for one in readings) for i in range(len(columns))]
+    counts = [
+        sum(reading.values[i] is not None for reading in readings) for i in range(len(columns))
+    ]
     taken: dict[str, int] = {}
     notes = []
     for name in dict.fromkeys(column.quantity.name for column in columns):

@@ -1,4 +1,4 @@
-"""Days of a station, element by element, as the daily data of the United States tell them."""
+"""Days of a station, element by element, in the daily data of the United States."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from datetime import datetime, timedelta
 from typing import Any, NamedTuple, Optional
 
 from snowshed._core import InputError
-from snowshed.io.messages import quoted
-from snowshed.io.number_text import number_in
+from snowshed.base.formatting import number_in
+from snowshed.base.messages import quoted
 from snowshed.io.weather.amounts import Total, without_overlap
 from snowshed.io.weather.observation import DAY, Observation, Quantity
 
@@ -33,8 +33,8 @@ SNOW = _Several("SNOW", "MDSF", "DASF", "m of new snow")
 WATER = _Several("PRCP", "MDPR", "DAPR", "mm of precipitation")
 COUNTS = (SNOW.number, WATER.number)
 #: Elements of several days and of their number, by that of a day.
-TOTALS = {one.day: (one.days, one.number) for one in (SNOW, WATER)}
-#: Which elements tell each quantity, by the names in the files.
+TOTALS = {names.day: (names.days, names.number) for names in (SNOW, WATER)}
+#: Elements of each quantity, by their names in the files.
 COLUMNS: Mapping[str, str] = {
     "temperature": "TAVG, or TMAX and TMIN",
     "precipitation": "PRCP",
@@ -45,34 +45,34 @@ COLUMNS: Mapping[str, str] = {
 
 def with_totals(elements: Mapping[str, Quantity]) -> dict[str, Quantity]:
     """Return elements with those of amounts over several days, in the units of their days'."""
-    more = {one.days: elements[one.day] for one in (SNOW, WATER)}
+    more = {names.days: elements[names.day] for names in (SNOW, WATER)}
     return {**elements, **more}
 
 
 @dataclass
 class Days:
-    """What was measured on the days of a station, whose elements come in any order.
+    """Measurements of the days of a station, whose elements come in any order.
 
     Attributes
     ----------
     values
-        By day: its first line, and values by element.
+        Line and values by element, for each day.
     left_out
-        How many values were left out, by reason.
+        Number of left-out values, by reason.
     """
 
     values: dict[datetime, dict[str, Any]] = field(default_factory=dict)
     left_out: Counter[str] = field(default_factory=Counter)
 
     def enter(self, day: datetime, line: int, element: str, value: Any, where: str) -> None:
-        """Enter a value, None if it is missing; raises InputError for another one of a day."""
-        found = self.values.setdefault(day, {"line": line})
-        if found.get(element, value) != value:
+        """Enter a value, None if it is missing; raises InputError for a second value of a day."""
+        values = self.values.setdefault(day, {"line": line})
+        if values.get(element, value) != value:
             raise InputError(
-                f"{where}: {element} of {day.date()} is there twice with different values; the "
-                f"first is in line {found['line']} or below"
+                f"{where}: {element} of {day.date()} occurs twice with different values; the "
+                f"first is in line {values['line']} or below"
             )
-        found[element] = value
+        values[element] = value
 
     def passes(self, measurement: str, quality: str) -> bool:
         """Return whether a value with these flags counts; if not, it is counted as left out."""
@@ -100,15 +100,15 @@ class Days:
         snow, of_snow = self._amounts(SNOW)
         water, of_water = self._amounts(WATER)
         rows = []
-        for day, found in sorted(self.values.items()):
-            mean = found.get("TAVG")
-            if mean is None and None not in (found.get("TMAX"), found.get("TMIN")):
-                mean = 0.5 * (found["TMAX"] + found["TMIN"])
+        for day, values in sorted(self.values.items()):
+            mean = values.get("TAVG")
+            if mean is None and None not in (values.get("TMAX"), values.get("TMIN")):
+                mean = 0.5 * (values["TMAX"] + values["TMIN"])
             new, new_hours = snow.get(day, (None, None))
             wet, wet_hours = water.get(day, (None, None))
-            deep = found.get("SNWD")
-            if any(one is not None for key, one in found.items() if key not in NO_VALUES):
-                row = Observation(found["line"], day, mean, wet, new, deep, wet_hours, new_hours)
+            deep = values.get("SNWD")
+            if any(value is not None for key, value in values.items() if key not in NO_VALUES):
+                row = Observation(values["line"], day, mean, wet, new, deep, wet_hours, new_hours)
                 rows.append(row)
         return rows, [*notes, *of_snow, *of_water]
 
@@ -118,14 +118,14 @@ class Days:
         days: list[datetime] = []
         several, counted = 0, 0
         last: Optional[datetime] = None
-        for day, found in sorted(self.values.items()):
-            own, total = found.get(names.day), found.get(names.days)
+        for day, values in sorted(self.values.items()):
+            own, total = values.get(names.day), values.get(names.days)
             end = _after(day)
             if own is not None:
                 totals.append(Total(end, DAY, own))
                 days.append(day)
             if total is not None:
-                count = found.get(names.number)
+                count = values.get(names.number)
                 counted += count is None
                 count = count or (min((day - last).days, MOST_DAYS) if last else 1)
                 totals.append(Total(end, DAY * max(count, 1), total))
@@ -139,7 +139,7 @@ class Days:
             before, hours = made.get(day, (0.0, 0.0))
             made[day] = (before + amount, max(hours, total.hours))
         if several:
-            gathered = math.fsum(found.get(names.days) or 0.0 for found in self.values.values())
+            gathered = math.fsum(values.get(names.days) or 0.0 for values in self.values.values())
             notes.insert(
                 0,
                 f"{several} amounts of several days ({names.days}), {gathered:.4g} {names.unit} in "

@@ -12,8 +12,8 @@ from datetime import datetime, timedelta
 from typing import Any, NamedTuple, Optional
 
 from snowshed._core import InputError
-from snowshed.io.messages import quoted
-from snowshed.io.number_text import number_in
+from snowshed.base.formatting import number_in
+from snowshed.base.messages import quoted
 from snowshed.io.weather.amounts import Total, usual_step, without_overlap
 from snowshed.io.weather.observation import (
     Observation,
@@ -85,9 +85,9 @@ def is_epw(lines: Sequence[str]) -> bool:
 def read_epw(name: str, lines: Sequence[str]) -> Station:
     """Return an EPW file's observations; raises InputError naming line and column."""
     if len(lines) < EPW_HEADER or not lines[EPW_HEADER - 1].startswith(EPW_LAST):
-        found = lines[EPW_HEADER - 1].split(",")[0] if len(lines) >= EPW_HEADER else "nothing"
+        beginning = lines[EPW_HEADER - 1].split(",")[0] if len(lines) >= EPW_HEADER else "nothing"
         raise InputError(
-            f"{name}, line {min(len(lines), EPW_HEADER)}, column 1: {quoted(found)}; allowed: "
+            f"{name}, line {min(len(lines), EPW_HEADER)}, column 1: {quoted(beginning)}; allowed: "
             f"{EPW_LAST}, which ends the header of an EPW file"
         )
     rows, periods = [], []
@@ -99,13 +99,15 @@ def read_epw(name: str, lines: Sequence[str]) -> Station:
         head = EPW_HEAD[:EPW_OLDER] if older else EPW_HEAD
         cells = dict(zip(head, cells_of(line, head, place)))
         values: dict[str, Any] = {
-            one.name: one.read(cells.get(title, ""), f"{place}, column {title}", ("", missing))
-            for title, one, missing in EPW_COLUMNS
+            quantity.name: quantity.read(
+                cells.get(title, ""), f"{place}, column {title}", ("", missing)
+            )
+            for title, quantity, missing in EPW_COLUMNS
         }
         time, end = _epw_time(cells, place)
         rows.append(Observation(number, time, **values, end=end))
         periods.append(_period(cells.get(EPW_PERIOD, ""), f"{place}, column {EPW_PERIOD}"))
-    columns = {one.name: title for title, one, _ in EPW_COLUMNS}
+    columns = {quantity.name: title for title, quantity, _ in EPW_COLUMNS}
     return _station("EPW", name, _Place.of(lines[0], name, EPW_PLACE), rows, periods, columns)
 
 
@@ -121,7 +123,7 @@ def _epw_time(cells: dict[str, str], place: str) -> tuple[datetime, datetime]:
         time = begin.replace(minute=max(min(minute, 60) - 1, 0))
         return time, begin + timedelta(minutes=min(minute, 60) or 60)
     except (ValueError, OverflowError):
-        raise InputError(f"{place}, column day: {year}-{month}-{day} is no date") from None
+        raise InputError(f"{place}, column day: {year}-{month}-{day} is not a date") from None
 
 
 def is_tmy3(lines: Sequence[str]) -> bool:
@@ -142,13 +144,13 @@ def read_tmy3(name: str, lines: Sequence[str]) -> Station:
         place = f"{name}, line {number}"
         cells = dict(zip(head, cells_of(line, head, place)))
         values: dict[str, Any] = {
-            one.name: one.read(cells[title], f"{place}, column {title}", ("", "-9900"))
-            for title, one in TMY3_NAMES.items()
+            quantity.name: quantity.read(cells[title], f"{place}, column {title}", ("", "-9900"))
+            for title, quantity in TMY3_NAMES.items()
         }
         end = _tmy3_end(cells, place)
         rows.append(Observation(number, end - MINUTE, **values, end=end))
         periods.append(_period(cells.get(TMY3_PERIOD, ""), f"{place}, column {TMY3_PERIOD}"))
-    columns = {one.name: title for title, one in TMY3_NAMES.items()}
+    columns = {quantity.name: title for title, quantity in TMY3_NAMES.items()}
     return _station("TMY3", name, _Place.of(lines[0], name, TMY3_PLACE), rows, periods, columns)
 
 

@@ -1,4 +1,4 @@
-"""How long amounts gathered: since the row before, since a counter was reset, or over hours."""
+"""Durations of amounts: since the previous row, since a counter's reset, or over hours."""
 
 from __future__ import annotations
 
@@ -11,30 +11,30 @@ from typing import Optional
 from snowshed.io.weather.amounts import HOUR, hours_before
 from snowshed.io.weather.observation import Observation, Station, changed
 
-#: A quantity, the field of its hours, its unit in notes, and what it is called there.
+#: A quantity, the field of its hours, and its unit and name in notes.
 AMOUNTS = (
     ("precipitation", "precipitation_hours", "mm", "precipitation"),
     ("snowfall", "snowfall_hours", "m", "new snow"),
 )
 FEWEST_RISES = 8  # of a counter; a storm may grow from row to row some times
-#: A counter's noise, as part of its value; what it falls to when it is emptied; rises per reset.
+#: A counter's noise, relative to its value; its value after emptying; rises per reset.
 NOISE, EMPTIED, RISES = 0.02, 0.2, 10
 FILLED = 0.5  # part of the rows, from the first amount on, in which a counter is above 0
 MINUTE = 1.0 / 60.0
 
 
 def with_hours(station: Station) -> Station:
-    """Return a station of which every amount says over how many hours it gathered.
+    """Return a station whose amounts all have a duration.
 
-    Counters become what was added to them. Of sums of the last hours, those of precipitation are
-    thinned out until they do not overlap, and those of new snow are named by `rolling`.
+    Counters become increments. Overlapping sums of precipitation over the last hours are thinned
+    out; overlapping sums of new snow are named by `rolling`.
     """
     rows, notes, rolling = list(station.rows), [*station.notes], set(station.rolling)
-    for name, hours, unit, words in AMOUNTS:
+    for name, hours, unit, label in AMOUNTS:
         own = [i for i, row in enumerate(rows) if getattr(row, name) is not None]
         if not own:
             continue
-        title = station.columns.get(name, words)
+        title = station.columns.get(name, label)
         fixed = [getattr(rows[i], hours) for i in own]
         if fixed[0] is None:
             notes += _fill_in(rows, own, (name, hours), f"{title}, in {unit},")
@@ -53,7 +53,7 @@ def with_hours(station: Station) -> Station:
 def _drop_first(
     rows: list[Observation], first: int, fields: tuple[str, str], title: str
 ) -> list[str]:
-    """Drop a first amount of the day before the rows, of which the file has nothing else."""
+    """Drop a first amount that belongs to the day before the file's rows."""
     row, (name, hours) = rows[first], fields
     amount = getattr(row, name)
     if amount is None or row.time.date() in row.shares(getattr(row, hours)):
@@ -69,7 +69,7 @@ def _drop_first(
 def _fill_in(
     rows: list[Observation], own: Sequence[int], fields: tuple[str, str], title: str
 ) -> list[str]:
-    """Set the hours of amounts since the row before, and what was added to a counter."""
+    """Set the hours of amounts since the previous row, and the increments of a counter."""
     name, hours = fields
     values = [getattr(rows[i], name) for i in own]
     times = [rows[i].time for i in own]
@@ -77,8 +77,8 @@ def _fill_in(
     added = added_to_counter(times, values)
     if added is not None:
         notes.append(
-            f"{title} only rises, up to {max(values):g}: it is a counter, and what is added to it "
-            f"counts, {sum(added):.4g} in all"
+            f"{title} only rises, up to {max(values):g}: it is a counter, so its increments are "
+            f"used, {sum(added):.4g} in all"
         )
     for n, (i, span) in enumerate(zip(own, hours_before(times))):
         amount = values[n] if added is None else added[n]
@@ -87,9 +87,9 @@ def _fill_in(
 
 
 def added_to_counter(times: Sequence[datetime], values: Sequence[float]) -> Optional[list[float]]:
-    """Return what each row adds to a counter, mm or m; None: the values are no counter.
+    """Return the increments of a counter, mm or m; None if the values are not a counter.
 
-    A counter rises or stands still, except where it is emptied: seldom, or at the same time of the
+    A counter rises or stands still, except when it is emptied: seldom, or at the same time of the
     day.
 
     Examples

@@ -28,7 +28,7 @@ class _File(NamedTuple):
 
 
 class _Value(NamedTuple):
-    """What one row of one file contributes."""
+    """Contribution of a row of a file."""
 
     file: int
     row: Observation
@@ -48,12 +48,12 @@ def read_stations(paths: Sequence[Path], temperature: Optional[Path] = None) -> 
     paths
         The files, the better ones first.
     temperature
-        Another file, whose temperatures come before those of `paths`.
+        Another file, whose temperatures are preferred to those of `paths`.
 
     Raises
     ------
     InputError
-        If a file is none of a station, or a typical year, or the snow and the temperatures have no
+        If a file is not from a station, is a typical year, or the snow and the temperatures have no
         day in common.
     OSError
         If one cannot be read.
@@ -81,8 +81,8 @@ def _read(path: Path) -> _File:
     station = read_station(path) or read_plain(path)
     if station.typical_year:
         raise InputError(
-            f"{path}: a typical year of the format {station.format}, whose days go with no other "
-            "file"
+            f"{path}: a typical year of the format {station.format}, which cannot be combined "
+            "with another file"
         )
     return _File(Path(path).name, station)
 
@@ -107,26 +107,26 @@ def _alike(files: Sequence[_File]) -> tuple[list[_File], list[str]]:
     return made, notes
 
 
-def _same_name(one: str, other: str) -> bool:
-    return one.casefold().strip() == other.casefold().strip()
+def _same_name(first: str, other: str) -> bool:
+    return first.casefold().strip() == other.casefold().strip()
 
 
-def _apart(one: _File, other: _File) -> Iterator[str]:
-    a, b = one.station, other.station
+def _apart(first: _File, other: _File) -> Iterator[str]:
+    a, b = first.station, other.station
     if None not in (a.latitude, a.longitude, b.latitude, b.longitude):
         north = ((a.latitude or 0.0) - (b.latitude or 0.0)) * DEGREE
         east = ((a.longitude or 0.0) - (b.longitude or 0.0)) * DEGREE
         distance = math.hypot(north, east * math.cos(math.radians(a.latitude or 0.0)))
         if distance > FAR:
-            yield f"the stations of {one.name} and {other.name} are {distance:.3g} km apart"
+            yield f"the stations of {first.name} and {other.name} are {distance:.3g} km apart"
     if a.altitude is not None and b.altitude is not None:
         higher = abs(a.altitude - b.altitude)
         if higher > HIGHER:
-            yield f"the altitudes of {one.name} and {other.name} differ by {higher:.0f} m"
+            yield f"the altitudes of {first.name} and {other.name} differ by {higher:.0f} m"
 
 
 def _on_clock(station: Station, offset: Optional[float]) -> Station:
-    """Return a station on another clock, if it is known and the rows are not those of days."""
+    """Return a station on another clock, if that is known and its rows are shorter than days."""
     if offset is None or station.utc_offset in (None, offset):
         return station
     if usual_step([row.time for row in station.rows]) > 12.0:
@@ -139,12 +139,12 @@ def _on_clock(station: Station, offset: Optional[float]) -> Station:
 
 
 def _of_quantity(files: Sequence[_File], name: str, own: Optional[int]) -> list[_Value]:
-    """Return the values of a quantity, each day those of one file, the first that has any."""
+    """Return the values of a quantity; each day uses the first file with a value."""
     order = list(range(len(files)))
     if own is not None:  # the file of the temperature, which is for nothing else
         order = [order[own], *order[:own]] if name == TEMPERATURE else order[:own]
     taken: set[date] = set()
-    found = []
+    values = []
     for number in order:
         new: set[date] = set()
         for row in files[number].station.rows:
@@ -152,10 +152,10 @@ def _of_quantity(files: Sequence[_File], name: str, own: Optional[int]) -> list[
                 continue
             days = _days(row, name)
             if taken.isdisjoint(days):
-                found.append(_Value(number, row, name))
+                values.append(_Value(number, row, name))
                 new.update(days)
         taken |= new
-    return found
+    return values
 
 
 def _days(row: Observation, name: str) -> set[date]:
@@ -246,14 +246,14 @@ def _station(
     notes += [f"{file.name}: {note}" for file in files for note in file.station.notes]
     stations = [file.station for file in files]
     return Station(
-        " and ".join(dict.fromkeys(one.format for one in stations)),
-        next((one.name for one in stations if one.name), ""),
+        " and ".join(dict.fromkeys(station.format for station in stations)),
+        next((station.name for station in stations if station.name), ""),
         rows,
         notes,
         False,
-        next((one.latitude for one in stations if one.latitude is not None), None),
-        next((one.longitude for one in stations if one.longitude is not None), None),
-        next((one.altitude for one in stations if one.altitude is not None), None),
+        next((station.latitude for station in stations if station.latitude is not None), None),
+        next((station.longitude for station in stations if station.longitude is not None), None),
+        next((station.altitude for station in stations if station.altitude is not None), None),
         stations[0].utc_offset,
         columns,
         frozenset(rolling),

@@ -12,9 +12,9 @@ mm and degrees C            one decimal, 10.0    one decimal, or none  whole
 inches and degrees F        whole                two decimals, 0.20    one decimal
 =========================== ==================== ===================== =================
 
-Nothing is guessed: units are taken only where all that a file holds is of one row of this table
-and of no other. Precipitation with one decimal alone may be either, so that it needs temperatures
-beside it; without any decimal a file is taken only in the form that the archive alone has.
+Units are never guessed: they are accepted only if the whole content of the file matches exactly one
+row of this table. Precipitation with one decimal fits two rows, so temperatures are needed beside
+it; a file without decimals is accepted only in the form of the archive.
 """
 
 from __future__ import annotations
@@ -54,13 +54,13 @@ STANDARD: Mapping[str, Quantity] = with_totals(
 )
 STATION, DATE, PLACE = "STATION", "DATE", "LATITUDE"
 FLAGS = "_ATTRIBUTES"  # of measurement, of quality, of the source, and the time of observation
-ARCHIVE = [STATION, DATE, PLACE]  # the order of columns in the archive alone
+ARCHIVE = [STATION, DATE, PLACE]  # the order of columns that only the archive has
 
 
 def is_summaries(lines: Sequence[str]) -> bool:
     """Return whether a file is of the daily summaries."""
     head = [cell.strip().strip('"') for cell in lines[0].split(",")]
-    return head[0] == STATION and DATE in head and any(one in head for one in ELEMENTS)
+    return head[0] == STATION and DATE in head and any(element in head for element in ELEMENTS)
 
 
 def read_summaries(name: str, lines: Sequence[str]) -> Station:
@@ -77,7 +77,7 @@ def read_summaries(name: str, lines: Sequence[str]) -> Station:
         place = f"{name}, line {number}"
         same_station(row[STATION], rows[0][1][STATION], f"{place}, column {STATION}")
         day = time_of(row[DATE], f"{place}, column {DATE}", "%Y-%m-%d")
-        for element in (one for one in (*units, *COUNTS) if one in row):
+        for element in (name for name in (*units, *COUNTS) if name in row):
             where = f"{place}, column {element}"
             value = None if element in COUNTS else units[element].read(row[element], where, MISSING)
             measurement, quality, *_ = [*row.get(element + FLAGS, "").split(","), "", ""]
@@ -115,15 +115,15 @@ def _units(
         return STANDARD, "inches and degrees F"
     if rain > 0:
         raise _unknown(name, head, "with one decimal, as mm and inches have, and no temperature")
-    if (head[:3] == ARCHIVE and any(one.endswith(FLAGS) for one in head)) or not rows:
+    if (head[:3] == ARCHIVE and any(title.endswith(FLAGS) for title in head)) or not rows:
         return ELEMENTS, "tenths of mm and of degrees C, and mm of snow"
     raise _unknown(name, head, "without a decimal in any row")
 
 
-def _unknown(name: str, head: Sequence[str], found: str) -> InputError:
-    first = next(one for one in head if one in ELEMENTS)
+def _unknown(name: str, head: Sequence[str], contents: str) -> InputError:
+    first = next(title for title in head if title in ELEMENTS)
     return InputError(
-        f"{name}, line 2, column {first}: {found}, its units cannot be told; give a longer file, "
+        f"{name}, line 2, column {first}: {contents}, its units are ambiguous; give a longer file, "
         f"one with temperatures, or that of the archive (its columns begin {', '.join(ARCHIVE)}, "
         f"and have {FLAGS})"
     )

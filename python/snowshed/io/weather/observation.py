@@ -1,4 +1,4 @@
-"""What weather files tell, in one form: a row for each time, in SI units and degrees C."""
+"""Observations from weather files in one form: a row for each time, in SI units and degrees C."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from functools import lru_cache
 from typing import Any, Optional
 
 from snowshed._core import InputError
-from snowshed.io.messages import quoted
-from snowshed.io.number_text import number_in
+from snowshed.base.formatting import number_in
+from snowshed.base.messages import quoted
 
 ZERO_CELSIUS = 273.15  # K
 DAY = 24.0  # hours
@@ -34,25 +34,26 @@ class Observation:
     Attributes
     ----------
     line
-        In the file, from 1.
+        Line in the file, from 1.
     time
-        When it was, or the day. It is of one clock throughout a station, without summer time.
+        Time or day of the observation, on one clock throughout a station, without summer time.
     temperature
-        Of the air, degrees C.
+        Temperature of the air, degrees C.
     precipitation
-        mm of water that fell in the last `precipitation_hours`.
+        Depth of the water in the last `precipitation_hours`, mm.
     snowfall
-        Depth of new snow, m, of the last `snowfall_hours`.
+        Depth of the new snow in the last `snowfall_hours`, m.
     snow_depth
-        m.
+        Depth of the snow on the ground, m.
     precipitation_hours, snowfall_hours
-        How long the amounts gathered. Amounts of different rows do not overlap, except those of
-        `Station.rolling`. Of whole days they end with the day of `time`, of hours with `end`.
+        Duration over which the amounts accumulated. Amounts of different rows do not overlap,
+        except those of `Station.rolling`. Amounts of whole days end with the day of `time`, amounts
+        of hours with `end`.
     seam
         Whether the row continues another series (another source year, sensor or file), so that a
         difference of the snow depth to the row before is no weather.
     end
-        When the hours of the amounts end; None: at `time`.
+        End of the hours of the amounts. [default: `time`]
     """
 
     line: int
@@ -72,7 +73,7 @@ class Observation:
         Parameters
         ----------
         hours
-            How long the amount gathered; None: within the day of `time`.
+            Duration over which the amount accumulated. [default: within the day of `time`]
 
         Examples
         --------
@@ -123,28 +124,28 @@ class Station:
     Attributes
     ----------
     format
-        Its name.
+        Name of the format.
     name
-        Of the station, as far as the file tells.
+        Name of the station, if the file states it.
     rows
-        In the order of time, each later than the one before. Those of a typical year are put
-        together as a year that begins in the station's summer: July 2001 to June 2002 in the
-        north, January to December 2001 in the south.
+        Observations in the order of time. A typical year is assembled as a year that begins in the
+        station's summer: July 2001 to June 2002 in the north, January to December 2001 in the
+        south.
     notes
-        What was assumed in reading it.
+        Assumptions made in reading.
     typical_year
         Whether its months come from different years.
     latitude, longitude
-        Degrees, north and east; None: the file does not tell.
+        Latitude and longitude, degrees north and east, if the file states them.
     altitude
-        m above the sea; None: the file does not tell.
+        Altitude above the sea, m, if the file states it.
     utc_offset
-        Hours of the rows' clock ahead of universal time; None: the file does not tell.
+        Hours of the rows' clock ahead of universal time, if the file states them.
     columns
-        Where each quantity stands in the file: names of fields of `Observation`, and of columns.
+        Source of each quantity: names of fields of `Observation`, and of columns in the file.
     rolling
-        Names of the quantities of which every row holds the sum of the last hours, so that those
-        of several rows overlap; of precipitation such sums are never handed on.
+        Quantities whose rows all hold sums over the last hours, so that rows overlap; overlapping
+        sums of precipitation are never passed on.
     """
 
     format: str
@@ -169,18 +170,18 @@ class Station:
 
 @dataclass(frozen=True)
 class Quantity:
-    """What a cell holds: its unit in the file, and how it becomes the unit of an observation.
+    """Quantity of a cell: its unit in the file, and the conversion to the unit of an observation.
 
     Attributes
     ----------
     name
         A field of `Observation`.
     unit
-        In the file, for messages.
+        Name of the column, for messages.
     factor, offset
         value = factor * cell + offset.
     hours
-        How long an amount gathered; None: since the row before, or it is no amount.
+        Duration over which an amount accumulated; None: since the previous row, or no amount.
     """
 
     name: str
@@ -204,7 +205,7 @@ class Quantity:
         Raises
         ------
         InputError
-            If it is no number, or none of such a quantity.
+            If the text is not a number, or not a plausible value.
 
         Examples
         --------
@@ -237,7 +238,7 @@ class Quantity:
 
 @lru_cache(maxsize=64)
 def _numbers(texts: tuple[str, ...]) -> frozenset[float]:
-    return frozenset(number_in(one) for one in texts)
+    return frozenset(number_in(text) for text in texts)
 
 
 #: Beyond these nothing was ever measured, and a unit is mistaken. Ultrasonic sensors show bare
@@ -258,15 +259,15 @@ def time_of(text: str, where: str, *formats: str) -> datetime:
     Raises
     ------
     InputError
-        If it is none.
+        If the text is not a time.
     """
     cell = text.strip().strip('"')
-    for one in formats:
-        found = _pattern(one).fullmatch(cell)
-        if found is None:
+    for form in formats:
+        match = _pattern(form).fullmatch(cell)
+        if match is None:
             continue
         try:
-            parts = found.groupdict(default="0")
+            parts = match.groupdict(default="0")
             return datetime(
                 int(parts["year"]),
                 int(parts["month"]),
@@ -287,7 +288,7 @@ def time_of(text: str, where: str, *formats: str) -> datetime:
 
 @lru_cache(maxsize=16)
 def _pattern(form: str) -> re.Pattern[str]:
-    """Return what a time in a format of `strptime` looks like, which is ten times as fast."""
+    """Return the pattern of a time format of `strptime`; parsing by it is ten times as fast."""
     text = re.escape(form).replace("\\ ", " ")
     for sign, (name, digits) in PARTS.items():
         text = text.replace(sign, f"(?P<{name}>[0-9]{digits})")
@@ -311,7 +312,7 @@ def coordinate(text: str, where: str, largest: float) -> Optional[float]:
     Raises
     ------
     InputError
-        If its amount is larger than allowed, or it is none.
+        If the amount is larger than allowed, or not a number.
 
     Examples
     --------

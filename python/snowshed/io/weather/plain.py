@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from snowshed._core import InputError
+from snowshed.base.messages import quoted
 from snowshed.io.csv_table import read_text_table
-from snowshed.io.messages import quoted
 from snowshed.io.weather.clock import on_one_clock
 from snowshed.io.weather.columns import Column, Reading, observations
 from snowshed.io.weather.gathering import with_hours
@@ -44,8 +44,8 @@ def read_plain(path: Path) -> Station:
             row.number,
             time_of(row.cells[DATE], f"{row.where}, column {DATE}"),
             [
-                one.read(row.cells[title], f"{row.where}, column {title}")
-                for _, title, one in columns
+                quantity.read(row.cells[title], f"{row.where}, column {title}")
+                for _, title, quantity in columns
             ],
         )
         for row in table.rows

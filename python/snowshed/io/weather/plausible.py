@@ -1,7 +1,7 @@
-"""Whether a station's numbers can be in the units in which they were read, all of them together.
+"""Plausibility of a station's units, judged from all its numbers together.
 
-Single numbers beyond everything that was ever measured are refused where they are read. Here it is
-the middle of many that tells a column in another unit, so that a faulty sensor does not.
+Single numbers beyond every record are refused during reading. Here the median of many numbers
+reveals a column in another unit, so that a faulty sensor does not count.
 """
 
 from __future__ import annotations

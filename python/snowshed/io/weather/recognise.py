@@ -1,4 +1,4 @@
-"""Which format a weather file has, told by its content."""
+"""The format of a weather file, recognised by its content."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import NamedTuple, Optional
 
 from snowshed._core import InputError
+from snowshed.base.limits import KB, WEATHER_LINE, WEATHER_LINES
 from snowshed.io.input_file import read_input
-from snowshed.io.limits import KB, WEATHER_LINE, WEATHER_LINES
 from snowshed.io.packed import unpacked
 from snowshed.io.weather import american, energy, ncei, smet, swiss
 from snowshed.io.weather.clock import on_one_clock
@@ -20,7 +20,7 @@ from snowshed.io.weather.plausible import with_plausible_units
 
 
 class Format(NamedTuple):
-    """How a format is recognised by its lines, and read.
+    """A format: how its lines are recognised, and read.
 
     Attributes
     ----------
@@ -50,9 +50,9 @@ FORMATS: Mapping[str, Format] = {
 
 
 def read_station(path: Path) -> Optional[Station]:
-    """Return the observations of a weather file; None if its format is none of `FORMATS`.
+    """Return the observations of a weather file; None if it matches none of `FORMATS`.
 
-    A file packed with gzip or xz, as GHCN-daily is published, is read like the file inside. Its
+    A file packed with gzip or xz, as GHCN-daily is published, is unpacked. Its
     times are on one clock, its amounts do not overlap, and its numbers can be in their units.
 
     Raises
@@ -63,7 +63,7 @@ def read_station(path: Path) -> Optional[Station]:
         If it cannot be read.
     """
     lines = _lines(unpacked(read_input(path), path), path)
-    form = next((one for one in FORMATS.values() if one.recognises(lines)), None)
+    form = next((candidate for candidate in FORMATS.values() if candidate.recognises(lines)), None)
     if form is None:
         if lines[0].lstrip().startswith("{"):
             raise InputError(
@@ -83,7 +83,7 @@ def read_station(path: Path) -> Optional[Station]:
 
 
 def _lines(content: bytes, path: Path) -> list[str]:
-    """Return the lines of a text; raises InputError if it is none, or its lines cost too much."""
+    """Return the lines of a text; raises InputError for binary or too long files."""
     if content.startswith((b"\xff\xfe", b"\xfe\xff")):
         raise InputError(f"{path}: text in UTF-16; save it in UTF-8")
     if b"\0" in content:

@@ -15,8 +15,8 @@ from datetime import datetime, timedelta
 from typing import Optional
 
 from snowshed._core import InputError
-from snowshed.io.messages import quoted
-from snowshed.io.number_text import number_in
+from snowshed.base.formatting import number_in
+from snowshed.base.messages import quoted
 from snowshed.io.weather.columns import Cells, Column, Reading, observations
 from snowshed.io.weather.observation import (
     DAY,
@@ -124,16 +124,16 @@ def _by_factors(
 ) -> dict[int, Quantity]:
     """Return the fields to read in SI units, by the factors and offsets of the header to them."""
     offsets, factors = (
-        _numbers(header, one, fields, separator) for one in ("units_offset", "units_multiplier")
+        _numbers(header, field, fields, separator) for field in ("units_offset", "units_multiplier")
     )
     quantities = {}
-    for place, one in enumerate(fields):
-        if one in FIELDS:
-            name, unit, hours = FIELDS[one]
+    for place, field in enumerate(fields):
+        if field in FIELDS:
+            name, unit, hours = FIELDS[field]
             shift = UNITS[name][unit][1]
             factor, offset = factors[place] if factors else 1.0, offsets[place] if offsets else 0.0
             if factor == 0.0:
-                raise InputError(f"{header.where('units_multiplier')}: 0 for {one}")
+                raise InputError(f"{header.where('units_multiplier')}: 0 for {field}")
             told = (
                 unit if (factor, offset) == (1.0, 0.0) else f"{unit} by {factor:g} and {offset:g}"
             )
@@ -153,14 +153,14 @@ def _by_units(header: _Header, fields: Sequence[str], separator: str) -> dict[in
         raise InputError(f"{header.where('units')}: {len(units)} units for {len(fields)} fields")
     by_factors = _by_factors(header, fields, separator)
     quantities = {}
-    for place, one in enumerate(fields):
-        if one not in FIELDS:
+    for place, field in enumerate(fields):
+        if field not in FIELDS:
             continue
-        name, si, hours = FIELDS[one]
+        name, si, hours = FIELDS[field]
         unit = units[place]
         if unit not in UNITS[name]:
             raise InputError(
-                f"{header.where('units')}: {quoted(unit)} of {one}; allowed: "
+                f"{header.where('units')}: {quoted(unit)} of {field}; allowed: "
                 f"{', '.join(UNITS[name])}"
             )
         quantities[place] = Quantity(name, unit, *UNITS[name][unit], hours)
@@ -171,7 +171,7 @@ def _by_units(header: _Header, fields: Sequence[str], separator: str) -> dict[in
             math.isclose(factor, to_si[0]) and math.isclose(offset, to_si[1], abs_tol=0.01)
         ):
             raise InputError(
-                f"{header.where('units')}: {quoted(unit)} of {one}, and a factor {factor:g} that "
+                f"{header.where('units')}: {quoted(unit)} of {field}, and a factor {factor:g} that "
                 f"is none of {unit} to {si}; correct one of them"
             )
     return quantities
@@ -185,7 +185,7 @@ def _station(
     quantities: Mapping[int, Quantity],
     separator: str | None,
 ) -> Station:
-    clock = next((one for one in ("timestamp", "julian") if one in fields), None)
+    clock = next((name for name in ("timestamp", "julian") if name in fields), None)
     if clock is None or not quantities:
         needed = f"none of {', '.join(FIELDS)}" if clock else "neither timestamp nor julian"
         raise InputError(
@@ -252,18 +252,18 @@ def _time(cell: str, place: str, clock: str) -> datetime:
 def _header(name: str, lines: Sequence[str]) -> _Header:
     """Return the header above [DATA], of lines without comments."""
     values: dict[str, str] = {}
-    places: dict[str, int] = {}
+    indices: dict[str, int] = {}
     for number, line in enumerate(lines, 1):
         if line == "[DATA]":
-            return _Header(name, number - 1, values, places)
+            return _Header(name, number - 1, values, indices)
         if number == 1 or not line or line.startswith(("[", "#", ";")):
             continue
         key, equals, value = (part.strip() for part in line.partition("="))
         if not equals:
             raise InputError(
-                f"{name}, line {number}, column 1: {quoted(line)} is no KEY = VALUE of a header"
+                f"{name}, line {number}, column 1: {quoted(line)} is not a KEY = VALUE of a header"
             )
-        values[key], places[key] = value, number
+        values[key], indices[key] = value, number
     raise InputError(
         f"{name}, line {len(lines)}, column 1: the file ends without its section [DATA]"
     )
@@ -271,19 +271,19 @@ def _header(name: str, lines: Sequence[str]) -> _Header:
 
 def _listed(header: _Header, key: str, separator: str | None) -> list[str]:
     value = header.values.get(key, "")
-    return [one.strip() for one in value.split(separator)] if value else []
+    return [part.strip() for part in value.split(separator)] if value else []
 
 
 def _numbers(
     header: _Header, key: str, fields: Sequence[str], separator: str | None
 ) -> list[float]:
     """Return a number for each field; none if the header lacks the key, or its plural of iCSV."""
-    key = next((one for one in (key, f"{key}s") if one in header.values), key)
+    key = next((candidate for candidate in (key, f"{key}s") if candidate in header.values), key)
     if key not in header.values:
         return []
-    found = [number_in(part) for part in _listed(header, key, separator)]
-    if len(found) != len(fields) or not all(abs(one) < 1e9 for one in found):
+    numbers = [number_in(part) for part in _listed(header, key, separator)]
+    if len(numbers) != len(fields) or not all(abs(number) < 1e9 for number in numbers):
         raise InputError(
             f"{header.where(key)}: {quoted(header.values[key])}; needed: {len(fields)} numbers"
         )
-    return found
+    return numbers

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from snowshed._core import InputError
-from snowshed.io.messages import quoted
+from snowshed.base.messages import quoted
 from snowshed.io.weather.columns import Cells, Column, Reading, observations
 from snowshed.io.weather.observation import Quantity, Station, cells_of, time_of
 
@@ -28,7 +28,7 @@ METEOSWISS: Mapping[str, Quantity] = {
     **dict.fromkeys(("hto000d0", "htoautd0", "htoauths", "htoauts0"), DEPTH),
 }
 SNOWY = ("rre", "rka", "hns", "hto")  # what names of such parameters begin with
-#: Of the open data, of its forerunner, and of IDAWEB; in small letters.
+#: Names in the open data, its predecessor, and IDAWEB; in lower case.
 STATIONS = ("station_abbr", "station/location", "stn")
 TIMES = ("reference_timestamp", "date", "time")
 MISSING = ("", "-", "NA", "NaN", "null")
@@ -62,7 +62,7 @@ def read_imis(name: str, lines: Sequence[str]) -> Station:
 
 
 def _head(lines: Sequence[str], separator: str, stations: Sequence[str]) -> int | None:
-    """Return the line, from 0, whose first cell is that of a station."""
+    """Return the index of the line whose first cell is that of a station."""
     for number, line in enumerate(lines[:5]):
         if _title(line.split(separator)[0]).lower() in stations:
             return number
@@ -114,7 +114,7 @@ def _read(
         time = time_of(cells[when], f"{place}, column {head[when]}", *formats)
         readings.append(Reading(number, time, values))
     rows, titles, notes = observations(columns, readings)
-    unread = [one for one in head if one.startswith(SNOWY) and one not in parameters]
+    unread = [title for title in head if title.startswith(SNOWY) and title not in parameters]
     if unread:
         notes.append(f"not read: {', '.join(unread)}")
     return Station(form, station, rows, notes, utc_offset=0.0, columns=titles)

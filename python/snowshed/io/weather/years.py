@@ -1,7 +1,7 @@
 """Typical years and actual years of building and solar energy.
 
-A typical year has months of different years. It is put together again as a year that begins in the
-station's summer. Files of the same formats may hold actual years.
+A typical year has months of different years. It is assembled as a year that begins in the station's
+summer. Files of the same formats may hold actual years.
 """
 
 from __future__ import annotations
@@ -29,25 +29,25 @@ def arranged(
     rows
         In the order of the file, with their own years.
     latitude
-        Of the station, degrees; None counts as north.
+        Latitude of the station, degrees; None counts as north.
     source
         The file, for messages.
 
     Raises
     ------
     InputError
-        If an hour of the year is there twice, and the rows are not in the order of time.
+        If an hour of the year occurs twice, and the rows are not in the order of time.
     """
     rising = all(earlier.time < later.time for earlier, later in zip(rows, rows[1:]))
     years = sorted({row.time.year for row in rows})
     if rising and _are_actual(rows):
-        words = f"the year {years[0]}" if len(years) == 1 else f"{years[0]} to {years[-1]}"
-        return list(rows), False, [f"the years are taken as actual ones: {words}"]
+        span = f"the year {years[0]}" if len(years) == 1 else f"{years[0]} to {years[-1]}"
+        return list(rows), False, [f"the years are taken as actual ones: {span}"]
     return _typical(rows, latitude, source), True, _notes(years, latitude)
 
 
 def _are_actual(rows: Sequence[Observation]) -> bool:
-    """Return whether rising rows go on from year to year, or hold an hour of the year twice."""
+    """Return whether rising rows continue from year to year, or repeat an hour of the year."""
     steady = all(later.time - earlier.time <= NEAR for earlier, later in zip(rows, rows[1:]))
     if steady:
         return not _is_calendar_year(rows)
@@ -55,7 +55,7 @@ def _are_actual(rows: Sequence[Observation]) -> bool:
 
 
 def _is_calendar_year(rows: Sequence[Observation]) -> bool:
-    """Return whether rows go from 1 January to 31 December, of which a winter must be made."""
+    """Return whether rows span 1 January to 31 December, so that a winter must be put together."""
     first, last = rows[0].time, rows[-1].time
     begin = datetime((first + NEAR).year, 1, 1)
     return abs(first - begin) <= NEAR and abs(last - begin - YEAR) <= 2 * NEAR
@@ -77,7 +77,7 @@ def _typical(
         if before is not None and time == made[-1].time:
             first, second = sorted((before.line, row.line))
             raise InputError(
-                f"{source}, line {second}, column date: {time:%m-%d %H:%M} is there twice, as in "
+                f"{source}, line {second}, column date: {time:%m-%d %H:%M} occurs twice, also in "
                 f"line {first}; allowed: a typical year, or actual years in their order"
             )
         seam = before is not None and not timedelta(0) < row.time - before.time <= NEAR
@@ -98,6 +98,6 @@ def _notes(years: Sequence[int], latitude: Optional[float]) -> list[str]:
     else:
         origin = f"its months come from {len(years)} different years"
     return [
-        f"it is a typical year: {origin}; it is put together from {begins} to {ends}, and a jump "
-        "of the snow depth at a joint of months is no snowfall"
+        f"it is a typical year: {origin}; it is assembled from {begins} to {ends}, and a jump "
+        "of the snow depth at a joint of months is not snowfall"
     ]

@@ -3,10 +3,22 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from snowshed.io.arrays import Booleans, Floats, Integers
+from snowshed._core import InputError
+from snowshed.base.arrays import Booleans, Floats, Integers
+from snowshed.base.core_simulation import AnySimulation, core_of
+from snowshed.base.units import unit_of_column
+from snowshed.io.csv_table import read_csv
+from snowshed.io.run_files import check_run_file
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+CONTACTS = "contacts.csv"  # in the results folder
 
 
 @dataclass(frozen=True)
@@ -68,3 +80,45 @@ class GrainContacts:
             numbers = (repr(float(value)) for value in (*point, *force))
             lines.append(",".join([str(pair[0]), str(pair[1]), *numbers, str(int(bonded))]))
         return "\n".join(lines) + "\n"
+
+
+def grain_contacts(simulation: AnySimulation) -> GrainContacts:
+    """Return the grains that touch now.
+
+    Parameters
+    ----------
+    simulation
+        A `snowshed.Simulation`.
+
+    Raises
+    ------
+    InputError
+        If the scene's method is another.
+    """
+    core = core_of(simulation)
+    spheres, grain = core.grains_spheres()
+    return GrainContacts(spheres, grain, *core.grains_contacts())
+
+
+def read_forces(folder: Path) -> pd.DataFrame:
+    """Read the contacts between grains, and their forces, at the end of a loading test.
+
+    Returns
+    -------
+    pandas.DataFrame
+        A row per contact: the numbers of its two grains, where they touch, the force on the first
+        one, and whether a bond holds them together; ``attrs["units"]`` has the units.
+
+    Raises
+    ------
+    InputError
+        If they are not there, or damaged.
+    """
+    file = folder / CONTACTS
+    if not file.is_file():
+        raise InputError(f"{file}: not there; a run writes it at its end")
+    check_run_file(file)
+    table = read_csv(file)
+    units = {str(name): unit_of_column(str(name)) for name in table}
+    table.attrs["units"] = {name: unit for name, unit in units.items() if unit}
+    return table

@@ -10,14 +10,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from snowshed._core import InputError
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
+from snowshed.base.core_simulation import AnySimulation, core_of
+from snowshed.base.paths import PathLike
+from snowshed.base.units import unit_of_column
 from snowshed.io.csv_table import parse_csv, read_csv
-from snowshed.io.paths import PathLike
 from snowshed.io.run_files import check_run_file
 
 if TYPE_CHECKING:
     import pandas as pd
 
+CURVE = "curve.csv"  # in the results folder
 #: What every curve has; energies follow where they are kept.
 COLUMNS = (
     "time_s",
@@ -159,6 +162,46 @@ class LoadingCurve:
             cells = (str(int(cell)) if count else repr(cell) for cell, count in zip(row, whole))
             lines.append(",".join(cells))
         return "\n".join(lines) + "\n"
+
+
+def loading_curve(simulation: AnySimulation) -> LoadingCurve:
+    """Return what a loading test has measured so far.
+
+    Parameters
+    ----------
+    simulation
+        A `snowshed.Simulation`.
+
+    Raises
+    ------
+    InputError
+        If the scene's method is another.
+    """
+    return LoadingCurve(core_of(simulation).grains_curve())
+
+
+def read_curve(folder: Path) -> pd.DataFrame:
+    """Read the curve of a loading test from its results folder.
+
+    Returns
+    -------
+    pandas.DataFrame
+        The columns of `LoadingCurve`; ``attrs["units"]`` has their units.
+
+    Raises
+    ------
+    InputError
+        If it is not there, or damaged.
+    """
+    import pandas as pd
+
+    file = folder / CURVE
+    if not file.is_file():
+        raise InputError(f"{file}: not there; a run writes it while it goes on")
+    table = pd.DataFrame(dict(LoadingCurve.read(file).columns))
+    units = {name: unit_of_column(str(name)) for name in table}
+    table.attrs["units"] = {name: unit for name, unit in units.items() if unit}
+    return table
 
 
 def stage_stress(curve: LoadingCurve, kind: str) -> Floats:

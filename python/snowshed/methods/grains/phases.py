@@ -14,7 +14,7 @@ from typing import Optional
 
 import numpy as np
 
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 from snowshed.methods.grains.curve import (
     LoadingCurve,
     carried_stress,

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Optional
+from typing import Any, ClassVar, Optional
 
 import numpy as np
 
-from snowshed.io.formatting import percent
+from snowshed.base.formatting import percent
 from snowshed.methods.grains.curve import LoadingCurve, stage_strain, stage_stress, untouched
 from snowshed.methods.grains.phases import LINEAR, MEANS, Phases, find_phases, mean_stress
+from snowshed.methods.summary import Summary
 
 #: Grains below which one sample hardly stands for its snow.
 FEW_GRAINS = 1000
@@ -21,17 +22,17 @@ INERTIA = 0.004
 
 
 @dataclass(frozen=True)
-class GrainsSummary:
+class GrainsSummary(Summary):
     """What a loading test came to. Stresses of the first stage are those that it builds up.
 
     Attributes
     ----------
     ended
         "rest" where all stages were done, else "time_limit".
-    duration_s
-        Simulated time of the test.
-    grains, spheres
-        Of the sample.
+    sim_time_s
+        Simulated time of the test, s.
+    final_particles, spheres
+        Number of grains, and of the spheres that they consist of.
     density_kg_m3
         Of the snow at the beginning.
     solid_fraction, solid_fraction_at_end
@@ -62,8 +63,8 @@ class GrainsSummary:
     """
 
     ended: str
-    duration_s: float
-    grains: int
+    sim_time_s: float
+    final_particles: int
     spheres: int
     density_kg_m3: float
     solid_fraction: float
@@ -88,10 +89,36 @@ class GrainsSummary:
     notes: tuple[str, ...] = ()
     sample_notes: tuple[str, ...] = ()
 
+    FILE: ClassVar[str] = "grains.json"
+    TITLE: ClassVar[str] = "Loading test"
+    OPENED: ClassVar[str] = "curve.csv, grains.png and forces.png"
+    REMARKS: ClassVar[tuple[str, ...]] = ("synthetic", "notes", "sample_notes")
+
+    def lines(self) -> Mapping[str, str]:
+        """Return what people read of it, by name, as far as it is known."""
+        broken = self.broken_in_tension + self.broken_in_shear
+        force = self.largest_cone_force_n
+        lines = {
+            "ended": f"{self.ended} after {self.sim_time_s:.4g} s",
+            "sample": f"{self.final_particles:,} grains of {self.spheres:,} spheres, "
+            f"{self.density_kg_m3:.0f} kg/m3" + (", synthetic" if self.synthetic else ""),
+            "bonds broken": f"{broken:,} of {self.bonds:,}, {self.broken_in_tension:,} in tension "
+            f"and {self.broken_in_shear:,} in shear",
+            "elastic up to": _strain(self.elastic_limit_strain),
+            "tangent modulus": _pressure(self.tangent_modulus_pa),
+            "strength": _pressure(self.strength_pa),
+            "mean stress, 5 to 10 %": _pressure(self.mean_stress_5_10_pa),
+            "mean stress, 10 to 15 %": _pressure(self.mean_stress_10_15_pa),
+            "mean stress, 25 to 30 %": _pressure(self.mean_stress_25_30_pa),
+            "hardening from": _strain(self.hardening_onset_strain),
+            "force on the cone": f"up to {force:.3g} N" if force else "",
+        }
+        return {name: text for name, text in lines.items() if text}
+
 
 def summarise(
     curve: LoadingCurve,
-    scene: dict[str, Any],
+    scene: Mapping[str, Any],
     *,
     ended: str,
     grains: int,
@@ -124,8 +151,8 @@ def summarise(
     density = float(scene["numerics"]["density"])
     return GrainsSummary(
         ended=ended,
-        duration_s=float(curve["time_s"][-1]),
-        grains=grains,
+        sim_time_s=float(curve["time_s"][-1]),
+        final_particles=grains,
         spheres=spheres,
         density_kg_m3=density * float(curve["solid_fraction"][0]),
         solid_fraction=float(curve["solid_fraction"][0]),
@@ -152,7 +179,7 @@ def summarise(
     )
 
 
-def _cone_force(curve: LoadingCurve, scene: dict[str, Any]) -> Optional[float]:
+def _cone_force(curve: LoadingCurve, scene: Mapping[str, Any]) -> Optional[float]:
     """Return the largest force on the cone; None if one moved and never touched the snow."""
     kinds = [str(stage["kind"]) for stage in scene["loading"]]
     if "penetrate" in kinds and untouched(curve, "penetrate"):
@@ -164,7 +191,7 @@ NO_PHASES = Phases(None, None, None, None, None, None)
 
 
 def _notes(
-    curve: LoadingCurve, first: LoadingCurve, kind: str, scene: dict[str, Any], grains: int
+    curve: LoadingCurve, first: LoadingCurve, kind: str, scene: Mapping[str, Any], grains: int
 ) -> list[str]:
     notes = []
     if grains < FEW_GRAINS:
@@ -205,3 +232,14 @@ def _notes(
             f"a run of {INERTIA:g} or less, as inertia may raise the stresses"
         )
     return notes
+
+
+def _strain(strain: Optional[float]) -> str:
+    return "" if strain is None else f"{100 * strain:.3g} % strain"
+
+
+def _pressure(pascals: Optional[float]) -> str:
+    if pascals is None:
+        return ""
+    unit, factor = ("MPa", 1e-6) if abs(pascals) >= 1e6 else ("kPa", 1e-3)
+    return f"{pascals * factor:.3g} {unit}"

@@ -1,4 +1,4 @@
-// Decodes a film of snowshed (docs/view.md) into frames that can be drawn.
+// Decodes a film of snowshed (docs/reference/film.md) into frames that can be drawn.
 
 /** Returns the bytes of a base64 text. */
 function bytesOfBase64(text) {

@@ -4,9 +4,9 @@ Every builder returns a `Scene` to change further, run or save; `snowshed.plot.s
 it.
 """
 
-from snowshed.io.raster import Raster, read_raster
+from snowshed.io.raster.raster import Raster, read_raster
 from snowshed.scene.builders.avaframe import avaframe_scene
-from snowshed.scene.builders.grains import example_grains, grains_scene
+from snowshed.scene.builders.grains import grains_scene
 from snowshed.scene.builders.meshes import mesh_structure
 from snowshed.scene.builders.panels import panel_rows, panel_table, single_panel
 from snowshed.scene.builders.roofs import gable_roof, shed_roof
@@ -17,7 +17,6 @@ from snowshed.scene.builders.tracker import tracker
 __all__ = [
     "Raster",
     "avaframe_scene",
-    "example_grains",
     "example_slide",
     "gable_roof",
     "grains_scene",

@@ -8,13 +8,13 @@ from pathlib import Path
 from typing import Optional
 
 from snowshed._core import InputError
-from snowshed.io.limits import RASTER_CELLS, RESAMPLED_CELLS, SAVED_CELLS
-from snowshed.io.map_areas import read_areas
-from snowshed.io.messages import quoted
-from snowshed.io.paths import PathLike
-from snowshed.io.raster import GEOTIFF, read_raster, write_ascii_grid
-from snowshed.io.raster_resampling import resampled_raster
-from snowshed.methods.slide import SlideSettings
+from snowshed.base.limits import RASTER_CELLS, RESAMPLED_CELLS, SAVED_CELLS
+from snowshed.base.messages import quoted
+from snowshed.base.paths import PathLike
+from snowshed.io.raster.areas import read_areas
+from snowshed.io.raster.raster import GEOTIFF, read_raster, write_ascii_grid
+from snowshed.io.raster.resampling import resampled_raster
+from snowshed.methods.slide.settings import SlideSettings
 from snowshed.scene.builders.avaframe_files import InputFile, check_own_file, project_inputs
 from snowshed.scene.builders.avaframe_ini import SIM_TYPES, ProjectSettings, read_ini
 from snowshed.scene.builders.slides import slide_scene
@@ -33,13 +33,13 @@ class AvaFrameSimulation:
     Attributes
     ----------
     scene
-        What to simulate.
+        The scene to simulate.
     release
         Name of the release file, without ending.
     sim_type
         "entres", "ent", "res" or "null": with areas of entrainment, of resistance, or neither.
     project
-        What the ini asks for.
+        The settings of the ini file.
     folder
         The project folder.
     files
@@ -69,8 +69,8 @@ def avaframe_simulations(
 ) -> list[AvaFrameSimulation]:
     """Return the simulations of an AvaFrame project folder, in the compatible mode.
 
-    There is one for every release file and every type of simulation; the first has all areas that
-    are asked for.
+    Every combination of a release file and a type of simulation gives one; the first has all
+    requested areas.
 
     Parameters
     ----------
@@ -79,24 +79,25 @@ def avaframe_simulations(
         ``ENT`` and ``RES``; the ini of com5SnowSlide, if any, in ``Inputs/CFGs``, ``Inputs`` or the
         folder.
     settings
-        Settings that go before those of the ini, by their names in `SlideSettings`.
+        Settings that override those of the ini, by their names in `SlideSettings`.
     thickness
-        Thickness of the released snow [m], in place of the files'.
+        Thickness of the released snow [m], instead of that of the files.
     ascii_copy
-        Where the copy of terrain goes that is a GeoTIFF or has other cells than the ini asks for.
+        File for a copy of the terrain, needed for a GeoTIFF or other cell sizes than those of the
+        ini.
 
     Raises
     ------
     InputError
-        If the folder is no such project, asks for what com5SnowSlide does not do here, or holds
-        links to files that are not its own.
+        If the folder is not such a project, asks for unsupported features of com5SnowSlide, or has
+        links to files outside.
     OSError
         If a file cannot be read.
     """
     root = Path(folder)
     inputs = root / "Inputs"
     if not inputs.is_dir():
-        raise InputError(f"{root}: no AvaFrame project: it has no folder Inputs")
+        raise InputError(f"{root}: not an AvaFrame project: it has no folder Inputs")
     own = project_inputs(root)
     project = read_ini(_ini_of(root, inputs / "CFGs", inputs))
     project.values.update(settings or {})
@@ -108,7 +109,7 @@ def avaframe_simulations(
         "ent": _one_if_any(inputs / "ENT", "entrainment"),
         "res": _one_if_any(inputs / "RES", "resistance"),
     }
-    raster = _one(inputs, RASTERS, "terrain")
+    raster = _only_file(inputs, RASTERS, "terrain")
     terrain = _terrain(raster, project, ascii_copy)
     _check_saved_maps(terrain, project)
     return [
@@ -138,10 +139,10 @@ def avaframe_scene(
 
     Parameters and errors are those of `avaframe_simulations`.
     """
-    found = avaframe_simulations(
+    simulations = avaframe_simulations(
         folder, settings=settings, thickness=thickness, ascii_copy=ascii_copy
     )
-    return found[0].scene
+    return simulations[0].scene
 
 
 def _scene(
@@ -187,7 +188,7 @@ def _entrained_thickness(file: Optional[Path], project: ProjectSettings) -> Opti
 
 
 def _terrain(file: Path, project: ProjectSettings, ascii_copy: Optional[PathLike]) -> Path:
-    """Return the terrain on the cells that are asked for, resampled as AvaFrame does it."""
+    """Return the terrain on the requested cells, resampled as in AvaFrame."""
     cell = float(str(project.values["cell"]))
     if cell == 0:
         return file
@@ -217,7 +218,7 @@ def _check_saved_maps(terrain: Path, project: ProjectSettings) -> None:
     cells = maps * read_raster(terrain).heights.size
     if cells > SAVED_CELLS:
         raise InputError(
-            f"{project.places['saved_times']}: {maps} maps have {cells:.3g} cells; at most "
+            f"{project.positions['saved_times']}: {maps} maps have {cells:.3g} cells; at most "
             f"{SAVED_CELLS:.0e} are allowed"
         )
 
@@ -229,14 +230,14 @@ def _releases(folder: Path, project: ProjectSettings) -> list[Path]:
             f"{rasters[0]}: com5SnowSlide takes no release from a raster; give polygons, or use "
             "--terrain with --thickness-raster"
         )
-    found = _files(folder, POLYGONS)
+    files = _files(folder, POLYGONS)
     if project.release_scenario:
-        found = [file for file in found if file.stem == project.release_scenario]
-        if not found:
+        files = [file for file in files if file.stem == project.release_scenario]
+        if not files:
             raise InputError(f"{folder}: no release area {quoted(project.release_scenario)}")
-    if not found:
+    if not files:
         raise InputError(f"{folder}: no file of a release area ({', '.join(POLYGONS)})")
-    return found
+    return files
 
 
 def _sim_types(
@@ -270,28 +271,28 @@ def _refuse_what_is_not_done(inputs: Path, project: ProjectSettings) -> None:
 
 def _ini_of(*folders: Path) -> Optional[Path]:
     """Return the ini of com5SnowSlide in the folders; None without one."""
-    found = [file for folder in folders for file in sorted(folder.glob("*com5SnowSlideCfg.ini"))]
-    if len(found) > 1:
-        raise InputError(f"{folders[0]}: {len(found)} ini files of com5SnowSlide; keep one")
-    if not found:
+    files = [file for folder in folders for file in sorted(folder.glob("*com5SnowSlideCfg.ini"))]
+    if len(files) > 1:
+        raise InputError(f"{folders[0]}: {len(files)} ini files of com5SnowSlide; keep one")
+    if not files:
         return None
-    check_own_file(found[0], folders[0])
-    return found[0]
+    check_own_file(files[0], folders[0])
+    return files[0]
 
 
 def _files(folder: Path, patterns: tuple[str, ...]) -> list[Path]:
     return sorted(file for pattern in patterns for file in folder.glob(pattern))
 
 
-def _one(folder: Path, patterns: tuple[str, ...], what: str) -> Path:
-    found = _files(folder, patterns)
-    if len(found) != 1:
-        raise InputError(f"{folder}: {len(found)} files of the {what}; allowed: 1")
-    return found[0]
+def _only_file(folder: Path, patterns: tuple[str, ...], what: str) -> Path:
+    files = _files(folder, patterns)
+    if len(files) != 1:
+        raise InputError(f"{folder}: {len(files)} files of the {what}; allowed: 1")
+    return files[0]
 
 
 def _one_if_any(folder: Path, what: str) -> Optional[Path]:
     rasters = _files(folder, RASTERS)
     if rasters:
         raise InputError(f"{rasters[0]}: areas of {what} are taken from polygons only")
-    return _one(folder, POLYGONS, what) if _files(folder, POLYGONS) else None
+    return _only_file(folder, POLYGONS, what) if _files(folder, POLYGONS) else None

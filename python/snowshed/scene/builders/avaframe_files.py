@@ -1,7 +1,7 @@
-"""The files of an AvaFrame project: which are its own, and may be read and copied.
+"""The files of an AvaFrame project that may be read and copied.
 
-Projects are handed from person to person. A link in one could lead to any file of whoever runs it,
-whose content would then stand among the results.
+Projects are exchanged between people. A link in a project could lead to any file of the user, whose
+content would then be among the results.
 """
 
 from __future__ import annotations
@@ -14,11 +14,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from snowshed._core import InputError
+from snowshed.base.limits import GB, PROJECT_BYTES, PROJECT_DEPTH, PROJECT_FILES
+from snowshed.base.messages import printable, quoted
+from snowshed.base.notes import tell
 from snowshed.io.atomic import replacing
-from snowshed.io.limits import GB, PROJECT_BYTES, PROJECT_DEPTH, PROJECT_FILES
-from snowshed.io.messages import quoted
-from snowshed.io.notes import tell
-from snowshed.io.printable import printable
 
 #: Endings of files that projects are made of: rasters, polygons and lines, settings, tables.
 KNOWN = (
@@ -26,7 +25,7 @@ KNOWN = (
     *(".shp", ".shx", ".dbf", ".cpg", ".qpj", ".qix", ".sbn", ".sbx", ".gpkg", ".geojson"),
     *(".ini", ".csv"),
 )
-#: What AvaFrame keeps in Inputs for itself.
+#: Entries of Inputs for AvaFrame's own use.
 OWN_COPIES = "remeshedRasters"
 
 
@@ -37,7 +36,7 @@ class InputFile:
     Attributes
     ----------
     file
-        Where it is.
+        Folder of the project.
     place
         Its path from the project's folder Inputs.
     """
@@ -49,14 +48,13 @@ class InputFile:
 def project_inputs(root: Path) -> list[InputFile]:
     """Return the files in the folder Inputs of a project that may be read and copied.
 
-    Files with other endings than projects have are left out, which is told.
+    Files with other suffixes are left out, with a note.
 
     Raises
     ------
     InputError
-        If a file is none of the project: a link that leads out of it, to a folder or to nothing, a
-        device, a pipe; if a name holds what no name should; or if there are too many or too large
-        ones.
+        If a file is unsafe: a link that leads out of the project, to a folder or to nothing, a
+        device, a pipe; if a name has forbidden characters; or if files are too many or too large.
     """
     inputs = root / "Inputs"
     _check_own(inputs, root, folder=True)
@@ -69,12 +67,12 @@ def project_inputs(root: Path) -> list[InputFile]:
             f"{inputs}: {size / GB:.3g} GB of files; at most {PROJECT_BYTES // GB} GB are copied "
             "to the results"
         )
-    known = [each for each in files if each.file.suffix.lower() in KNOWN]
+    supported = [each for each in files if each.file.suffix.lower() in KNOWN]
     others = [str(each.place) for each in files if each.file.suffix.lower() not in KNOWN]
     if others:
         more = f" and {len(others) - 5} others" if len(others) > 5 else ""
         tell(f"{inputs}: not copied to the results: {', '.join(others[:5])}{more}")
-    return known
+    return supported
 
 
 def copy_inputs(inputs: Sequence[InputFile], folder: Path) -> None:
@@ -114,16 +112,16 @@ def _files(folder: Path, root: Path, depth: int) -> Iterator[Path]:
 
 def _entries(folder: Path) -> list[os.DirEntry[str]]:
     with os.scandir(folder) as entries:
-        found = []
+        files = []
         for entry in entries:
-            found.append(entry)
-            if len(found) > PROJECT_FILES:
+            files.append(entry)
+            if len(files) > PROJECT_FILES:
                 raise InputError(f"{folder}: more than {PROJECT_FILES} files")
-        return found
+        return files
 
 
 def _check_own(path: Path, root: Path, *, folder: bool) -> None:
-    """Refuse what lies elsewhere, and what is no regular file, or folder."""
+    """Refuse files outside the project, and everything except regular files and folders."""
     try:
         inside = path.resolve(strict=True).is_relative_to(root.resolve())
     except (OSError, RuntimeError):  # there is nothing, or links lead in a circle

@@ -1,4 +1,4 @@
-"""What an ini of AvaFrame's com5SnowSlide asks for: honoured or refused, never passed over.
+"""The settings of an ini of AvaFrame's com5SnowSlide: honoured or refused, never ignored.
 
 com5SnowSlide runs com1DFA with other defaults; its ini may set any parameter of com1DFA.
 """
@@ -13,10 +13,9 @@ from pathlib import Path
 from typing import Any, Optional
 
 from snowshed._core import InputError
+from snowshed.base.limits import INI, SAVED_TIMES
+from snowshed.base.messages import printable, quoted, shortened, suggestion
 from snowshed.io.input_file import read_input
-from snowshed.io.limits import INI, SAVED_TIMES
-from snowshed.io.messages import quoted, shortened, suggestion
-from snowshed.io.printable import printable
 from snowshed.scene.builders.avaframe_keys import (
     FIXED,
     FRICTION,
@@ -37,7 +36,7 @@ RESULT_TYPES = ("ppr", "pft", "pfv", "P", "FT", "FV")
 
 @dataclass
 class ProjectSettings:
-    """What an ini asks for.
+    """The settings of an ini.
 
     Attributes
     ----------
@@ -48,17 +47,17 @@ class ProjectSettings:
     sim_types
         "entres", "ent", "res" and "null", or "available".
     release_thickness, entrained_thickness
-        Thickness of all areas in place of the files', m; None: the files'.
+        Thickness of all areas [m]; None: that of the files.
     default_entrained_thickness
-        Where the file of the entrainment areas says none, m.
+        Entrainment thickness where the file of the areas has none, m.
     release_scenario
         Name of the only release file to take; empty: all of them.
     result_types, saved_times
-        Maps to write, and when beside the end, s.
+        Maps to write, and their times before the end, s.
     with_dam, with_secondary_release
         Whether to take dams and secondary release areas where there are any.
-    places
-        Where the ini sets the values, by their names.
+    positions
+        Positions of the values in the ini, by their names.
     """
 
     values: dict[str, object] = field(default_factory=lambda: {"cell": 2.0, "time_step": 0.01})
@@ -72,22 +71,22 @@ class ProjectSettings:
     saved_times: tuple[float, ...] = ()
     with_dam: bool = True
     with_secondary_release: bool = True
-    places: dict[str, str] = field(default_factory=dict)
+    positions: dict[str, str] = field(default_factory=dict)
 
     def located(self, error: InputError) -> InputError:
-        """Return an error of a scene with the place in the ini that sets what it is about."""
+        """Return an error of a scene with the position of its setting in the ini."""
         about = re.match(r"/numerics/(\w+)", str(error))
-        place = self.places.get(about[1]) if about else None
+        place = self.positions.get(about[1]) if about else None
         return InputError(f"{place}: {error}") if place else error
 
 
 def read_ini(file: Optional[Path]) -> ProjectSettings:
-    """Return what an ini of com5SnowSlide asks for; its defaults without one.
+    """Return the settings of an ini of com5SnowSlide; without an ini, its defaults.
 
     Raises
     ------
     InputError
-        If the file is no ini, or a key or its value is none that works here.
+        If the file is not an ini, or a key or its value is not supported.
 
     Examples
     --------
@@ -99,7 +98,7 @@ def read_ini(file: Optional[Path]) -> ProjectSettings:
     for key, name in SETTINGS.items():
         if key in given:
             project.values[name] = given.setting(key, name)
-            project.places[name] = given.where(key)
+            project.positions[name] = given.where(key)
     if given.is_blank("meshcellsize"):
         project.values["cell"] = 0.0
     project.values.update(_friction(given))
@@ -115,7 +114,7 @@ def read_ini(file: Optional[Path]) -> ProjectSettings:
     project.release_scenario = given.text("releasescenario").removesuffix(".shp")
     project.result_types = _result_types(given)
     project.saved_times = _saved_times(given, project.max_time)
-    project.places["saved_times"] = given.where("tsteps")
+    project.positions["saved_times"] = given.where("tsteps")
     project.with_dam = given.switch("dam", True)
     project.with_secondary_release = given.switch("secrelarea", True)
     _check_kernel_radius(given, project.values["cell"])
@@ -206,14 +205,14 @@ class _Keys:
     ) -> tuple[str, ...]:
         if key not in self:
             return default
-        found = tuple(word.strip() for word in self.text(key).split("|"))
-        for word in found:
+        names = tuple(word.strip() for word in self.text(key).split("|"))
+        for word in names:
             if word not in allowed:
                 raise InputError(
                     f"{self.where(key)}: {quoted(word)} is not available; allowed: "
                     f"{', '.join(allowed)}"
                 )
-        return found
+        return names
 
     def refuse_the_rest(self) -> None:
         for key, text in self._found.items():
@@ -234,7 +233,7 @@ class _Keys:
                 or key.endswith(OTHER_FRICTION)
             ):
                 near = suggestion(key, [*SETTINGS, *OWN_KEYS, *FIXED])
-                raise InputError(f"{self.where(key)}: none of the keys that are known here{near}")
+                raise InputError(f"{self.where(key)}: unknown key{near}")
 
 
 def _keys_of(file: Optional[Path]) -> tuple[dict[str, str], dict[str, int]]:
@@ -250,15 +249,15 @@ def _keys_of(file: Optional[Path]) -> tuple[dict[str, str], dict[str, int]]:
     except (configparser.Error, UnicodeDecodeError) as error:
         why = shortened(" ".join(printable(error).split()), 300)
         raise InputError(f"{file}: not an ini file: {why}") from None
-    found: dict[str, str] = {}
+    values: dict[str, str] = {}
     for section in parser.sections():
         if section != "GENERAL" and not section.endswith("_override"):
             raise InputError(
                 f"{file}: the section [{shortened(printable(section))}] is none of com5SnowSlide; "
                 "allowed: [GENERAL], [com1DFA_com1DFA_override]"
             )
-        found.update(parser.items(section))
-    return found, _lines_of(text)
+        values.update(parser.items(section))
+    return values, _lines_of(text)
 
 
 def _lines_of(text: str) -> dict[str, int]:
@@ -301,8 +300,8 @@ def _forced_thickness(given: _Keys, key: str) -> Optional[float]:
 
 def _result_types(given: _Keys) -> tuple[str, ...]:
     # The map of when snow first came is one of com1DFA's defaults; it is not made here.
-    found = given.words("restype", (*RESULT_TYPES, "timeInfo"), ("ppr", "pft", "pfv"))
-    return tuple(kind for kind in found if kind != "timeInfo") or ("pfv",)
+    types = given.words("restype", (*RESULT_TYPES, "timeInfo"), ("ppr", "pft", "pfv"))
+    return tuple(kind for kind in types if kind != "timeInfo") or ("pfv",)
 
 
 def _saved_times(given: _Keys, end: float) -> tuple[float, ...]:

@@ -1,4 +1,4 @@
-"""The keys of AvaFrame's com5SnowSlide: which are settings, which are fixed or without effect."""
+"""The keys of AvaFrame's com5SnowSlide: settings, fixed values, and keys without effect."""
 
 from __future__ import annotations
 

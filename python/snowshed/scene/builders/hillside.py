@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from snowshed.io.raster import Raster
+from snowshed.io.raster.raster import Raster
 
 
 def hillside() -> Raster:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from snowshed.io.paths import PathLike
-from snowshed.methods.mpm import MpmSettings
+from snowshed.base.paths import PathLike
+from snowshed.methods.mpm.settings import MpmSettings
 from snowshed.scene.builders.slope import check_positive
 from snowshed.scene.components import Body, Ground, Obstacle
 from snowshed.scene.scene import Scene
@@ -24,29 +24,29 @@ def mesh_structure(
     layers: int = 8,
     dx: float = 0.02,
 ) -> Scene:
-    """Return a structure from a mesh, with snow of an even depth on all that faces upward.
+    """Return a structure from a mesh, with snow of even depth on all upward faces.
 
-    The scene has no panel: what stays on the structure counts as part of the stack.
+    The scene has no panel: snow that stays on the structure counts as part of the stack.
 
     Parameters
     ----------
     file
-        A closed STL, OBJ or PLY mesh, z up; in 2D its section at y = 0 counts.
+        A closed STL, OBJ or PLY mesh, z up.
     snow
-        Depth of the snow, m, measured vertically.
+        Vertical depth of the snow, m.
     scale
         Length of a unit of the file, m.
     dimension
-        2 or 3.
+        2 or 3; in 2D, the scene is the section of the mesh at y = 0.
     friction
         Coulomb coefficient of the structure.
     ground_tilt
-        Degrees.
+        Tilt of the ground, degrees; positive falls in the slide direction.
     layers
-        The snow is what the mesh sweeps when it is lifted by `snow`, in so many steps; each must be
-        smaller than the mesh is thick.
+        Number of steps in which the mesh is raised by `snow` to sweep the volume of the snow; a
+        step must be smaller than the mesh is thick.
     dx
-        Grid cell, m.
+        Size of grid cells, m; parts must be at least two cells thick.
 
     Raises
     ------

@@ -7,8 +7,7 @@ from collections.abc import Sequence
 from typing import Optional
 
 from snowshed._core import InputError
-from snowshed.methods.mpm import MpmSettings
-from snowshed.scene.builders.panel_edge import panel_edge
+from snowshed.methods.mpm.settings import MpmSettings
 from snowshed.scene.builders.slope import (
     BOARD_CELLS,
     Slope,
@@ -17,6 +16,7 @@ from snowshed.scene.builders.slope import (
     upright_box,
 )
 from snowshed.scene.components import Body, Ground, Obstacle, Panel, Slab
+from snowshed.scene.panel_edge import panel_edge
 from snowshed.scene.scene import Scene
 from snowshed.scene.shape import Shape
 
@@ -34,22 +34,26 @@ def single_panel(
     ground_tilt: float = 0.0,
     dx: float = 0.02,
 ) -> Scene:
-    """Return the scene of one panel, the start of all others.
+    """Return the scene of one panel, from which the other builders start.
 
     Parameters
     ----------
     height
-        Of the lower edge above the ground, m.
-    length, width
-        Of the panel, m; without a width the scene is 2D.
-    tilt, ground_tilt
-        Degrees.
+        Height of the lower edge above the ground, m.
+    length
+        Length along the slope, m.
+    tilt
+        Tilt from the horizontal, degrees.
     snow
-        Thickness of the slab, m, normal to the panel.
+        Thickness of the snow, normal to the slope, m.
+    width
+        Width across the slope, m; without it the scene is 2D.
     friction
-        Coulomb coefficient of the panel.
+        Coulomb coefficient of the surface on which the snow slides.
+    ground_tilt
+        Tilt of the ground, degrees; positive falls in the slide direction.
     dx
-        Grid cell, m.
+        Size of grid cells, m; parts must be at least two cells thick.
 
     Examples
     --------
@@ -78,21 +82,20 @@ def panel_rows(
     ground_tilt: float = 0.0,
     dx: float = 0.02,
 ) -> Scene:
-    """Return several panels one behind the other, all with snow, on level or tilted ground.
+    """Return several panels in a row, all with snow, on level or tilted ground.
 
     The first is the scene's panel, about which the stack is measured; the others stand down the
-    slide direction. What lies on them counts as part of the stack, which is why the columns of the
-    largest connected body are the ones to read. On the first panel a slab is laid on snow that
-    stayed; on the others it is not.
+    slide direction. Snow on them counts as part of the stack, so read the columns of the largest
+    connected body. A new slab lies on remaining snow on the first panel only.
 
     Parameters
     ----------
     count
         Number of panels, at least 2.
     pitch
-        Horizontal distance from one to the next, m.
+        Horizontal distance from a panel to the next, m.
     height, length, tilt, snow, width, friction, ground_tilt, dx
-        As of `single_panel`.
+        As for `single_panel`.
 
     Raises
     ------
@@ -143,7 +146,7 @@ def panel_table(
     post_size: float = 0.1,
     dx: float = 0.02,
 ) -> Scene:
-    """Return a table on posts: modules up the slope with gaps between them, under one slab.
+    """Return a table of modules on posts, with gaps between them, under one slab.
 
     The lowest module is the scene's panel: x is 0 at its centre, and the height of the table is
     that of its lower edge.
@@ -153,16 +156,16 @@ def panel_table(
     modules
         Number of modules up the slope.
     gap
-        Between modules, m; 0 or at least two grid cells.
+        Gap between modules, m; 0 or at least two grid cells.
     module_length
-        Along the slope, m.
+        Length of a module along the slope, m.
     height, tilt, snow, width, friction, ground_tilt, dx
-        As of `single_panel`.
+        As for `single_panel`.
     lip
         Height of the frame above the face at each module's lower end, m; 0, or at least two grid
-        cells and no more than the gap it stands in.
+        cells and at most the gap.
     posts
-        Where posts stand, as parts of the table's length from its lower end.
+        Positions of the posts, relative to the table's length, from its lower end.
     post_size
         Thickness of the posts, m.
 
@@ -215,7 +218,7 @@ def _board(
 def snow_layer(
     slope: Slope, start: float, end: float, thickness: float, rails: Sequence[Shape] = ()
 ) -> Body:
-    """Return snow all over a slope but where rails are, laid in every event."""
+    """Return snow over a whole slope, except at rails, laid in every event."""
     across = None if slope.width is None else SNOW_OF_PANEL * slope.width
     lying = slope.narrowed(across).layer(start, end, 0.0, thickness)
     return Body(shape=Shape.difference(lying, *rails) if rails else lying, event=0)
@@ -249,7 +252,7 @@ def _add_posts(
         x_span = (x - 0.5 * size, x + 0.5 * size)
         z_span = (-x_span[1] * fall, z - below)
         if z_span[0] >= z_span[1]:
-            raise InputError(f"posts: at {part:g} of its length the table is too low for a post")
+            raise InputError(f"posts: the table is too low for a post at {part:g} of its length")
         for side, y in enumerate(sides, 1):
             y_span = (y - 0.5 * size, y + 0.5 * size)
             post = upright_box(x_span, z_span, 2 if slope.width is None else 3, y_span)

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from typing import Optional
 
 from snowshed._core import InputError
-from snowshed.scene.builders.panel_edge import panel_edge
 from snowshed.scene.builders.panels import separate_part, single_panel, snow_layer
 from snowshed.scene.builders.slope import (
     BOARD_CELLS,
@@ -16,6 +15,7 @@ from snowshed.scene.builders.slope import (
     upright_box,
 )
 from snowshed.scene.components import Obstacle
+from snowshed.scene.panel_edge import panel_edge
 from snowshed.scene.scene import Scene
 from snowshed.scene.shape import Shape
 
@@ -34,30 +34,32 @@ def shed_roof(
     guard_thickness: float = 0.1,
     dx: float = 0.02,
 ) -> Scene:
-    """Return a house under a roof of one slope, which is the scene's panel.
+    """Return a house under a shed roof (one slope), which is the scene's panel.
 
     Parameters
     ----------
     eaves
         Height of the eaves above the ground, m.
     length
-        Of the slope, from the eaves to the ridge, m.
+        Length of a slope, from the eaves to the ridge, m.
     tilt
-        Degrees from the horizontal.
+        Tilt from the horizontal, degrees.
     snow
-        Thickness of the snow, m, normal to the roof.
+        Thickness of the snow, normal to the roof, m.
     width
-        Of the house, m; without it the scene is 2D.
+        Width of the house, m; without it the scene is 2D.
     friction
         Coulomb coefficient of the roof.
     overhang
-        Of the roof beyond the walls, m, along the slope.
+        Overhang of the roof beyond the walls, along the slope, m.
     guards
-        Where snow guards stand, m up the slope from the eaves: rails across the whole roof.
-    guard_height, guard_thickness
-        Of the rails, m, above the roof and along it.
+        Positions of snow guards (rails across the roof), m up the slope from the eaves.
+    guard_height
+        Height of the guards above the roof, m.
+    guard_thickness
+        Thickness of the guards along the slope, m.
     dx
-        Grid cell, m.
+        Size of grid cells, m; parts must be at least two cells thick.
 
     Raises
     ------
@@ -95,11 +97,20 @@ def gable_roof(
     guard_thickness: float = 0.1,
     dx: float = 0.02,
 ) -> Scene:
-    """Return a house under a roof of two equal slopes, both with snow.
+    """Return a house under a gable roof (two equal slopes), both with snow.
 
-    The slope that falls toward +x is the scene's panel; what slides off the other piles up on the
-    far side of the house and belongs to the stack too; what stays on either slope does not.
-    Parameters and errors are those of `shed_roof`; `length` is that of one slope.
+    The slope that falls toward +x is the scene's panel. Snow from the other slope piles up on the
+    far side of the house, and belongs to the stack, too. Snow that stays on a slope does not.
+
+    Parameters
+    ----------
+    eaves, length, tilt, snow, width, friction, overhang, guards, guard_height, guard_thickness, dx
+        As for `shed_roof`.
+
+    Raises
+    ------
+    InputError
+        As for `shed_roof`.
 
     Examples
     --------

@@ -9,13 +9,13 @@ from typing import Optional
 import numpy as np
 
 from snowshed._core import InputError
-from snowshed.io.limits import TERRAIN_CELLS
-from snowshed.io.map_areas import MapArea, read_areas
-from snowshed.io.notes import recorded
-from snowshed.io.paths import PathLike
-from snowshed.io.raster import Raster, is_single, read_raster, write_ascii_grid
-from snowshed.io.release_raster import areas_of_depth, snow_part
-from snowshed.methods.slide import SlideSettings
+from snowshed.base.limits import TERRAIN_CELLS
+from snowshed.base.notes import recorded
+from snowshed.base.paths import PathLike
+from snowshed.io.raster.areas import MapArea, read_areas
+from snowshed.io.raster.raster import Raster, is_single, read_raster, write_ascii_grid
+from snowshed.io.raster.release import areas_of_depth, snow_part
+from snowshed.methods.slide.settings import SlideSettings
 from snowshed.scene.builders.hillside import hillside
 from snowshed.scene.builders.terrain_checks import (
     MAX_SLOPE,
@@ -30,7 +30,7 @@ from snowshed.scene.scene import Scene
 MAX_TIME = 400.0  # s, as AvaFrame has it
 THINNEST = 0.01  # m, of snow that is worth a slide
 MAX_THICKNESS = 10.0  # m, of snow that is believed; as of the core
-#: What names the layer of a file on the command line.
+#: Options that name the layer of a file.
 LAYER_OPTIONS = {
     "release": "--layer",
     "entrainment": "--entrainment-layer",
@@ -64,41 +64,40 @@ def slide_scene(
     raster
         Elevations, m: an ESRI ASCII grid or a GeoTIFF, on a projected map.
     release
-        Polygons of the areas that break loose; a field "thickness" holds that of the snow, m. None:
-        all cells where `thickness_raster` holds snow.
+        Polygons of the release areas; a field "thickness" holds that of the snow, m. None: all
+        cells with snow in `thickness_raster`.
     thickness
-        Thickness of the snow, normal to the ground [m], in place of the file's.
+        Thickness of the snow, normal to the ground [m], instead of that of the file.
     thickness_raster
-        The same in the cells of a raster, m; it must say it everywhere in the release.
+        Raster of the thickness, m, with a value everywhere in the release.
     entrainment, resistance
-        Polygons of areas where snow is taken up, and of forest.
+        Polygons of entrainment areas, and of forest.
     entrained_thickness
-        Thickness of the snow that can be taken up [m], in place of the file's.
+        Thickness of the erodible snow [m], instead of that of the file.
     layers
-        Layers of GeoPackages that hold several, by what they are read for: "release",
-        "entrainment", "resistance".
+        Layers of GeoPackages with several, by purpose: "release", "entrainment", "resistance".
     settings
         Settings of the method; None: its defaults.
     ascii_copy
-        Where the copy of terrain as an ASCII grid in metres goes, which the scene names, if the
-        file is none; that of a raster of thickness goes beside it.
+        File for a copy of the terrain as an ASCII grid in metres, which the scene names, if the
+        terrain is in another format; a copy of a raster of thickness goes beside it.
     title
-        What this scene is.
+        Title of the scene.
     band, thickness_band
-        Which band of the raster of elevations and of that of thickness, from 1; needed where a
-        GeoTIFF has several.
+        Bands of the rasters of elevations and of thickness, from 1; needed if a GeoTIFF has
+        several.
     max_slope
-        Steepest cliff that is believed under the release [degrees]; None: 70.
+        Steepest plausible cliff under the release [degrees]. [default: 70]
     max_thickness
-        Largest thickness of snow that is believed [m]; None: 10.
+        Largest plausible thickness of snow [m]. [default: 10]
     max_cells
-        How many cells the raster of elevations may have; None: 2.5 million.
+        Largest number of cells of the raster of elevations. [default: 2.5 million]
 
     Raises
     ------
     InputError
-        If a file is not what it should be, coordinate systems differ, elevations or cells are none
-        in metres, areas lie beside the terrain or on each other, or the thickness is missing.
+        If a file is invalid, coordinate systems differ, elevations or cells are not in metres,
+        areas lie beside the terrain or overlap, or the thickness is missing.
     OSError
         If a file cannot be read, or the copy not be written.
     """
@@ -152,7 +151,7 @@ def example_slide(folder: PathLike) -> Scene:
     """Write an example's terrain to a folder, and return the scene of a slide on it.
 
     A hillside of up to 38 degrees with a winding gully, spurs and hummocks runs out onto a gentle
-    meadow; a slab of half a metre breaks loose near its top. All of it is made of formulas.
+    meadow; a slab of half a metre is released near its top. Formulas define all of it.
 
     Examples
     --------
@@ -222,7 +221,7 @@ def _release_areas(
     if depth is not None:
         if thickness is not None:
             raise InputError("give one of a thickness and a raster of thickness")
-        snow_part(depth)  # which refuses what is no thickness
+        snow_part(depth)  # refuses values that are not a thickness
         return areas_of_depth(depth) if release is None else polygons.areas(release, "release")
     if release is None:
         raise InputError("give the release: polygons or a raster of thickness")
@@ -241,8 +240,8 @@ def _snow_area(
         raise InputError(f"{area.name}: {snow:g} m of snow; at least {THINNEST:g} m are needed")
     if snow > most and depth is None:  # of a raster the core knows which cells count
         raise InputError(
-            f"{area.name}: {snow:g} m of snow; at most {most:g} m are believed; is it in "
-            "centimetres? If not, allow more (--max-thickness)"
+            f"{area.name}: {snow:g} m of snow; at most {most:g} m are plausible; is it in "
+            "centimetres? If not, raise --max-thickness"
         )
     return Area(name=area.name, outline=area.outline, holes=_holes(area), thickness=snow)
 

@@ -1,4 +1,4 @@
-"""A straight slope in the plane (x, z), and what lies on it: boards and layers of snow."""
+"""A straight slope in the plane (x, z), with boards and layers of snow on it."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ def upright_box(x: Point, z: Point, dimension: int, y: Point = (-0.5, 0.5)) -> S
 
 
 def check_seen(name: str, size: float, dx: float, cells: int = 2) -> None:
-    """Raise InputError if the grid would not see something as small as it is.
+    """Raise InputError if a part is too small for the grid.
 
     Obstacles thinner than two cells are thickened to that, and gaps as narrow are closed.
     """

@@ -1,7 +1,7 @@
-"""Terrain as ground: a raster's heights turned into a grid of signed distances.
+"""Terrain as ground: elevations of a raster, converted to a grid of signed distances.
 
-The heights become a closed body of triangles, whose exact distances the core gives; sampled on a
-regular grid they make a shape that costs the same at every step however rough the terrain is.
+The elevations become a closed body of triangles. The core computes its exact distances on a regular
+grid, a shape whose cost per step does not depend on the roughness of the terrain.
 """
 
 from __future__ import annotations
@@ -16,15 +16,15 @@ from typing import Optional, Union
 import numpy as np
 
 from snowshed._core import InputError, Simulation
-from snowshed.io.arrays import Floats, Integers
+from snowshed.base.arrays import Floats, Integers
+from snowshed.base.paths import PathLike
 from snowshed.io.atomic import replacing
-from snowshed.io.paths import PathLike
-from snowshed.io.raster import Raster
-from snowshed.methods.mpm import MpmSettings
-from snowshed.scene.builders.panel_edge import panel_edge
+from snowshed.io.raster.raster import Raster
+from snowshed.methods.mpm.settings import MpmSettings
 from snowshed.scene.builders.slope import check_positive
 from snowshed.scene.builders.terrain_checks import MAX_SLOPE, check_terrain, read_terrain
 from snowshed.scene.components import Body, Condition, Obstacle
+from snowshed.scene.panel_edge import panel_edge
 from snowshed.scene.scene import Scene
 from snowshed.scene.shape import Shape
 
@@ -51,40 +51,42 @@ def on_terrain(
 ) -> Scene:
     """Return a scene whose ground is terrain.
 
-    The plane ground is taken away, and an obstacle "terrain" takes its place. It is shifted so that
-    the terrain right below the lower edge of the panel (or at x = 0, without one) is at z = 0:
-    the panel's height is that above the terrain there. The stack's height is measured from the
-    terrain below it.
+    An obstacle "terrain" replaces the plane ground. Its elevation is shifted: the terrain below the
+    lower edge of the panel (or at x = 0, without a panel) is at z = 0, so that the panel's height
+    is that above the terrain there. The stack's height is measured from the terrain below it.
 
     Parameters
     ----------
     scene
-        Anything; it stays as it is.
+        Any scene; it stays as it is.
     raster
         Terrain, or its file, which `snowshed.scene.builders.terrain_checks.read_terrain` reads.
     file
-        Where to write the grid of distances (.npy); the scene names it by its absolute path.
+        File to write the grid of distances to (.npy); the scene names it by its absolute path.
     origin
-        East and north, m, of the scene's x = y = 0 on the map.
+        East and north of the scene's x = y = 0 on the map, m.
     azimuth
-        Where +x, the slide direction, points: degrees from north, clockwise.
-    x, y
-        What part of the scene gets terrain, m; y in 3D only. Beyond it there is no ground.
+        Slide direction (+x) on the map, degrees from north, clockwise.
+    x
+        Extent of the terrain along the slide direction, m; beyond it there is no ground.
+    y
+        Extent of the terrain across the slide direction, m; in 3D only.
     spacing
-        Between samples of the grid, m; two grid cells of the scene are a good start, unless the
-        raster is coarser.
-    condition, friction
-        Of the terrain.
+        Distance between samples of the terrain, m; start with two grid cells of the scene, or the
+        spacing of a coarser raster.
+    condition
+        Contact condition of the terrain.
+    friction
+        Coulomb coefficient of the terrain.
     band
-        Which band of a GeoTIFF, from 1; needed where it has several.
+        Band of a GeoTIFF, from 1; needed if it has several.
     max_slope
-        Steepest cliff beside elevations of 0 that is believed [degrees].
+        Steepest plausible cliff beside elevations of 0, degrees.
 
     Raises
     ------
     InputError
-        If the raster is none in metres, does not cover the part asked for, or the grid would be too
-        large.
+        If the raster is not in metres or does not cover the extent, or the grid is too large.
 
     Examples
     --------
@@ -102,8 +104,8 @@ def on_terrain(
     terrain = _checked(raster, band, max_slope)
     flat = scene.dimension == 2
     xs, ys = _axis("x", x, spacing), np.zeros(1) if flat else _axis("y", y, spacing)
-    place = panel_edge(scene.to_data()).x if scene.panel is not None else 0.0
-    level = float(_heights(terrain, origin, azimuth, np.array([place]), np.zeros(1))[0, 0])
+    edge_x = panel_edge(scene.to_data()).x if scene.panel is not None else 0.0
+    level = float(_heights(terrain, origin, azimuth, np.array([edge_x]), np.zeros(1))[0, 0])
     heights = _heights(terrain, origin, azimuth, xs, ys) - level
     samples, bottom = signed_distances(heights, xs, ys, spacing)
     with replacing(file) as beside, beside.open("wb") as stream:
@@ -133,16 +135,16 @@ def signed_distances(
     Parameters
     ----------
     heights : (nx, ny)
-        Of the terrain, m, at `xs` and `ys`; one y means terrain that is the same all along y.
+        Elevations of the terrain at `xs` and `ys`, m; with one y, terrain is the same along y.
     xs, ys
-        m, evenly `spacing` apart.
+        Coordinates of the samples, `spacing` apart, m.
     spacing
-        Between samples, along z too, m.
+        Distance between samples, also along z, m.
 
     Returns
     -------
     (nx, ny, nz), float
-        Distances, m, as a shape of the type "grid" takes them.
+        Distances for a shape of the type "grid", and the z of the lowest samples, m.
     """
     bottom = float(heights.min()) - DEEP * spacing
     count = math.ceil((float(heights.max()) - bottom) / spacing) + HIGH + 1
@@ -153,7 +155,7 @@ def signed_distances(
         )
     zs = bottom + spacing * np.arange(count)
     points = np.stack(np.meshgrid(xs, ys, zs, indexing="ij"), axis=-1).reshape(-1, 3)
-    reach = spacing * (count + DEEP)  # nothing at the sides is nearer than what is below
+    reach = spacing * (count + DEEP)  # the sides are farther away than the bottom
     distances = _distances(_solid(heights, xs, ys, bottom - reach, reach), points, spacing)
     return distances.reshape(len(xs), len(ys), count), bottom
 
@@ -170,7 +172,7 @@ def _axis(name: str, span: Sequence[float], spacing: float) -> Floats:
 
 
 def _heights(terrain: Raster, origin: Span, azimuth: float, xs: Floats, ys: Floats) -> Floats:
-    """Return the raster's heights (nx, ny) at places of the scene."""
+    """Return the raster's heights (nx, ny) at positions of the scene."""
     sin, cos = math.sin(math.radians(azimuth)), math.cos(math.radians(azimuth))
     x, y = np.meshgrid(xs, ys, indexing="ij")
     return terrain.height_at(origin[0] + x * sin - y * cos, origin[1] + x * cos + y * sin)
@@ -222,5 +224,5 @@ def _distances(mesh: Mesh, points: Floats, spacing: float) -> Floats:
             bodies=[Body(shape=Shape.sphere(above, 2.0 * spacing))],  # a scene needs some snow
             numerics=MpmSettings(dx=spacing, threads=1),
         )
-        ready = scene.resolve()
-        return Simulation(ready.json, ready.base_dir).obstacle_distance(points)
+        resolved = scene.resolve()
+        return Simulation(resolved.core, resolved.base_dir).obstacle_distance(points)

@@ -1,4 +1,4 @@
-"""The one reader of terrain, and what it refuses: elevations and areas that cannot be."""
+"""The only reader of terrain, which refuses implausible elevations and areas."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from typing import Any, Optional
 import numpy as np
 
 from snowshed._core import InputError, impossible_cliff
-from snowshed.io.coordinate_systems import are_same, is_in_feet
-from snowshed.io.extras import require
-from snowshed.io.limits import PACKED, PACKED_CELLS, RASTER_CELLS
-from snowshed.io.map_areas import MapArea
-from snowshed.io.paths import PathLike
-from snowshed.io.raster import Raster, read_raster
+from snowshed.base.extras import require
+from snowshed.base.limits import PACKED, PACKED_CELLS, RASTER_CELLS
+from snowshed.base.paths import PathLike
+from snowshed.io.coordinates.systems import are_same, is_in_feet
+from snowshed.io.raster.areas import MapArea
+from snowshed.io.raster.raster import Raster, read_raster
 
 LOWEST, HIGHEST = -430.0, 8850.0  # m, of the Earth's land
 SMALLEST_CELL, LARGEST_CELL = 0.05, 100.0  # m, of terrain that a slide can be seen on
@@ -23,7 +23,7 @@ STEEPEST = 65.0  # degrees, the median of terrain that is in metres
 MAX_SLOPE = 70.0  # degrees, of cliffs that are believed under a release and beside elevations of 0
 FOOT = 0.3048  # m
 METRE_CELLS = (0.5, 1.0, 2.0, 3.0, 5.0, 10.0, 20.0, 25.0, 30.0)  # m, of usual rasters
-SAMPLE = 1_000_000  # cells of which the median slope is taken
+SAMPLE = 1_000_000  # cells for the median slope
 
 
 def read_terrain(
@@ -39,11 +39,11 @@ def read_terrain(
     path
         An ESRI ASCII grid or a GeoTIFF, on a projected map.
     band
-        Which band of a GeoTIFF; needed where it has several.
+        Band of a GeoTIFF; needed if it has several.
     max_slope
-        Degrees from the horizontal: what `check_terrain` believes.
+        Steepest plausible slope for `check_terrain`, degrees from the horizontal.
     max_cells
-        How many cells it may have.
+        Largest number of cells.
 
     Raises
     ------
@@ -69,7 +69,7 @@ def read_terrain(
 
 
 def check_terrain(terrain: Raster, max_slope: float = MAX_SLOPE) -> None:
-    """Refuse elevations and cells that cannot be in metres, and missing ones that look like some.
+    """Refuse elevations and cells that cannot be in metres, and undeclared missing values.
 
     Neighbouring elevations may differ by 100 m where the ground between is no steeper than 80
     degrees, or than `max_slope`; beside exactly 0 m by 10 m where it is no steeper than that.
@@ -105,7 +105,7 @@ def _check_elevations(terrain: Raster) -> None:
         row, column = np.unravel_index(at, z.shape)
         x, y = terrain.east + column * terrain.cell, terrain.north + row * terrain.cell
         raise InputError(
-            f"{terrain.name}: elevations from {low:g} to {high:g} m are none of the Earth "
+            f"{terrain.name}: elevations from {low:g} to {high:g} m do not occur on Earth "
             f"({LOWEST:g} to {HIGHEST:g} m), as that at ({x:.10g}, {y:.10g}); are they in feet, or "
             "is it a missing value that the file does not declare as NODATA?"
         )
@@ -132,7 +132,7 @@ def _check_cells(terrain: Raster) -> None:
 
 
 def check_place(terrain: Raster, areas: Sequence[MapArea]) -> None:
-    """Refuse areas that lie beside the terrain altogether."""
+    """Refuse areas that lie completely outside the terrain."""
     rows, columns = terrain.heights.shape
     low = np.array([terrain.east, terrain.north])
     high = low + terrain.cell * np.array([columns - 1, rows - 1])
@@ -148,7 +148,7 @@ def check_place(terrain: Raster, areas: Sequence[MapArea]) -> None:
 
 
 def check_apart(areas: Sequence[MapArea]) -> None:
-    """Refuse release areas that overlap: it is not clear how much snow lies there."""
+    """Refuse overlapping release areas, because the amount of snow there is ambiguous."""
     if len(areas) < 2:
         return
     shapely: Any = require("shapely", "terrain", "reading polygons")
@@ -163,12 +163,12 @@ def check_apart(areas: Sequence[MapArea]) -> None:
 
 
 def common_system(named: Sequence[tuple[str, str]]) -> str:
-    """Return the coordinate system that all files have that say it; empty where none does.
+    """Return the common coordinate system of all files that state one; otherwise empty.
 
     Parameters
     ----------
     named
-        Files and their coordinate systems in words.
+        Files, and their coordinate systems as text.
     """
     given = [(file, system) for file, system in named if system]
     for file, system in given[1:]:

@@ -6,7 +6,7 @@ import math
 from typing import Optional
 
 from snowshed._core import InputError
-from snowshed.methods.mpm import MpmSettings
+from snowshed.methods.mpm.settings import MpmSettings
 from snowshed.scene.builders.panels import snow_layer
 from snowshed.scene.builders.slope import BOARD_CELLS, Slope, check_positive
 from snowshed.scene.components import Events, Ground, Motion, Obstacle
@@ -26,30 +26,34 @@ def tracker(
     dx: float = 0.02,
     settle: float = 6.0,
 ) -> Scene:
-    """Return a board that turns about the axis in the middle of its face, with snow on it.
+    """Return a board with snow on it that turns about an axis in the middle of its face.
 
-    The scene has no panel, since that stands still: what stays on the board counts as part of the
-    stack. There is one event, which does not end before the board stands still.
+    The scene has no panel, because a panel stands still: snow that stays on the board counts as
+    part of the stack. There is one event, which ends after the board has stopped.
 
     Parameters
     ----------
     axis_height
-        Of the axis above the ground, m.
-    length, width
-        Of the board, m; without a width the scene is 2D.
+        Height of the axis above the ground, m.
+    length
+        Length of the board along the slope, m.
     snow
         Thickness of the snow, m.
-    tilt_from, tilt_to
-        Degrees from the horizontal, positive falling toward +x.
+    tilt_from
+        Tilt of the board before it turns, degrees; positive falls toward +x.
+    tilt_to
+        Tilt of the board after it has turned, degrees.
     seconds
-        How long it takes to turn. Real trackers take minutes: that the snow lets go at the same
-        tilt does not depend on it as long as the board moves much more slowly than the snow slides.
+        Duration of the turn, s. Real trackers take minutes; the tilt at which the snow slides is
+        the same as long as the board moves much more slowly than the snow.
+    width
+        Width of the board, m; without it the scene is 2D.
     friction
-        Coulomb coefficient of the board: snow lets go at about atan(friction).
+        Coulomb coefficient of the board: snow slides from about atan(friction).
     dx
-        Grid cell, m.
+        Size of grid cells, m; parts must be at least two cells thick.
     settle
-        Longest time, s, for the snow to come to rest after the board.
+        Longest time for the snow to come to rest after the board stops, s.
 
     Raises
     ------

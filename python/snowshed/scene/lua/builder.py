@@ -1,4 +1,4 @@
-"""A scene under construction that knows which line of which script set each value."""
+"""A scene under construction that records the script line of each value."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from snowshed._core import InputError
-from snowshed.io.messages import quoted
-from snowshed.io.paths import PathLike
+from snowshed.base.messages import quoted
+from snowshed.base.paths import PathLike
 from snowshed.scene.lua.origins import Origins
 from snowshed.scene.lua.sandbox import Place
 from snowshed.scene.scene import ResolvedScene, Scene

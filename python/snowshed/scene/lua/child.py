@@ -1,8 +1,8 @@
 """The process in which Lua runs: it reads a request in JSON and writes the calls of the scripts.
 
-It is a program of its own, without the rest of the package. It therefore starts quickly, and holds
-nothing that a script could misuse. Before the scripts run it gives up the right to open files and
-to start processes, and limits its memory and time. No Python object is put into the Lua state.
+It is a separate program, without the rest of the package. Therefore it starts quickly, and holds
+nothing that a script could misuse. Before the scripts run, it gives up the right to open files and
+to start processes, and limits its memory and time. The Lua state holds no Python object.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ def _give_up(limits: dict[str, Any]) -> None:
     for which, amount in GIVEN_UP:
         with contextlib.suppress(ValueError, OSError):  # not every system has every limit
             resource.setrlimit(which, (amount, amount))
-    # What these signals do when nobody handles them is to end the process, also inside a call.
+    # The default action of these signals ends the process, even during a call.
     signal.setitimer(signal.ITIMER_PROF, limits["hard_seconds"])
     signal.setitimer(signal.ITIMER_REAL, limits["wall_seconds"])
 

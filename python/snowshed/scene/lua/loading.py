@@ -1,4 +1,4 @@
-"""From Lua scripts to scenes."""
+"""Scenes from Lua scripts."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Optional
 
 from snowshed._core import InputError
+from snowshed.base.paths import PathLike
 from snowshed.io.input_file import read_input
-from snowshed.io.paths import PathLike
 from snowshed.scene.lua.builder import Builder, LuaRun
 from snowshed.scene.lua.limits import Limits
 from snowshed.scene.lua.sandbox import Place, Script, run_sandboxed
@@ -33,7 +33,7 @@ def load_lua(
     echo
         Called with every line that the scripts print, also if they fail after that.
     limits
-        What the scripts may use; the defaults of `Limits` unless given.
+        Limits of the scripts. [default: `Limits()`]
 
     Returns
     -------

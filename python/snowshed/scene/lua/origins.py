@@ -1,4 +1,4 @@
-"""The line of the script that set each value of a scene, for the errors of the core."""
+"""The script line of each value of a scene, for the errors of the core."""
 
 from __future__ import annotations
 
@@ -41,5 +41,7 @@ class Origins:
             if around in self._places:
                 return self._places[around]
             around = around.rpartition("/")[0]
-        inside = [place for known, place in self._places.items() if known.startswith(f"{path}/")]
+        inside = [
+            place for set_path, place in self._places.items() if set_path.startswith(f"{path}/")
+        ]
         return inside[-1] if inside and path else None

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any, Optional, Union
 
 from snowshed._core import InputError
-from snowshed.io.extras import require
+from snowshed.base.extras import require
 from snowshed.scene.lua.limits import Limits
 
 PROGRAM = Path(__file__).with_name("child.py")
@@ -53,7 +53,7 @@ class Call:
 
 def run_sandboxed(
     scripts: Sequence[Script],
-    words: Sequence[str],
+    functions: Sequence[str],
     shapes: Mapping[str, str],
     limits: Optional[Limits] = None,
     echo: Optional[Callable[[str], None]] = None,
@@ -63,13 +63,13 @@ def run_sandboxed(
     Parameters
     ----------
     scripts
-        What to run; a later script sees the globals of those before it.
-    words
+        The scripts to run; a later script sees the globals of the earlier ones.
+    functions
         Names of the functions whose calls are recorded.
     shapes
         Functions that make shapes from tables, and the types of these shapes.
     limits
-        What the scripts may use; the defaults of `Limits` unless given.
+        Limits of the scripts. [default: `Limits()`]
     echo
         Called with every line that the scripts print, also if they fail after that.
 
@@ -93,7 +93,7 @@ def run_sandboxed(
     request = {
         "lupa_in": str(Path(lupa.__file__).parents[1]),
         "texts": [script.text for script in scripts],
-        "words": list(words),
+        "words": list(functions),
         "shapes": dict(shapes),
         "limits": asdict(limits),
     }

@@ -13,7 +13,7 @@ from types import MappingProxyType
 from typing import Any
 
 from snowshed._core import InputError
-from snowshed.io.messages import shortened
+from snowshed.base.messages import shortened
 from snowshed.scene.components import Snow
 from snowshed.scene.lua.builder import Builder
 from snowshed.scene.lua.sandbox import Call, Place

@@ -1,7 +1,7 @@
-"""Published relations between what is measured of snow and what a simulation needs.
+"""Published relations between measured properties of snow and those that a simulation needs.
 
-Each is a named function with its source, range and scatter (`Relation`). What could not be compared
-with a second source was left out, or says so.
+Each is a named function with its source, range and scatter (`Relation`). Relations without a second
+source are left out, or say so.
 
 Examples
 --------

@@ -1,4 +1,4 @@
-"""A published relation between quantities of snow: a function that knows where it comes from."""
+"""A published relation between quantities of snow: a function with its source."""
 
 from __future__ import annotations
 
@@ -25,16 +25,16 @@ class Relation:
     name
         Authors and year, in kebab case.
     quantity, unit
-        What it gives.
+        Resulting quantity, and its unit.
     formula
-        As it is computed, in plain text.
+        Formula, in plain text.
     source
-        Publication, and where else the formula was compared.
+        Publication, and other places of the formula.
     ranges
-        For every argument, in order, the range the relation was made for, in the units of `UNITS`.
-        Beyond it the relation still gives a number; `outside` says so.
+        Range of each argument, in order, in the units of `UNITS`. Beyond it, the relation still
+        returns a number; `outside` reports it.
     scatter
-        What is known of its scatter, in words.
+        Description of its scatter.
     function
         The formula itself.
     range_verified
@@ -85,7 +85,7 @@ def choose(name: str, relations: Mapping[str, Chosen], where: str) -> Chosen:
     Raises
     ------
     InputError
-        Saying which names there are; `where` begins the message.
+        With the known names; `where` begins the message.
     """
     if name not in relations:
         raise InputError(f"{where}: {name!r} is unknown; allowed: {', '.join(relations)}")

@@ -1,7 +1,7 @@
 """Settling of dry snow: the strain rate of a layer under the snow above it.
 
-Both laws are those of snow cover models, made for layers on the ground. How well they hold for snow
-that has slid, broken and piled up is not known.
+Both laws come from snow cover models, made for layers on the ground. Their accuracy for snow that
+has slid, broken and piled up is unknown.
 """
 
 from __future__ import annotations
@@ -10,13 +10,13 @@ from collections.abc import Callable
 
 import numpy as np
 
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 from snowshed.snow.relations.relation import ICE_DENSITY
 
 LONGEST_STEP = 3600.0  # s
 LARGEST_STRAIN = 0.01  # in one step
 
-# Settling stops where snow turns into firn, for which none of the laws was made.
+# Density at which snow turns into firn and settling stops; none of the laws is made for firn.
 DENSEST = 0.6 * ICE_DENSITY
 
 #: Strain rate, 1/s, positive where snow compacts, of layers with given densities, kg/m3, stress
@@ -73,15 +73,15 @@ def settled_densities(
     Parameters
     ----------
     law
-        How it settles.
+        Law of settling.
     densities
-        kg/m3, of any shape; those above `DENSEST` stay.
+        Densities of the layers, kg/m3, of any shape; layers above `DENSEST` do not settle.
     stresses
-        From the snow above, Pa, of the same shape.
+        Stress from the snow above, Pa, of the same shape.
     seconds
         The time.
     temperature
-        Degrees C.
+        Temperature, degrees C.
 
     Examples
     --------

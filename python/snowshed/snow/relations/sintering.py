@@ -1,7 +1,7 @@
 """Sintering: the strength of bonds between grains as a power of their age.
 
 Both publications measured the growth from some minutes after contact to days, at one temperature.
-How the factor before the power depends on temperature is not known well enough to be here.
+The dependence of the factor before the power on temperature is too uncertain to be included.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 
 
 @dataclass(frozen=True)
@@ -20,9 +20,9 @@ class SinteringLaw:
     Attributes
     ----------
     exponent
-        Of the age.
+        Exponent of the age.
     source
-        Where it was measured, and what.
+        Measured quantity and its source.
     """
 
     exponent: float

@@ -24,7 +24,7 @@ def snow_from_density(
     Parameters
     ----------
     density
-        kg/m3.
+        Density, kg/m3.
     youngs_modulus
         A name in `YOUNGS_MODULUS`; None keeps that of the base.
     tensile_strength
@@ -32,8 +32,8 @@ def snow_from_density(
         Otherwise that becomes the strength over the cohesion, p0 = sigma / beta, as in the thesis
         (3.2).
     strength_factor
-        By which the strength is multiplied first. The thesis took the smallest measured values for
-        its loose, sieved snow; the calibrated snow is at 0.21 of sigrist-2006.
+        Factor on the strength. The thesis took the smallest measured values for its loose, sieved
+        snow; the calibrated snow is at 0.21 of sigrist-2006.
     base
         The snow that gives everything else: "calibrated" or "reference".
 

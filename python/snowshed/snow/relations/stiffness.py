@@ -38,7 +38,7 @@ def sigrist_2006(density: float) -> float:
 def koechle_schneebeli_2014(density: float) -> float:
     """Return Young's modulus, Pa, computed on X-ray images of the microstructure.
 
-    Two fits meet, with a step, at 250 kg/m3.
+    Two fits meet at 250 kg/m3, with a step.
 
     Examples
     --------

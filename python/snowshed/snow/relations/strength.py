@@ -1,8 +1,8 @@
 """Tensile strength of snow over its density.
 
-Of the published fits, only this one could be compared with a second source. Whatever the fit, at
-any one density single measurements span an order of magnitude (Perla 1969), and faceted snow has
-about half the strength of rounded snow (Jamieson and Johnston 1990).
+This is the only published fit that could be compared with a second source. At a given density,
+single measurements span an order of magnitude (Perla 1969), and faceted snow has about half the
+strength of rounded snow (Jamieson and Johnston 1990).
 """
 
 from __future__ import annotations

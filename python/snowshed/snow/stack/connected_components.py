@@ -6,7 +6,7 @@ from itertools import product
 
 import numpy as np
 
-from snowshed.io.arrays import Booleans, Floats, Integers
+from snowshed.base.arrays import Booleans, Floats, Integers
 
 
 def largest_body(positions: Floats, masses: Floats, dx: float) -> Booleans:
@@ -15,7 +15,7 @@ def largest_body(positions: Floats, masses: Floats, dx: float) -> Booleans:
     Parameters
     ----------
     positions : (n, 3)
-        Positions, m.
+        Positions of the particles, m.
     masses : (n,)
         Masses, kg.
     dx
@@ -65,7 +65,7 @@ def _touching(keys: Integers, stride: Integers) -> tuple[Integers, Integers]:
     pairs = []
     for offset in list(product((-1, 0, 1), repeat=3))[14:]:  # half of the 26: pairs once
         other = keys + np.dot(offset, stride)
-        found = np.minimum(np.searchsorted(keys, other), len(keys) - 1)
-        hit = np.flatnonzero(keys[found] == other)
-        pairs.append((hit, found[hit]))
+        indices = np.minimum(np.searchsorted(keys, other), len(keys) - 1)
+        hit = np.flatnonzero(keys[indices] == other)
+        pairs.append((hit, indices[hit]))
     return np.concatenate([a for a, _ in pairs]), np.concatenate([b for _, b in pairs])

@@ -12,8 +12,8 @@ The steps, in this order:
 
 Steps 3 and 4 are repeated on the largest connected body alone (module ``connected_components``),
 because the lab measured a continuous body and left out what had rolled away. Mass and volume are
-those of all snow off the panel, outliers included; a particle that has flown apart counts with no
-more than a voxel, whatever its deformation says. In 2D the snow is a strip one metre wide.
+those of all snow off the panel, outliers included; a particle that has flown apart counts with at
+most a voxel, for any deformation. In 2D the snow is a strip one metre wide.
 """
 
 from __future__ import annotations
@@ -26,8 +26,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from snowshed._core import InputError
-from snowshed.io.array_arguments import column, finite, flags, points, positive
-from snowshed.io.arrays import Booleans, Floats
+from snowshed.base.arrays import Booleans, Floats, column, finite, flags, points, positive
 from snowshed.snow.stack.connected_components import largest_body
 from snowshed.snow.stack.support import supports
 from snowshed.snow.stack.surface import outline_particles, surface_particles
@@ -36,10 +35,10 @@ from snowshed.snow.stack.trimming import DEFAULT_TRIMMING, TRIMMINGS, check_trim
 
 @dataclass(frozen=True)
 class Extent:
-    """The extent of snow in metres; x from the panel's centre, z from the ground. NaN: no snow.
+    """The extent of snow, m; x from the panel's centre, z from the ground. NaN without snow.
 
-    `ground` (k,) is where the ground lies under the points of `outline`: z, m, on levelled ground;
-    zero but on terrain.
+    `ground` (k,) holds the ground's z below the points of `outline`, m, on levelled ground; it is
+    zero except on terrain.
     """
 
     height: float = 0.0
@@ -55,20 +54,20 @@ class Extent:
 
 @dataclass(frozen=True)
 class StackMeasure(Extent):
-    """A measured stack; its own extent is that of all snow off the panel, less outliers.
+    """A measured stack; its own extent is that of all snow off the panel, without outliers.
 
     Attributes
     ----------
     trimming
-        The reading of A.4.2 by which the stack's own extent and that of its body were measured.
+        Trimming rule (thesis A.4.2) for the extent of the stack and of its body.
     trimmed
-        Extent of all snow off the panel by each reading; in 3D there is but one, under both names.
+        Extent of all snow off the panel by each trimming rule; in 3D both are the same.
     body
         Extent of the largest connected body.
     mass, volume
-        Of all snow off the panel, kg and m3 (per metre of width in 2D).
+        Mass and volume of all snow off the panel, kg and m3 (per metre of width in 2D).
     detached_mass
-        Part of the mass outside the largest connected body, kg.
+        Mass outside the largest connected body, kg.
     on_panel_mass
         Snow that is excluded because it lies on the panel or hangs over its edge, kg.
     on_structures_mass
@@ -76,7 +75,7 @@ class StackMeasure(Extent):
     joined
         Whether the stack and the snow on the panel touch.
     members : (n,)
-        Booleans: which of the particles that were given make up the stack.
+        Mask of the given particles that belong to the stack.
     """
 
     trimming: str = DEFAULT_TRIMMING
@@ -99,9 +98,9 @@ class StackMeasure(Extent):
 def level(positions: Floats, ground_tilt_deg: float) -> Floats:
     """Turn positions about y so that tilted ground becomes z = 0 (A.4.4).
 
-    The ground passes through the origin and falls in the direction of +x for positive tilt Psi;
-    its normal is (sin Psi, 0, cos Psi). The rotation that turns it upright is R_y(-Psi) of
-    (A.4.1): in the thesis's figure the angle counts the other way.
+    The ground passes through the origin and falls in the direction of +x for positive tilt Psi; its
+    normal is (sin Psi, 0, cos Psi). The rotation that levels it is R_y(-Psi) of (A.4.1): the
+    thesis's figure counts the angle in the opposite direction.
 
     Parameters
     ----------
@@ -136,10 +135,10 @@ def measure_stack(
     ground: Optional[ArrayLike] = None,
     trimming: str = DEFAULT_TRIMMING,
 ) -> StackMeasure:
-    """Measure the stack that particles form.
+    """Measure the stack of the given particles.
 
-    Arrays may be anything that NumPy makes an array of: lists, single precision, columns of a
-    DataFrame. They are not changed.
+    Arrays may be anything that NumPy converts: lists, single precision, columns of a DataFrame.
+    They are not changed.
 
     Parameters
     ----------
@@ -152,7 +151,7 @@ def measure_stack(
     dimension
         2 or 3.
     dx
-        Size of the grid cells, m; decides what is connected.
+        Size of the grid cells, m; decides which snow is connected.
     ground_tilt_deg
         Psi, degrees; positive falls in the slide direction.
     exclude : (n,), optional
@@ -164,19 +163,19 @@ def measure_stack(
     ground : (n,), optional
         z of the ground below each particle, m, on levelled ground; without it, 0.
     trimming
-        How A.4.2 is read where the outermost 3 % are dropped in 2D: "outermost_first" or
-        "equal_pace", see `snowshed.snow.stack.trimming`.
+        Trimming rule (thesis A.4.2) of the outermost 3 % in 2D: "outermost_first" or "equal_pace",
+        see `snowshed.snow.stack.trimming`.
 
     Returns
     -------
     StackMeasure
-        All zero, with NaN positions, if no snow is off the panel.
+        A stack of zeros, with NaN positions, if no snow is off the panel.
 
     Raises
     ------
     InputError
-        If an array has another shape or length, or holds anything but finite numbers, or a mass or
-        density is negative, or `dimension`, `dx` or `trimming` is none; the message names the
+        If an array has a wrong shape or length, or holds values that are not finite, or a mass or
+        density is negative, or `dimension`, `dx` or `trimming` is wrong; the message names the
         argument.
 
     Examples
@@ -192,22 +191,24 @@ def measure_stack(
         raise InputError(f"dimension: {dimension!r}; allowed: 2, 3")
     check_trimming(trimming)
     voxel = positive("dx", dx) ** dimension
-    places = points("positions", positions, dimension)
-    every_mass = column("masses", masses, len(places), non_negative=True)
-    every_density = column("densities", densities, len(places), non_negative=True)
+    coordinates = points("positions", positions, dimension)
+    every_mass = column("masses", masses, len(coordinates), non_negative=True)
+    every_density = column("densities", densities, len(coordinates), non_negative=True)
     on_panel = (
-        np.zeros(len(places), dtype=bool)
+        np.zeros(len(coordinates), dtype=bool)
         if exclude is None
-        else flags("exclude", exclude, len(places))
+        else flags("exclude", exclude, len(coordinates))
     )
-    levelled = level(places, finite("ground_tilt_deg", ground_tilt_deg))
-    under = np.zeros(len(places)) if ground is None else column("ground", ground, len(places))
+    levelled = level(coordinates, finite("ground_tilt_deg", ground_tilt_deg))
+    under = (
+        np.zeros(len(coordinates)) if ground is None else column("ground", ground, len(coordinates))
+    )
     levelled[:, 2] -= under
     if dimension == 2:
         levelled[:, 1] = 0.0
-    touching = np.zeros(len(places), dtype=bool)
+    touching = np.zeros(len(coordinates), dtype=bool)
     if structures is not None:
-        touching = flags("structures", structures, len(places))
+        touching = flags("structures", structures, len(coordinates))
     held, on_structure, falling, joined = _held(levelled, on_panel, touching, dx)
     below = ~(held | on_structure)
     members = below & ~falling
@@ -232,14 +233,14 @@ def measure_stack(
 def _held(
     snow: Floats, on_panel: Booleans, touching: Booleans, dx: float
 ) -> tuple[Booleans, Booleans, Booleans, bool]:
-    """Return which snow the panel holds, structures hold, and falls, and if a stack joins it."""
+    """Return masks of snow held by panel and structures, and falling, and if the stack joins it."""
     off = ~on_panel
-    found = supports(snow[off], snow[on_panel], touching[off], snow[off, 2], dx)
+    support = supports(snow[off], snow[on_panel], touching[off], snow[off, 2], dx)
     at_panel = on_panel.copy()
     on_structure, falling = np.zeros((2, len(snow)), dtype=bool)
-    at_panel[off] = found.at_panel
-    on_structure[off], falling[off] = found.on_structure, found.falling
-    return at_panel, on_structure, falling, found.joined
+    at_panel[off] = support.at_panel
+    on_structure[off], falling[off] = support.on_structure, support.falling
+    return at_panel, on_structure, falling, support.joined
 
 
 def _volume(masses: Floats, densities: Floats, voxel: float) -> float:
@@ -250,8 +251,8 @@ def _volume(masses: Floats, densities: Floats, voxel: float) -> float:
 def _trimmed_extent(
     snow: Floats, masses: Floats, under: Floats, dimension: int, trimming: str
 ) -> Extent:
-    kept = inliers(snow, masses, dimension, trimming)
-    return _extent(snow[kept], under[kept], dimension)
+    inside = inliers(snow, masses, dimension, trimming)
+    return _extent(snow[inside], under[inside], dimension)
 
 
 def _extent(snow: Floats, under: Floats, dimension: int) -> Extent:

@@ -20,14 +20,13 @@ class Measure:
     Attributes
     ----------
     name
-        What it is asked for by.
+        Name of the measure in options.
     label
-        What it is, in words.
+        Description of the measure.
     prefix
-        What its columns begin with.
+        Prefix of its columns.
     trimming
-        The reading of A.4.2 that it stands for; None: the one that the table names in its column
-        ``trimming``.
+        Trimming rule of the measure; None: that of the table's column ``trimming``.
 
     Examples
     --------
@@ -50,8 +49,8 @@ class Measure:
 
 
 MEASURES: Mapping[str, Measure] = {
-    one.name: one
-    for one in (
+    measure.name: measure
+    for measure in (
         Measure("stack", "97 % of the snow"),
         Measure("body", "the largest connected body of snow", "body_"),
         *(
@@ -63,7 +62,7 @@ MEASURES: Mapping[str, Measure] = {
 
 
 def measure_named(name: str) -> Measure:
-    """Return one of `MEASURES`; raises InputError if there is none of that name."""
+    """Return one of `MEASURES`; raises InputError for an unknown name."""
     if name not in MEASURES:
         raise InputError(f"measure: {name!r} is unknown; allowed: {', '.join(MEASURES)}")
     return MEASURES[name]

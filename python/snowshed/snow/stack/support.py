@@ -1,7 +1,7 @@
-"""What snow rests on: the ground, the panel, or a structure.
+"""The support of snow: the ground, the panel, or a structure.
 
-A stack is what lies below the panel. Snow that hangs over the panel's edge, or lies on a roof, a
-guard or another panel, has not come down: it is told apart by the body of snow it belongs to.
+A stack is the snow below the panel. Snow that hangs over the panel's edge, or lies on a roof, a
+guard or another panel, does not belong to it: the support of its connected body decides.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from snowshed.io.arrays import Booleans, Floats, Integers
+from snowshed.base.arrays import Booleans, Floats, Integers
 from snowshed.snow.stack.connected_components import connected_bodies
 
 AGROUND = 2.0  # cells between the ground and the lowest snow of a body that lies on it
@@ -19,13 +19,13 @@ ALOFT = 4.0  # cells between the snow on the ground and a body that falls
 
 @dataclass(frozen=True)
 class Support:
-    """What the snow beside that on the panel rests on, and whether it touches that on the panel.
+    """Support of the snow off the panel, and whether it touches the snow on the panel.
 
     Attributes
     ----------
     at_panel, on_structure, falling : (n,)
-        Booleans: True for particles of bodies that do not reach the ground, because the snow on the
-        panel or a structure holds them, or because they still fall.
+        Mask of particles of bodies that do not reach the ground, because the panel's snow or a
+        structure holds them, or because they still fall.
     joined
         Whether a body that lies on the ground touches the snow on the panel.
     """
@@ -46,11 +46,11 @@ def supports(
     snow : (n, 3)
         Positions of snow that does not lie on the panel, m.
     on_panel_snow : (k, 3)
-        Positions of that on the panel.
+        Positions of the snow on the panel.
     touches_structure : (n,)
         Whether each particle touches a structure other than the panel.
     heights : (n,)
-        Above the ground below, m.
+        Heights above the ground below, m.
     dx
         Size of the grid cells, m: snow closer than that is one body.
 
@@ -94,6 +94,6 @@ def _near(snow: Floats, others: Floats, distance: float) -> Booleans:
 
     if len(snow) == 0 or len(others) == 0:
         return np.zeros(len(snow), dtype=bool)
-    found, _ = cKDTree(others).query(snow, distance_upper_bound=distance)
-    near: Booleans = np.isfinite(found)
+    distances, _ = cKDTree(others).query(snow, distance_upper_bound=distance)
+    near: Booleans = np.isfinite(distances)
     return near

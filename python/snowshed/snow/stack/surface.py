@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from snowshed.io.arrays import Floats, Integers
+from snowshed.base.arrays import Floats, Integers
 
 CELLS = 30  # across the range of x, and of y
 

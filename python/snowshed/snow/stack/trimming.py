@@ -1,4 +1,4 @@
-"""Which particles belong to a stack's edge: the outermost 3 % are dropped (thesis A.4.1, A.4.2).
+"""Trimming of a stack's edge: the outermost 3 % are dropped (thesis A.4.1, A.4.2).
 
 The thesis counts particles, because they all carry the same mass there; here their mass is summed,
 which is the same where masses are equal and still right where they are not. The last step inward
@@ -6,10 +6,10 @@ gives up only its outermost particles, so that never more than 3 % go.
 
 For 2D the text can be read in two ways (A.4.2: "the same principle as the 3D one, but doesn't need
 to rotate. Instead, it starts from the 2 ends of the stack and starts to integrate by a increment dx
-towards the center of mass"). Both are here by name; `docs/theory.md` says why which is the default.
+towards the center of mass"). Both are here by name; `docs/methods/stack.md` explains the default.
 
 ``outermost_first``
-    As in 3D: whatever lies farthest from the centre of mass goes first, at either end.
+    As in 3D: the snow farthest from the centre of mass is dropped first, at either end.
 ``equal_pace``
     Both ends step inward together. When a chunk has rolled far off on one side, the steps from the
     other end take most of the 3 % from the stack.
@@ -22,7 +22,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from snowshed._core import InputError
-from snowshed.io.arrays import Booleans, Floats, Integers
+from snowshed.base.arrays import Booleans, Floats, Integers
 
 DROPPED_FRACTION = 0.03
 DIVISIONS = 30  # of radius and angle, as of the grid of the surface (A.4.3)
@@ -44,7 +44,7 @@ def inliers(
     dimension
         3: from the outside inward around the centre of mass (A.4.1); 2: from both ends (A.4.2).
     trimming
-        How A.4.2 is read: one of `TRIMMINGS`. In 3D there is nothing to choose.
+        Trimming rule (thesis A.4.2): one of `TRIMMINGS`. In 3D there is no choice.
 
     Raises
     ------
@@ -67,9 +67,9 @@ def inliers(
         order = circular_order(positions[:, 0], positions[:, 1], masses)
     allowance = DROPPED_FRACTION * masses.sum() * (1 + 1e-9)
     dropped = order[np.cumsum(masses[order]) <= allowance]
-    kept = np.ones(len(positions), dtype=bool)
-    kept[dropped] = False
-    return kept
+    inside = np.ones(len(positions), dtype=bool)
+    inside[dropped] = False
+    return inside
 
 
 def outermost_first_order(x: Floats, masses: Floats) -> Integers:
@@ -84,7 +84,7 @@ def outermost_first_order(x: Floats, masses: Floats) -> Integers:
 
 
 def equal_pace_order(x: Floats, masses: Floats) -> Integers:
-    """Return the order in which particles are met when stepping inward from both ends at once.
+    """Return the order of particles in steps inward from both ends at once.
 
     Since the last increment gives up only its outermost particles, the size of the increments
     does not matter: it is the order of the distance to the nearer end. The masses do not either.
@@ -97,7 +97,8 @@ def equal_pace_order(x: Floats, masses: Floats) -> Integers:
     return np.argsort(np.minimum(x - x.min(), x.max() - x), kind="stable")
 
 
-#: The readings of A.4.2 by name: from x (m) and masses to the order in which particles are dropped.
+#: Trimming rules of A.4.2 by name: functions from x (m) and masses to the order of dropped
+#: particles.
 TRIMMINGS: Mapping[str, Callable[[Floats, Floats], Integers]] = {
     "outermost_first": outermost_first_order,
     "equal_pace": equal_pace_order,

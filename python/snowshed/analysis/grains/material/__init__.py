@@ -1,1 +1,1 @@
-"""From loading tests of grains to snow for the material point method."""
+"""Snow for the material point method from loading tests of grains."""

@@ -61,14 +61,14 @@ def material_figure(fitted: FittedSnow, curves: Curves, *, synthetic: bool) -> F
 
 
 def _draw_hardening(axes: Axes, fitted: FittedSnow, curves: Curves) -> None:
-    words = "grains, isotropic compression"
+    legend = "grains, isotropic compression"
     end = 0.0
     for (name, _), curve in curves.items():
         if name == COMPACTION:
             compaction = -3.0 * np.log1p(-np.abs(curve["axial_strain"]))
             p, _ = invariants(curve, isotropic=True)
-            axes.plot(100 * compaction, p / 1e3, color=INK, lw=0.9, alpha=0.7, label=words)
-            words, end = "", max(end, float(compaction[-1]))
+            axes.plot(100 * compaction, p / 1e3, color=INK, lw=0.9, alpha=0.7, label=legend)
+            legend, end = "", max(end, float(compaction[-1]))
     law, bulk = fitted.law, fitted.law.elastic.bulk_modulus
     plastic = np.linspace(0.0, end, 200)
     pressure = law.hardened(plastic)
@@ -87,7 +87,7 @@ def _draw_plane(axes: Axes, fitted: FittedSnow, curves: Curves) -> None:
     p = np.linspace(-fitted.law.cohesion * p0, p0, 300)
     q = fitted.law.yield_stress(p)
     axes.plot(p / p0, q / p0, color=BODY, lw=2, label="law: yield surface")
-    for test, colour, marker, words in (
+    for test, colour, marker, legend in (
         (ISOTROPIC, COLOURS[0], "o", "isotropic, peak below 5 %"),
         (CONFINED, COLOURS[2], "s", "confined, peak (not fitted)"),
         (TENSION, COLOURS[3], "v", "tension, peak"),
@@ -96,8 +96,8 @@ def _draw_plane(axes: Axes, fitted: FittedSnow, curves: Curves) -> None:
         for (name, _), curve in curves.items():
             if name.partition(" ")[0] == test:
                 at = _point(test, curve)
-                axes.plot(at[0] / p0, at[1] / p0, marker, color=colour, ms=6, label=words)
-                words = ""
+                axes.plot(at[0] / p0, at[1] / p0, marker, color=colour, ms=6, label=legend)
+                legend = ""
     axes.axhline(0.0, color=FAINT, lw=0.8)
     axes.axvline(0.0, color=FAINT, lw=0.8)
     axes.set(xlabel="p / p₀", ylabel="q / p₀")

@@ -1,4 +1,4 @@
-"""The snow that loading tests of grains make, with the ranges of its parameters."""
+"""Snow fitted to loading tests of grains, with the ranges of its parameters."""
 
 from __future__ import annotations
 
@@ -22,15 +22,15 @@ from snowshed.analysis.grains.material.tests import (
 )
 from snowshed.analysis.grains.material.yield_surface import fit_yield_surface
 from snowshed.analysis.grains.ratios import LogMean
-from snowshed.io.formatting import percent
+from snowshed.base.formatting import percent
 from snowshed.methods.grains.curve import LoadingCurve
 from snowshed.methods.grains.phases import LINEAR
 from snowshed.scene.components import Snow
 
 Reading = TypeVar("Reading")
-#: Ratio of the law to the grains from which it is said.
+#: Ratio of the law to the grains from which a note reports it.
 POOR = 2.0
-#: Part of the strengths from which it is said that the yield surface misses them.
+#: Share of the strengths from which a note reports that the yield surface misses them.
 MISSED = 0.25
 #: p0 over K above which the law's elastic strains are no longer small.
 SOFT = 0.1
@@ -43,13 +43,13 @@ class Range:
     Attributes
     ----------
     value
-        Its mean; that of what is positive is geometric.
+        The mean of the samples; geometric for positive quantities.
     low, high
         The 95 % interval of the mean by Student's t; NaN with one sample.
     deviation
         Between samples: the standard deviation of the logarithm, or of the value itself.
     samples
-        How many.
+        Number of samples.
     """
 
     value: float
@@ -68,12 +68,12 @@ class Range:
         (2.0, 0.2)
         """
         if logarithmic:
-            found = LogMean.of(values)
-            deviation = found.error * math.sqrt(found.count)
-            return cls(found.value, *found.interval(), deviation, found.count)
-        found = LogMean.of([math.exp(value) for value in values])
-        low, high = (math.log(one) for one in found.interval())
-        return cls(found.mean, low, high, found.error * math.sqrt(found.count), found.count)
+            mean = LogMean.of(values)
+            deviation = mean.error * math.sqrt(mean.count)
+            return cls(mean.value, *mean.interval(), deviation, mean.count)
+        mean = LogMean.of([math.exp(value) for value in values])
+        low, high = (math.log(end) for end in mean.interval())
+        return cls(mean.mean, low, high, mean.error * math.sqrt(mean.count), mean.count)
 
 
 @dataclass
@@ -88,7 +88,7 @@ class FittedSnow:
         Each parameter's range, by its name in `Snow`; and ``tension_pa`` (axial),
         ``yield_residual``, ``hardening_residual``, ``confined_yield_over_law``.
     notes
-        What should be known before it is used.
+        Notes on the limits of the fit.
     """
 
     law: CamClay
@@ -97,9 +97,9 @@ class FittedSnow:
 
     @property
     def steps(self) -> float:
-        """Time steps of the material point method over those of the calibrated snow.
+        """Ratio of the time steps of the material point method to those of the calibrated snow.
 
-        They are as many as the speed of elastic waves is high.
+        Their number is proportional to the speed of elastic waves.
         """
         return self.law.wave_speed / CamClay.of(Snow.preset("calibrated")).wave_speed
 
@@ -123,27 +123,28 @@ def fit_material(
     curves
         From `read_curves`.
     density
-        Of the snow, kg/m3.
+        Density of the snow, kg/m3.
     modulus
-        Young's modulus to take instead of the grains', Pa, so that steps may be longer; xi then
-        makes up for it.
+        Young's modulus to use instead of the grains', Pa, for longer steps; xi then compensates.
     few_grains
-        Grains of the smallest sample, if they are too few.
+        Number of grains of the smallest sample, if it is too small.
 
     Raises
     ------
     InputError
-        If a parameter cannot be read from any sample, or the law would mean nothing.
+        If a parameter cannot be read from any sample, or the law would be meaningless.
     """
     notes: list[str] = []
-    found = list(_read(curves, CONFINED, readings.elasticity, notes).values())
+    elasticities = list(_read(curves, CONFINED, readings.elasticity, notes).values())
     ranges = {
-        "youngs_modulus": Range.of([one.youngs_modulus for one, _ in found]),
-        "poissons_ratio": Range.of([one.poissons_ratio for one, _ in found], logarithmic=False),
+        "youngs_modulus": Range.of([reading.youngs_modulus for reading, _ in elasticities]),
+        "poissons_ratio": Range.of(
+            [reading.poissons_ratio for reading, _ in elasticities], logarithmic=False
+        ),
     }
     nu = min(max(ranges["poissons_ratio"].value, 0.0), readings.LARGEST_POISSON)
     elastic = Elasticity(modulus or ranges["youngs_modulus"].value, nu)
-    linearity = min(one for _, one in found)
+    linearity = min(share for _, share in elasticities)
     if linearity < LINEAR:
         notes.append(f"the elastic phase is not linear (R2 {linearity:.2f}): E is doubtful")
     strengths = _read(curves, ISOTROPIC, readings.isotropic_yield, notes)
@@ -198,28 +199,28 @@ def _read_strengths(
     """
     tensions = _read(curves, TENSION, readings.tension, notes)
     strengths = {**_read(curves, SHEAR, readings.shear_strength, notes), **tensions}
-    ranges["tension_pa"] = Range.of([_axial(*one) for one in tensions.values()])
+    ranges["tension_pa"] = Range.of([_axial(*tension) for tension in tensions.values()])
     p0 = ranges["preconsolidation_pressure"].value
     points: dict[int, list[tuple[float, float]]] = {}
     for (_, sample), (p, q) in strengths.items():
         own = own_p0.get(sample, p0)
         points.setdefault(sample, []).append((p / own, q / own))
-    found = fit_yield_surface(*np.array([one for some in points.values() for one in some]).T)
+    surface = fit_yield_surface(*np.array([point for some in points.values() for point in some]).T)
     each = [fit_yield_surface(*np.array(some).T) for some in points.values() if len(some) > 1]
-    slopes = Range.of([one.slope for one in each])
-    betas = Range.of([one.cohesion for one in each], logarithmic=False)
-    ranges["critical_state_slope"] = replace(slopes, value=found.slope)
-    ranges["cohesion"] = replace(betas, value=found.cohesion)
-    ranges["yield_residual"] = Range.of([found.residual])
-    if found.residual > MISSED:
+    slopes = Range.of([fit.slope for fit in each])
+    betas = Range.of([fit.cohesion for fit in each], logarithmic=False)
+    ranges["critical_state_slope"] = replace(slopes, value=surface.slope)
+    ranges["cohesion"] = replace(betas, value=surface.cohesion)
+    ranges["yield_residual"] = Range.of([surface.residual])
+    if surface.residual > MISSED:
         notes.append(
-            f"the law's yield surface misses the strengths by {100 * found.residual:.0f} % of "
+            f"the law's yield surface misses the strengths by {100 * surface.residual:.0f} % of "
             "their size"
         )
-    if found.cohesion in (0.0, 1.0):
+    if surface.cohesion in (0.0, 1.0):
         notes.append(
-            f"beta {found.cohesion:g} is the end of what the law takes: its tensile strength is "
-            f"not the grains' of {ranges['tension_pa'].value:.3g} Pa"
+            f"beta {surface.cohesion:g} is at the limit of the law: its tensile strength differs "
+            f"from that of the grains, {ranges['tension_pa'].value:.3g} Pa"
         )
 
 
@@ -232,10 +233,10 @@ def _read_hardening(
     curves: Curves, ranges: dict[str, Range], elastic: Elasticity, p0: float, notes: list[str]
 ) -> None:
     read = _read(curves, COMPACTION, lambda curve: readings.hardening(curve, elastic, p0), notes)
-    found = list(read.values())
-    ranges["hardening_factor"] = Range.of([one.factor for one in found])
-    ranges["hardening_residual"] = Range.of([one.residual for one in found])
-    excess = max(one.excess for one in found)
+    hardenings = list(read.values())
+    ranges["hardening_factor"] = Range.of([hardening.factor for hardening in hardenings])
+    ranges["hardening_residual"] = Range.of([hardening.residual for hardening in hardenings])
+    excess = max(hardening.excess for hardening in hardenings)
     if excess > POOR:
         notes.append(
             f"between its brittle peak and hardening the snow is up to {excess:.2g} times weaker "
@@ -249,10 +250,10 @@ def _check_confined(
     """Compare the peak of confined compression, to which nothing is fitted."""
     stress = law.confined_yield()
     peaks = _read(curves, CONFINED, readings.confined_peak, notes)
-    ranges["confined_yield_over_law"] = found = Range.of([one / stress for one in peaks.values()])
-    if not 1 / POOR <= found.value <= POOR:
+    ranges["confined_yield_over_law"] = ratio = Range.of([peak / stress for peak in peaks.values()])
+    if not 1 / POOR <= ratio.value <= POOR:
         notes.append(
-            f"in confined compression the grains' peak is {found.value:.2g} times the law's yield "
+            f"in confined compression the grains' peak is {ratio.value:.2g} times the law's yield "
             "stress, to which nothing is fitted"
         )
 
@@ -270,7 +271,7 @@ def _note_meaning(fitted: FittedSnow, modulus: Optional[float], few_grains: int)
         f"{percent(fitted.law.lost_after, 2)} of plastic dilation"
     )
     if few_grains:
-        notes.append(f"{few_grains} grains: such a small sample hardly stands for its snow")
+        notes.append(f"{few_grains} grains: so small a sample hardly represents its snow")
     if fitted.ranges["preconsolidation_pressure"].samples < 2:
         notes.append("one sample: the ranges of the parameters are not known")
 
@@ -284,11 +285,11 @@ def exponents(laws: Sequence[CamClay]) -> dict[str, float]:
     >>> {name: round(n, 6) for name, n in exponents(laws).items()}
     {'youngs_modulus': 4.0, 'preconsolidation_pressure': 1.0}
     """
-    densities = np.log([one.density for one in laws])
+    densities = np.log([law.density for law in laws])
     if len(set(densities)) < 2:
         return {}
-    moduli = np.log([one.elastic.youngs_modulus for one in laws])
-    pressures = np.log([one.preconsolidation_pressure for one in laws])
+    moduli = np.log([law.elastic.youngs_modulus for law in laws])
+    pressures = np.log([law.preconsolidation_pressure for law in laws])
     return {
         "youngs_modulus": float(np.polyfit(densities, moduli, 1)[0]),
         "preconsolidation_pressure": float(np.polyfit(densities, pressures, 1)[0]),

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 from snowshed.scene.components import Snow
 
 
@@ -86,12 +86,12 @@ class CamClay:
 
     @property
     def wave_speed(self) -> float:
-        """Speed of elastic waves, m/s, to which the number of time steps is proportional."""
+        """Speed of elastic waves, m/s; the number of time steps is proportional to it."""
         return math.sqrt(self.elastic.confined_modulus / self.density)
 
     @property
     def lost_after(self) -> float:
-        """Plastic dilation after which no strength is left: asinh(p0/K)/xi."""
+        """Plastic dilation at which the strength is lost: asinh(p0/K)/xi."""
         p0, bulk = self.preconsolidation_pressure, self.elastic.bulk_modulus
         return math.asinh(p0 / bulk) / self.hardening_factor
 

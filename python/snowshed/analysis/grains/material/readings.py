@@ -1,4 +1,4 @@
-"""What loading tests tell of the cohesive Cam-Clay law, parameter by parameter.
+"""Parameters of the cohesive Cam-Clay law from loading tests.
 
 Stresses are positive in compression. p is the mean stress and q the Mises stress. The law hardens
 with p0 = K sinh(xi e), where K = E/(3 - 6 nu) and e is the plastic volumetric compaction (thesis
@@ -14,11 +14,11 @@ import numpy as np
 
 from snowshed._core import InputError
 from snowshed.analysis.grains.material.law import Elasticity
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 from snowshed.methods.grains.curve import LoadingCurve, untouched
 from snowshed.methods.grains.phases import LEAST_ROWS, PEAK_BELOW
 
-#: Strain from which on a peak counts: before, it is that of the plate's impact.
+#: Strain from which a peak counts: earlier peaks come from the plate's impact.
 PEAK_FROM = 5e-4
 #: Plastic compactions, over which stresses are averaged before hardening is fitted.
 HARDENING_BIN = 0.02
@@ -35,7 +35,7 @@ class Hardening:
     factor
         xi.
     residual
-        Root mean square of what it misses, over that of the stresses.
+        Root mean square of the residual, relative to that of the stresses.
     excess
         Largest ratio of the law's stress to that of the grains: between the brittle peak and
         hardening, grains are weaker than the law, which cannot soften while it compacts.
@@ -60,7 +60,7 @@ def invariants(curve: LoadingCurve, *, isotropic: bool = False) -> tuple[Floats,
     Parameters
     ----------
     curve
-        Of a test.
+        Curve of a test.
     isotropic
         Whether the sides move inward as the plate does; else they stand still.
     """
@@ -157,8 +157,8 @@ def confined_peak(curve: LoadingCurve) -> float:
 def shear_strength(curve: LoadingCurve) -> tuple[float, float]:
     """Return p and q, Pa, at the largest shear stress under a normal stress.
 
-    There bonds hold the snow together, as in the other strengths. Afterwards a sheared layer is
-    loose, and what it bears is no property of the snow around it.
+    Until then, bonds hold the snow together, as in the other strengths. Afterwards a sheared layer
+    is loose, and its strength is no property of the surrounding snow.
 
     Raises
     ------
@@ -194,17 +194,17 @@ def tension(curve: LoadingCurve) -> tuple[float, float]:
 def hardening(curve: LoadingCurve, elastic: Elasticity, p0: float) -> Hardening:
     """Return xi from isotropic compression: the least squares of the law's pressure.
 
-    Pressures are averaged over plastic compactions of 2 %, so that each counts once. The largest
-    decide, which are those of hardening.
+    Pressures are averaged over plastic compactions of 2 %, so that each interval counts once. The
+    largest pressures, those of hardening, dominate.
 
     Parameters
     ----------
     curve
-        Of isotropic compression, with the same rate of strain along all axes.
+        Curve of isotropic compression, with the same strain rate along all axes.
     elastic
         Elastic constants; E may be another than the grains', then xi makes up for it.
     p0
-        Where hardening begins, Pa.
+        Pressure at which hardening begins, Pa.
 
     Raises
     ------
@@ -228,18 +228,19 @@ def hardening(curve: LoadingCurve, elastic: Elasticity, p0: float) -> Hardening:
             f"compacted by {compaction[-1]:.1%}: too little for a hardening factor; "
             f"{LEAST_ROWS * HARDENING_BIN:.0%} of plastic compaction at least"
         )
-    means = [[values[bins == one].mean() for one in used] for values in (plastic, pressure)]
+    means = [[values[bins == index].mean() for index in used] for values in (plastic, pressure)]
     x, y = np.array(means)
 
     def law(factor: float) -> Floats:
         return elastic.hardened(p0, factor, np.maximum(x, 0.0))
 
-    # In logarithms, as factors of all sizes are possible; beginning at that of the last stress.
+    # Residuals are logarithmic, because factors of all sizes are possible; the search begins at the
+    # last stress.
     last = math.asinh(max(y[-1], 1.01 * p0) / elastic.bulk_modulus)
     guess = math.log(max((last - math.asinh(p0 / elastic.bulk_modulus)) / x[-1], 1e-6))
     ends = (math.log(1e-9), math.log(LARGEST_HARDENING))
-    found = least_squares(lambda log: (law(math.exp(log[0])) - y) / y.max(), [guess], bounds=ends)
-    factor = math.exp(float(found.x[0]))
+    optimum = least_squares(lambda log: (law(math.exp(log[0])) - y) / y.max(), [guess], bounds=ends)
+    factor = math.exp(float(optimum.x[0]))
     fitted = law(factor)
     residual = float(np.sqrt(np.sum((fitted - y) ** 2) / np.sum(y**2)))
     if residual > 1.0:

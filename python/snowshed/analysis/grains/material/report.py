@@ -33,9 +33,9 @@ def write_snow(folder: Path, fitted: FittedSnow, source: Mapping[str, Any]) -> P
     fitted
         The snow.
     source
-        What was loaded, and how.
+        Description of the samples and the tests.
     """
-    ranges = {name: _finite(asdict(one)) for name, one in fitted.ranges.items()}
+    ranges = {name: _finite(asdict(interval)) for name, interval in fitted.ranges.items()}
     data = {
         **{name: _rounded(value) for name, value in fitted.law.snow.to_data().items()},
         PROVENANCE: {
@@ -57,9 +57,9 @@ def write_table(folder: Path, fits: Sequence[FittedSnow]) -> None:
     import pandas as pd
 
     rows = [
-        {"density_kg_m3": one.law.density, "parameter": name, **asdict(found)}
-        for one in fits
-        for name, found in one.ranges.items()
+        {"density_kg_m3": fit.law.density, "parameter": name, **asdict(interval)}
+        for fit in fits
+        for name, interval in fit.ranges.items()
     ]
     write_csv(pd.DataFrame(rows), folder / TABLE)
 

@@ -29,7 +29,7 @@ class MaterialFolder:
         The folder: ``samples/``, ``runs/`` (the store), ``snow-DENSITY.json``,
         ``material-DENSITY.png`` and ``material.csv``.
     settings
-        Of the tests.
+        Settings of the tests.
     modulus
         Young's modulus of the snow, Pa; None: that of the grains.
     """
@@ -65,7 +65,7 @@ class MaterialFolder:
         fitted = fit_material(
             curves, tests.density, modulus=self.modulus, few_grains=tests.few_grains
         )
-        synthetic = any(one.source for one in tests.samples)
+        synthetic = any(sample.source for sample in tests.samples)
         if synthetic:
             fitted.notes.append("the snow is synthetic")
         write_snow(self.path, fitted, _source(tests, self.settings))
@@ -82,14 +82,14 @@ def _source(tests: MaterialTests, settings: GrainsSettings) -> dict[str, Any]:
     return {
         "samples": [
             {
-                "name": one.name,
-                "grains": one.grains,
-                "voxels": list(one.labels.shape),
-                "voxel_size_m": one.voxel_size,
-                "ice_fraction": round(one.ice_fraction, 6),
-                "synthetic": one.source,
+                "name": sample.name,
+                "grains": sample.grains,
+                "voxels": list(sample.labels.shape),
+                "voxel_size_m": sample.voxel_size,
+                "ice_fraction": round(sample.ice_fraction, 6),
+                "synthetic": sample.source,
             }
-            for one in tests.samples
+            for sample in tests.samples
         ],
         "settings": settings.to_data(),
     }
@@ -106,9 +106,9 @@ def by_density(samples: Sequence[LabelledSample]) -> list[list[LabelledSample]]:
     1
     """
     groups: list[list[LabelledSample]] = []
-    for one in sorted(samples, key=lambda sample: sample.ice_fraction):
-        if groups and one.ice_fraction < APART * groups[-1][0].ice_fraction:
-            groups[-1].append(one)
+    for candidate in sorted(samples, key=lambda sample: sample.ice_fraction):
+        if groups and candidate.ice_fraction < APART * groups[-1][0].ice_fraction:
+            groups[-1].append(candidate)
         else:
-            groups.append([one])
+            groups.append([candidate])
     return groups

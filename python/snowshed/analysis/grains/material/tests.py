@@ -50,21 +50,21 @@ class MaterialTests:
     Parameters
     ----------
     samples
-        Of about the same density and one voxel size.
+        Samples of about the same density and of one voxel size.
     folder
-        For the samples' files.
+        Folder for the samples' files.
     settings
-        Of the method.
+        Settings of the method.
     """
 
     def __init__(
         self, samples: Sequence[LabelledSample], folder: Path, settings: GrainsSettings
     ) -> None:
         self.samples = list(samples)
-        self.files = [one.write(folder) for one in samples]
+        self.files = [sample.write(folder) for sample in samples]
         self.voxel_size = samples[0].voxel_size
         density = settings.density or 917.0
-        self.ice_fraction = sum(one.ice_fraction for one in samples) / len(samples)
+        self.ice_fraction = sum(sample.ice_fraction for sample in samples) / len(samples)
         self.density = density * self.ice_fraction
         self.scene = grains_scene(
             self.files[0], self.voxel_size, [LoadingStage(speed=SPEED)], settings=settings
@@ -73,7 +73,7 @@ class MaterialTests:
     @property
     def few_grains(self) -> int:
         """Grains of the smallest sample, if they are few; else 0."""
-        least = min(one.grains for one in self.samples)
+        least = min(sample.grains for sample in self.samples)
         return least if least < FEW_GRAINS else 0
 
     def without_shear(self) -> Comparison:
@@ -102,7 +102,7 @@ class MaterialTests:
 
 
 def compaction_strain(ice_fraction: float) -> float:
-    """Return the strain along each axis to which snow of an ice fraction is compacted.
+    """Return the strain along each axis that compacts snow of an ice fraction.
 
     Examples
     --------
@@ -125,9 +125,9 @@ def read_curves(comparison: Comparison, runs: Path) -> Curves:
     """
     hashes = comparison.hashes()
     with Store.open(runs) as store:
-        kept = {key: store.particles(hash_) for key, hash_ in hashes.items()}
+        particles = {key: store.particles(hash_) for key, hash_ in hashes.items()}
     return {
-        key: LoadingCurve.parse(found[1].decode("utf-8"), f"{runs}: {key[0]}")
-        for key, found in kept.items()
-        if 1 in found
+        key: LoadingCurve.parse(stored[1].decode("utf-8"), f"{runs}: {key[0]}")
+        for key, stored in particles.items()
+        if 1 in stored
     }

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from snowshed._core import InputError
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 
 COHESIONS = np.linspace(0.0, 1.0, 201)  # that a scene takes (`snowshed.Snow`)
 
@@ -24,7 +24,7 @@ class YieldSurface:
     slope, cohesion
         M and beta.
     residual
-        Root mean square of what it misses of q, over that of q.
+        Root mean square of the residual of q, relative to that of q.
     """
 
     slope: float
@@ -40,7 +40,7 @@ def fit_yield_surface(p: Floats, q: Floats) -> YieldSurface:
     Parameters
     ----------
     p, q : (n,)
-        Of the strengths, over p0; p is negative in tension.
+        Stresses of the strengths, relative to p0; p is negative in tension.
 
     Raises
     ------
@@ -58,8 +58,8 @@ def fit_yield_surface(p: Floats, q: Floats) -> YieldSurface:
 
     def surface(beta: float) -> YieldSurface:
         shape = np.sqrt(np.maximum((p + beta) * (1 - p), 0.0) / (1 + 2 * beta))
-        whole = float(shape @ shape)
-        slope = float(shape @ q) / whole if whole > 0 else 0.0
+        norm = float(shape @ shape)
+        slope = float(shape @ q) / norm if norm > 0 else 0.0
         missed = float(np.linalg.norm(q - slope * shape) / np.linalg.norm(q))
         return YieldSurface(slope, beta, missed)
 
@@ -71,7 +71,9 @@ def fit_yield_surface(p: Floats, q: Floats) -> YieldSurface:
     fine = minimize_scalar(
         lambda beta: surface(beta).residual, bounds=tuple(around), options={"xatol": 1e-10}
     )
-    found = min(surface(float(COHESIONS[best])), surface(float(fine.x)), key=lambda s: s.residual)
-    if not found.slope > 0:
+    best_fit = min(
+        surface(float(COHESIONS[best])), surface(float(fine.x)), key=lambda s: s.residual
+    )
+    if not best_fit.slope > 0:
         raise InputError("no yield surface of the law has strength where the grains do")
-    return found
+    return best_fit

@@ -1,0 +1,109 @@
+"""Sentences about an answer: the answer itself, its assumptions, and warnings."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from snowshed.analysis.clearance.answer import Answer
+from snowshed.analysis.clearance.design import MEANING, Ranges
+from snowshed.base.formatting import plural
+from snowshed.season.record import percent
+
+FIRST_PROBABILITY = 0.9  # of the answer's first sentence
+CHANCE = "chance: positions of particles, and interactions of causes"
+
+
+def sentence(answers: Sequence[Answer]) -> str:
+    """Return the answer for the first panel in a sentence."""
+    answer = answers[0]
+    design = answer.design
+    level = next(level for level in answer.levels if level.probability == FIRST_PROBABILITY)
+    panel = f" of the panel of {design.slope_length:g} m at {design.tilt:g}°"
+    return (
+        f"To stay clear of shed snow in 9 of 10 winters, the lower edge"
+        f"{panel if len(answers) > 1 else ''} must be at least {level.height:.1f} m above ground "
+        f"(90 % interval {level.low:.1f} to {level.high:.1f} m, from {answer.winters_text} and "
+        "the uncertain snow parameters)."
+    )
+
+
+def cause_label(cause: str) -> str:
+    """Return the label of a cause of variance."""
+    if cause == "winter":
+        return "the winter's weather"
+    return CHANCE if cause == "chance" else MEANING[cause]
+
+
+def advice(answer: Answer) -> str:
+    """Return which measurement would reduce the uncertainty of the required height most."""
+    shares = [share for share in answer.shares if share.cause in MEANING]
+    if not shares:
+        return (
+            "There are too few seasons to separate the causes. Use more winters, or more --draws."
+        )
+    largest = shares[0]
+    winter = next((share.part for share in answer.shares if share.cause == "winter"), 0.0)
+    return (
+        f"Measuring the {MEANING[largest.cause]} would reduce the uncertainty most: it causes "
+        f"{100 * largest.part:.0f} % of the variance. The winter causes {100 * winter:.0f} %, "
+        "which no measurement reduces."
+    )
+
+
+def warnings(answers: Sequence[Answer]) -> list[str]:
+    """Return where the answer is extrapolated or incomplete."""
+    notes = _excluded_winters(answers[0])
+    for answer in answers:
+        name = f"{answer.design.slope_length:g} m at {answer.design.tilt:g}°"
+        for level in answer.levels:
+            if level.height > answer.heights[-1]:
+                notes.append(
+                    f"{name}: {level.height:.1f} m for {100 * level.probability:g} % lies above "
+                    f"all candidate heights (up to {answer.heights[-1]:g} m); give higher --heights"
+                )
+            elif not level.counted:
+                notes.append(
+                    f"{name}: {100 * level.probability:g} % is extrapolated (Gumbel) from "
+                    f"{plural(len(answer.winters), 'winter')}; counting it needs at least "
+                    f"{level.return_period:.0f}"
+                )
+        if answer.failed:
+            notes.append(
+                f"{name}: {answer.failed} seasons could not be simulated, and are left out"
+            )
+    return notes
+
+
+def _excluded_winters(answer: Answer) -> list[str]:
+    """Return a note on the winters of the file that do not count."""
+    record = answer.winter_list
+    if record is None or len(record.counted) == len(record.winters):
+        return []
+    number = plural(len(record.winters) - len(record.counted), "winter")
+    return [
+        f"the answer uses {record.counted_text}; the snow of {number} was observed on less than "
+        f"{percent(record.coverage)} of the days {record.season.text}: {record.excluded_text}"
+    ]
+
+
+def assumptions(answer: Answer) -> list[str]:
+    """Return the assumptions of the seasons, a sentence each."""
+    season = answer.cases[0].season
+    cover = "from the weather" if season.cover == "weather" else f"{season.cover}"
+    return [
+        "The panel is long across the slope: the simulation is of a strip (2D).",
+        f"Grid cells are {100 * answer.design.dx:.3g} cm wide. Releases thinner than "
+        f"{1000 * season.pool_below:.0f} mm slide with those that follow.",
+        f"The stack lies on the natural snow cover (its depth: {cover}), and nobody clears it.",
+        f"Snow settles ({season.settling or 'not at all'}) on the panel, in the stack and on the "
+        "ground.",
+        f"Strength and stiffness of a slab follow from its density ({season.strength or 'no'}).",
+        "Melt of the stack, rain, wind drift and snowfall on the stack (except on the cover) are "
+        "left out.",
+        "Winters are independent of each other: the climate does not change.",
+    ]
+
+
+def range_rows(ranges: Ranges) -> list[tuple[str, str, str]]:
+    """Return the uncertain parameters, each with its lowest and highest value."""
+    return [(MEANING[name], f"{low:g}", f"{high:g}") for name, (low, high) in ranges.spans.items()]

@@ -1,0 +1,115 @@
+"""The clearance of a panel from a weather file, in one call."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Optional
+
+from snowshed.analysis.clearance.answer import Answer, clearance_of
+from snowshed.analysis.clearance.design import Design, Ranges
+from snowshed.analysis.clearance.winters import counted
+from snowshed.base.json_values import JsonValue
+from snowshed.base.notes import tell
+from snowshed.base.progress import Reporter
+from snowshed.scene.scene import PathLike
+from snowshed.season.quality import COVERAGE
+from snowshed.season.settings import SeasonSettings
+from snowshed.season.source import AUTO
+from snowshed.season.weather import Season, read_record
+
+if TYPE_CHECKING:
+    import pandas as pd  # noqa: F401 - of `Season`
+
+
+def clearance(
+    weather: Season,
+    folder: PathLike,
+    *,
+    slope_length: float,
+    tilt: float,
+    heights: Sequence[float] = (1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0),
+    ranges: Optional[Ranges] = None,
+    settings: Optional[SeasonSettings] = None,
+    scene: Optional[Mapping[str, JsonValue]] = None,
+    coverage: float = COVERAGE,
+    snow_from: str = AUTO,
+    temperature: Optional[PathLike] = None,
+    jobs: Optional[int] = None,
+    progress: Optional[Reporter] = None,
+) -> Answer:
+    r"""Return how high the lower edge of a panel must be to stay clear of shed snow.
+
+    Parameters
+    ----------
+    weather
+        Years of daily weather: a file of a station or several, or what else
+        `snowshed.season.weather.read_record` reads.
+    folder
+        Folder of the store of runs; the same call resumes there.
+    slope_length
+        Length of the panel along the slope, m.
+    tilt
+        Tilt of the panel from the horizontal, degrees.
+    heights
+        Candidates for the height of the lower edge above the ground, m.
+    ranges
+        Ranges of the uncertain snow parameters. [default: `Ranges()`]
+    settings
+        Settings of the seasons, except those that vary. [default: `SeasonSettings()`]
+    scene
+        Values of the scene by dotted path, such as ``numerics.dx``.
+    coverage
+        Share of the days of a winter on which snow must have been observed.
+    snow_from
+        The column that observes snow. [default: the best of each winter]
+    temperature
+        Another file of the same station, for its temperature.
+    jobs
+        Local processes at once. [default: the number of cores]
+    progress
+        Called with a `Progress` a few times a second.
+
+    Returns
+    -------
+    Answer
+        `Answer.at` gives the height and its 90 % interval.
+
+    Raises
+    ------
+    InputError
+        If the weather has no winter with enough observations, or a value is out of range.
+    StudyError, StudyInterrupted
+        As from `Study.compute`.
+
+    Examples
+    --------
+    >>> from datetime import date, timedelta
+    >>> from tempfile import TemporaryDirectory
+    >>> days = [date(2023, 9, 1) + timedelta(n) for n in range(366)]
+    >>> rows = [f"{day},{0.2 if day == date(2024, 1, 5) else 0},{-3 if day.month < 3 else 5}"
+    ...         for day in days]
+    >>> with TemporaryDirectory() as base:
+    ...     file = Path(base) / "weather.csv"
+    ...     _ = file.write_text("\n".join(["date,snowfall_m,temperature_c", *rows]))
+    ...     answer = clearance(file, f"{base}/runs", slope_length=0.5, tilt=60, heights=[0.5],
+    ...                        ranges=Ranges(draws=1), scene={"numerics.dx": 0.05})
+    >>> answer.at(0.9).height < 0.5
+    True
+    """
+    record = read_record(weather, snow_from, temperature)
+    winter_list = record.winters(coverage)
+    for note in (*record.notes, *winter_list.notes):
+        tell(note)
+    return clearance_of(
+        Design(slope_length, tilt),
+        counted(winter_list),
+        heights,
+        Path(folder),
+        ranges=ranges,
+        settings=settings,
+        scene=scene,
+        winter_list=winter_list,
+        jobs=jobs,
+        progress=progress,
+    )

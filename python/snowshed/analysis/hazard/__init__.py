@@ -1,0 +1,1 @@
+"""Maps of many slides: how often snow comes where, and how hard."""

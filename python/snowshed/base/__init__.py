@@ -1,0 +1,1 @@
+"""Basics for every room: records, arrays, texts, notes, the pool of processes."""

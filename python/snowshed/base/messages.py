@@ -1,0 +1,89 @@
+"""Texts from files and callers in messages, on terminals and in tables, where they do no harm.
+
+They may be long, and hold what a terminal takes for commands, what turns the direction of writing,
+or what a spreadsheet computes.
+"""
+
+from __future__ import annotations
+
+import difflib
+import re
+from collections.abc import Iterable
+
+LONGEST = 60  # characters
+#: Control characters (but tab and end of line), line separators, marks and overrides of the
+#: direction, and what stands for bytes of names that are no UTF-8.
+HARMFUL = re.compile(
+    "[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff]"
+)
+FORMULA = ("=", "+", "-", "@", "\t", "\r")  # what a cell begins with that spreadsheets compute
+
+
+def shortened(text: str, longest: int = LONGEST) -> str:
+    """Return text without its end where it is long.
+
+    Examples
+    --------
+    >>> shortened("a, b, c, d", 4)
+    'a, b...'
+    """
+    return text if len(text) <= longest else f"{text[:longest]}..."
+
+
+def quoted(text: str) -> str:
+    """Return text in quotes, without its end where it is long.
+
+    Examples
+    --------
+    >>> quoted("lots")
+    "'lots'"
+    >>> len(quoted("[" * 20_000))
+    65
+    """
+    return repr(text[:LONGEST]) + ("" if len(text) <= LONGEST else "...")
+
+
+def suggestion(given: str, allowed: Iterable[str]) -> str:
+    """Return "; did you mean ...?" with the word nearest to `given`, or nothing if none is near.
+
+    Examples
+    --------
+    >>> suggestion("tlit", ["tilt", "length"]), suggestion("DX", ["dx"]), suggestion("x", ["tilt"])
+    ('; did you mean tilt?', '; did you mean dx?', '')
+    """
+    by_lower = {word.lower(): word for word in allowed}
+    near = difflib.get_close_matches(given.lower(), by_lower, n=1)
+    return f"; did you mean {by_lower[near[0]]}?" if near else ""
+
+
+def printable(text: object) -> str:
+    r"""Return a text as a terminal or a page may show it; what would do harm becomes "?".
+
+    Examples
+    --------
+    >>> printable("\x1b[31mred.stl")
+    '?[31mred.stl'
+    """
+    return HARMFUL.sub("?", str(text))
+
+
+def csv_cell(value: object) -> object:
+    """Return a cell as a spreadsheet may open it; a text that it would compute is quoted.
+
+    Examples
+    --------
+    >>> csv_cell("=HYPERLINK(A1)"), csv_cell(-1.5), csv_cell("rest"), csv_cell("-1.5")
+    ("'=HYPERLINK(A1)", -1.5, 'rest', '-1.5')
+    """
+    if not isinstance(value, str):
+        return value
+    shown = printable(value)
+    return f"'{shown}" if shown.startswith(FORMULA) and not _is_number(shown) else shown
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True

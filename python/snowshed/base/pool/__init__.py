@@ -1,0 +1,1 @@
+"""Work on several processes, with progress, that stops safely."""

@@ -1,0 +1,274 @@
+"""Records: dataclasses that mirror JSON objects. A field that is None was not given.
+
+A record knows its fields: a name that is none of them, and a value that its field does not take,
+are errors at once, wherever they are used. It keeps copies of the records that it is given.
+"""
+
+from __future__ import annotations
+
+import copy
+import typing
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, fields
+from functools import cache
+from typing import TYPE_CHECKING, ClassVar, Optional, TypeVar
+
+from snowshed._core import InputError
+from snowshed.base.field_type import alternatives_of, convert, is_record, shown
+from snowshed.base.json_values import JsonObject, JsonValue
+from snowshed.base.messages import shortened, suggestion
+
+DEEPEST = 64  # as the core has it
+
+RecordType = TypeVar("RecordType", bound="Record")
+
+
+class UnknownFieldError(InputError, AttributeError, TypeError):
+    """A name that is no field of a record, as an attribute, a keyword or a key."""
+
+
+class Alias:
+    """Another name of a record's numeric field, declared in the class.
+
+    Parameters
+    ----------
+    field
+        The field's own name.
+    """
+
+    def __init__(self, field: str) -> None:
+        self.field = field
+
+    def __get__(self, record: object, owner: type) -> Optional[float]:
+        """Return the field's value."""
+        return self if record is None else getattr(record, self.field)  # type: ignore[return-value]
+
+    def __set__(self, record: object, value: Optional[float]) -> None:
+        """Set the field."""
+        setattr(record, self.field, value)
+
+
+class _RecordClass(type):
+    """The class of record classes: it checks the keywords with which a record is made."""
+
+    if not TYPE_CHECKING:  # checkers take the signature that `dataclass` makes
+
+        def __call__(cls, *values: object, **keywords: object) -> object:
+            names = {**cls.aliases(), **{f.name: f.name for f in fields(cls)}}
+            for keyword in keywords:
+                if keyword not in names:
+                    raise cls._unknown(keyword)
+            named = {keyword: names[keyword] for keyword in keywords}
+            check_once(named, cls.__name__)
+            check_instead(cls, [named[k] for k, v in keywords.items() if v is not None])
+            return super().__call__(*values, **{named[key]: keywords[key] for key in keywords})
+
+
+@dataclass
+class Record(metaclass=_RecordClass):
+    """A JSON object. A trailing underscore in a field's name is not part of its JSON key.
+
+    Examples
+    --------
+    >>> from snowshed.scene.components import Panel
+    >>> panel = Panel(tilt=40)
+    >>> panel
+    Panel(tilt=40)
+    >>> panel.tlit = 50
+    Traceback (most recent call last):
+    snowshed.base.record.UnknownFieldError: Panel.tlit: Panel has no such field; did you mean tilt?
+    """
+
+    #: Fields, and those in whose place they stand: of the two one is given, and setting one of
+    #: them unsets the other.
+    INSTEAD_OF: ClassVar[Mapping[str, str]] = {}
+
+    def __init_subclass__(cls) -> None:
+        """Give subclasses this text, which `dataclass` would replace by one of all fields."""
+        if "__repr__" not in vars(cls):
+            cls.__repr__ = Record.__repr__  # type: ignore[method-assign]
+
+    def __repr__(self) -> str:
+        """Return the fields that were given, as the call that makes the record."""
+        given = {name: getattr(self, name) for name in self.keys().values()}
+        texts = {name: repr(value) for name, value in given.items() if value is not None}
+        return call_text(type(self), texts)
+
+    @classmethod
+    def keys(cls) -> dict[str, str]:
+        """Return the JSON key of every field, as ``{key: field name}``."""
+        return {f.name.rstrip("_"): f.name for f in fields(cls)}
+
+    @classmethod
+    def aliases(cls) -> dict[str, str]:
+        """Return the other names of fields, as ``{name: field name}``."""
+        return {
+            name: attribute.field
+            for name, attribute in vars(cls).items()
+            if isinstance(attribute, Alias)
+        }
+
+    @classmethod
+    def from_data(cls: type[RecordType], data: Mapping[str, object], path: str = "") -> RecordType:
+        """Build the record from a JSON object that stands at `path` in its document.
+
+        Raises
+        ------
+        InputError
+            At a key the record does not have, or a value its field does not take.
+        """
+        if not isinstance(data, Mapping):
+            raise InputError(f"{path or '/'}: {shown(data)} is not an object")
+        if path.count("/") > 2 * DEEPEST:
+            raise InputError(f"{path[:100]}...: nested more than {DEEPEST} deep")
+        record = cls()
+        check_once({key: cls.field_of(key, path) for key in data}, path)
+        check_instead(cls, [cls.field_of(k, path) for k in data if data[k] is not None], path)
+        for key, value in data.items():
+            record.assign(key, value, path)
+        return record
+
+    def to_data(self, path: str = "", depth: int = 0) -> JsonObject:
+        """Return the fields that were given, as a JSON object that stands `depth` deep at `path`.
+
+        Raises
+        ------
+        InputError
+            At a value that its field does not take: lists may have been changed since.
+        """
+        data: JsonObject = {}
+        for key, name in self.keys().items():
+            value = convert(getattr(self, name), _hints(type(self))[name], f"{path}/{key}")
+            if value is not None:
+                data[key] = _to_json(value, f"{path}/{key}", depth + 1)
+        return data
+
+    def assign(self, key: str, value: object, path: str = "") -> None:
+        """Set one field by its JSON key; objects and lists of them become records.
+
+        Raises
+        ------
+        InputError
+            If the record has no such key, or its field does not take the value.
+        """
+        self._keep(self.field_of(key, path), value, f"{path}/{key}")
+
+    @classmethod
+    def field_of(cls, key: str, path: str = "") -> str:
+        """Return the field a JSON key stands for; unknown keys are refused by name."""
+        keys = {**cls.keys(), **cls.aliases()}
+        if key not in keys:
+            allowed = ", ".join(cls.keys())
+            near = suggestion(str(key), keys)
+            raise InputError(
+                f"{path}/{shortened(str(key), 100)}: unknown key; allowed: {allowed}{near}"
+            )
+        return keys[key]
+
+    def record_type(self, key: str) -> Optional[type[Record]]:
+        """Return the record class held, singly or in a list, under `key`, if any."""
+        return _record_type(_hints(type(self))[self.field_of(key)])
+
+    def _keep(self, name: str, value: object, where: str) -> None:
+        converted = _own(convert(value, _hints(type(self))[name], where))
+        object.__setattr__(self, name, converted)
+        if converted is not None:
+            for pair in self.INSTEAD_OF.items():
+                if name in pair:
+                    object.__setattr__(self, pair[1 - pair.index(name)], None)
+
+    @classmethod
+    def _unknown(cls, name: str) -> UnknownFieldError:
+        near = suggestion(name, [*cls.keys(), *cls.aliases()])
+        has = near or f"; it has {', '.join(cls.keys())}"
+        return UnknownFieldError(f"{cls.__name__}.{name}: {cls.__name__} has no such field{has}")
+
+    if not TYPE_CHECKING:  # or checkers would take any name for an attribute
+
+        def __getattr__(self, name: str) -> object:
+            if name.startswith("_"):
+                raise AttributeError(name)
+            raise self._unknown(name)
+
+        def __setattr__(self, name: str, value: object) -> None:
+            if name in _hints(type(self)):
+                self._keep(name, value, f"{type(self).__name__}.{name}")
+            elif name in self.aliases() or (name.startswith("_") and hasattr(type(self), name)):
+                object.__setattr__(self, name, value)
+            else:
+                raise self._unknown(name)
+
+
+def call_text(kind: type, arguments: Mapping[str, str]) -> str:
+    """Return the text of a call with keywords.
+
+    Examples
+    --------
+    >>> call_text(dict, {"tilt": "40"})
+    'dict(tilt=40)'
+    """
+    return f"{kind.__name__}({', '.join(f'{name}={text}' for name, text in arguments.items())})"
+
+
+def check_once(fields_of: Mapping[str, str], where: str) -> None:
+    """Raise InputError if two names, given at `where`, stand for the same field.
+
+    Examples
+    --------
+    >>> check_once({"tilt": "tilt", "height": "height"}, "/panel")
+    """
+    name_of: dict[str, str] = {}
+    for name, field in fields_of.items():
+        if field in name_of:
+            raise InputError(
+                f"{where}/{name}: means the same as {name_of[field]}; give one of the two"
+            )
+        name_of[field] = name
+
+
+def check_instead(record: type[Record], given: Collection[str], where: str = "") -> None:
+    """Raise InputError if a field is given together with one in whose place it stands.
+
+    Examples
+    --------
+    >>> from snowshed.methods.mpm.settings import MpmSettings
+    >>> check_instead(MpmSettings, ["dx", "damping_rate"], "/numerics")
+    """
+    for field, other in record.INSTEAD_OF.items():
+        if field in given and other in given:
+            raise InputError(
+                f"{where or record.__name__}/{field}: takes the place of {other}; "
+                "give one of the two"
+            )
+
+
+@cache
+def _hints(record: type[Record]) -> dict[str, object]:
+    """Return the type of every field; the annotations are evaluated once, which is slow."""
+    hints = typing.get_type_hints(record)
+    return {f.name: hints[f.name] for f in fields(record)}
+
+
+def _own(value: object) -> object:
+    """Return a value that holds no record of somebody else, who may change it later."""
+    if isinstance(value, Record) or (isinstance(value, list) and value):
+        return copy.deepcopy(value)
+    return value
+
+
+def _record_type(hint: object) -> Optional[type[Record]]:
+    for kind in alternatives_of(hint):
+        for inner in (kind, *typing.get_args(kind)):
+            if is_record(inner):
+                return typing.cast("type[Record]", inner)
+    return None
+
+
+def _to_json(value: object, path: str, depth: int) -> JsonValue:
+    if depth > DEEPEST:
+        raise InputError(f"{path}: nested more than {DEEPEST} deep")
+    if isinstance(value, Record):
+        return value.to_data(path, depth)
+    if isinstance(value, (list, tuple)):
+        return [_to_json(item, f"{path}/{i}", depth + 1) for i, item in enumerate(value)]
+    return typing.cast("JsonValue", value)  # a scalar, checked

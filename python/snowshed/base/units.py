@@ -1,0 +1,36 @@
+"""Units of the columns of tables, which their names end with: ``height_m``, ``density_kg_m3``."""
+
+from __future__ import annotations
+
+from types import MappingProxyType
+
+UNITS = MappingProxyType(
+    {
+        "m": "m",
+        "m2": "m2",
+        "m3": "m3",
+        "m_s": "m/s",
+        "pa": "Pa",
+        "kpa": "kPa",
+        "n": "N",
+        "kg": "kg",
+        "kg_m3": "kg/m3",
+        "s": "s",
+        "j": "J",
+        "mb": "MB",
+        "c": "degC",
+        "deg": "degree",
+    }
+)
+
+
+def unit_of_column(name: str) -> str:
+    """Return the unit that the name of a column ends with; empty where it names none.
+
+    Examples
+    --------
+    >>> unit_of_column("density_kg_m3"), unit_of_column("wall_s"), unit_of_column("event")
+    ('kg/m3', 's', '')
+    """
+    endings = [ending for ending in UNITS if name.endswith(f"_{ending}")]
+    return UNITS[max(endings, key=len)] if endings else ""

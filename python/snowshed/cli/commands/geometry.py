@@ -1,0 +1,89 @@
+"""The command ``snowshed geometry``."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Optional
+
+import click
+from click.core import ParameterSource
+
+from snowshed.analysis.regression.deviations import ALL, DEVIATIONS
+from snowshed.analysis.regression.geometry import FRICTION
+from snowshed.cli.common_options import PATH, quiet_notes_option
+from snowshed.cli.terminal import write_out
+
+
+@click.command()
+@click.option(
+    "--between",
+    default="carry",
+    help="Treatment of the stack between events: carry or reseed.  [default: carry]",
+)
+@click.option(
+    "--friction",
+    type=click.FloatRange(0.0, 10.0),
+    default=FRICTION,
+    show_default=True,
+    help="Coulomb coefficient of the panel.",
+)
+@click.option(
+    "--dx",
+    type=click.FloatRange(1e-4, 1.0),
+    default=0.01,
+    show_default=True,
+    help="Size of the grid cells, m.",
+)
+@click.option(
+    "--seeds",
+    type=click.IntRange(1, 1000),
+    default=1,
+    show_default=True,
+    help="Stacks for each panel up to 1 m, whose means are regressed; panels up to 2 m have a "
+    "third of them, up to 4 m a sixth, longer ones a sixteenth, rounded up.",
+)
+@click.option(
+    "--deviation",
+    "deviations",
+    multiple=True,
+    type=click.Choice([*DEVIATIONS, ALL]),
+    help="Use the thesis's choice for this setting. Repeatable; `all` for every setting. "
+    "Overrides --between and --dx.",
+)
+@click.option("--trial", is_flag=True, help="A few panels on a coarse grid: seconds.")
+@click.option("-o", "--output", "file", type=PATH, help="File to write.  [default: stdout]")
+@quiet_notes_option
+@click.pass_context
+def geometry(
+    context: click.Context,
+    between: str,
+    friction: float,
+    dx: float,
+    seeds: int,
+    deviations: Sequence[str],
+    trial: bool,
+    file: Optional[Path],
+) -> None:
+    """Write the study of panel geometries whose table ``regress`` takes.
+
+    \b
+    Example:
+      snowshed geometry -o geometry.toml
+      snowshed study run geometry.toml -o runs
+      snowshed study export runs -o rows.csv
+      snowshed regress rows.csv -o regression
+    """  # noqa: D301 - click wants the control character
+    from snowshed.analysis.regression.geometry import geometry_study
+
+    if trial and context.get_parameter_source("dx") == ParameterSource.COMMANDLINE:
+        raise click.UsageError("--dx has no effect with --trial, which has its own cell size")
+    if trial and deviations:
+        raise click.UsageError("--deviation has no effect with --trial")
+    study = geometry_study(
+        between, friction=friction, dx=dx, seeds=seeds, deviations=deviations, trial=trial
+    )
+    if file is None:
+        write_out(study.to_toml())
+    else:
+        study.save(file)

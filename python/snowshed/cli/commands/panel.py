@@ -1,0 +1,43 @@
+"""The command ``snowshed panel``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, Optional
+
+import click
+
+from snowshed.cli.accuracy import accuracy_option
+from snowshed.cli.common_options import run_options
+from snowshed.cli.dry_run import print_cost
+from snowshed.cli.resolve_options import resolve_options
+from snowshed.cli.run_scene import run_scene
+from snowshed.cli.scene_options import scene_options
+
+
+@click.command()
+@run_options
+@accuracy_option
+@scene_options
+def panel(
+    folder: Path,
+    resume: bool,
+    dry_run: bool,
+    quiet: bool,
+    accuracy: Optional[float],
+    preset: Optional[str],
+    snow_preset: Optional[str],
+    **options: Any,
+) -> None:
+    """Run slide-offs from a panel described by options.
+
+    \b
+    Example:
+      snowshed panel --height 0.33 --length 0.245 --width 0.213 --tilt 50 \\
+          --thickness 0.02 --events 5 --dim 3 --friction 0.3 -o results
+    """  # noqa: D301 - click wants the control character
+    scene = resolve_options(preset, snow_preset, options, accuracy, quiet=quiet)
+    if dry_run:
+        print_cost(scene)
+    else:
+        run_scene(scene, folder, resume, quiet)

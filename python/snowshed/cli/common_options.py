@@ -1,0 +1,106 @@
+"""Options that many commands share: --quiet, --resume, --dry-run and the results folder."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any, Optional, TypeVar
+
+import click
+
+from snowshed.base.notes import SnowshedNote
+
+Command = TypeVar("Command", bound=Callable[..., Any])
+
+PATH = click.Path(path_type=Path)
+
+
+def _silence(context: click.Context, parameter: click.Parameter, quiet: bool) -> bool:
+    """Drop notes, too; `main` restores the filters of warnings when the command ends."""
+    if quiet:
+        warnings.simplefilter("ignore", SnowshedNote)
+    return quiet
+
+
+quiet_option = click.option(
+    "-q", "--quiet", is_flag=True, callback=_silence, help="Print nothing but errors."
+)
+#: The same for a command that prints only what it is asked for.
+quiet_notes_option = click.option(
+    *("-q", "--quiet"),
+    is_flag=True,
+    callback=_silence,
+    expose_value=False,
+    help="Print no notes.",
+)
+#: For commands that always resume: they accept the option, because other commands need it.
+resume_option = click.option(
+    "--resume",
+    is_flag=True,
+    expose_value=False,
+    help="Continue an interrupted computation.  [always on]",
+)
+
+
+class Renamed(click.Option):
+    """An option whose help shows its first spelling alone; the others are former ones."""
+
+    def get_help_record(self, ctx: click.Context) -> Optional[tuple[str, str]]:
+        """Return the line of the help."""
+        spellings = self.opts
+        self.opts = spellings[:1]
+        try:
+            return super().get_help_record(ctx)
+        finally:
+            self.opts = spellings
+
+
+def dry_run_option(
+    text: str = "Print the estimated run time and exit.",
+) -> Callable[[Command], Command]:
+    """Return the decorator that adds ``--dry-run``; ``--plan`` is its former spelling."""
+    return click.option(
+        "--dry-run", "--plan", "dry_run", is_flag=True, is_eager=True, cls=Renamed, help=text
+    )
+
+
+class ResultsFolder(click.Option):
+    """A results folder that must be given, except for a dry run."""
+
+    def process_value(self, ctx: click.Context, value: Any) -> Any:
+        """Return the folder; None if a dry run needs none."""
+        if ctx.params.get("dry_run") and self.value_is_missing(value):
+            return None
+        return super().process_value(ctx, value)
+
+
+def run_options(command: Command, *, required: bool = True) -> Command:
+    """Add the options of commands that run a scene; `required` says whether -o must be given."""
+    for option in (
+        quiet_option,
+        dry_run_option("Print the features, memory and run time of the scene and exit."),
+        click.option("--resume", is_flag=True, help="Resume from the checkpoint in the folder."),
+        click.option(
+            "-o",
+            "--output",
+            "folder",
+            type=PATH,
+            required=required,
+            cls=ResultsFolder,
+            help="Results folder, new or empty.",
+        ),
+    ):
+        command = option(command)
+    return command
+
+
+def given_values(values: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the options that are given, by their names.
+
+    Examples
+    --------
+    >>> given_values({"seed": 0, "density": None})
+    {'seed': 0}
+    """
+    return {name: value for name, value in values.items() if value is not None}

@@ -1,0 +1,157 @@
+"""Coordinate systems of maps: read, compared, and written beside ASCII grids.
+
+A system is kept as text, such as "EPSG:31287" or WKT. Questions beyond the text go to rasterio, of
+the extra snowshed[terrain], which receives plain descriptions only
+(`snowshed.io.coordinates.plain_systems`).
+"""
+
+from __future__ import annotations
+
+import importlib
+import re
+from pathlib import Path
+from typing import Any, Optional
+
+from snowshed._core import InputError
+from snowshed.base.limits import COORDINATE_SYSTEM
+from snowshed.io.atomic import write_text
+from snowshed.io.coordinates.plain_systems import first_part, plain_system
+from snowshed.io.input_file import read_input
+
+DEGREES = ("EPSG:4326", "OGC:CRS84")
+OF_ETRS89 = re.compile(r'DATUM\["(ETRS89|ETRF|European_Terrestrial_Reference_System_1989)')
+ALLOWED = "allowed: WKT, a code such as EPSG:31287, a proj string without files"
+
+
+def read_prj(raster: Path) -> str:
+    """Return the coordinate system in the .prj beside a raster, as text; empty without a .prj.
+
+    Raises
+    ------
+    InputError
+        If the file is no coordinate system, or one in degrees.
+    """
+    file = next((f for f in map(raster.with_suffix, (".prj", ".PRJ")) if f.is_file()), None)
+    text = "" if file is None else read_system(file)
+    if not text:
+        return ""
+    system = system_of(text)
+    if system is None and _rasterio() is not None:
+        raise InputError(f"{file}: not a coordinate system; {ALLOWED}")
+    description = text if system is None else _description(system)
+    if is_in_degrees(description):
+        raise InputError(
+            f"{file}: its map is in degrees ({description}); project it to metres first"
+        )
+    return description
+
+
+def read_system(file: Path) -> str:
+    """Return the description in a .prj; empty where the file is.
+
+    Raises
+    ------
+    InputError
+        If it holds anything else, such as an address or the name of a file.
+    """
+    text = read_input(file, COORDINATE_SYSTEM).decode("utf-8-sig", errors="replace").strip()
+    if text and not plain_system(text):
+        raise InputError(f"{file}: not a coordinate system; {ALLOWED}")
+    return text
+
+
+def write_prj(raster: Path, description: str) -> None:
+    """Write the .prj of a raster; nothing where its coordinate system is not known."""
+    system = horizontal_system(description)
+    if system is not None:
+        text = str(system.to_wkt(version="WKT1_ESRI"))
+    elif plain_system(description).upper().startswith(("PROJCS", "PROJCRS", "COMPD")):
+        text = first_part(description)
+    else:
+        return  # a name that only rasterio can put into WKT
+    write_text(raster.with_suffix(".prj"), text + "\n")
+
+
+def are_same(left: str, other: str) -> bool:
+    """Return whether two names are of the same coordinate system on the map.
+
+    Compound systems are compared without their heights. National realisations of ETRS89, which
+    lie within centimetres, are taken as one: compound systems of a country often name its own.
+
+    Examples
+    --------
+    >>> are_same("EPSG:31287", "epsg:31287"), are_same("EPSG:31287", "EPSG:2056")
+    (True, False)
+    """
+    if left.casefold() == other.casefold():
+        return True
+    first, second = horizontal_system(left), horizontal_system(other)
+    if first is None or second is None:
+        return False
+    if first == second or _description(first) == _description(second):
+        return True
+    return _is_of_etrs89(first) and _is_of_etrs89(second) and first.to_proj4() == second.to_proj4()
+
+
+def is_in_degrees(description: str) -> bool:
+    """Return whether a coordinate system is known to be in degrees.
+
+    Examples
+    --------
+    >>> is_in_degrees("EPSG:4326")
+    True
+    """
+    plain = first_part(plain_system(description)).upper()
+    if plain in DEGREES or plain.startswith(("GEOGCS", "GEOGCRS")):
+        return True
+    system = horizontal_system(description)
+    return system is not None and bool(system.is_geographic)
+
+
+def is_in_feet(description: str) -> bool:
+    """Return whether the map of a coordinate system is known to be in feet."""
+    system = horizontal_system(description)
+    if system is None or system.is_geographic:
+        return False
+    return "foot" in str(system.linear_units).lower() or "feet" in str(system.linear_units).lower()
+
+
+def horizontal_system(description: str) -> Optional[Any]:
+    """Return rasterio's view of a coordinate system without its heights, as `system_of` does."""
+    system = system_of(description)
+    if system is None:
+        return None
+    wkt = str(system.to_wkt())
+    horizontal = first_part(wkt)
+    return system if horizontal == wkt else system_of(horizontal)
+
+
+def system_of(description: str) -> Optional[Any]:
+    """Return rasterio's view of a coordinate system; None without rasterio, or if it knows none.
+
+    Descriptions that are not plain are refused (`snowshed.io.coordinates.plain_systems`).
+    """
+    rasterio = _rasterio()
+    plain = plain_system(description)
+    if rasterio is None or not plain:
+        return None
+    try:
+        return rasterio.crs.CRS.from_user_input(plain)
+    except rasterio.errors.CRSError:
+        return None
+
+
+def _is_of_etrs89(system: Any) -> bool:
+    return OF_ETRS89.search(str(system.to_wkt())) is not None
+
+
+def _rasterio() -> Optional[Any]:
+    try:
+        return importlib.import_module("rasterio")
+    except ImportError:
+        return None
+
+
+def _description(system: Any) -> str:
+    code = system.to_epsg()
+    return f"EPSG:{code}" if code else str(system.to_wkt())

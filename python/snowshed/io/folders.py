@@ -1,0 +1,67 @@
+"""Folders that results are written into: new, empty, or taken by the same work before."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from snowshed._core import InputError
+from snowshed.base.paths import PathLike
+from snowshed.io.atomic import LEFTOVER, write_text
+from snowshed.io.json_file import read_object
+
+
+def check_empty(
+    folder: PathLike, otherwise: str = "; choose a new folder, or use --resume"
+) -> None:
+    """Raise InputError unless results may be written to `folder`: it is new, or empty.
+
+    Leftovers of killed processes do not count. `otherwise` ends the message of a folder that is
+    not empty.
+    """
+    folder = Path(folder)
+    if folder.exists() and not folder.is_dir():
+        raise InputError(f"{folder}: not a folder")
+    if folder.is_dir() and any(not LEFTOVER.match(path.name) for path in folder.iterdir()):
+        raise InputError(f"{folder}: not empty{otherwise}")
+
+
+def claim_folder(
+    folder: PathLike, file: str, identity: Mapping[str, Any], what: str, others: str
+) -> None:
+    """Take a folder for some work, or go on in one that the same work took.
+
+    Parameters
+    ----------
+    folder
+        The folder; new or empty, unless it has the file.
+    file
+        Name of the file in it that says what the folder was taken for.
+    identity
+        JSON data that decides what is in the folder.
+    what, others
+        Name of the work, and how work with another identity differs, for messages.
+
+    Raises
+    ------
+    InputError
+        If the folder has another identity, or holds something else.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> with TemporaryDirectory() as folder:
+    ...     claim_folder(folder, "work.json", {"size": 1}, "work", "of another size")
+    ...     claim_folder(folder, "work.json", {"size": 1}, "work", "of another size")
+    """
+    folder = Path(folder)
+    path = folder / file
+    if path.is_file():
+        if read_object(path) != identity:
+            raise InputError(f"{folder}: holds a {what} {others}; take a new folder")
+        return
+    check_empty(folder, f", and holds no {what}")
+    folder.mkdir(parents=True, exist_ok=True)
+    write_text(path, json.dumps(identity, indent=1) + "\n")

@@ -1,0 +1,1 @@
+"""Rasters: grids of elevations and thicknesses."""

@@ -1,0 +1,153 @@
+"""Areas on a map from files of polygons: shapefile, GeoPackage, GeoJSON.
+
+They need the extra snowshed[terrain].
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Optional
+
+import numpy as np
+
+from snowshed._core import InputError
+from snowshed.base.extras import require
+from snowshed.base.messages import shortened
+from snowshed.base.notes import tell
+from snowshed.base.paths import PathLike
+from snowshed.io.coordinates.systems import is_in_degrees
+from snowshed.io.polygons import read_layer
+from snowshed.io.polygons.layer import PolygonLayer
+from snowshed.io.raster.thickness import ThicknessField, thickness_fields, thickness_of
+
+Ring = Sequence[Sequence[float]]
+
+LONGEST_NAME = 200  # characters
+
+
+@dataclass(frozen=True)
+class MapArea:
+    """A polygon on the map.
+
+    Attributes
+    ----------
+    name
+        Name from the file, or "area 1" and so on.
+    outline
+        Corners (x, y) of the outline, m, the first not repeated.
+    holes
+        Rings of holes.
+    thickness
+        Thickness of the snow, m, if the file states it.
+    crs
+        Coordinate system of the file as text, such as "EPSG:31287"; empty if it has none.
+    file
+        Source file.
+    """
+
+    name: str
+    outline: Ring
+    holes: tuple[Ring, ...] = ()
+    thickness: Optional[float] = None
+    crs: str = ""
+    file: str = ""
+
+
+def read_areas(
+    path: PathLike,
+    layer: Optional[str] = None,
+    *,
+    option: str = "--layer",
+    with_thickness: bool = True,
+) -> list[MapArea]:
+    """Return the polygons of a file; parts of a feature become areas of their own.
+
+    Parameters
+    ----------
+    path
+        A GeoPackage, a shapefile (its .shp) or GeoJSON, on a projected map.
+    layer
+        Name of the layer of a GeoPackage; None: the only one.
+    option
+        Option that names a layer, for the message if there are several.
+    with_thickness
+        Whether the thickness of snow is read; else it is None.
+
+    Raises
+    ------
+    InputError
+        If the file has no polygons or several layers, a polygon crosses itself, its coordinates are
+        in degrees, or the reading libraries are missing.
+    OSError
+        If there is no such file.
+    """
+    path = Path(path)
+    shapely: Any = require("shapely", "terrain", "reading polygons")
+    features = read_layer(path, layer, option)
+    if is_in_degrees(features.crs):
+        raise InputError(
+            f"{path}: its coordinates are in degrees ({features.crs}); project it to metres"
+        )
+    fields = thickness_fields(features.fields, str(path)) if with_thickness else []
+    _check_shapes(features.shapes, path, shapely)
+    areas = list(_areas(features, fields, path, shapely))
+    if not areas:
+        raise InputError(f"{path}: holds no polygon")
+    if not features.crs:
+        tell(f"{path}: has no coordinate system; that of the terrain is assumed")
+    return areas
+
+
+def _areas(
+    layer: PolygonLayer, fields: Sequence[ThicknessField], path: Path, shapely: Any
+) -> Iterator[MapArea]:
+    """Return the areas, the parts of each feature in its place."""
+    named = next((field for field in layer.fields if field.strip().lower() == "name"), "")
+    facts = [
+        (
+            shortened(str(record.get(named) or f"area {number}"), LONGEST_NAME),
+            thickness_of(fields, record, f"{path}, feature {number}"),
+        )
+        for number, record in enumerate(layer.records, 1)
+    ]
+    parts, owners = shapely.get_parts(layer.shapes, return_index=True)
+    rings = _rings(parts, shapely)
+    for part, owner in enumerate(owners.tolist()):
+        if rings[part]:
+            name, thickness = facts[owner]
+            outline, *holes = rings[part]
+            yield MapArea(name, outline, tuple(holes), thickness, layer.crs, str(path))
+
+
+def _rings(polygons: Any, shapely: Any) -> list[list[Ring]]:
+    """Return the rings of each polygon, the outline first; none where it is empty.
+
+    Corners that repeat the one before are left out, as programs of maps pass over them.
+    """
+    rings, owners = shapely.get_rings(polygons, return_index=True)
+    corners, of_ring = shapely.get_coordinates(rings, return_index=True)
+    repeated = np.zeros(len(corners), dtype=bool)
+    repeated[1:] = (of_ring[1:] == of_ring[:-1]) & (corners[1:] == corners[:-1]).all(axis=1)
+    corners, of_ring = corners[~repeated], of_ring[~repeated]
+    x, y = corners.T.tolist()
+    points = list(zip(x, y))
+    holes: list[list[Ring]] = [[] for _ in polygons]
+    end = 0
+    for owner, count in zip(owners.tolist(), np.bincount(of_ring, minlength=len(rings)).tolist()):
+        holes[owner].append(points[end : end + count - 1])
+        end += count
+    return holes
+
+
+def _check_shapes(shapes: Sequence[Any], path: Path, shapely: Any) -> None:
+    """Refuse invalid polygons, and polygons that cross themselves."""
+    kinds, valid = shapely.get_type_id(shapes), shapely.is_valid(shapes)
+    for number, (kind, is_valid) in enumerate(zip(kinds, valid), 1):
+        where = f"{path}, feature {number}"
+        if kind not in (shapely.GeometryType.POLYGON, shapely.GeometryType.MULTIPOLYGON):
+            raise InputError(f"{where}: not a polygon")
+        if not is_valid:
+            reason = shapely.is_valid_reason(shapes[number - 1])
+            raise InputError(f"{where}: no valid outline: {reason}; draw it without crossings")

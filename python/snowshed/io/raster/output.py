@@ -1,0 +1,55 @@
+"""Rasters of results in the format of the terrain: ESRI ASCII grid or GeoTIFF."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from snowshed.base.extras import require
+from snowshed.base.paths import PathLike
+from snowshed.io.atomic import replacing
+from snowshed.io.coordinates.systems import system_of, write_prj
+from snowshed.io.raster.raster import Raster, write_ascii_grid
+
+
+def write_raster(path: PathLike, raster: Raster) -> None:
+    """Write a raster with its coordinate system: a GeoTIFF if the name ends so, else an ASCII grid.
+
+    An ASCII grid has its coordinate system in a .prj beside it.
+
+    Raises
+    ------
+    InputError
+        If a GeoTIFF is wanted and rasterio is missing.
+    OSError
+        If a file cannot be written.
+    """
+    file = Path(path)
+    if file.suffix.lower() in (".tif", ".tiff"):
+        _write_geotiff(file, raster)
+        return
+    write_ascii_grid(file, raster)
+    write_prj(file, raster.crs)
+
+
+def _write_geotiff(file: Path, raster: Raster) -> None:
+    rasterio: Any = require("rasterio", "terrain", "writing a GeoTIFF")
+    rows, columns = raster.heights.shape
+    north = raster.north + (rows - 0.5) * raster.cell
+    transform = rasterio.transform.from_origin(
+        raster.east - 0.5 * raster.cell, north, raster.cell, raster.cell
+    )
+    options: dict[str, Any] = {
+        "height": rows,
+        "width": columns,
+        "count": 1,
+        "dtype": "float64",
+        "crs": system_of(raster.crs),
+        "transform": transform,
+        "nodata": np.nan,
+        "compress": "lzw",
+    }
+    with replacing(file) as beside, rasterio.open(beside, "w", driver="GTiff", **options) as target:
+        target.write(raster.heights[::-1], 1)

@@ -1,0 +1,131 @@
+"""Release areas from a raster of thickness: the cells with snow.
+
+They need the extra snowshed[terrain].
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from snowshed._core import InputError
+from snowshed.base.arrays import Booleans
+from snowshed.base.extras import require
+from snowshed.base.limits import CELLS_TIMES_CORNERS, RELEASE_CORNERS, SNOW_CELLS
+from snowshed.io.raster.areas import MapArea
+from snowshed.io.raster.raster import Raster
+
+#: Areas that touch at a corner are separated by this share of a cell.
+GAP = 1e-7
+#: Thicknesses that are codes and not snow, m.
+THICKEST = 100.0
+
+
+def snow_part(depth: Raster) -> Raster:
+    """Return the part of a raster of thickness with snow, and a row of cells around it.
+
+    Raises
+    ------
+    InputError
+        If a value is negative or above 100 m, no cell holds snow, or more than four million do.
+    """
+    values = depth.heights
+    _refuse(depth, values < 0, "a negative thickness")
+    _refuse(depth, values > THICKEST, f"a thickness above {THICKEST:g} m")
+    snow = values > 0
+    if not snow.any():
+        raise InputError(f"{depth.name}: holds no thickness above 0")
+    if np.count_nonzero(snow) > SNOW_CELLS:
+        raise InputError(
+            f"{depth.name}: holds snow in {np.count_nonzero(snow)} cells; at most {SNOW_CELLS} are "
+            "allowed; make its cells larger"
+        )
+    rows, columns = (np.flatnonzero(snow.any(axis=axis)) for axis in (1, 0))
+    south, west = max(rows[0] - 1, 0), max(columns[0] - 1, 0)
+    part = values[south : rows[-1] + 2, west : columns[-1] + 2]
+    if part.shape == values.shape:
+        return depth
+    east, north = depth.east + west * depth.cell, depth.north + south * depth.cell
+    return replace(depth, heights=part, east=east, north=north, plain=False)
+
+
+def areas_of_depth(depth: Raster) -> list[MapArea]:
+    """Return the areas in which a raster of thickness holds snow, along the edges of its cells.
+
+    Cells of 0 and cells without a value hold no snow; however, a cell without a value amid snow is
+    a gap in the data.
+
+    Raises
+    ------
+    InputError
+        If a value is negative or missing amid snow, no cell holds snow, or the areas are too many
+        or too ragged.
+    """
+    part = snow_part(depth)
+    snow = part.heights > 0
+    _refuse_gaps(part, snow)
+    corners = _corner_count(snow)
+    most = min(RELEASE_CORNERS, max(CELLS_TIMES_CORNERS // snow.size, 4))
+    if corners > most:
+        raise InputError(
+            f"{depth.name}: the edge of its snow has {corners} corners; at most {most} are allowed "
+            f"with {snow.size} cells; make its cells larger, smooth it, or give polygons"
+        )
+    shapely: Any = require("shapely", "terrain", "reading a raster of thickness")
+    return [
+        MapArea(
+            name=f"area {number}",
+            outline=_ring(area.exterior),
+            holes=tuple(_ring(hole) for hole in area.interiors),
+            crs=depth.crs,
+            file=depth.name,
+        )
+        for number, area in enumerate(_outlines(part, snow, shapely), 1)
+    ]
+
+
+def _outlines(depth: Raster, snow: Booleans, shapely: Any) -> list[Any]:
+    """Return the outlines of connected cells with snow, slightly separated from each other."""
+    features: Any = require("rasterio.features", "terrain", "reading a raster of thickness")
+    affine: Any = require("rasterio", "terrain", "reading a raster of thickness").Affine
+    west, south = depth.east - 0.5 * depth.cell, depth.north - 0.5 * depth.cell
+    place = affine(depth.cell, 0.0, west, 0.0, depth.cell, south)
+    shapes = features.shapes(snow.astype(np.uint8), mask=snow, connectivity=4, transform=place)
+    inner = [
+        shapely.Polygon(rings[0], rings[1:]).buffer(-GAP * depth.cell, join_style="mitre")
+        for rings in (shape["coordinates"] for shape, _ in shapes)
+    ]
+    return [area for shape in inner for area in shapely.get_parts(shape)]
+
+
+def _corner_count(snow: Booleans) -> int:
+    """Return the corners of the outlines of cells with snow."""
+    padded = np.pad(snow, 1)
+    a, b, c, d = padded[:-1, :-1], padded[:-1, 1:], padded[1:, :-1], padded[1:, 1:]
+    crossing = (a == d) & (b == c) & (a != b)  # two corners that touch
+    return int(np.count_nonzero(a ^ b ^ c ^ d)) + 2 * int(np.count_nonzero(crossing))
+
+
+def _refuse(depth: Raster, wrong: Booleans, what: str) -> None:
+    if wrong.any():
+        row, column = np.argwhere(wrong)[0]
+        x, y = depth.east + column * depth.cell, depth.north + row * depth.cell
+        raise InputError(f"{depth.name}: {what} at ({x:.10g}, {y:.10g})")
+
+
+def _refuse_gaps(depth: Raster, snow: Booleans) -> None:
+    """Refuse cells without a value in the holes of areas.
+
+    Areas that meet at a corner are separate there, so that their surroundings connect between them.
+    """
+    from scipy import ndimage  # takes a tenth of a second, and most slides have polygons
+
+    bare, _ = ndimage.label(np.pad(~snow, 1, constant_values=True), structure=np.ones((3, 3)))
+    amid = (bare != bare[0, 0])[1:-1, 1:-1] & ~snow
+    _refuse(depth, amid & np.isnan(depth.heights), "no thickness amid snow")
+
+
+def _ring(ring: Any) -> list[tuple[float, float]]:
+    return [(float(x), float(y)) for x, y in ring.coords[:-1]]

@@ -1,0 +1,66 @@
+"""Terrain on other cells, by GDAL's cubic resampling. It needs the extra snowshed[terrain]."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from snowshed._core import InputError
+from snowshed.base.extras import require
+from snowshed.base.limits import RASTER_CELLS
+from snowshed.base.paths import PathLike
+from snowshed.io.raster.raster import Raster, read_raster
+
+#: Any map in metres: GDAL wants one to resample on.
+SOME_MAP = "EPSG:31287"
+
+
+def resampled_raster(path: PathLike, cell: float) -> Raster:
+    """Return a file of elevations on other cells, as AvaFrame 2.1 resamples them.
+
+    The nodes begin at the same south-west node and go no further than those of the file. GDAL's
+    cubic resampling widens its kernel where the new cells are larger, so that it averages.
+
+    Parameters
+    ----------
+    path
+        An ESRI ASCII grid or a GeoTIFF.
+    cell
+        Size of the new cells [m].
+
+    Raises
+    ------
+    InputError
+        If the file is no such raster, rasterio is missing, or the new grid has too many cells.
+    """
+    old = read_raster(path)
+    rows, columns = old.heights.shape
+    new_columns = int((columns - 1) * old.cell / cell + 1)
+    new_rows = int((rows - 1) * old.cell / cell + 1)
+    if new_columns * new_rows > RASTER_CELLS:
+        raise InputError(f"{path}: has more than {RASTER_CELLS} cells of {cell:g} m; crop it first")
+    rasterio: Any = require("rasterio", "terrain", "resampling terrain")
+    warp: Any = require("rasterio.warp", "terrain", "resampling terrain")
+    # GDAL reads the numbers of text files in single precision, AvaFrame the resampled ones, too.
+    precision = np.float32 if Path(path).suffix.lower() not in (".tif", ".tiff") else np.float64
+    values = np.full((new_rows, new_columns), np.nan)
+    warp.reproject(
+        source=old.heights[::-1].astype(precision),
+        destination=values,
+        src_transform=_transform(rasterio, old.east, old.north, rows, old.cell),
+        dst_transform=_transform(rasterio, old.east, old.north, new_rows, cell),
+        src_crs=SOME_MAP,
+        dst_crs=SOME_MAP,
+        src_nodata=np.nan,
+        dst_nodata=np.nan,
+        resampling=warp.Resampling.cubic,
+    )
+    values = values[::-1].astype(precision).astype(np.float64)
+    return Raster(values, old.east, old.north, cell, str(path), old.crs)
+
+
+def _transform(rasterio: Any, west: float, south: float, rows: int, cell: float) -> Any:
+    north = south - cell / 2.0 + rows * cell
+    return rasterio.transform.from_origin(west - cell / 2.0, north, cell, cell)

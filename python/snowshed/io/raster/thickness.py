@@ -1,0 +1,142 @@
+"""The field of a file of polygons that holds the thickness of snow, and its unit."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Optional
+
+from snowshed._core import InputError
+from snowshed.base.formatting import number_in
+from snowshed.base.messages import quoted
+from snowshed.base.notes import tell
+
+#: Names of the field; AvaFrame's first.
+NAMES = ("thickness", "d0")
+#: The same with a unit: thickness_cm, d0 (mm), "Thickness [m]".
+WITH_UNIT = re.compile(r"(thickness|d0)[\s_.\-]*[(\[]?\s*([a-z]+\d?)\s*[)\]]?", re.IGNORECASE)
+METRES = {"m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 0.001}
+#: Words in names of fields that may mean a thickness.
+ALIKE = ("thick", "depth", "height", "d0", "hoehe", "höhe", "dicke", "mächtig", "epaisseur")
+BLANK = ("", "none", "nan", "null")
+
+
+@dataclass(frozen=True)
+class ThicknessField:
+    """A field that holds the thickness of snow.
+
+    Attributes
+    ----------
+    name
+        Name of the field in the file.
+    metres
+        Metres of a unit.
+    """
+
+    name: str
+    metres: float
+
+    def value(self, record: Mapping[str, Any], where: str) -> Optional[float]:
+        """Return the thickness that a feature gives, m; None where it gives none.
+
+        Raises
+        ------
+        InputError
+            If the value is not a number above 0.
+        """
+        value = record.get(self.name)
+        if value is None or str(value).strip().lower() in BLANK:
+            return None
+        number = float(value) if isinstance(value, float) else number_in(str(value))
+        if math.isnan(number):
+            raise InputError(f"{where}: {self.name} {quoted(str(value))} is not a number")
+        if not number > 0:
+            unit = (
+                "m"
+                if self.metres == 1.0
+                else next(u for u, m in METRES.items() if m == self.metres)
+            )
+            raise InputError(f"{where}: {self.name} is {number:g} {unit}; give one above 0")
+        return number * self.metres
+
+
+def thickness_fields(fields: Sequence[str], file: str) -> list[ThicknessField]:
+    """Return the fields of a file that hold a thickness, the first before the others.
+
+    Notes report what the names do not show: another unit, and ignored fields.
+
+    Raises
+    ------
+    InputError
+        If a field's name has a unit that is not known.
+
+    Examples
+    --------
+    >>> thickness_fields(["fid", "Thickness"], "a.shp")
+    [ThicknessField(name='Thickness', metres=1.0)]
+    """
+    candidates = [
+        ThicknessField(field, 1.0) for name in NAMES for field in fields if _is(field, name)
+    ]
+    for field in fields:
+        unit = WITH_UNIT.fullmatch(field.strip())
+        if unit is None or any(_is(field, name) for name in NAMES):
+            continue
+        if unit[2].lower() not in METRES:
+            if unit[2].lower() in (
+                "ft",
+                "feet",
+                "in",
+                "inch",
+                "inches",
+                "kpa",
+                "kgm2",
+                "we",
+                "swe",
+            ):
+                raise InputError(
+                    f"{file}: its field {quoted(field)} has the unit {quoted(unit[2])}; allowed: "
+                    f"{', '.join(METRES)}"
+                )
+            continue
+        candidates.append(ThicknessField(field, METRES[unit[2].lower()]))
+    if candidates and candidates[0].name != NAMES[0]:
+        in_unit = next(unit for unit, metres in METRES.items() if metres == candidates[0].metres)
+        tell(
+            f"{file}: the thickness is that of its field {quoted(candidates[0].name)}, in {in_unit}"
+        )
+    if not candidates:
+        alike = [field for field in fields if any(word in field.lower() for word in ALIKE)]
+        if alike:
+            tell(
+                f"{file}: no field is called thickness or d0; ignored as a thickness: "
+                f"{', '.join(quoted(field) for field in alike[:5])}"
+            )
+    return candidates
+
+
+def thickness_of(
+    fields: Sequence[ThicknessField], record: Mapping[str, Any], where: str
+) -> Optional[float]:
+    """Return the thickness of a feature, m; None where no field gives it.
+
+    Raises
+    ------
+    InputError
+        If two fields contradict each other.
+    """
+    given = [(field.name, field.value(record, where)) for field in fields]
+    stated = [(name, value) for name, value in given if value is not None]
+    for name, value in stated[1:]:
+        if not math.isclose(value, stated[0][1], rel_tol=1e-6):
+            raise InputError(
+                f"{where}: {stated[0][0]} says {stated[0][1]:g} m and {name} {value:g} m; keep one "
+                "of the fields"
+            )
+    return stated[0][1] if stated else None
+
+
+def _is(field: str, name: str) -> bool:
+    return field.strip().lower() == name

@@ -1,0 +1,84 @@
+"""Settings of the material point method."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import ClassVar, Literal, Optional
+
+from snowshed.base.record import Alias
+from snowshed.methods.settings import MethodSettings
+
+Precision = Literal["float", "double"]
+Transfer = Literal["flip", "apic"]
+Basis = Literal["quadratic", "cubic"]
+
+
+@dataclass
+class MpmSettings(MethodSettings):
+    """Grid, transfer, time step and sleep of the material point method.
+
+    Attributes
+    ----------
+    dx : float
+        Size of grid cells and voxels [m]. 0 < value <= 1e+06; default 0.01.
+    precision : {"float", "double"}
+        Floating-point type of the particles and the grid. Default "float".
+    transfer : {"flip", "apic"}
+        How velocities move between particles and grid. Default "flip".
+    flip_ratio : float
+        Share of FLIP in FLIP/PIC in each step, so that shorter steps damp more; 0 is pure PIC. 0
+        <= value <= 1; default 0.99.
+    damping_rate : float
+        In place of flip_ratio: rate of the damping by PIC, whatever the step [1/s]. 0 <= value <=
+        1e+09.
+    basis : {"quadratic", "cubic"}
+        B-spline of the grid. Default "quadratic".
+    courant_factor : float
+        Time step over the largest stable one. 0 < value <= 1; default 0.9; also step_factor.
+    strain_limit : float
+        Largest ``|dt grad v|`` that a step may impose on a particle. 0 < value <= 0.5; default
+        0.2.
+    sleep_speed : float
+        Snow slower than this drops out of the steps until something moves it; 0: never [m/s]. 0 <=
+        value <= 10000; default 0.02.
+    sleep_time : float
+        How long it must have been slower, and not have grown faster [s]. 0 <= value <= 1e+09;
+        default 0.04.
+    threads : int
+        Threads; 0: all. 0 <= value <= 4096; default 0.
+    """
+
+    dx: Optional[float] = None
+    precision: Optional[Precision] = None
+    transfer: Optional[Transfer] = None
+    flip_ratio: Optional[float] = None
+    damping_rate: Optional[float] = None
+    basis: Optional[Basis] = None
+    courant_factor: Optional[float] = None
+    strain_limit: Optional[float] = None
+    sleep_speed: Optional[float] = None
+    sleep_time: Optional[float] = None
+    threads: Optional[int] = None
+
+    RESOLUTION: ClassVar[str] = "dx"
+    INSTEAD_OF: ClassVar[Mapping[str, str]] = {"damping_rate": "flip_ratio"}
+
+    def damping_text(self, rate: Optional[float] = None) -> str:
+        """Return how PIC damps, for captions; the settings must be complete.
+
+        Examples
+        --------
+        >>> MpmSettings(transfer="flip", flip_ratio=0.99).damping_text(188.2)
+        'damping 188 1/s (FLIP 0.99 a step)'
+        >>> MpmSettings(transfer="flip", damping_rate=50).damping_text()
+        'damping 50 1/s'
+        """
+        if self.transfer == "apic":
+            return "APIC"
+        if self.damping_rate is not None:
+            return f"damping {self.damping_rate:g} 1/s"
+        share = f"FLIP {self.flip_ratio:g} a step"
+        return share if rate is None else f"damping {rate:.3g} 1/s ({share})"
+
+    step_factor = Alias("courant_factor")  # its name up to version 0.1

@@ -1,0 +1,146 @@
+"""Settings of the moving particle semi-implicit method."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar, Literal, Optional
+
+from snowshed.methods.settings import MethodSettings
+
+MpsRheology = Literal["newtonian", "bingham", "bingham_dilatant"]
+MpsYield = Literal["papanastasiou", "bi_viscous"]
+MpsWalls = Literal["mirrors", "particles"]
+MpsSource = Literal["published", "compensated"]
+MpsGradient = Literal["published", "conservative", "corrected"]
+MpsSplitting = Literal["viscosity_first", "pressure_first"]
+MpsCoupling = Literal["none", "stiff", "always"]
+MpsSurface = Literal["published", "mirrored"]
+MpsOrder = Literal["published", "single_move"]
+MpsSpacing = Literal["none", "collision", "shifting"]
+MpsPreconditioner = Literal["jacobi", "incomplete_cholesky", "multigrid"]
+
+
+@dataclass
+class MpsSettings(MethodSettings):
+    """Particles, rheology, erosion and solvers of the moving particle semi-implicit method.
+
+    Attributes
+    ----------
+    spacing : float
+        Distance between particles, l0 [m]. 0 < value <= 1e+06; default 0.01.
+    radius : float
+        Radius of the weight function over l0. 1.5 <= value <= 4.5; default 2.1.
+    max_time_step : float
+        Longest step [s]. 0 < value <= 1; default 0.01.
+    courant_factor : float
+        Longest way of a particle in a step, over l0. 0 < value <= 0.4; default 0.2.
+    density : float
+        Density, which stays [kg/m3]. 0 < value <= 10000; default 200.
+    rheology : {"newtonian", "bingham", "bingham_dilatant"}
+        Law of the shear stress. Default "bingham_dilatant".
+    regularisation : {"papanastasiou", "bi_viscous"}
+        How the yield stress is approached at small shear rates. Default "papanastasiou".
+    viscosity : float
+        Plastic viscosity [Pa s]. 0 <= value <= 1e+06; default 0.012.
+    cohesion : float
+        Yield stress without pressure (adhesive force) [Pa]. 0 <= value <= 1e+06; default 0.
+    friction_angle : float
+        Inner friction angle: the yield stress grows with its tangent times the pressure [degrees].
+        0 <= value < 90; default 24.
+    stress_growth : float
+        Coefficient m with which the yield stress is approached [s]. 0 < value <= 1e+06; default
+        10000.
+    dilatant_rate : float
+        Shear rate above which the stress grows as a power of it [1/s]. 0 < value <= 1e+09; default
+        100.
+    dilatant_exponent : float
+        That power. 1 <= value <= 5; default 1.5.
+    yield_iterations : int
+        Most iterations of a step in which the apparent viscosity is found. 1 <= value <= 1000;
+        default 50.
+    erosion : bool
+        Whether snow is eroded and deposited. Default False.
+    erodible_thickness : float
+        Snow nearer to obstacles than this is erodible at first [m]. 0 <= value <= 1e+06; default
+        0.
+    erosion_pressure : float
+        Pressure above which erodible snow begins to move [Pa]. 0 <= value <= 1e+09; default 50.
+    erosion_speed : float
+        Speed that a neighbour of it must have [m/s]. 0 <= value <= 10000; default 0.1.
+    deposition_pressure : float
+        Pressure below which moving snow is deposited [Pa]. 0 <= value <= 1e+09; default 25.
+    deposition_speed : float
+        Speed below which it is [m/s]. 0 <= value <= 10000; default 0.05.
+    walls : {"mirrors", "particles"}
+        What walls are made of: images of the snow, or particles. Default "mirrors".
+    source : {"published", "compensated"}
+        Right-hand side of the pressure equation. Default "compensated".
+    compensation : float
+        Share of the density's error that a step takes away. 0 <= value <= 1; default 0.1.
+    gradient : {"published", "conservative", "corrected"}
+        Gradient of the pressure. Default "corrected".
+    splitting : {"viscosity_first", "pressure_first"}
+        Whether viscosity acts before the pressure or after it. Default "pressure_first".
+    coupling : {"none", "stiff", "always"}
+        When pressure and viscosity of a step are found together. Default "stiff".
+    surface : {"published", "mirrored"}
+        Where the pressure is zero at the free surface. Default "mirrored".
+    surface_ratio : float
+        Number density over that of a lattice, below which a particle is at the surface. 0.5 <=
+        value <= 1; default 0.97.
+    order : {"published", "single_move"}
+        When particles move. Default "single_move".
+    spacing_law : {"none", "collision", "shifting"}
+        What keeps particles apart besides the pressure. Default "shifting".
+    preconditioner : {"jacobi", "incomplete_cholesky", "multigrid"}
+        Preconditioner of the pressure equation. Default "multigrid".
+    pressure_tolerance : float
+        Residual of the pressure equation over its right-hand side. 0 < value <= 0.1; default
+        0.0001.
+    viscosity_tolerance : float
+        Residual of the viscous equation over what gravity adds in a step. 0 < value <= 0.1;
+        default 0.0001.
+    max_iterations : int
+        Iterations after which a run ends with an error. 1 <= value <= 100000; default 1000.
+    threads : int
+        Threads; 0: all. 0 <= value <= 4096; default 0.
+    """
+
+    spacing: Optional[float] = None
+    radius: Optional[float] = None
+    max_time_step: Optional[float] = None
+    courant_factor: Optional[float] = None
+    density: Optional[float] = None
+    rheology: Optional[MpsRheology] = None
+    regularisation: Optional[MpsYield] = None
+    viscosity: Optional[float] = None
+    cohesion: Optional[float] = None
+    friction_angle: Optional[float] = None
+    stress_growth: Optional[float] = None
+    dilatant_rate: Optional[float] = None
+    dilatant_exponent: Optional[float] = None
+    yield_iterations: Optional[int] = None
+    erosion: Optional[bool] = None
+    erodible_thickness: Optional[float] = None
+    erosion_pressure: Optional[float] = None
+    erosion_speed: Optional[float] = None
+    deposition_pressure: Optional[float] = None
+    deposition_speed: Optional[float] = None
+    walls: Optional[MpsWalls] = None
+    source: Optional[MpsSource] = None
+    compensation: Optional[float] = None
+    gradient: Optional[MpsGradient] = None
+    splitting: Optional[MpsSplitting] = None
+    coupling: Optional[MpsCoupling] = None
+    surface: Optional[MpsSurface] = None
+    surface_ratio: Optional[float] = None
+    order: Optional[MpsOrder] = None
+    spacing_law: Optional[MpsSpacing] = None
+    preconditioner: Optional[MpsPreconditioner] = None
+    pressure_tolerance: Optional[float] = None
+    viscosity_tolerance: Optional[float] = None
+    max_iterations: Optional[int] = None
+    threads: Optional[int] = None
+
+    RESOLUTION: ClassVar[str] = "spacing"
+    ELEMENTS: ClassVar[str] = "spacings"

@@ -1,0 +1,165 @@
+"""Runs of a snow slide: the results folder with its maps, and what they come to.
+
+Beside what every run writes (``snowshed.results.folder``), the folder holds
+
+================== ==========================================================================
+peaks/             largest values over time: thickness (pft, m), speed (pfv, m/s) and pressure
+                   (ppr, kPa), as ESRI ASCII grids; a .prj holds the coordinate system, if known
+flow/              thickness (FT) and speed (FV) at the end
+peaks.npz          the largest values, in place of the grids of a compact run
+slide.json         the figures of `SlideSummary`
+slide.png          the map: terrain, peak speed, outline of the release
+slide.html         the page: maps, the slide over time, release, mass and settings
+energy.csv         energy balance at the end (only with output.energy)
+energy_history.csv the same over time, with energy.png, a picture of it
+================== ==========================================================================
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict, replace
+from pathlib import Path
+from typing import Any, ClassVar
+
+import numpy as np
+
+import snowshed._core as _core
+from snowshed.io.atomic import replacing
+from snowshed.io.film import FILM, Film
+from snowshed.io.raster.output import write_raster
+from snowshed.methods.slide.frames import Frame, slide_frames
+from snowshed.methods.slide.maps import PACKED, RASTERS, PeakMaps, SlideMaps, slide_maps
+from snowshed.methods.slide.summary import SlideSummary
+from snowshed.methods.slide.validity import (
+    ReleaseArea,
+    release_areas,
+    thickness_map,
+    validity_notes,
+)
+from snowshed.running.method_run import Cell, MethodRun, summary_rows
+from snowshed.running.sequence import seal_files
+from snowshed.scene.terrain_grid import release_outlines
+
+
+class SlideRun(MethodRun):
+    """Writes the maps of a slide and its summary."""
+
+    UNIT: ClassVar[str] = "slides"
+    COLUMNS: ClassVar[Mapping[str, type]] = {"steps": int, **SlideSummary.columns()}
+
+    def doing(self, time_s: float) -> str:
+        """Return how far the slide has come."""
+        return f"{time_s:.2f} s of the slide"
+
+    def finish(self) -> None:
+        """Write maps, summary and energies."""
+        (facts,) = self.sequence.finished_events
+        terrain = self.scene.data["terrain"]
+        self.maps = slide_maps(self.simulation)
+        depth = thickness_map(terrain, Path(self.scene.base_dir))
+        ground = self.maps.raster(self.maps.terrain)
+        self.areas = release_areas(ground, terrain["release"], depth)
+        self.summary = _summary(self.simulation, self.scene.data, facts, self.maps, self.areas)
+        if self.options.compact:
+            _write_packed(self.folder, self.maps)
+        else:
+            _write_rasters(self.folder, self.maps, str(terrain.get("crs", "")))
+        self.summary.write(self.folder)
+        self.write_energies(facts)
+        seal_files(self.sequence, self.folder, SlideSummary.FILE)
+        self.sequence.rewrite_record()
+
+    def draw(self) -> None:
+        """Draw ``slide.png`` and the energies, and write ``slide.html``."""
+        from snowshed.plot.figure_style import save
+        from snowshed.plot.slide_figure import slide_figure
+        from snowshed.plot.slide_page import write_slide_page
+
+        self.draw_energies()
+        scene, page = self.scene.data, self.folder / "slide.html"
+        save(slide_figure(self.maps, release_outlines(scene)), self.folder / "slide.png")
+        frames = _frames(self.folder, self.maps)
+        write_slide_page(page, self.maps, scene, self.areas, asdict(self.summary), frames)
+
+    @classmethod
+    def rows(cls, folder: Path) -> list[dict[str, Cell]]:
+        """Return the figures of ``slide.json``."""
+        return summary_rows(folder, SlideSummary)
+
+    @classmethod
+    def packed(cls, folder: Path) -> Iterable[tuple[int, bytes]]:
+        """Yield the peak maps."""
+        if (folder / SlideSummary.FILE).is_file():
+            yield 1, (folder / PACKED).read_bytes()
+
+
+def _frames(folder: Path, maps: SlideMaps) -> list[Frame]:
+    """Return the snow over time, as far as the run has recorded it."""
+    try:
+        return slide_frames(Film(folder / FILM), maps.raster(maps.terrain))
+    except (_core.InputError, OSError):
+        return []  # not wanted, lost or damaged; the page does without
+
+
+def _summary(
+    simulation: _core.Simulation,
+    scene: Mapping[str, Any],
+    facts: Mapping[str, Any],
+    maps: SlideMaps,
+    areas: Sequence[ReleaseArea],
+) -> SlideSummary:
+    slide = simulation.slide_facts()
+    corners = np.concatenate(release_outlines(scene))
+    middle = 0.5 * (corners.min(axis=0) + corners.max(axis=0))
+    rows, columns = np.nonzero(maps.thickness > 0.0)
+    x, y = maps.west + columns * maps.cell, maps.south + rows * maps.cell
+    distance = np.hypot(x - middle[0], y - middle[1])
+    reached = maps.peak_thickness > 0.0
+    lies = maps.terrain[rows, columns]
+    summary = SlideSummary(
+        ended=facts["ended"],
+        sim_time_s=facts["sim_time_s"],
+        final_particles=simulation.particle_count,
+        released_kg=slide["released_kg"],
+        entrained_kg=slide["entrained_kg"],
+        left_terrain_kg=slide["left_terrain_kg"],
+        on_terrain_kg=math.fsum(simulation.masses()),
+        bonds_made=slide["bonds_made"],
+        bonds_broken=slide["bonds_made"] - slide["bonds"],
+        peak_speed_m_s=float(maps.peak_speed.max()),
+        peak_thickness_m=float(maps.peak_thickness.max()),
+        peak_pressure_kpa=float(maps.peak_pressure.max()),
+        reached_m2=float(reached.sum()) * maps.cell**2,
+        run_out_m=float(distance.max(initial=0.0)),
+        drop_m=float(maps.terrain[reached].max() - lies.min()) if lies.size else 0.0,
+    )
+    of_files = str(scene["terrain"].get("notes", "")).splitlines()
+    of_border = _border_notes(slide["left_terrain_kg"], maps)
+    validity = validity_notes(areas, scene["numerics"], asdict(summary))
+    return replace(summary, notes=(*of_files, *of_border, *validity))
+
+
+def _border_notes(left: float, maps: SlideMaps) -> tuple[str, ...]:
+    if left == 0.0:
+        return ()
+    holes = np.isnan(maps.terrain).any()
+    where = "or went where the raster has no elevation" if holes else "at its border"
+    return (
+        f"{left:,.0f} kg of snow left the terrain {where}; what lies beyond is not part of these "
+        "figures",
+    )
+
+
+def _write_packed(folder: Path, maps: SlideMaps) -> None:
+    peaks = PeakMaps.cropped(maps.peak_thickness, maps.peak_speed, maps.peak_pressure)
+    with replacing(folder / PACKED) as beside:
+        beside.write_bytes(peaks.packed())
+
+
+def _write_rasters(folder: Path, maps: SlideMaps, crs: str) -> None:
+    for name, file in RASTERS.items():
+        target = folder / file
+        target.parent.mkdir(exist_ok=True)
+        write_raster(target, maps.raster(getattr(maps, name), crs))

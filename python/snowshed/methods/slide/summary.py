@@ -1,0 +1,78 @@
+"""What a slide came to."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import ClassVar
+
+from snowshed.methods.summary import Summary
+
+
+@dataclass(frozen=True)
+class SlideSummary(Summary):
+    """What a slide came to.
+
+    Attributes
+    ----------
+    ended
+        "rest" or "time_limit".
+    sim_time_s
+        Duration of the slide, s.
+    final_particles
+        Number of particles at the end.
+    released_kg, entrained_kg
+        Mass that was released and taken up.
+    left_terrain_kg, on_terrain_kg
+        Mass that left the terrain or fell into its holes, and mass that is on it at the end.
+    bonds_made, bonds_broken
+        Bonds between particles, and how many of them broke or left the terrain.
+    peak_speed_m_s, peak_thickness_m, peak_pressure_kpa
+        Largest values anywhere.
+    reached_m2
+        Area on the map that snow reached, of cells around nodes.
+    run_out_m
+        Largest distance on the map between the middle of the release and snow at the end.
+    drop_m
+        Height between the highest node of the release and the lowest where snow lies.
+    notes
+        What should be known of these figures.
+    """
+
+    ended: str
+    sim_time_s: float
+    final_particles: int
+    released_kg: float
+    entrained_kg: float
+    left_terrain_kg: float
+    on_terrain_kg: float
+    bonds_made: int
+    bonds_broken: int
+    peak_speed_m_s: float
+    peak_thickness_m: float
+    peak_pressure_kpa: float
+    reached_m2: float
+    run_out_m: float
+    drop_m: float
+    notes: tuple[str, ...] = ()
+
+    FILE: ClassVar[str] = "slide.json"
+    TITLE: ClassVar[str] = "Snow slide"
+    OPENED: ClassVar[str] = "maps, slide.html and slide.png"
+
+    def lines(self) -> Mapping[str, str]:
+        """Return what people read of it, by name."""
+        broken = f"{self.bonds_broken:,} of {self.bonds_made:,}"
+        return {
+            "ended": f"{self.ended} after {self.sim_time_s:.2f} s",
+            "released": f"{self.released_kg:,.0f} kg",
+            "entrained": f"{self.entrained_kg:,.0f} kg",
+            "left the terrain": f"{self.left_terrain_kg:,.0f} kg",
+            "bonds broken": broken if self.bonds_made else "no bonds",
+            "peak speed": f"{self.peak_speed_m_s:.2f} m/s",
+            "peak thickness": f"{self.peak_thickness_m:.2f} m",
+            "peak pressure": f"{self.peak_pressure_kpa:.2f} kPa",
+            "area reached": f"{self.reached_m2:,.0f} m2",
+            "run-out": f"{self.run_out_m:.1f} m from the middle of the release",
+            "drop": f"{self.drop_m:.1f} m",
+        }

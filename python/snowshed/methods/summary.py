@@ -1,0 +1,82 @@
+"""The summary of a run with one event: its figures, in a JSON file of the results folder."""
+
+from __future__ import annotations
+
+import json
+import typing
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, fields
+from pathlib import Path
+from typing import Any, ClassVar, TypeVar
+
+from snowshed._core import InputError
+from snowshed.base.paths import PathLike
+from snowshed.io.atomic import write_text
+from snowshed.io.json_file import read_object
+from snowshed.io.run_files import check_run_file
+
+Summarised = TypeVar("Summarised", bound="Summary")
+
+#: Names that figures had in files of earlier versions.
+FORMER = {"duration_s": "sim_time_s", "particles": "final_particles", "grains": "final_particles"}
+
+
+@dataclass(frozen=True)
+class Summary:
+    """The figures of a run; a method's summary is a subclass whose fields are the figures."""
+
+    #: File in the results folder.
+    FILE: ClassVar[str]
+    #: Heading where people read it.
+    TITLE: ClassVar[str]
+    #: Other files in the folder that people open.
+    OPENED: ClassVar[str]
+    #: Fields that are remarks, and so no columns of a table.
+    REMARKS: ClassVar[tuple[str, ...]] = ("notes",)
+
+    @classmethod
+    def columns(cls) -> Mapping[str, type]:
+        """Return the figures that a table of many runs holds, each with int, float or str."""
+        hints = typing.get_type_hints(cls)
+        names = [one.name for one in fields(cls) if one.name not in cls.REMARKS]
+        return {name: (typing.get_args(hints[name]) or (hints[name],))[0] for name in names}
+
+    @classmethod
+    def read(cls: type[Summarised], folder: PathLike) -> Summarised:
+        """Read the summary of a results folder; one of an earlier version, too.
+
+        Raises
+        ------
+        InputError
+            If it is not there, or not the one that the run wrote.
+        """
+        file = Path(folder) / cls.FILE
+        if not file.is_file():
+            raise InputError(f"{file}: not there; a run writes it at its end")
+        check_run_file(file)
+        figures = {FORMER.get(name, name): value for name, value in read_object(file).items()}
+        given = {
+            one.name: _in_tuples(figures.get(one.name))
+            for one in fields(cls)
+            if one.name in figures or _may_be_none(cls, one.name)
+        }
+        try:
+            return cls(**given)
+        except TypeError as error:
+            raise InputError(f"{file}: damaged: {error}") from None
+
+    def write(self, folder: Path) -> None:
+        """Write the summary into a results folder."""
+        write_text(folder / self.FILE, json.dumps(asdict(self), indent=2) + "\n")
+
+    def lines(self) -> Mapping[str, str]:
+        """Return what people read of it, by name."""
+        raise NotImplementedError
+
+
+def _may_be_none(summary: type[Summary], name: str) -> bool:
+    return type(None) in typing.get_args(typing.get_type_hints(summary)[name])
+
+
+def _in_tuples(value: object) -> Any:
+    return tuple(value) if isinstance(value, list) else value

@@ -1,0 +1,1 @@
+"""Results folders: written, read and turned into other formats."""

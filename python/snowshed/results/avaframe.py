@@ -1,0 +1,291 @@
+"""Results of a slide as AvaFrame 2.1 lays them out, so that its tools and QGIS find them.
+
+com5SnowSlide runs com1DFA, and puts its results into ``Outputs/com1DFA``; the same files stand in
+``Outputs/com5SnowSlide``, the name that AvaFrame's tools take for this module:
+
+============================================= ================================================
+peakFiles/NAME_{ppr,pft,pfv}.asc or .tif      peak maps at the end, in the terrain's format
+peakFiles/timeSteps/NAME_TYPE_tTIME.asc       maps at the times of tSteps, and at the end
+configurationFiles/NAME.ini                   settings of the simulation
+configurationFiles/allConfigurations.csv      settings of all simulations, a row each
+mass_NAME.txt                                 mass at the start and at the end
+============================================= ================================================
+
+NAME is RELEASE_HASH_com5_C_L_TYPE_ssl, with _AF after a release whose name has an underscore.
+"""
+
+from __future__ import annotations
+
+import csv
+import hashlib
+import io
+import json
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from itertools import chain, product
+from pathlib import Path
+
+import snowshed._core as _core
+from snowshed.base.arrays import Floats
+from snowshed.base.messages import csv_cell, printable
+from snowshed.io.atomic import write_text
+from snowshed.io.raster.output import write_raster
+from snowshed.io.raster.raster import GEOTIFF, Raster, read_raster
+from snowshed.methods.slide.maps import SlideMaps, slide_maps
+from snowshed.methods.slide.summary import SlideSummary
+from snowshed.scene.builders.avaframe import AvaFrameSimulation
+from snowshed.scene.scene import ResolvedScene
+
+MODULES = ("com1DFA", "com5SnowSlide")
+STEPS_AT_ONCE = 20
+#: Settings under AvaFrame's names.
+NUMERICS: Mapping[str, str] = {
+    "dt": "time_step",
+    "rho": "density",
+    "meshCellSize": "cell",
+    "deltaTh": "layer_thickness",
+    "cohesionMaxStrain": "max_strain",
+    "cohesiveSurfaceTension": "bond_modulus",
+    "minDistCohesion": "min_bond_length",
+    "cResH": "resistance",
+    "subgridMixingFactor": "artificial_viscosity",
+    "rhoEnt": "entrained_density",
+    "entEroEnergy": "erosion_energy",
+    "entShearResistance": "entrainment_shear",
+    "entDefResistance": "entrainment_work",
+    "thresholdMassSplit": "split_ratio",
+    "stopCrit": "stop_ratio",
+}
+#: Columns of times that AvaFrame's tools ask for; there is nothing to say in them.
+TIMINGS = (
+    "timeLoop", "timeForce", "timeForceSPH", "timePos", "timeNeigh", "timeField", "nSave",
+)  # fmt: skip
+
+
+def simulation_name(simulation: AvaFrameSimulation) -> str:
+    """Return the name of a simulation, in the form that AvaFrame's ``parseSimName`` takes apart."""
+    return _name(simulation, simulation.scene.resolve())
+
+
+def write_avaframe_outputs(folder: Path, simulation: AvaFrameSimulation, results: Path) -> str:
+    """Write the maps and settings of a simulation that has ended, and return its name.
+
+    Parameters
+    ----------
+    folder
+        The folder that holds ``Outputs``.
+    simulation
+        What was simulated.
+    results
+        Its results folder. Where maps at earlier times are asked for, the steps are run again.
+
+    Raises
+    ------
+    InputError
+        If a GeoTIFF is to be written and rasterio is missing.
+    OSError
+        If a file cannot be read or written.
+    """
+    ready = simulation.scene.resolve()
+    name = _name(simulation, ready)
+    summary = SlideSummary.read(results)
+    time_step = float(ready.data["numerics"]["time_step"])
+    last = round(summary.sim_time_s / time_step)
+    ending = ".tif" if simulation.terrain.suffix.lower() in GEOTIFF else ".asc"
+    peaks = [folder / "Outputs" / module / "peakFiles" for module in MODULES]
+    for each in peaks:
+        (each / "timeSteps").mkdir(parents=True, exist_ok=True)
+    final = _final_maps(results, ready)
+    kinds = simulation.project.result_types
+    # AvaFrame names the end by the step after it.
+    at_end = [((last + 1) * time_step, final)]
+    for time, fields in chain(_earlier_maps(simulation, ready, last), at_end):
+        for each, kind in product(peaks, kinds):
+            write_raster(each / "timeSteps" / f"{name}_{kind}_t{time:.2f}{ending}", fields[kind])
+    configuration = _configuration(simulation, ready)
+    for each in peaks:
+        for kind in kinds:
+            write_raster(each / f"{name}_{kind}{ending}", final[kind])
+        write_text(each.parent / f"mass_{name}.txt", _mass_text(summary))
+        _write_configuration(each.parent / "configurationFiles", name, configuration, summary, last)
+    return name
+
+
+def _final_maps(results: Path, ready: ResolvedScene) -> dict[str, Raster]:
+    """Return the maps at the end by their types, from a results folder."""
+    found = {kind: read_raster(results / f"peaks/{kind}.asc") for kind in ("ppr", "pft", "pfv")}
+    found.update({kind: read_raster(results / f"flow/{kind}.asc") for kind in ("FT", "FV")})
+    found["P"] = replace(found["FV"], heights=_pressure(ready, found["FV"].heights))
+    crs = _crs(ready)
+    return {kind: replace(raster, crs=crs) for kind, raster in found.items()}
+
+
+def _earlier_maps(
+    simulation: AvaFrameSimulation, ready: ResolvedScene, last: int
+) -> Iterator[tuple[float, dict[str, Raster]]]:
+    """Return the maps by type at the times that are asked for, but the end; one time after another.
+
+    They are made as they are asked for: a terrain's maps at thousands of times fit into no memory.
+    """
+    time_step = float(ready.data["numerics"]["time_step"])
+    steps = {_step_at(time, time_step): time for time in simulation.project.saved_times}
+    crs = _crs(ready)
+    for step, maps in maps_at(ready, [step for step in steps if step <= last]):
+        fields = _fields(ready, maps)
+        yield steps[step], {kind: maps.raster(values, crs) for kind, values in fields.items()}
+
+
+def maps_at(ready: ResolvedScene, steps: Sequence[int]) -> Iterator[tuple[int, SlideMaps]]:
+    """Return the maps of a slide after some numbers of steps, one after another."""
+    if not steps:
+        return
+    simulation = _core.Simulation(ready.core, ready.base_dir)
+    simulation.begin_event()
+    done = 0
+    for step in sorted(steps):
+        while done < step:  # an interrupt is heard between the parts
+            part = min(step - done, STEPS_AT_ONCE)
+            simulation.step(part)
+            done += part
+        yield step, slide_maps(simulation)
+
+
+def _name(simulation: AvaFrameSimulation, ready: ResolvedScene) -> str:
+    terrain = {**ready.data["terrain"], "file": ""}
+    content = {**ready.data, "title": "", "terrain": terrain}
+    text = json.dumps(content, sort_keys=True) + simulation.release
+    identity = hashlib.shake_256(text.encode()).hexdigest(5)
+    release = simulation.release + ("_AF" if "_" in simulation.release else "")
+    return f"{release}_{identity}_com5_C_L_{simulation.sim_type}_ssl"
+
+
+def _step_at(time: float, time_step: float) -> int:
+    """Return the first step that ends at a time or after it."""
+    return math.ceil((time - 1e-8) / time_step)
+
+
+def _crs(ready: ResolvedScene) -> str:
+    return str(ready.data["terrain"].get("crs", ""))
+
+
+def _fields(ready: ResolvedScene, maps: SlideMaps) -> dict[str, Floats]:
+    return {
+        "ppr": maps.peak_pressure,
+        "pft": maps.peak_thickness,
+        "pfv": maps.peak_speed,
+        "FT": maps.thickness,
+        "FV": maps.speed,
+        "P": _pressure(ready, maps.speed),
+    }
+
+
+def _pressure(ready: ResolvedScene, speed: Floats) -> Floats:
+    """Return the dynamic pressure, Pa: AvaFrame has its peak in kPa, but not this."""
+    pressure: Floats = float(ready.data["numerics"]["density"]) * speed**2
+    return pressure
+
+
+def _configuration(
+    simulation: AvaFrameSimulation, ready: ResolvedScene
+) -> dict[str, dict[str, str]]:
+    """Return the settings by section and key, as AvaFrame writes them."""
+    data = ready.data
+    numerics, terrain = data["numerics"], data["terrain"]
+    project = simulation.project
+    voellmy = numerics["friction_law"] == "voellmy"
+    general = {
+        "simTypeList": "|".join(project.sim_types),
+        "simTypeActual": simulation.sim_type,
+        "modelType": "ssl",
+        "resType": "|".join(project.result_types),
+        "tSteps": "|".join(f"{time:g}" for time in project.saved_times),
+        "initPartDistType": "triangular",
+        "tEnd": repr(data["events"]["max_time"]),
+        "frictModel": "Voellmy" if voellmy else "Coulomb",
+        "muvoellmy" if voellmy else "mucoulomb": repr(numerics["friction"]),
+        "xsivoellmy": repr(numerics["turbulence"]),
+        "explicitFriction": str(int(numerics["explicit_friction"])),
+        "snowSlide": str(int(numerics["bonds"])),
+        "secRelArea": "False",
+        "relThFromFile": str(project.release_thickness is None),
+        "relTh": "" if project.release_thickness is None else repr(project.release_thickness),
+        "entThFromFile": str(project.entrained_thickness is None),
+        "entTh": "" if project.entrained_thickness is None else repr(project.entrained_thickness),
+        "avalancheDir": str(simulation.folder),
+    }
+    general.update({key: repr(numerics[name]) for key, name in NUMERICS.items()})
+    for prefix, areas in (("relTh", "release"), ("entTh", "entrainment")):
+        for number, area in enumerate(terrain.get(areas) or ()):
+            general[f"{prefix}{number}"] = repr(area["thickness"])
+    released = terrain["release"]
+    inputs = {
+        "releaseScenario": simulation.release,
+        "relThFile": "",
+        "relThId": "|".join(str(number) for number in range(len(released))),
+        "relThThickness": "|".join(repr(area["thickness"]) for area in released),
+        "DEM": Path(terrain["file"]).name,
+    }
+    return {
+        "GENERAL": general,
+        "INPUT": inputs,
+        "EXPORTS": {"exportData": "True", "useCompression": "True"},
+        "VISUALISATION": {"scenario": ""},
+    }
+
+
+def _write_configuration(
+    folder: Path, name: str, sections: Mapping[str, Mapping[str, str]], summary: SlideSummary,
+    steps: int,
+) -> None:  # fmt: skip
+    for place in ("", "configurationFilesDone", "configurationFilesLatest"):
+        (folder / place).mkdir(parents=True, exist_ok=True)
+    text = "".join(
+        f"[{section}]\n"
+        + "".join(f"{key} = {_on_one_line(value)}\n" for key, value in keys.items())
+        + "\n"
+        for section, keys in sections.items()
+    )
+    write_text(folder / f"{name}.ini", text)
+    for place in ("configurationFilesDone", "configurationFilesLatest"):
+        write_text(folder / place / f"{name}.ini", "see directory configurationFiles\n")
+    row = {"": name.split("_com5", maxsplit=1)[0].rsplit("_", 1)[1]}
+    for keys in sections.values():
+        row.update(keys)
+    row.update({"simName": name, "nPart": str(summary.final_particles), "nIter": str(steps)})
+    row.update(dict.fromkeys(TIMINGS, ""))
+    for table in ("allConfigurations.csv", "latestSims.csv"):
+        _add_row(folder / table, row)
+
+
+def _on_one_line(value: str) -> str:
+    return printable(" ".join(value.split("\n")))
+
+
+def _add_row(file: Path, row: Mapping[str, str]) -> None:
+    """Add a row to a table, in place of one of the same simulation."""
+    rows: list[Mapping[str, str]] = []
+    if file.is_file():
+        with file.open(newline="", encoding="utf-8") as text:
+            rows = [old for old in csv.DictReader(text) if old.get("simName") != row["simName"]]
+    rows.append(row)
+    columns = list(dict.fromkeys(key for each in rows for key in each))
+    target = io.StringIO()
+    writer = csv.DictWriter(target, columns, restval="", lineterminator="\n")
+    writer.writeheader()
+    writer.writerows({key: csv_cell(cell) for key, cell in each.items()} for each in rows)
+    write_text(file, target.getvalue())
+
+
+def _mass_text(summary: SlideSummary) -> str:
+    lines = ["time, current, entrained, detrained, detrainedTotal, stopped, initialized"]
+    on_terrain = summary.released_kg + summary.entrained_kg - summary.left_terrain_kg
+    for time, now, entrained, released in (
+        (0.0, summary.released_kg, 0.0, summary.released_kg),
+        (summary.sim_time_s, on_terrain, summary.entrained_kg, 0.0),
+    ):
+        lines.append(
+            f"{time:.2f},    {now:.6f},    {entrained:.6f},   {0.0:.6f},    {0.0:.6f},    "
+            f"{0.0:.6f},    {released:.6f}"
+        )
+    return "\n".join(lines) + "\n"

@@ -1,0 +1,90 @@
+"""The same stack in 2D and in 3D."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from snowshed._core import InputError
+from snowshed.results.folder import read_events
+from snowshed.scene.scene import PathLike, ResolvedScene
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+RULE_OF_THUMB = 2 / 3  # thesis 5.1: 3D over 2D height, when height and width are comparable
+
+
+def dimension_ratio(df3: pd.DataFrame, df2: pd.DataFrame) -> pd.DataFrame:
+    """Return the ratio of the stack heights in 3D and 2D, event by event.
+
+    Parameters
+    ----------
+    df3, df2
+        Tables of events of a 3D and a 2D run, with the columns `event` and `height_m`.
+
+    Returns
+    -------
+    pandas.DataFrame
+        Columns `event`, `height_3d_m`, `height_2d_m`, `ratio`, for the events both have.
+
+    Examples
+    --------
+    >>> import pandas as pd
+    >>> three = pd.DataFrame({"event": [1, 2], "height_m": [0.04, 0.06]})
+    >>> two = pd.DataFrame({"event": [1, 2], "height_m": [0.05, 0.08]})
+    >>> dimension_ratio(three, two).ratio.round(2).tolist()
+    [0.8, 0.75]
+    """
+    heights = [df[["event", "height_m"]] for df in (df3, df2)]
+    table: pd.DataFrame = heights[0].merge(heights[1], on="event", suffixes=("_3d", "_2d"))
+    table = table.rename(columns={"height_m_3d": "height_3d_m", "height_m_2d": "height_2d_m"})
+    table["ratio"] = table.height_3d_m / table.height_2d_m
+    return table
+
+
+def compare_folders(one: PathLike, other: PathLike) -> pd.DataFrame:
+    """Return `dimension_ratio` of two results folders, in whichever order they come.
+
+    Raises
+    ------
+    InputError
+        If they are not one 3D and one 2D run, or hold no results.
+    """
+    tables = {_dimension(folder): read_events(folder) for folder in (one, other)}
+    if len(tables) < 2:
+        raise InputError(f"{one}, {other}: both {next(iter(tables))}D; give one 3D and one 2D run")
+    return dimension_ratio(tables[3], tables[2])
+
+
+def same_dimension(one: PathLike, other: PathLike) -> bool:
+    """Return whether two results folders are both of 2D or both of 3D runs; raises InputError."""
+    return _dimension(one) == _dimension(other)
+
+
+def height_ratio(one: PathLike, other: PathLike) -> pd.DataFrame:
+    """Return the heights of the stacks of two runs, event by event, and their ratio.
+
+    Returns
+    -------
+    pandas.DataFrame
+        Columns `event`, `height_1_m`, `height_2_m` and `ratio` (the first over the second).
+
+    Raises
+    ------
+    InputError
+        If a folder holds no results.
+    """
+    heights = [read_events(folder)[["event", "height_m"]] for folder in (one, other)]
+    table: pd.DataFrame = heights[0].merge(heights[1], on="event", suffixes=("_1", "_2"))
+    table = table.rename(columns={"height_m_1": "height_1_m", "height_m_2": "height_2_m"})
+    table["ratio"] = table.height_1_m / table.height_2_m
+    return table
+
+
+def _dimension(folder: PathLike) -> int:
+    scene = Path(folder) / "scene.json"
+    if not scene.is_file():
+        raise InputError(f"{folder}: no results; it holds no scene.json")
+    data = ResolvedScene.load(scene).data
+    return int(data["dimension"])

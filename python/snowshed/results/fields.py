@@ -1,0 +1,84 @@
+"""The fields of a simulation: quantities of its particles, read from their memory."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+import snowshed._core as _core
+from snowshed.base.arrays import Numbers
+
+
+@dataclass(frozen=True)
+class Field:
+    """A quantity of all particles, read each time it is asked for.
+
+    Attributes
+    ----------
+    name, unit, description
+        What it is, in SI units; "1" where it has none.
+    dtype
+        Type of the elements of `values`.
+    stored
+        Whether the particles hold the quantity as it is, so that `values` is a view; otherwise
+        `values` is computed.
+
+    Examples
+    --------
+    >>> from snowshed import Scene, Simulation
+    >>> simulation = Simulation(Scene.preset("lab-50").update({"dimension": 2}))
+    >>> simulation.begin_event()
+    >>> simulation.fields["density"]
+    Field('density', 'kg/m3', 'Current density', float64, computed)
+    """
+
+    name: str
+    unit: str
+    description: str
+    dtype: np.dtype[np.generic]
+    stored: bool
+    _simulation: _core.Simulation = field(repr=False)
+
+    @property
+    def values(self) -> Numbers:
+        """The values, in the order of storage; an array that cannot be written to.
+
+        Where `stored`, the array shows the particles' memory without a copy. It is valid until the
+        next call that changes the simulation. After that it may show anything, since particles are
+        sorted into other memory from time to time, and must be taken anew; copy what is to stay.
+        The array keeps its memory, which is never freed below it. Between two such calls all
+        fields are in the same order.
+        """
+        return self._simulation.field(self.name)
+
+    def by_id(self) -> Numbers:
+        """Return a copy ordered by the particles' ids, in double or, of whole numbers, 64 bits."""
+        return self._simulation.field_by_id(self.name)
+
+    def __repr__(self) -> str:
+        how = "stored" if self.stored else "computed"
+        return f"Field({self.name!r}, {self.unit!r}, {self.description!r}, {self.dtype}, {how})"
+
+
+class Fields(Mapping[str, Field]):
+    """The fields of a simulation by name; a KeyError lists the names there are."""
+
+    def __init__(self, core: _core.Simulation) -> None:
+        self._fields = {info[0]: Field(*info, core) for info in core.fields()}
+
+    def __getitem__(self, name: str) -> Field:
+        try:
+            return self._fields[name]
+        except KeyError:
+            raise KeyError(f"no field {name!r}; there are {', '.join(self._fields)}") from None
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._fields)
+
+    def __len__(self) -> int:
+        return len(self._fields)
+
+    def __repr__(self) -> str:
+        return f"Fields({', '.join(self._fields)})"

@@ -1,0 +1,157 @@
+"""The film of a run: it must be the one that run.json knows; and as an xarray Dataset."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+import snowshed._core as _core
+from snowshed._core import InputError
+from snowshed.base.extras import require
+from snowshed.base.notes import tell
+from snowshed.io.film import Film, FilmFrame
+from snowshed.io.json_file import is_number
+from snowshed.results.particle_dataset import AXES
+
+if TYPE_CHECKING:
+    import xarray
+
+
+def run_film(path: Path, record: Mapping[str, Any]) -> Film:
+    """Return the film in a results folder.
+
+    Parameters
+    ----------
+    path
+        The file.
+    record
+        What run.json says, if it is there; that of the version before does not know the film.
+
+    Raises
+    ------
+    InputError
+        If the film is damaged, frames are missing or added, or it is the film of another run.
+    """
+    film = Film(path)
+    finished = record.get("status") == "finished"
+    known = record.get("film")
+    if isinstance(known, Mapping):
+        _check_mark(film, known, finished=finished)
+    elif finished:
+        _check_end(film, record)
+    return film
+
+
+def _check_mark(film: Film, known: Mapping[str, Any], *, finished: bool) -> None:
+    frames = known.get("frames")
+    if (
+        not isinstance(frames, int)
+        or not 0 <= frames <= len(film.frames)
+        or film.checksum(frames) != known.get("checksum")
+    ):
+        raise InputError(f"{film.path}: damaged: not the film that the run recorded")
+    if finished and (len(film.frames) > frames or not film.closed):
+        raise InputError(f"{film.path}: damaged: it does not end where the run ended")
+
+
+def _check_end(film: Film, record: Mapping[str, Any]) -> None:
+    """Check by the times of the events that no frame is missing at the end."""
+    events = record.get("finished_events")
+    facts = [event for event in events or [] if isinstance(event, Mapping)]
+    times = [float(one["sim_time_s"]) for one in facts if is_number(one.get("sim_time_s"))]
+    if not film.whole or not film.frames:
+        raise InputError(f"{film.path}: damaged: cut off, though the run is finished")
+    if times and not math.isclose(film.frames[-1].time, math.fsum(times), rel_tol=1e-9):
+        raise InputError(f"{film.path}: damaged: it does not end where the run ended")
+
+
+def film_dataset(film: Film, every: int = 1) -> xarray.Dataset:
+    """Return a film as a Dataset.
+
+    Parameters
+    ----------
+    film
+        The film.
+    every
+        Take every `every`-th frame.
+
+    Returns
+    -------
+    xarray.Dataset
+        Dimensions ``frame``, with time and event_number, ``particle``, with the ids and the event
+        and material of each, and ``component``; NaN where a particle is not in a frame.
+
+    Raises
+    ------
+    InputError
+        If xarray (extra ``study``) is not installed, the film is damaged, or does not fit into
+        memory.
+    """
+    library = require("xarray", "study", "a Dataset of a film")
+    if not isinstance(every, int) or every < 1:
+        raise InputError(f"every: {every!r}; a whole number from 1 is needed")
+    for note in film.notes:
+        tell(f"{film.path}: {note}")
+    frames = _chosen(film, every)
+    ids, first = np.unique(np.concatenate([one.ids for one in frames]), return_index=True)
+    kinds = {
+        name: np.concatenate([getattr(one, name) for one in frames])[first]
+        for name in ("events", "materials")
+    }
+    shape = (len(frames), len(ids))
+    position = np.full((*shape, len(AXES)), np.nan, dtype=np.float32)
+    values = [np.full(shape, np.nan, dtype=np.float32) for _ in film.quantities]
+    for number, one in enumerate(frames):
+        places = np.searchsorted(ids, one.ids)
+        position[number, places] = one.positions
+        for which, quantity in enumerate(film.quantities):
+            values[which][number, places] = quantity.values(one.codes[:, which])
+    dimensions = ("frame", "particle")
+    dataset: xarray.Dataset = library.Dataset(
+        {
+            "position": ((*dimensions, "component"), position, _facts("position")),
+            **{
+                one.name: (dimensions, found, {"units": one.unit, "long_name": one.meaning})
+                for one, found in zip(film.quantities, values)
+            },
+        },
+        coords={
+            "particle": ("particle", ids, {"long_name": _facts("id")["long_name"]}),
+            "component": list(AXES),
+            "event": ("particle", kinds["events"], {"long_name": _facts("event")["long_name"]}),
+            "material_id": ("particle", kinds["materials"]),
+            "time": (
+                "frame",
+                [one.time for one in frames],
+                {"units": "s", "long_name": "Time, through all events"},
+            ),
+            "event_number": ("frame", [one.event for one in frames]),
+        },
+        attrs={"share_of_particles": film.share, "quantum_m": film.quantum},
+    )
+    return dataset
+
+
+def _facts(name: str) -> dict[str, str]:
+    unit, meaning = {one: (unit, text) for one, unit, text in _core.quantities()}[name]
+    return {"units": unit, "long_name": meaning}
+
+
+def _chosen(film: Film, every: int) -> list[FilmFrame]:
+    if not film.frames:
+        raise InputError(f"{film.path}: holds no frame yet")
+    facts = film.frames[::every]
+    # A frame as it is decoded, and its row in the Dataset.
+    each = 8 * (2 * len(AXES) + 4 + len(film.quantities))
+    needed = each * (sum(one.particles for one in facts) + len(facts) * facts[-1].particles)
+    available = _core.available_memory_bytes()
+    if needed > available:
+        raise InputError(
+            f"{film.path}: {len(facts)} frames need {needed / 1e9:.1f} GB of memory, and "
+            f"{available / 1e9:.1f} GB can be had; take fewer with every=2 or more"
+        )
+    return [one for number, one in enumerate(film) if number % every == 0]

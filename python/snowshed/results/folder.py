@@ -1,0 +1,277 @@
+"""The results folder of a run: what is in it, and how it is opened.
+
+================== ==========================================================================
+scene.json         the complete scene that made the results
+events.csv         one row per event: `EVENT_COLUMNS`
+outline.csv        profile of the stack after each event: event, x, z
+conversions.csv    how far reseeding moved the stack (only with between = "reseed")
+ageing.csv         what time did to the stack between events (only if it aged), and how long it
+                   had: ageing.json
+energy.csv         energy balance at the end of each event (only with output.energy)
+energy_history.csv the same over time, with energy.png, a picture of it
+run.json           version, machine, size and speed of the run, how each event went, and its status
+checkpoint.bin     the state from which the run goes on
+particles/         the particles after each event (.vtp); ``particles.pvd`` opens them as a series
+film.bin           the particles over time, for `snowshed view` (unless output.film = false)
+solids.vtp         panel, ground and obstacles as triangles
+snapshots/         particle snapshots during the events (only with output.snapshot_interval)
+stack.png          side view of the last stack
+growth.png         height, length, head and tail against the event
+================== ==========================================================================
+
+``snowshed-run`` writes the same folder without tables and pictures, which resuming it with
+``snowshed run --resume`` adds. What is then measured comes from the stored particles, in single
+precision: its last digits may differ from what is measured while a run goes on. conversions.csv
+has no rows of events that ``snowshed-run`` began.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Optional, Union
+
+import numpy as np
+
+from snowshed._core import InputError
+from snowshed.base.arrays import Floats
+from snowshed.io.atomic import write_text
+from snowshed.io.csv_table import Table, read_csv
+from snowshed.io.json_file import read_object
+from snowshed.io.run_files import check_run_file
+from snowshed.scene.scene import PathLike
+from snowshed.snow.stack.measure import StackMeasure
+from snowshed.snow.stack.quantities import MEASURES, QUANTITIES
+from snowshed.snow.stack.trimming import TRIMMINGS
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+CONVERSION_COLUMNS = (
+    "event",
+    "mass_before_kg",
+    "mass_after_kg",
+    "particles_before",
+    "particles_after",
+    "height_before_m",
+    "height_after_m",
+    "length_before_m",
+    "length_after_m",
+    "outline_rms_m",
+)
+AGEING_COLUMNS = (
+    "event",
+    "hours",
+    "temperature_c",
+    "crest_sank_m",
+    "density_before_kg_m3",
+    "density_kg_m3",
+    "intact_before",
+    "intact",
+)
+EVENT_COLUMNS = (
+    "event",
+    "height_m",
+    "length_m",
+    "head_m",
+    "tail_m",
+    "width_m",
+    "volume_m3",
+    "density_kg_m3",
+    "on_panel_kg",
+    "detached_kg",
+    "body_height_m",
+    "body_length_m",
+    "mass_kg",
+    "sim_time_s",
+    "steps",
+    "wall_s",
+    "ended",
+    "crest_m",
+    "body_head_m",
+    "body_tail_m",
+    "damping_rate_per_s",
+    "trimming",
+    *(MEASURES[name].column(quantity) for name in TRIMMINGS for quantity in QUANTITIES),
+    "on_structures_kg",
+    "joined",
+)
+#: Checksums of tables, by name: of the rows through an event, by its number.
+Checksums = Mapping[str, Mapping[str, str]]
+EVENTS, ENERGY = "events.csv", "energy.csv"
+#: Columns that hold words.
+WORDS = ("ended", "trimming")
+
+
+def measured_columns(stack: StackMeasure) -> dict[str, Union[float, str]]:
+    """Return the columns of events.csv that a measured stack fills."""
+    return {
+        "height_m": stack.height,
+        "length_m": stack.length,
+        "head_m": stack.head,
+        "tail_m": stack.tail,
+        "width_m": stack.width,
+        "volume_m3": stack.volume,
+        "density_kg_m3": stack.density,
+        "on_panel_kg": stack.on_panel_mass,
+        "detached_kg": stack.detached_mass,
+        "body_height_m": stack.body.height,
+        "body_length_m": stack.body.length,
+        "mass_kg": stack.mass,
+        "crest_m": stack.crest,
+        "body_head_m": stack.body.head,
+        "body_tail_m": stack.body.tail,
+        "trimming": stack.trimming,
+        **{
+            MEASURES[name].column(quantity): getattr(extent, quantity)
+            for name, extent in stack.trimmed.items()
+            for quantity in QUANTITIES
+        },
+        "on_structures_kg": stack.on_structures_mass,
+        "joined": int(stack.joined),
+    }
+
+
+class RunFolder:
+    """The results folder of a run and the tables in it.
+
+    The core writes the scene, the particles, the checkpoint and run.json
+    (``_core.EventSequence``); the tables are written here.
+    """
+
+    def __init__(self, folder: PathLike) -> None:
+        self.folder = Path(folder)
+        self.scene = self.folder / "scene.json"
+        self.checkpoint = self.folder / "checkpoint.bin"
+        self.run = self.folder / "run.json"
+        self.ageing = self.folder / "ageing.json"
+        self.stack_picture = self.folder / "stack.png"
+        self.growth_picture = self.folder / "growth.png"
+        self.events = Table(self.folder / EVENTS, EVENT_COLUMNS)
+        self.outlines = Table(self.folder / "outline.csv", ("event", "x", "z"))
+        self.conversions = Table(self.folder / "conversions.csv", CONVERSION_COLUMNS)
+        self.ageings = Table(self.folder / "ageing.csv", AGEING_COLUMNS)
+        self.energies = Table(self.folder / ENERGY)
+
+    def write_ageing(self, ageing: Mapping[str, Any]) -> None:
+        """Write down what time does to the stack between the events."""
+        write_text(self.ageing, json.dumps(ageing, indent=2) + "\n")
+
+    def check(self, ageing: Optional[Mapping[str, Any]]) -> None:
+        """Raise InputError if the tables are damaged, or the stack aged in another way."""
+        if (read_object(self.ageing) if self.ageing.is_file() else None) != ageing:
+            raise InputError(f"{self.ageing}: between its events the stack aged in another way")
+        if self.events.rows:
+            parse_events(self.events.path)
+
+    def missing_events(self, done: int) -> range:
+        """Return those of the events that are done which the table does not hold yet."""
+        listed = len(self.events.rows)
+        if [int(row["event"]) for row in self.events.rows] != list(range(1, listed + 1)):
+            raise InputError(f"{self.events.path}: damaged: its events are not 1, 2, ...")
+        return range(listed + 1, done + 1)
+
+    def keep_through(self, event: int, *, running: bool) -> None:
+        """Drop what belongs to events after `event`, or to `event` itself if it still runs."""
+        self.events.keep_through(event - 1 if running else event)
+        for table in (self.outlines, self.energies):  # an event's own row is written last
+            table.keep_through(len(self.events.rows))
+        self.conversions.keep_through(event)
+        self.ageings.keep_through(event)
+
+    def checksums(
+        self, known: Checksums, event: int, *, running: bool
+    ) -> dict[str, dict[str, str]]:
+        """Return `known` checksums with those of the rows that a checkpoint of `event` keeps."""
+        done = event - 1 if running else event
+        found = {name: dict(sums) for name, sums in known.items()}
+        for table in self._tables():
+            through = done if table in self._of_ended() else event
+            of_table = found.get(table.path.name, {})
+            for later in [at for at in of_table if at.isdecimal() and int(at) > through]:
+                del of_table[later]  # of events that are run again
+            table.fill_columns()
+            if through > 0:
+                found.setdefault(table.path.name, {})[str(through)] = table.checksum(through)
+        return found
+
+    def check_rows(self, known: Checksums, event: int) -> None:
+        """Raise InputError if a table lacks rows that a run wrote, or has others.
+
+        Rows of ended events that are in no checksum are dropped, to be measured again. Of a run of
+        the version before there are no checksums.
+        """
+        if not known:
+            return
+        self.missing_events(event)  # or they are not numbered one after another
+        ended = _last_known(known.get(self.events.path.name, {}), len(self.events.rows))
+        for table in self._tables():
+            sums = known.get(table.path.name, {})
+            of_ended = table in self._of_ended()
+            through = ended if of_ended else _last_known(sums, event)
+            if of_ended:
+                table.keep_through(ended)
+            if str(through) in sums and table.checksum(through) != sums[str(through)]:
+                raise InputError(
+                    f"{table.path}: damaged: its rows through event {through} are not those that "
+                    "the run wrote"
+                )
+
+    def _of_ended(self) -> tuple[Table, ...]:
+        """Return the tables of events that have ended, which are written together."""
+        return (self.events, self.outlines, self.energies)
+
+    def _tables(self) -> tuple[Table, ...]:
+        return (*self._of_ended(), self.conversions, self.ageings)
+
+    def add_outline(self, event: int, outline: Floats) -> None:
+        """Add the profile (k, 2) of the stack after an event."""
+        self.outlines.add({"event": event, "x": x, "z": z} for x, z in outline.tolist())
+
+    def particles_of(self, event: int) -> Path:
+        """Return the file of the particles after an event."""
+        return self.folder / "particles" / f"event_{event:03d}.vtp"
+
+    def read_run(self) -> dict[str, Any]:
+        """Read run.json; empty before its first writing."""
+        return read_object(self.run) if self.run.exists() else {}
+
+
+def _last_known(sums: Mapping[str, str], event: int) -> int:
+    """Return the last event up to `event` of which there is a checksum; 0 if there is none."""
+    return max((int(at) for at in sums if at.isdecimal() and int(at) <= event), default=0)
+
+
+def read_events(folder: PathLike) -> pd.DataFrame:
+    """Read the table of events from a results folder.
+
+    Raises
+    ------
+    InputError
+        If the folder holds no events.csv, it is no table of events, or not the one that the run
+        wrote.
+    """
+    path = Path(folder) / EVENTS
+    if not path.is_file():
+        raise InputError(f"{folder}: no results; it holds no events.csv")
+    check_run_file(path)
+    return parse_events(path)
+
+
+def parse_events(path: Path) -> pd.DataFrame:
+    """Read a table of events while its run goes on, when no checksum of it is known yet.
+
+    Raises
+    ------
+    InputError
+        If it is no table of events.
+    """
+    table = read_csv(path)
+    for name in ("event", "height_m"):
+        if name not in table:
+            raise InputError(f"{path}: not a table of events; no column {name}")
+    for name in table.columns.intersection(list(EVENT_COLUMNS)).drop(list(WORDS), errors="ignore"):
+        if table[name].dtype.kind not in "if" or np.isinf(table[name]).any():
+            raise InputError(f"{path}: not a table of events; no finite numbers in a column {name}")
+    return table

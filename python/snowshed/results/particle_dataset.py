@@ -1,0 +1,74 @@
+"""Particles as an xarray Dataset, with units and meanings."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+import snowshed._core as _core
+from snowshed.base.arrays import Numbers
+from snowshed.base.extras import require
+
+if TYPE_CHECKING:
+    import xarray
+
+AXES = ("x", "y", "z")
+#: Quantities of a simulation that its Dataset holds, as far as the method knows them.
+DATASET = (
+    "id",
+    "position",
+    "velocity",
+    "mass",
+    "density",
+    "pressure",
+    "deviatoric_stress",
+    "preconsolidation_pressure",
+    "volumetric_plastic_strain",
+    "event",
+    "material_id",
+)
+#: Names that files give to quantities, where they are others.
+RENAMED = {"snow": "material_id"}
+
+
+def particle_dataset(values: Mapping[str, Numbers], event: int, time: float) -> xarray.Dataset:
+    """Return quantities of particles as a Dataset.
+
+    Parameters
+    ----------
+    values : of (n,) or (n, 3)
+        Quantities by name, among them ``id``.
+    event
+        The event they belong to.
+    time
+        Time in that event, s.
+
+    Returns
+    -------
+    xarray.Dataset
+        Dimensions ``particle``, whose coordinate are the ids, and ``component``; each variable
+        has its ``units`` and ``long_name`` in `attrs`.
+
+    Raises
+    ------
+    InputError
+        If xarray (extra ``study``) is not installed.
+    """
+    library = require("xarray", "study", "a Dataset of particles")
+    meanings = {name: (unit, meaning) for name, unit, meaning in _core.quantities()}
+    named = {RENAMED.get(name, name): array for name, array in values.items()}
+    dimensions = ("particle", "component")
+    dataset: xarray.Dataset = library.Dataset(
+        {name: (dimensions[: array.ndim], array) for name, array in named.items() if name != "id"},
+        coords={
+            "particle": named["id"],
+            "component": list(AXES),
+            "event_number": event,
+            "time": ((), time, {"units": "s", "long_name": "Time in the event"}),
+        },
+    )
+    for name in dataset.data_vars:
+        unit, meaning = meanings[str(name)]
+        dataset[name].attrs.update(units=unit, long_name=meaning)
+    dataset["particle"].attrs.update(long_name=meanings["id"][1])
+    return dataset

@@ -1,0 +1,292 @@
+"""Reading a results folder: tables as pandas, particles and histories as xarray."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Optional, cast
+
+import numpy as np
+
+import snowshed._core as _core
+from snowshed._core import InputError
+from snowshed.base.extras import require
+from snowshed.base.units import unit_of_column
+from snowshed.io.csv_table import read_csv
+from snowshed.io.film import FILM, Film
+from snowshed.io.input_file import read_input
+from snowshed.io.json_file import read_object
+from snowshed.io.run_files import check_run_file, read_record
+from snowshed.io.vtk.pvd import read_series
+from snowshed.io.vtk.vtp import read_particles
+from snowshed.methods.registry import method_of
+from snowshed.methods.summary import Summary
+from snowshed.results.film import film_dataset, run_film
+from snowshed.results.folder import ENERGY, EVENTS, read_events
+from snowshed.results.grid import grid_dataset, stored_grid
+from snowshed.results.particle_dataset import particle_dataset
+from snowshed.scene.scene import PathLike, ResolvedScene
+from snowshed.snow.stack.measure import StackMeasure
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray
+
+HISTORY = "energy_history.csv"
+
+
+class Results:
+    """The results folder of a run, as `snowshed.run` and ``snowshed run`` write it.
+
+    All methods have particles, a film and, if asked for, energies. What a method has besides is
+    read by the attributes `events` and `stack`, or `summary`, `maps`, `curve` and `forces`; those
+    that the method of the scene does not have raise InputError, which names those that it has.
+
+    Files are read when they are asked for. Every table has a dict of units by column in
+    ``attrs["units"]``, every variable of a Dataset its ``units`` and ``long_name`` in `attrs`. The
+    methods raise InputError where a file is missing, or holds something else.
+
+    Parameters
+    ----------
+    folder
+        The folder; it holds a ``scene.json``.
+
+    Raises
+    ------
+    InputError
+        If it is no results folder.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> from snowshed import Scene, run_events
+    >>> tiny = Scene.preset("lab-50").update({"dimension": 2, "numerics.dx": 0.02})
+    >>> tiny = tiny.update({"events": {"count": 1, "max_time": 0.1}})
+    >>> with TemporaryDirectory() as folder:
+    ...     _ = run_events(tiny, folder, pictures=False)
+    ...     results = Results(folder)
+    ...     results.events.attrs["units"]["height_m"], results.run["status"]
+    ('m', 'finished')
+    """
+
+    def __init__(self, folder: PathLike) -> None:
+        self.folder = Path(folder)
+        if not (self.folder / "scene.json").is_file():
+            raise InputError(f"{folder}: no results; it holds no scene.json")
+
+    @classmethod
+    def of_run(cls, folder: PathLike, scene: ResolvedScene) -> Results:
+        """Return the results of a run that this process has made, whose scene it knows."""
+        results = cls(folder)
+        vars(results)["scene"] = scene
+        return results
+
+    @cached_property
+    def scene(self) -> ResolvedScene:
+        """The complete scene that made the results."""
+        path = self.folder / "scene.json"
+        scene = ResolvedScene.load(path)
+        known = read_record(self.folder).get("scene_checksum")
+        if known and _core.scene_checksum(read_input(path).decode()) != known:
+            raise InputError(f"{path}: damaged: it is not the scene of the run")
+        return scene
+
+    @property
+    def run(self) -> dict[str, object]:
+        """Version, machine, size, speed and status of the run (run.json)."""
+        path = self.folder / "run.json"
+        if not path.is_file():
+            raise InputError(f"{path}: not there; a run writes it with its first checkpoint")
+        return dict(read_object(path))
+
+    @property
+    def events(self) -> pd.DataFrame:
+        """One row per event: the stack after it, and how it went (events.csv)."""
+        if not (self.folder / EVENTS).is_file():
+            self._say_what_there_is()
+        return _with_units(read_events(self.folder))
+
+    @property
+    def outline(self) -> pd.DataFrame:
+        """The profile of the stack after each event: event, x and z, m (outline.csv)."""
+        table = self._numbers("outline.csv", ("event", "x", "z"), "a run that ended an event")
+        table.attrs["units"] = {"x": "m", "z": "m"}
+        return table
+
+    @property
+    def energy(self) -> xarray.Dataset:
+        """The energy balance at the end of each event, J, along ``event`` (energy.csv).
+
+        Needs xarray (extra ``study``).
+        """
+        table = self._numbers(ENERGY, ("event",), "a run with output.energy = true")
+        library = require("xarray", "study", "a Dataset of energies")
+        dataset: xarray.Dataset = library.Dataset.from_dataframe(table.set_index("event"))
+        for name in dataset.data_vars:
+            dataset[name].attrs["units"] = unit_of_column(str(name))
+        return dataset
+
+    @property
+    def energy_history(self) -> pd.DataFrame:
+        """The energy balance over time, J: at least at both ends of events (energy_history.csv)."""
+        columns = ("event", "time_s", "added_j")
+        table = self._numbers(HISTORY, columns, "a run with output.energy = true")
+        table.attrs["units"] = {str(name): unit_of_column(str(name)) for name in table.columns[1:]}
+        return table
+
+    def particles(self, event: Optional[int] = None) -> xarray.Dataset:
+        """Return the particles after an event.
+
+        Parameters
+        ----------
+        event
+            Its number, from 1; None: the last one there is.
+
+        Returns
+        -------
+        xarray.Dataset
+            Dimensions ``particle``, with the ids, and ``component``.
+        """
+        number, file = self._stored(event)
+        return particle_dataset(read_particles(file), number, self._duration(number))
+
+    def grid(self, event: Optional[int] = None) -> xarray.Dataset:
+        """Return mass, velocity and density at the nodes of the grid after an event.
+
+        Computed from the stored particles, of runs by the material point method. With APIC the
+        share of a node in the particles' affine velocities is missing; `Simulation.grid` has it.
+
+        Parameters
+        ----------
+        event
+            Its number, from 1; None: the last one there is.
+
+        Returns
+        -------
+        xarray.Dataset
+            Dimensions x, (y,) z, the nodes, and component.
+        """
+        number, file = self._stored(event)
+        return grid_dataset(stored_grid(self.scene.data, file), number, self._duration(number))
+
+    def _stored(self, event: Optional[int]) -> tuple[int, Path]:
+        """Return the number of an event, the last one by default, and the file after it."""
+        there = {
+            int(file.stem.rpartition("_")[2]): file
+            for file in (self.folder / "particles").glob("event_*.vtp")
+        }
+        if not there:
+            raise InputError(f"{self.folder / 'particles'}: no particles are stored there")
+        number = max(there) if event is None else event
+        if number not in there:
+            allowed = ", ".join(map(str, sorted(there)))
+            raise InputError(f"event: {event!r}; {self.folder / 'particles'} has {allowed}")
+        return number, there[number]
+
+    def _duration(self, event: int) -> float:
+        return float(self.events.set_index("event")["sim_time_s"][event])
+
+    def snapshots(self) -> Iterator[xarray.Dataset]:
+        """Yield the particles of one snapshot after the other, each as `particles` does.
+
+        Their ``time`` counts through all events.
+        """
+        path = self.folder / "snapshots" / "snapshots.pvd"
+        if not path.is_file():
+            raise InputError(f"{path}: not there; a run with output.snapshot_interval writes it")
+        for time, file in read_series(path):
+            values = read_particles(file)
+            yield particle_dataset(values, int(values["event"].max(initial=0)), time)
+
+    @property
+    def stack(self) -> StackMeasure:
+        """The measure of the stack after the last event, from the stored particles."""
+        return cast("StackMeasure", self.result("stack"))
+
+    @property
+    def summary(self) -> Summary:
+        """The figures of a slide or a loading test, as attributes."""
+        return cast("Summary", self.result("summary"))
+
+    @property
+    def maps(self) -> xarray.Dataset:
+        """The maps of a slide at the nodes of its grid: largest values over time, and at the end.
+
+        Needs xarray (extra ``study``).
+        """
+        return cast("xarray.Dataset", self.result("maps"))
+
+    @property
+    def curve(self) -> pd.DataFrame:
+        """The curve of a loading test: strains, stresses, bonds and contacts over time."""
+        return cast("pd.DataFrame", self.result("curve"))
+
+    @property
+    def forces(self) -> pd.DataFrame:
+        """The contacts between grains at the end of a loading test, with their forces, N."""
+        return cast("pd.DataFrame", self.result("forces"))
+
+    def _say_what_there_is(self) -> None:
+        method = method_of(self.scene.data)
+        if "stack" not in method.results:
+            method.read("events", self.folder)
+
+    def result(self, name: str) -> object:
+        """Return what the scene's method leaves under a name, such as "maps"."""
+        found: object = method_of(self.scene.data).read(name, self.folder)
+        return found
+
+    @property
+    def film(self) -> Film:
+        """The recorded film of the run, read frame by frame (film.bin)."""
+        path = self.folder / FILM
+        if not path.is_file():
+            raise InputError(f"{path}: not there; a run with output.film = true writes it")
+        return run_film(path, read_record(self.folder))
+
+    def film_dataset(self, every: int = 1) -> xarray.Dataset:
+        """Return the film, or every `every`-th frame of it, as a Dataset.
+
+        Dimensions ``frame``, ``particle`` and ``component``; ``time`` counts through all events.
+        A position is exact to half a millimetre, and finer where the scene is small.
+        """
+        return film_dataset(self.film, every)
+
+    def _numbers(self, name: str, columns: tuple[str, ...], writer: str) -> pd.DataFrame:
+        """Return a table of finite numbers only."""
+        path = self.folder / name
+        if not path.is_file():
+            raise InputError(f"{path}: not there; {writer} writes it")
+        check_run_file(path)
+        table = read_csv(path)
+        if missing := [column for column in columns if column not in table]:
+            raise InputError(f"{path}: no column {', '.join(missing)}")
+        for column in table if len(table) else ():
+            if table[column].dtype.kind not in "if" or not np.isfinite(table[column]).all():
+                raise InputError(f"{path}: no finite numbers in the column {column}")
+        return table
+
+    def __repr__(self) -> str:
+        return f"Results({str(self.folder)!r})"
+
+
+def _with_units(table: pd.DataFrame) -> pd.DataFrame:
+    units = {str(name): unit_of_column(str(name)) for name in table}
+    table.attrs["units"] = {name: unit for name, unit in units.items() if unit}
+    return table
+
+
+def particle_files(folder: Path, *, snapshots: bool) -> list[Path]:
+    """Return the files of the particles after events, or of the snapshots, one after the other.
+
+    Raises
+    ------
+    InputError
+        If there are none.
+    """
+    where, name = ("snapshots", "snapshot_*.vtp") if snapshots else ("particles", "event_*.vtp")
+    files = sorted((folder / where).glob(name))
+    if not files:
+        raise InputError(f"{folder / where}: no particles; none are stored there")
+    return files

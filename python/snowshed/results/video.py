@@ -1,0 +1,178 @@
+"""A film as a video file, MP4 or GIF, drawn without a screen."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, Optional
+
+import numpy as np
+
+from snowshed._core import InputError
+from snowshed.base.extras import require
+from snowshed.base.messages import suggestion
+from snowshed.base.progress import Progress, Reporter
+from snowshed.io.atomic import replacing
+from snowshed.io.film import Film, FilmFrame
+from snowshed.plot.film_picture import FilmPainter
+from snowshed.plot.film_summary import Colouring, FilmSummary, summarise_film
+from snowshed.results.view import shown_results, view_content
+from snowshed.scene.scene import PathLike
+
+
+def pillow() -> Any:
+    """Return the module of Pillow that reads and writes pictures."""
+    return require("PIL.Image", "video", "a video")
+
+
+RATE = {".mp4": 30.0, ".gif": 12.5}  # pictures per second
+LONGEST = 12.0  # s, unless asked for
+HOLD = 0.6  # s that the end of an event is shown
+DPI = 100
+COLOURS_OF_GIF = 128
+
+
+def write_video(
+    results: PathLike,
+    video: PathLike,
+    *,
+    seconds: Optional[float] = None,
+    width: int = 960,
+    colour: Optional[str] = None,
+    progress: Optional[Reporter] = None,
+) -> Path:
+    """Write the film of a results folder as a video, and return its path.
+
+    Parameters
+    ----------
+    results
+        The folder of a run of any method, or of a season.
+    video
+        The file: .mp4 (needs the extra ``video``) or .gif.
+    seconds
+        How long it is. [default: as long as the snow moves, 12 s at most]
+    width
+        Of its pictures, pixels.
+    colour
+        "event", "material" or a quantity of the film. [default: what the page begins with]
+    progress
+        Called with a `Progress` after every picture.
+
+    Raises
+    ------
+    InputError
+        If there is no film, the kind of video or the colour is not known, or a library is missing;
+        nothing has been drawn then.
+    """
+    file = Path(video)
+    kind = file.suffix.lower()
+    if kind not in RATE:
+        raise InputError(f"{file}: not a kind of video that can be written: .mp4 or .gif")
+    if not 64 <= width <= 4096:
+        raise InputError(f"width: {width}; 64 to 4096 pixels are allowed")
+    if seconds is not None and not 0.1 <= seconds <= 600:
+        raise InputError(f"seconds: {seconds:g}; 0.1 to 600 are allowed")
+    encoder = require("imageio_ffmpeg", "video", "an MP4 video") if kind == ".mp4" else None
+    found = shown_results(results)
+    film = found.film
+    summary = summarise_film(film)
+    colouring = _colouring(summary, colour)
+    content = view_content(found, film)
+    painter = FilmPainter(film, summary, content.solids, content.focus, width=width / DPI)
+    times = _times(film, seconds, RATE[kind])
+    palette = _picture(painter, summary.last, colouring)  # has all colours
+    pictures = _pictures(film, painter, colouring, times, progress)
+    with replacing(file) as beside:
+        if encoder is not None:
+            _write_mp4(encoder, beside, pictures)
+        else:
+            _write_gif(beside, pictures, palette)
+    return file
+
+
+def _colouring(summary: FilmSummary, name: Optional[str]) -> Colouring:
+    if name is None:
+        return summary.colourings[0]
+    known = {one.name: one for one in summary.colourings}
+    if name not in known:
+        raise InputError(f"colour: {name!r} is none of {', '.join(known)}{suggestion(name, known)}")
+    return known[name]
+
+
+def _times(film: Film, seconds: Optional[float], rate: float) -> Sequence[float]:
+    """Return where each picture is among the frames: 2.5 is half way from the third on."""
+    starts = [0.0]
+    for before, after in zip(film.frames, film.frames[1:]):
+        turn = after.event != before.event
+        starts.append(starts[-1] + (0.0 if turn else max(0.0, after.time - before.time)))
+    moving = starts[-1] or 1.0
+    turns = np.cumsum([b.event != a.event for a, b in zip(film.frames, film.frames[1:])])
+    held = np.concatenate([[0.0], turns]) * HOLD
+    length = seconds if seconds is not None else min(LONGEST, moving + held[-1] + HOLD)
+    slower = max(length - held[-1] - HOLD, 0.3 * length) / moving
+    shown = np.array(starts) * slower + held * min(1.0, length / (held[-1] + HOLD))
+    wanted = np.arange(0.0, length, 1.0 / rate)
+    places = np.interp(wanted, shown, np.arange(len(shown)))
+    return list(places.tolist())
+
+
+def _pictures(
+    film: Film,
+    painter: FilmPainter,
+    colouring: Colouring,
+    times: Sequence[float],
+    progress: Optional[Reporter],
+) -> Iterator[Any]:
+    frames = iter(film)
+    number, now = 0, next(frames)
+    after = next(frames, now)
+    for count, place in enumerate(times):
+        while number < int(place):
+            now, after = after, next(frames, after)
+            number += 1
+        yield _picture(painter, _between(now, after, place - number), colouring)
+        if progress is not None:
+            progress(Progress((count + 1) / len(times), count + 1, len(times), "pictures"))
+
+
+def _picture(painter: FilmPainter, frame: FilmFrame, colouring: Colouring) -> Any:
+    file = io.BytesIO()
+    painter.draw(frame, colouring).savefig(file, format="png", dpi=DPI)
+    return pillow().open(file).convert("RGB")
+
+
+def _between(now: FilmFrame, after: FilmFrame, part: float) -> FilmFrame:
+    if now.event != after.event or part <= 0 or not np.array_equal(now.ids, after.ids):
+        return now
+    return replace(now, positions=now.positions + part * (after.positions - now.positions))
+
+
+def _write_gif(file: Path, pictures: Iterator[Any], palette: Any) -> None:
+    """Write a GIF, which the few colours of one picture keep small."""
+    few = palette.quantize(COLOURS_OF_GIF, dither=pillow().Dither.NONE)
+    quantized = (one.quantize(palette=few, dither=pillow().Dither.NONE) for one in pictures)
+    first, others = next(quantized), quantized
+    first.save(
+        file,
+        format="GIF",
+        save_all=True,
+        append_images=others,
+        duration=round(1e3 / RATE[".gif"]),
+        loop=0,
+        optimize=True,
+    )
+
+
+def _write_mp4(encoder: Any, file: Path, pictures: Iterator[Any]) -> None:
+    first = next(pictures)
+    width, height = (side - side % 2 for side in first.size)  # as the encoder needs it
+    stream = encoder.write_frames(
+        str(file), (width, height), fps=RATE[".mp4"], codec="libx264", quality=7,
+        macro_block_size=2, output_params=["-f", "mp4"],
+    )  # fmt: skip
+    stream.send(None)
+    for picture in (first, *pictures):
+        stream.send(np.ascontiguousarray(np.asarray(picture.crop((0, 0, width, height)))))
+    stream.close()

@@ -1,6 +1,0 @@
-"""A self-test of an installation: problems with known answers, solved within seconds."""
-
-from snowshed.run.self_test.check import Check, Result, run_checks
-from snowshed.run.self_test.checks import CHECKS
-
-__all__ = ["CHECKS", "Check", "Result", "run_checks"]

@@ -1,0 +1,281 @@
+"""Settling and sintering of a simulated stack between two slide-offs.
+
+Settling lowers the particles by what the snow below them shortens, and compacts them: the strain
+goes into the volumetric plastic strain, which hardens them as any compaction does. Sintering gives
+back strength to what broke: it lowers the volumetric plastic strain until the yield surface is as
+large as bonds of that age make it, at most as large as it was at first. Elastic stresses stay.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, field, fields
+from typing import Any, NamedTuple, Optional, Union
+
+import numpy as np
+
+import snowshed._core as _core
+from snowshed._core import InputError
+from snowshed.base.arrays import Booleans, Floats
+from snowshed.base.json_values import JsonObject
+from snowshed.base.messages import shortened
+from snowshed.running.ageing.columns import SnowColumns
+from snowshed.scene.resolved import snows_of
+from snowshed.snow.relations.relation import choose
+from snowshed.snow.relations.settling import SETTLING_LAWS, settled_densities
+from snowshed.snow.relations.sintering import SINTERING_LAWS
+
+# Snow that has come apart has a volume that means nothing; the laws were made for snow.
+LIGHTEST = 50.0  # kg/m3
+
+
+class Interval(NamedTuple):
+    """A time at one temperature: s, degrees C."""
+
+    seconds: float
+    temperature: float
+
+
+@dataclass(frozen=True)
+class Ageing:
+    """The ageing of a stack before each event.
+
+    Attributes
+    ----------
+    pauses
+        For events (2 is the second), what time passes before it.
+    settling
+        A name in `SETTLING_LAWS`; None: the stack does not settle.
+    sintering
+        A name in `SINTERING_LAWS`; None: broken bonds stay broken.
+    strength_age
+        Age of bonds, hours, that have the strength of the slab's snow.
+
+    Raises
+    ------
+    InputError
+        If a value is not allowed.
+
+    Examples
+    --------
+    >>> day = Interval(86400.0, -5.0)
+    >>> Ageing({2: [day], 3: [day, day]}, settling="vionnet-2012").hours(3)
+    48.0
+    """
+
+    pauses: Mapping[int, Sequence[Interval]] = field(default_factory=dict)
+    settling: Optional[str] = None
+    sintering: Optional[str] = None
+    strength_age: float = 24.0
+
+    def __post_init__(self) -> None:
+        if self.settling is not None:
+            choose(self.settling, SETTLING_LAWS, "settling")
+        if self.sintering is not None:
+            choose(self.sintering, SINTERING_LAWS, "sintering")
+        if not 0.0 < self.strength_age < np.inf:
+            raise InputError(f"strength age: {self.strength_age} hours; must be positive")
+
+    @classmethod
+    def from_data(cls, data: object, where: str) -> Ageing:
+        """Return the ageing that `data` gave.
+
+        Parameters
+        ----------
+        data
+            JSON data; it may come from anywhere.
+        where
+            What errors say of its place.
+
+        Raises
+        ------
+        InputError
+            If it is not sound.
+
+        Examples
+        --------
+        >>> one = Ageing({2: [Interval(86400.0, -5.0)]}, settling="vionnet-2012")
+        >>> Ageing.from_data(one.data, "ageing") == one
+        True
+        """
+        names = {one.name for one in fields(cls)}
+        if not isinstance(data, dict) or set(data) != names:
+            raise InputError(f"{where}: needed: an object with {', '.join(sorted(names))}")
+        pauses = data["pauses"]
+        if not isinstance(pauses, dict):
+            raise InputError(f"{where}/pauses: not an object")
+        read = {_event(key, where): _intervals(pauses[key], where) for key in pauses}
+        for name in ("settling", "sintering"):
+            if not isinstance(data[name], (str, type(None))):
+                raise InputError(f"{where}/{name}: neither a name nor null")
+        age = data["strength_age"]
+        if not _is_number(age):
+            raise InputError(f"{where}/strength_age: not a number")
+        return cls(read, data["settling"], data["sintering"], float(age))
+
+    @property
+    def data(self) -> JsonObject:
+        """The same in the form of JSON."""
+        data: JsonObject = json.loads(json.dumps(asdict(self)))
+        return data
+
+    def hours(self, event: int) -> float:
+        """Return the time before an event, h."""
+        return sum(interval.seconds for interval in self.pauses.get(event, ())) / 3600.0
+
+    def apply(
+        self, simulation: _core.Simulation, event: int, gravity: float
+    ) -> Optional[dict[str, float]]:
+        """Let the time before an event pass; return its row of ageing.csv, None if there is none.
+
+        Snow that lies on the panel does not age: the next slab is laid on it at once. The gravity
+        of the scene, m/s2, makes the stack settle.
+        """
+        seconds = 3600.0 * self.hours(event)
+        if not seconds or not (self.settling or self.sintering):
+            return None
+        snow = _Snow(simulation, gravity)
+        strains = self._strains(snow, event)
+        drops = np.zeros(len(snow.masses))
+        drops[snow.stack] = snow.columns.drops(strains)
+        compaction = np.zeros(len(snow.masses))
+        compaction[snow.stack] = snow.columns.at_particles(strains)
+        aged = self._sinter(snow, snow.plastic_strains - compaction, seconds)
+        changes = aged - snow.plastic_strains
+        simulation.settle(drops, changes)
+        return {
+            "event": event,
+            "hours": seconds / 3600.0,
+            "temperature_c": self._mean_temperature(event),
+            "crest_sank_m": snow.crest(0.0) - snow.crest(drops),
+            "density_before_kg_m3": snow.mean_density(0.0),
+            "density_kg_m3": snow.mean_density(changes),
+            "intact_before": snow.intact(snow.plastic_strains),
+            "intact": snow.intact(aged),
+        }
+
+    def _strains(self, snow: _Snow, event: int) -> Floats:
+        """Return by how much the nodes of the columns shorten, as logarithms."""
+        nodes = snow.columns
+        if self.settling is None or not snow.yields.any():  # elastic snow has no density to gain
+            return np.zeros(nodes.densities.shape)
+        before = np.maximum(nodes.densities, LIGHTEST)
+        stress, after = nodes.stresses(snow.gravity), before
+        for interval in self.pauses[event]:
+            after = settled_densities(SETTLING_LAWS[self.settling], after, stress, *interval)
+        strains: Floats = np.log(after / before)
+        return strains
+
+    def _sinter(self, snow: _Snow, plastic_strains: Floats, seconds: float) -> Floats:
+        """Return the plastic strains that snow of its strength after sintering has."""
+        if self.sintering is None:
+            return plastic_strains
+        strength = snow.strengths(plastic_strains)
+        age = seconds / (3600.0 * self.strength_age)
+        grown = SINTERING_LAWS[self.sintering].strengthen(strength, age)
+        healed = (grown > strength) & snow.stack
+        return np.where(healed, snow.plastic_strains_of(grown), plastic_strains)
+
+    def _mean_temperature(self, event: int) -> float:
+        seconds, temperatures = np.array(self.pauses[event]).T
+        return float(np.average(temperatures, weights=seconds))
+
+
+def _is_number(value: object) -> bool:
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        return False
+    return abs(value) < np.inf
+
+
+def _event(key: object, where: str) -> int:
+    if not (isinstance(key, str) and key.isdecimal() and key.isascii() and len(key) < 8):
+        raise InputError(f"{where}/pauses: {shortened(str(key))} is no number of an event")
+    return int(key)
+
+
+def _intervals(found: object, where: str) -> list[Interval]:
+    pairs = found if isinstance(found, list) else []
+    sound = [
+        Interval(float(pair[0]), float(pair[1]))
+        for pair in pairs
+        if isinstance(pair, list) and len(pair) == 2 and all(map(_is_number, pair)) and pair[0] >= 0
+    ]
+    if not isinstance(found, list) or len(sound) < len(pairs):
+        raise InputError(f"{where}/pauses: not pairs of seconds and a temperature")
+    return sound
+
+
+class _Snow:
+    """The snow of a simulation between two events, with its hardening law (1.1.42)."""
+
+    def __init__(self, simulation: _core.Simulation, gravity: float) -> None:
+        self.gravity = gravity
+        self.masses = simulation.masses()
+        self.plastic_strains = simulation.plastic_strains()
+        self.positions, densities = simulation.positions(), simulation.densities()
+        self.stack: Booleans = ~simulation.on_panel()
+        self.columns = SnowColumns(
+            self.positions[self.stack],
+            self.masses[self.stack],
+            densities[self.stack],
+            simulation.dimension,
+            simulation.resolution,
+        )
+        snows = snows_of(simulation)
+        self._kinds = simulation.material_ids()
+        self._laws = [_law(snow) for snow in snows]
+        self._p0 = np.array([snow["preconsolidation_pressure"] for snow in snows])[self._kinds]
+        self.yields = np.array([law is not None for law in self._laws])[self._kinds]
+        self._densities = densities
+
+    def strengths(self, plastic_strains: Floats) -> Floats:
+        """Return p0 over that of undisturbed snow; 1 for snow that does not yield."""
+        strengths = np.ones(len(plastic_strains))
+        for law, own in self._kinds_that_yield():
+            strengths[own] = law.preconsolidation(plastic_strains[own]) / self._p0[own]
+        return strengths
+
+    def plastic_strains_of(self, strengths: Floats) -> Floats:
+        """Return the volumetric plastic strains at which snow has strengths, as `strengths`."""
+        strains = self.plastic_strains.copy()
+        for law, own in self._kinds_that_yield():
+            strains[own] = law.initial_plastic_strain(strengths[own] * self._p0[own])
+        return strains
+
+    def _kinds_that_yield(self) -> Iterator[tuple[_core.CamClay, Booleans]]:
+        for kind, law in enumerate(self._laws):
+            if law is not None:
+                yield law, self._kinds == kind
+
+    def intact(self, plastic_strains: Floats) -> float:
+        """Return the mean strength of the stack, nothing counting more than undisturbed snow."""
+        if not self.stack.any():
+            return 1.0
+        strength = np.minimum(self.strengths(plastic_strains), 1.0)
+        return float(np.average(strength[self.stack], weights=self.masses[self.stack]))
+
+    def mean_density(self, plastic_changes: Union[Floats, float]) -> float:
+        """Return the mean density of the stack, its mass over its volume, once it has changed."""
+        masses = self.masses[self.stack]
+        volumes = self.masses / self._densities * np.exp(plastic_changes)
+        volume = float(volumes[self.stack].sum())
+        return float(masses.sum()) / volume if volume else 0.0
+
+    def crest(self, drops: Union[Floats, float]) -> float:
+        """Return the height of the highest particle of the stack once they have sunk, m."""
+        heights = (self.positions[:, 2] - drops)[self.stack]
+        return float(heights.max()) if len(heights) else 0.0
+
+
+def _law(snow: Mapping[str, Any]) -> Optional[_core.CamClay]:
+    """Return the law of snow that yields."""
+    if snow["model"] != "cam_clay":
+        return None
+    return _core.CamClay(
+        snow["youngs_modulus"],
+        snow["poissons_ratio"],
+        snow["critical_state_slope"],
+        snow["cohesion"],
+        snow["hardening_factor"],
+    )

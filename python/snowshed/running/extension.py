@@ -1,0 +1,202 @@
+"""A finished run that goes on in a new folder: with more events, or other snow from now on."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Optional
+
+import snowshed._core as _core
+from snowshed._core import InputError
+from snowshed.base.progress import Reporter
+from snowshed.io.atomic import replacing_folder
+from snowshed.io.folders import check_empty
+from snowshed.io.json_file import read_object
+from snowshed.methods.registry import method_of
+from snowshed.results.folder import RunFolder
+from snowshed.running.ageing import Ageing
+from snowshed.running.run import run_events
+from snowshed.scene.components import Snow
+from snowshed.scene.scene import PathLike, ResolvedScene
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+#: What a run has written that the new run goes on from.
+CONTINUED = (
+    *("run.json", "events.csv", "outline.csv", "conversions.csv", "ageing.csv", "ageing.json"),
+    *("energy.csv", "film.bin", "particles.pvd", "particles", "snapshots"),
+)
+
+
+def extend_run(
+    results: PathLike,
+    out_dir: PathLike,
+    events: int,
+    *,
+    snow: Optional[Snow] = None,
+    thickness: Optional[float] = None,
+    progress: Optional[Reporter] = None,
+    pictures: bool = True,
+) -> pd.DataFrame:
+    """Let more slabs slide off after a finished run, into a new results folder.
+
+    The results of the finished run stay as they are. Where the slabs are the same, the new folder
+    holds what a run with so many events from the start would have written, bit for bit.
+
+    Parameters
+    ----------
+    results
+        The folder of the finished run.
+    out_dir
+        The new folder; new or empty.
+    events
+        How many events follow.
+    snow
+        Of the slabs of these events. [default: as before]
+    thickness
+        Of the slabs of these events, m. [default: as before]
+    progress
+        Called with a `Progress` about twice a second.
+    pictures
+        Whether to draw the pictures at the end.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row per event, also of those before.
+
+    Raises
+    ------
+    InputError
+        If the run is not finished, its method has no further events, or an argument is not
+        allowed; nothing has been written then.
+    SimulationError
+        If the simulation cannot go on; a checkpoint holds its last good state.
+    Interrupted
+        After Ctrl-C; the new folder is resumed as any other.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> from snowshed import Scene, run_events
+    >>> tiny = Scene.preset("lab-50").update({"dimension": 2, "numerics.dx": 0.02})
+    >>> tiny = tiny.update({"events": {"count": 1, "max_time": 0.1}})
+    >>> with TemporaryDirectory() as folder:
+    ...     _ = run_events(tiny, folder + "/one", pictures=False)
+    ...     table = extend_run(folder + "/one", folder + "/two", 1, pictures=False)
+    >>> table.event.tolist()
+    [1, 2]
+    """
+    earlier = RunFolder(results)
+    if not earlier.scene.is_file() or not earlier.checkpoint.is_file():
+        raise InputError(f"{results}: no results that go on; it holds no scene or no checkpoint")
+    scene = ResolvedScene.load(earlier.scene)
+    status = earlier.read_run().get("status")
+    if status != "finished":
+        raise InputError(
+            f"{results}: not finished ({status}); first go on with: snowshed run "
+            f"{earlier.scene} -o {results} --resume"
+        )
+    longer = extended_scene(scene, events, snow=snow, thickness=thickness)
+    check_empty(out_dir)
+    ageing = read_object(earlier.ageing) if earlier.ageing.is_file() else None
+    _prepare(earlier, longer, Path(out_dir))
+    return run_events(
+        longer,
+        out_dir,
+        resume=True,
+        ageing=None if ageing is None else Ageing.from_data(ageing, str(earlier.ageing)),
+        progress=progress,
+        pictures=pictures,
+    )
+
+
+def extended_scene(
+    scene: ResolvedScene,
+    events: int,
+    *,
+    snow: Optional[Snow] = None,
+    thickness: Optional[float] = None,
+) -> ResolvedScene:
+    """Return a scene with more events, which may lay other slabs.
+
+    Raises
+    ------
+    InputError
+        If its method has no further events, it has no slab to change, or a value is not allowed.
+
+    Examples
+    --------
+    >>> from snowshed import Scene
+    >>> lab = Scene.preset("lab-50").set("events.count", 2).resolve()
+    >>> layers = extended_scene(lab, 1, thickness=0.03).data["slab"]["layers"]
+    >>> [(layer["event"], layer["thickness"]) for layer in layers]
+    [(1, 0.02), (2, 0.02), (3, 0.03)]
+    """
+    data: dict[str, Any] = scene.copied_data()
+    method = method_of(data)
+    if "stack" not in method.results:
+        raise InputError(f'/method: "{method.name}" has one event; no other can follow')
+    if isinstance(events, bool) or not isinstance(events, int) or events < 1:
+        raise InputError(f"events: {events!r}; a whole number from 1 is needed")
+    done = data["events"]["count"]
+    changes: dict[str, Any] = {}
+    if snow is not None:
+        changes["snow"] = snow.to_data()
+    if thickness is not None:
+        changes["thickness"] = thickness
+    if changes and not data.get("slab"):
+        raise InputError("/slab: the scene has none, whose snow or thickness could change")
+    if snow is not None and "snow" not in data:
+        raise InputError("/snow: the snow of this method is the same in all events")
+    if data.get("slab"):
+        _change_slab(data["slab"], done, done + events, changes)
+    data["events"]["count"] = done + events
+    return ResolvedScene.from_data(data, scene.base_dir)
+
+
+def _change_slab(slab: dict[str, Any], done: int, last: int, changes: Mapping[str, Any]) -> None:
+    """Lay the slab as it was in the events that are done, and as it is to be in those after.
+
+    A slab that is the same in all events stays as it is. Where every layer is of one event, as
+    after an earlier change, those of the last one are laid again.
+    """
+    layers = slab["layers"] or [{"thickness": slab["thickness"], "event": 0}]
+    always = [layer for layer in layers if not layer.get("event")]
+    if always and not changes:
+        return
+    repeated = always or [layer for layer in layers if layer.get("event") == done]
+    if "thickness" in changes and len(repeated) > 1:
+        raise InputError("/slab/layers: several; a thickness can be given where there is one")
+    before = [
+        {**layer, "event": event}
+        for event in range(1, done + 1)
+        for layer in layers
+        if layer.get("event", 0) in (0, event)
+    ]
+    after = [
+        {**layer, **changes, "event": event}
+        for event in range(done + 1, last + 1)
+        for layer in repeated
+    ]
+    slab["layers"] = before + after
+    slab["thickness"] = 0.0  # that of the layers
+
+
+def _prepare(earlier: RunFolder, scene: ResolvedScene, out_dir: Path) -> None:
+    """Make the new folder, whole or not at all, as if its run had come as far as the earlier."""
+    simulation = _core.Simulation.load_into(
+        scene.core, scene.base_dir, os.fspath(earlier.checkpoint)
+    )
+    with replacing_folder(out_dir) as beside:
+        for name in CONTINUED:
+            there = earlier.folder / name
+            if there.is_dir():
+                shutil.copytree(there, beside / name)
+            elif there.exists():
+                shutil.copyfile(there, beside / name)
+        simulation.save(os.fspath(beside / "checkpoint.bin"))
+        scene.save(beside / "scene.json")

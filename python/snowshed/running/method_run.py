@@ -1,0 +1,137 @@
+"""What a method does while one of its scenes is run, and what a table says of it afterwards."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar, Optional, Union
+
+import snowshed._core as _core
+from snowshed.io.csv_table import Table
+from snowshed.results.energies import draw_energies, write_energy_history
+from snowshed.results.folder import ENERGY, RunFolder
+from snowshed.results.reader import HISTORY, Results
+from snowshed.running.sequence import seal_files
+from snowshed.scene.resolved import ResolvedScene
+
+if TYPE_CHECKING:
+    from snowshed.running.ageing import Ageing
+
+Cell = Union[int, float, str, None]
+
+
+@dataclass(frozen=True)
+class RunOptions:
+    """How a scene is run into its folder; see `snowshed.run`."""
+
+    resume: bool = False
+    ageing: Optional[Ageing] = None
+    pictures: bool = True
+    compact: bool = False
+
+
+class MethodRun:
+    """A run of a scene; a method's own is a subclass, which overrides what it needs.
+
+    The methods are called in the order in which they stand here; those from `between_events` to
+    `before_checkpoint` for each event.
+
+    Parameters
+    ----------
+    sequence
+        The core's sequence of events.
+    scene, folder, options
+        What is run, into which results folder, and how.
+
+    Attributes
+    ----------
+    UNIT
+        What progress counts.
+    COLUMNS
+        What a table holds of each event besides ``event`` and ``wall_s``, with int, float or str.
+    """
+
+    UNIT: ClassVar[str] = "events"
+    COLUMNS: ClassVar[Mapping[str, type]] = {"steps": int, "sim_time_s": float, "ended": str}
+
+    def __init__(
+        self,
+        sequence: _core.EventSequence,
+        scene: ResolvedScene,
+        folder: Path,
+        options: RunOptions,
+    ) -> None:
+        self.sequence, self.simulation = sequence, sequence.simulation
+        self.scene, self.folder, self.options = scene, folder, options
+        self.keeps_energy = bool(scene.data["output"]["energy"])
+
+    def begin(self) -> None:
+        """Prepare the folder, before the first step or the first one after a pause."""
+
+    def between_events(self) -> None:
+        """Change the snow between two events."""
+
+    def event_begun(self, reseeding: Optional[dict[str, Any]]) -> None:
+        """Take note of an event that begins; `reseeding` says what became of the stack before."""
+
+    def doing(self, time_s: float) -> str:
+        """Return what is being computed at a time of the event, for those who wait."""
+        return f"{time_s:.2f} s of event {self.simulation.event}"
+
+    def progress(self) -> None:
+        """Do what is due about twice a second."""
+
+    def event_ended(self, facts: Mapping[str, Any]) -> None:
+        """Write what an event came to."""
+
+    def before_checkpoint(self) -> None:
+        """Write what a run that goes on from the checkpoint must find."""
+
+    def interrupted(self) -> None:
+        """Write what the run has so far; it stops."""
+
+    def finish(self) -> None:
+        """Write what the run came to, once all events have ended."""
+
+    def draw(self) -> None:
+        """Draw the pictures."""
+
+    def write_energies(self, facts: Mapping[str, Any], *, history: bool = True) -> None:
+        """Write the energy balance of a run with one event: at its end, and over time."""
+        if not self.keeps_energy:
+            return
+        energies = Table(self.folder / ENERGY)
+        energies.keep_through(0)  # a finished run may be resumed, too
+        energies.add([{"event": 1, **facts["energy"]}])
+        if history:
+            write_energy_history(self.simulation, self.folder)
+        seal_files(self.sequence, self.folder, ENERGY, *([HISTORY] if history else []))
+
+    def draw_energies(self) -> None:
+        """Draw the energies over time, if they are kept."""
+        if self.keeps_energy:
+            draw_energies(Results.of_run(self.folder, self.scene))
+
+    @classmethod
+    def rows(cls, folder: Path) -> list[dict[str, Cell]]:
+        """Return a row for each event that has ended: ``event``, ``wall_s`` and `COLUMNS`."""
+        finished = RunFolder(folder).read_run().get("finished_events", ())
+        return [
+            {name: facts[name] for name in ("event", "wall_s", *cls.COLUMNS)} for facts in finished
+        ]
+
+    @classmethod
+    def packed(cls, folder: Path) -> Iterable[tuple[int, bytes]]:
+        """Yield each event with what a study keeps of it, so that it can be evaluated anew."""
+        return ()
+
+
+def summary_rows(folder: Path, summary: type[Any]) -> list[dict[str, Cell]]:
+    """Return the row of a run with one event, whose figures stand in a `Summary`."""
+    if not (folder / summary.FILE).is_file():
+        return []
+    found = summary.read(folder)
+    (event,) = RunFolder(folder).read_run()["finished_events"]
+    figures = {name: getattr(found, name) for name in summary.columns()}
+    return [{"event": 1, "wall_s": event["wall_s"], "steps": event["steps"], **figures}]

@@ -1,0 +1,211 @@
+"""Running a scene of any method into a results folder.
+
+The core runs the events and keeps the results folder. What the scene's method measures, writes and
+draws is done by its `MethodRun`, which the one observer here calls while the core runs.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Optional
+
+import snowshed._core as _core
+from snowshed.base.interrupt import Interrupted, InterruptRequest, deferred_interrupts
+from snowshed.base.machine import machine_facts
+from snowshed.base.notes import tell
+from snowshed.base.progress import Progress, Reporter
+from snowshed.methods.registry import method_of
+from snowshed.results.reader import Results
+from snowshed.running.ageing import Ageing
+from snowshed.running.method_run import MethodRun, RunOptions
+from snowshed.running.sequence import open_sequence, run_sequence
+from snowshed.scene.scene import PathLike, SceneLike, resolve_scene
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+def run(
+    scene: SceneLike,
+    folder: PathLike,
+    *,
+    resume: bool = False,
+    ageing: Optional[Ageing] = None,
+    progress: Optional[Reporter] = None,
+    pictures: bool = True,
+    compact: bool = False,
+) -> Results:
+    """Simulate a scene of any method, and write a results folder.
+
+    Parameters
+    ----------
+    scene
+        What to simulate: a scene, its JSON data, or the path of a scene file.
+    folder
+        The results folder (see ``snowshed.results.folder``); new or empty, unless resuming.
+    resume
+        Go on from the checkpoint in `folder`, which ``snowshed-run`` may have written too; the
+        particles are those of an uninterrupted run. Events that are missing in the tables are
+        measured from their stored particles, in single precision.
+    ageing
+        What time does to a stack between the events; None: nothing. The same when resuming.
+    progress
+        Called with a `Progress` about twice a second.
+    pictures
+        Whether to draw the pictures and pages of the method at the end.
+    compact
+        Whether to leave out large files that can be had from smaller ones, as a study of many runs
+        does: of a slide, ``peaks.npz`` in place of the rasters.
+
+    Returns
+    -------
+    Results
+        The results folder.
+
+    Raises
+    ------
+    InputError
+        If the scene is wrong, the folder is not empty, there is nothing to resume, or the method
+        has no stack that could age; nothing has been written then.
+    SimulationError
+        If the simulation cannot go on; a checkpoint holds its last good state.
+    Interrupted
+        After Ctrl-C; a checkpoint holds the state to resume from.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> from snowshed import Scene
+    >>> tiny = Scene.preset("lab-50").update({"dimension": 2, "numerics.dx": 0.02})
+    >>> tiny = tiny.update({"events": {"count": 1, "max_time": 0.1}})
+    >>> with TemporaryDirectory() as folder:
+    ...     results = run(tiny, folder, pictures=False)
+    ...     results.events.event.tolist()
+    [1]
+    """
+    ready = resolve_scene(scene)
+    method = method_of(ready.data)
+    if ageing is not None and not method.ages:
+        raise _core.InputError(f'ageing: the snow of the method "{method.name}" does not age')
+    if ageing is not None and ready.data["events"]["between"] != "carry":
+        raise _core.InputError('/events/between: "reseed" makes new snow of one that ages')
+    options = RunOptions(resume, ageing, pictures, compact)
+    sequence = open_sequence(ready, folder, resume=resume)
+    with sequence, deferred_interrupts() as interrupt:
+        own: MethodRun = method.run_class()(sequence, ready, Path(folder), options)
+        own.begin()
+        sequence.describe_machine(machine_facts())
+        try:
+            run_sequence(sequence, _Observer(own, interrupt, progress), ready, folder)
+        except Interrupted:
+            own.interrupted()
+            raise
+        own.finish()
+    if pictures:
+        own.draw()
+    return Results.of_run(folder, ready)
+
+
+def run_events(
+    scene: SceneLike,
+    folder: PathLike,
+    *,
+    resume: bool = False,
+    ageing: Optional[Ageing] = None,
+    progress: Optional[Reporter] = None,
+    pictures: bool = True,
+) -> pd.DataFrame:
+    """Let slab after slab slide off, and return the measures of the stack after each event.
+
+    This is `run`, whose parameters and errors it has, with the table of events in place of the
+    whole results.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row per event, as in ``events.csv``.
+
+    Raises
+    ------
+    InputError
+        Also if the snow of the scene's method makes no stack.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> from snowshed import Scene
+    >>> tiny = Scene.preset("lab-50").update({"dimension": 2, "numerics.dx": 0.02})
+    >>> tiny = tiny.update({"events": {"count": 1, "max_time": 0.1}})
+    >>> with TemporaryDirectory() as folder:
+    ...     table = run_events(tiny, folder, pictures=False)
+    >>> table.event.tolist()
+    [1]
+    """
+    ready = resolve_scene(scene)
+    method = method_of(ready.data)
+    if "stack" not in method.results:
+        raise _core.InputError(
+            f'/method: the snow of "{method.name}" makes no stack; use snowshed.run'
+        )
+    options: dict[str, Any] = {"resume": resume, "ageing": ageing, "pictures": pictures}
+    return run(ready, folder, progress=progress, **options).events
+
+
+class _Observer:
+    """Is told by the core's loop how the run goes on, and tells the method and those who wait."""
+
+    def __init__(
+        self, own: MethodRun, interrupt: InterruptRequest, report: Optional[Reporter]
+    ) -> None:
+        self.own = own
+        self.interrupt = interrupt
+        self.report = report
+
+    def between_events(self) -> None:
+        """Let the method change the snow between two events."""
+        self.own.between_events()
+
+    def event_begun(self, reseeding: Optional[dict[str, Any]]) -> None:
+        """Tell of an event that begins, or goes on after a pause."""
+        self.own.event_begun(reseeding)
+        self._tell(self.own.simulation.time_s, 0.0)
+
+    def noted(self, note: str) -> None:
+        """Say what the core notes, which is in run.json already."""
+        tell(note)
+
+    def progress(self, report: dict[str, Any]) -> None:
+        """Tell how far the event has come."""
+        self.own.progress()
+        self._tell(report["time_s"], report["progress"], report["updates_per_s"])
+
+    def event_ended(self, facts: dict[str, Any]) -> None:
+        """Let the method write what the event came to."""
+        self.own.event_ended(facts)
+        self._tell(facts["sim_time_s"], 1.0)
+
+    def before_checkpoint(self) -> None:
+        """Let the method write what the checkpoint is to find."""
+        self.own.before_checkpoint()
+
+    def stop_requested(self) -> bool:
+        """Return whether to stop at the next safe point."""
+        return self.interrupt.requested
+
+    def _tell(self, time_s: float, fraction: float, updates_per_s: float = 0.0) -> None:
+        """Report where the run is; `fraction` is the part of the event that is done."""
+        if self.report is None:
+            return
+        event, count = self.own.simulation.event, self.own.simulation.event_count
+        self.report(
+            Progress(
+                (event - 1 + fraction) / count,
+                event - 1 + int(fraction == 1.0),
+                count,
+                self.own.UNIT,
+                self.own.doing(time_s),
+                event=event,
+                time=time_s,
+                updates_per_s=updates_per_s,
+            )
+        )

@@ -1,0 +1,129 @@
+"""What is odd about a scene, told before it runs and after."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, Optional
+
+import snowshed._core as _core
+from snowshed.methods.registry import method_of, resolution_of
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from snowshed.scene.scene import ResolvedScene
+
+FEW = 2.0  # cells; a thinner slab is coarse
+ALL_STAYS = 0.98  # of the snow
+MOST_SEEDED = 100_000  # particles; these take two seconds
+#: What snow can land on besides a panel.
+FLOORS = ("ground", "obstacles", "domain")
+
+
+def notes_before(scene: Mapping[str, Any]) -> list[str]:
+    """Return what a run of a scene should be warned of, a sentence each.
+
+    Parameters
+    ----------
+    scene
+        Complete scene data.
+
+    Examples
+    --------
+    >>> from snowshed.scene.scene import Scene
+    >>> coarse = Scene.preset("lab-50").update({"numerics.dx": 0.1, "dimension": 2})
+    >>> notes_before(coarse.resolve().data)
+    ['the slab is 20 mm thick, less than two cells of 100 mm: its stack is coarse; try dx = 0.01 m']
+    """
+    method = method_of(scene)
+    if "stack" not in method.results:
+        return []
+    found = []
+    if not any(scene.get(part) for part in FLOORS):
+        found.append(
+            "the scene has no ground, no domain and no obstacles: snow falls for as long as "
+            "events.max_time; add ground"
+        )
+    size = resolution_of(scene)
+    thickness = _slab_thickness(scene)
+    if thickness is not None and thickness < FEW * size:
+        found.append(
+            f"the slab is {1000 * thickness:.3g} mm thick, less than two "
+            f"{method.settings.ELEMENTS} of {1000 * size:.3g} mm: its stack is coarse; try "
+            f"{method.settings.RESOLUTION} = {thickness / FEW:.2g} m"
+        )
+    return found
+
+
+def notes_of_beginning(scene: ResolvedScene) -> list[str]:
+    """Return what a run of a scene notes until its first step; its first snow is laid for that.
+
+    Parameters
+    ----------
+    scene
+        The scene. Of more than `MOST_SEEDED` particles none are laid.
+
+    Raises
+    ------
+    InputError
+        If a run would be refused.
+
+    Examples
+    --------
+    >>> from snowshed.scene.scene import Scene
+    >>> notes_of_beginning(Scene.preset("lab-50").set("dimension", 2).resolve())
+    []
+    """
+    found = notes_before(scene.data)
+    simulation = _core.Simulation(scene.core, scene.base_dir)
+    if simulation.expected_particles > MOST_SEEDED:
+        found.append(
+            f"with more than {MOST_SEEDED} particles, whether snow lies in obstacles or in other "
+            "snow is looked at when the scene is run"
+        )
+    else:
+        simulation.begin_event()
+    found += simulation.notes
+    return found
+
+
+def _slab_thickness(scene: Mapping[str, Any]) -> Optional[float]:
+    """Return the thickness of a slab that is the same in all events, m; None without one."""
+    slab = scene.get("slab")
+    layers = slab["layers"] if slab else []
+    if not slab or any(layer["event"] for layer in layers):
+        return None
+    return float(slab["thickness"] or sum(layer["thickness"] for layer in layers))
+
+
+def notes_after(table: pd.DataFrame, scene: Mapping[str, Any]) -> list[str]:
+    """Return what the table of events should be read with, a sentence each.
+
+    Parameters
+    ----------
+    table
+        As in events.csv.
+    scene
+        Complete scene data.
+
+    Examples
+    --------
+    >>> import pandas as pd
+    >>> notes_after(pd.DataFrame({"mass_kg": [0.0], "on_panel_kg": [2.0]}), {"panel": {}})
+    ['nothing slid: the snow stays on the panel; there is no stack to measure']
+    """
+    last = table.iloc[-1]
+    held = last["on_panel_kg"] + last.get("on_structures_kg", 0.0)
+    if held <= 0.0:
+        return []
+    holders = [("the panel", "panel" in scene), ("structures", bool(scene.get("obstacles")))]
+    where = " or on ".join(name for name, given in holders if given)
+    slides = "slid" if "panel" in scene else "fell"
+    part = held / (held + last["mass_kg"])
+    if last["mass_kg"] == 0.0:
+        return [f"nothing {slides}: the snow stays on {where}; there is no stack to measure"]
+    if part >= ALL_STAYS:
+        return [f"next to nothing {slides}: {100 * part:.1f} % of the snow stays on {where}"]
+    if part >= 1.0 - ALL_STAYS:
+        return [f"{100 * part:.0f} % of the snow stays on {where}"]
+    return []

@@ -1,0 +1,83 @@
+"""The core's sequence of events in a results folder: opened, and run to its end.
+
+Notes (`snowshed.base.notes`) that readers of the results need are given here and written into
+run.json, so that every caller sees the same.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import snowshed._core as _core
+from snowshed.base.interrupt import Interrupted
+from snowshed.base.notes import tell
+from snowshed.base.paths import utf8_path
+from snowshed.io.run_files import file_mark
+from snowshed.running.scene_notes import notes_before
+from snowshed.scene.scene import PathLike, ResolvedScene
+
+REPORT_INTERVAL = 0.5  # s of wall time between progress reports
+
+
+def open_sequence(scene: ResolvedScene, folder: PathLike, *, resume: bool) -> _core.EventSequence:
+    """Return the sequence of a scene's events in a folder that is new, empty or to be resumed.
+
+    Raises
+    ------
+    InputError
+        If the scene is wrong, the folder is not empty, or there is nothing to resume.
+    """
+    open_folder = _core.EventSequence.resume if resume else _core.EventSequence.create
+    return open_folder(scene.core, scene.base_dir, utf8_path(folder))
+
+
+def seal_files(sequence: _core.EventSequence, folder: PathLike, *names: str) -> None:
+    """Let run.json, when it is written next, say the checksums of files in the results folder."""
+    marks = {name: file_mark(Path(folder) / name) for name in names}
+    sequence.files = {**sequence.files, **marks}
+
+
+def say_note(sequence: _core.EventSequence, note: str) -> None:
+    """Say a note on a run and keep it for run.json, which has it once."""
+    sequence.add_note(note)
+    tell(note)
+
+
+@contextmanager
+def telling(core: _core.Simulation) -> Iterator[None]:
+    """Say what a simulation notes within the block."""
+    said = len(core.notes)
+    yield
+    for note in core.notes[said:]:
+        tell(note)
+
+
+def run_sequence(
+    sequence: _core.EventSequence,
+    observer: _core.EventObserver,
+    scene: ResolvedScene,
+    folder: PathLike,
+) -> None:
+    """Run the events that are left; a failure is written down in the folder.
+
+    The observer is told of the progress about twice a second. What is odd about the scene is said
+    first.
+
+    Raises
+    ------
+    SimulationError, InputError
+        If the simulation cannot go on.
+    Interrupted
+        If the observer asked for a stop; a checkpoint holds the state to resume from.
+    """
+    for note in notes_before(scene.data):
+        say_note(sequence, note)
+    try:
+        finished = sequence.run(observer, REPORT_INTERVAL)
+    except (_core.SimulationError, _core.InputError) as error:
+        sequence.record_failure(str(error))
+        raise
+    if not finished:
+        raise Interrupted(Path(folder))

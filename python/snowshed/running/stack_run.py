@@ -1,0 +1,200 @@
+"""Runs whose snow makes a stack (thesis 3.1.1): slab after slab slides off onto what lies there.
+
+Each event runs until the snow rests: slower than ``events.rest_speed`` (root mean square, as the
+core defines it) for ``events.rest_time``, or until ``events.max_time``, and the table says which.
+Between events the particles carry over with their state (``carry``), or the stack is turned into a
+solid and seeded afresh at rest (``reseed``, as in the thesis). Reseeding also makes the bonds in
+the stack whole again, and gives it n times the slab's volume; conversions.csv says how far that
+moved mass, height, length and outline. What time does to a stack that is carried over
+(``snowshed.running.ageing``) is left out unless asked for.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any, ClassVar, Optional
+
+import snowshed._core as _core
+from snowshed.base.arrays import Booleans, Floats
+from snowshed.base.notes import caller_level
+from snowshed.io.vtk.vtp import read_particles
+from snowshed.results.energies import write_energy_history
+from snowshed.results.event_particles import read_event_particles
+from snowshed.results.folder import (
+    EVENT_COLUMNS,
+    WORDS,
+    RunFolder,
+    measured_columns,
+    parse_events,
+    read_events,
+)
+from snowshed.results.reader import HISTORY
+from snowshed.results.solids_file import write_solids
+from snowshed.running.conversion import conversion_row
+from snowshed.running.method_run import Cell, MethodRun
+from snowshed.running.scene_notes import notes_after
+from snowshed.running.sequence import say_note, seal_files
+from snowshed.snow.stack.measure import StackMeasure
+from snowshed.snow.stack.particles import measure_particles
+
+LARGEST_RESIDUAL = 0.01  # of the largest energy
+#: Columns of events.csv that say which event a row is of, and how long its computing took.
+ROW_KEYS = ("event", "wall_s")
+KINDS: Mapping[str, type] = {**dict.fromkeys(WORDS, str), "event": int, "steps": int}
+
+
+class StackRun(MethodRun):
+    """Measures the stack after each event, and fills the tables of the results folder."""
+
+    COLUMNS: ClassVar[Mapping[str, type]] = {
+        name: KINDS.get(name, float) for name in EVENT_COLUMNS if name not in ROW_KEYS
+    }
+
+    def begin(self) -> None:
+        """Write down how the stack ages, or cut the tables to the checkpoint and check them."""
+        self.results = RunFolder(self.folder)
+        self.stack: Optional[StackMeasure] = None
+        ageing = self.options.ageing
+        told = None if ageing is None else ageing.data
+        if self.options.resume:
+            self._continue_tables(told)
+        elif told is not None:
+            self.results.write_ageing(told)
+        self._fill_in(self.sequence.finished_events)
+
+    def _continue_tables(self, ageing: Optional[dict[str, Any]]) -> None:
+        event, results = self.simulation.event, self.results
+        if ageing is not None and event == 0 and not results.ageing.exists():
+            results.write_ageing(ageing)  # the run was killed before it was written
+        results.check(ageing)
+        results.keep_through(event, running=self.simulation.event_running)
+        results.check_rows(self.sequence.tables, event)
+        events = results.events
+        if events.rows and not self.sequence.finished_events:  # of the version before
+            self.sequence.count_from(int(events.total("steps")), events.total("wall_s"))
+
+    def _fill_in(self, finished: list[dict[str, Any]]) -> None:
+        """Measure the events that the tables lack from their stored particles."""
+        facts_of = {facts["event"]: facts for facts in finished}
+        for event in self.results.missing_events(
+            self.simulation.event - self.simulation.event_running
+        ):
+            if event not in facts_of:
+                raise _core.InputError(
+                    f"{self.results.run}: does not tell how event {event} went, for the version "
+                    "before did not write it; go on with: snowshed-run"
+                )
+            facts = facts_of[event]
+            particles = read_particles(self.results.particles_of(event))
+            positions = particles["position"].astype(float)
+            on_panel = self.simulation.on_panel_at(positions, facts["laid_height_m"])
+            masses, density = (particles[name].astype(float) for name in ("mass", "density"))
+            self._record(facts, self._measure_of(positions, masses, density, on_panel))
+        self._note_tables()
+
+    def between_events(self) -> None:
+        """Let the time since the last event pass."""
+        if self.options.ageing is None:
+            return
+        gravity = float(self.scene.data["gravity"])
+        row = self.options.ageing.apply(self.simulation, self.simulation.event + 1, gravity)
+        if row is not None:
+            self.results.ageings.add([row])
+
+    def event_begun(self, reseeding: Optional[dict[str, Any]]) -> None:
+        """Write down how far reseeding moved the stack."""
+        if reseeding is not None:
+            row = conversion_row(self.simulation.event, reseeding, self._measure_of)
+            self.results.conversions.add([row])
+
+    def event_ended(self, facts: Mapping[str, Any]) -> None:
+        """Measure the stack as it is in memory."""
+        self.stack = self._measure()
+        self._record(facts, self.stack)
+        _warn_of_residual(facts)
+        if facts["event"] == self.simulation.event_count:
+            for note in notes_after(parse_events(self.results.events.path), self.scene.data):
+                say_note(self.sequence, note)
+
+    def before_checkpoint(self) -> None:
+        """Note the checksums of the tables, which are cut to the checkpoint when a run goes on.
+
+        The energies over time are in the checkpoint, and written again when it goes on.
+        """
+        if self.keeps_energy:
+            self._write_history()
+        self._note_tables()
+
+    def finish(self) -> None:
+        """Write the energies over time again: `snowshed-run` does not."""
+        if self.keeps_energy:
+            self._write_history()
+            self.sequence.rewrite_record()
+
+    def draw(self) -> None:
+        """Draw the stack as it is now, its growth and the energies, and write the solids."""
+        from snowshed.plot.figure_style import save
+        from snowshed.plot.stack_figures import growth_figure, stack_figure
+
+        write_solids(self.scene, self.simulation.positions(), self.folder)
+        stack, data = self.stack or self._measure(), self.scene.data
+        save(stack_figure(self.simulation, stack, data), self.results.stack_picture)
+        save(growth_figure(read_events(self.folder), data), self.results.growth_picture)
+        self.draw_energies()
+
+    @classmethod
+    def rows(cls, folder: Path) -> list[dict[str, Cell]]:
+        """Return the rows of events.csv, exactly."""
+        table = RunFolder(folder).events.rows
+        return [{name: _value(name, cell) for name, cell in row.items()} for row in table]
+
+    @classmethod
+    def packed(cls, folder: Path) -> Iterable[tuple[int, bytes]]:
+        """Yield each event with the particles after it."""
+        return ((event, particles.packed()) for event, particles in read_event_particles(folder))
+
+    def _note_tables(self) -> None:
+        event, running = self.simulation.event, self.simulation.event_running
+        self.sequence.tables = self.results.checksums(self.sequence.tables, event, running=running)
+
+    def _write_history(self) -> None:
+        write_energy_history(self.simulation, self.folder)
+        seal_files(self.sequence, self.folder, HISTORY)
+
+    def _record(self, facts: Mapping[str, Any], stack: StackMeasure) -> None:
+        event = facts["event"]
+        self.results.add_outline(event, stack.outline)
+        if facts["energy"]:
+            self.results.energies.add([{"event": event, **facts["energy"]}])
+        self.results.events.add([{**facts, **measured_columns(stack)}])
+
+    def _measure(self) -> StackMeasure:
+        core = self.simulation
+        return self._measure_of(core.positions(), core.masses(), core.densities(), core.on_panel())
+
+    def _measure_of(
+        self, positions: Floats, masses: Floats, density: Floats, on_panel: Booleans
+    ) -> StackMeasure:
+        return measure_particles(
+            self.simulation, self.scene.data, positions, masses, density, on_panel
+        )
+
+
+def _warn_of_residual(facts: Mapping[str, Any]) -> None:
+    """Warn where the time integration gained or lost more energy than it should."""
+    share = facts["energy_residual"]
+    if share is not None and share > LARGEST_RESIDUAL:
+        warnings.warn(
+            f"event {facts['event']}: the energy balance has a residual of {share:.2g} of the "
+            f"largest energy, above {LARGEST_RESIDUAL:g}; a smaller courant_factor or dx may help",
+            FutureWarning,
+            stacklevel=caller_level(),
+        )
+
+
+def _value(name: str, cell: str) -> Cell:
+    """Return the value of a cell of events.csv, exactly."""
+    kind = KINDS.get(name, float)
+    return None if kind is float and not cell else kind(cell)

@@ -1,0 +1,27 @@
+"""Copies of terrain that stand beside a results folder, because a scene names a text raster."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+
+def terrain_copy(folder: Path) -> Path:
+    """Return the file of the terrain's copy, beside the results folder."""
+    return folder.with_name(f"{folder.name}-terrain.asc")
+
+
+@contextmanager
+def removing_copies(folder: Path) -> Iterator[None]:
+    """Remove new copies of files beside a results folder if no run begins there."""
+    copy = terrain_copy(folder)
+    copies = [copy, copy.with_name(f"{copy.stem}-thickness.asc")]
+    new = [file for file in copies if not file.exists()]
+    try:
+        yield
+    except BaseException:
+        if not folder.exists():
+            for file in new:
+                file.unlink(missing_ok=True)
+        raise

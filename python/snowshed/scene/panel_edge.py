@@ -1,0 +1,52 @@
+"""The position of a scene's panel in the plane (x, z)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Edge:
+    """The lower edge of a panel, and the frame its slab lies in, m.
+
+    Attributes
+    ----------
+    x, z
+        The edge.
+    center
+        Center of the sliding face.
+    normal
+        Outward from the face.
+    """
+
+    x: float
+    z: float
+    center: tuple[float, float]
+    normal: tuple[float, float]
+
+    @property
+    def upper(self) -> tuple[float, float]:
+        """The upper edge."""
+        return 2.0 * self.center[0] - self.x, 2.0 * self.center[1] - self.z
+
+
+def panel_edge(scene: Mapping[str, Any]) -> Edge:
+    """Return where the panel of a scene's data is: x is 0 at its centre.
+
+    Examples
+    --------
+    >>> from snowshed.scene.scene import Scene
+    >>> edge = panel_edge(Scene.preset("lab-50").resolve().data)
+    >>> round(edge.z, 3), round(edge.x, 3)
+    (0.33, 0.079)
+    """
+    panel = scene["panel"]
+    tilt = math.radians(panel["tilt"])
+    ground = math.radians((scene.get("ground") or {}).get("tilt") or 0.0)
+    half = 0.5 * panel["length"]
+    x = half * math.cos(tilt)
+    z = panel["height"] - x * math.tan(ground)
+    return Edge(x, z, (0.0, z + half * math.sin(tilt)), (math.sin(tilt), math.cos(tilt)))

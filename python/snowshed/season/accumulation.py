@@ -1,0 +1,161 @@
+"""Accumulation of snow on a panel, row after row of the season file, until it is released."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Optional
+
+from snowshed.running.ageing import Ageing, Interval
+from snowshed.season.checks import check_one_season
+from snowshed.season.column import SnowColumn
+from snowshed.season.release import Balance, balance
+from snowshed.season.settings import SeasonSettings
+from snowshed.season.weather_row import Weather
+from snowshed.snow.relations.new_snow import NEW_SNOW_DENSITY
+
+
+@dataclass(frozen=True)
+class Day:
+    """The snow on the panel at one row of the season file.
+
+    Attributes
+    ----------
+    weather
+        The row.
+    density
+        Density of the row's snowfall, kg/m3, measured or estimated; None without snowfall.
+    load, thickness
+        Mass of the snow on the panel after the snowfall, kg per m2 of the panel, and its thickness
+        normal to the panel, m.
+    balance
+        Driving and resisting stress of this snow.
+    released
+        Whether the snow was released.
+    event
+        Number of the slide-off that follows, from 1; None if the snow stayed, or waits for that of
+        later releases (`SeasonSettings.pool_below`).
+    slab_load, slab_thickness
+        Load and thickness of the slab that slides, as `load` and `thickness`.
+    """
+
+    weather: Weather
+    density: Optional[float]
+    load: float
+    thickness: float
+    balance: Balance
+    released: bool = False
+    event: Optional[int] = None
+    slab_load: float = 0.0
+    slab_thickness: float = 0.0
+
+
+def accumulate(
+    season: Sequence[Weather], settings: SeasonSettings, tilt: float, gravity: float = 9.81
+) -> list[Day]:
+    """Return the snow on a panel at every row of a season.
+
+    Snow of a depth h on level ground has the thickness h cos(Phi) normal to the panel, because its
+    mass per area of the ground is the same. All snow is released at once (`balance`). Melting and
+    wind are left out.
+
+    Parameters
+    ----------
+    season
+        The rows, in order.
+    settings
+        The settings of accumulation and release.
+    tilt
+        Phi, the tilt of the panel, degrees.
+    gravity
+        Gravity, m/s2.
+
+    Raises
+    ------
+    InputError
+        If more than a year passes from one row to the next.
+
+    Examples
+    --------
+    >>> from datetime import datetime
+    >>> row = Weather(2, datetime(2024, 12, 1), 0.2, 100.0, -4.0)
+    >>> day, = accumulate([row], SeasonSettings(adhesion=50.0), tilt=60.0)
+    >>> round(day.load), round(day.balance.driving), round(day.balance.resisting), day.event
+    (10, 85, 84, 1)
+    """
+    check_one_season(season)
+    slope = math.cos(math.radians(tilt))
+    snow = SnowColumn(load_factor=gravity * slope)
+    days: list[Day] = []
+    for row, earlier in zip(season, [None, *season]):
+        if earlier is not None:
+            elapsed = (row.date - earlier.date).total_seconds()
+            snow.settle(settings.settling_law, elapsed, earlier.temperature)
+        density = _density(row, settings)
+        if density is not None:
+            snow.add(settings.catch * density * row.snowfall * slope, density)
+        held = _balance(row, settings, snow.mass, tilt, gravity)
+        days.append(Day(row, density, snow.mass, snow.thickness, held, held.releases))
+        if held.releases:
+            snow.clear()
+    return _slide_offs(days, settings.pool_below)
+
+
+def _slide_offs(days: Sequence[Day], pool_below: float) -> list[Day]:
+    """Return the days with the slide-offs that the releases make.
+
+    Snow of thin releases waits until it makes a slab; the rest slides last.
+    """
+    releases = [number for number, day in enumerate(days) if day.released]
+    made = list(days)
+    event, load, thickness = 0, 0.0, 0.0
+    for number in releases:
+        load, thickness = load + days[number].load, thickness + days[number].thickness
+        if thickness >= pool_below or number == releases[-1]:
+            event += 1
+            made[number] = replace(
+                days[number], event=event, slab_load=load, slab_thickness=thickness
+            )
+            load, thickness = 0.0, 0.0
+    return made
+
+
+def pauses(days: Sequence[Day]) -> dict[int, list[Interval]]:
+    """Return the time between each event and the one before, for every event but the first.
+
+    The temperature of a row of the season file holds until the next row.
+    """
+    intervals: dict[int, list[Interval]] = {}
+    waiting: Optional[list[Interval]] = None
+    for day, earlier in zip(days, [None, *days]):
+        if earlier is not None and waiting is not None:
+            elapsed = (day.weather.date - earlier.weather.date).total_seconds()
+            waiting.append(Interval(elapsed, earlier.weather.temperature))
+        if day.event is not None:
+            if waiting is not None:
+                intervals[day.event] = waiting
+            waiting = []
+    return intervals
+
+
+def stack_ageing(days: Sequence[Day], settings: SeasonSettings) -> Optional[Ageing]:
+    """Return how the stack ages between the events of a season; None if it does not."""
+    return settings.ageing(pauses(days)) if settings.ages else None
+
+
+def _density(row: Weather, settings: SeasonSettings) -> Optional[float]:
+    if not row.snowfall:
+        return None
+    if row.density is not None:
+        return row.density
+    relation = NEW_SNOW_DENSITY[settings.density]
+    return relation(row.temperature)
+
+
+def _balance(
+    row: Weather, settings: SeasonSettings, load: float, tilt: float, gravity: float
+) -> Balance:
+    friction = settings.friction if row.friction is None else row.friction
+    adhesion = settings.adhesion if row.adhesion is None else row.adhesion
+    return balance(load, tilt, friction, adhesion, gravity)

@@ -1,0 +1,153 @@
+"""Plausibility of the rows of seasons: order, gaps, and amounts of snow."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from datetime import date, datetime
+
+from snowshed._core import InputError
+from snowshed.base.limits import WEATHER_GAP
+from snowshed.io.csv_table import Row
+from snowshed.season.extremes import RECORD_DAY, RECORD_WINTER, RECORD_WORDS
+from snowshed.season.source import Source
+from snowshed.season.weather_row import MOST_SNOWFALL, Weather
+
+MOST_ROWS = 100_000  # daily data of the longest records, and hourly seasons
+#: Median above which snowfalls cannot be in metres.
+TYPICAL_SNOWFALL = 0.7  # m
+DAY, YEAR = 86400.0, 366.0  # s, days
+YEARS = (1000, 9000)  # of weather, measured or made
+#: Number of rows, and of days of a gap: so few rows so far from all others have a mistyped year.
+FEW, LONE = 3, 3 * YEAR
+NO_SNOW = "it never snows"
+HINT = "is it in cm, mm or inches?"
+
+
+def check_rows(
+    rows: Sequence[Weather], table_rows: Sequence[Row], name: str, *, snowless: bool = False
+) -> None:
+    """Raise InputError if rows are no weather of seasons.
+
+    Parameters
+    ----------
+    rows
+        The weather.
+    table_rows
+        Position of each row, for messages.
+    name
+        The file.
+    snowless
+        Whether it need not snow in it: a station may have observed a winter without snow.
+    """
+    if not rows:
+        raise InputError(f"{name}: no rows below the header")
+    if len(rows) > MOST_ROWS:
+        raise InputError(f"{name}: {len(rows)} rows; at most {MOST_ROWS} are allowed")
+    for earlier, later, before, row in zip(rows, rows[1:], table_rows, table_rows[1:]):
+        if later.date <= earlier.date:
+            raise InputError(
+                f"{row.where}, column date: {later.date.isoformat(' ')} is not after "
+                f"{before.place}, {earlier.date.isoformat(' ')}"
+            )
+    _check_years(rows, table_rows)
+    _check_amounts(rows, table_rows, name)
+    if not snowless and not any(row.snowfall for row in rows):
+        raise InputError(f"{name}: {NO_SNOW}; the snowfall of every row is 0")
+
+
+def check_one_season(rows: Sequence[Weather]) -> None:
+    """Raise InputError if more than a year passes between two rows of a season.
+
+    Examples
+    --------
+    >>> rows = [Weather(2, datetime(year, 1, 1), 0.1, None, -5.0) for year in (2021, 2024)]
+    >>> check_one_season(rows[:1])
+    >>> try:
+    ...     check_one_season(rows)
+    ... except InputError as error:
+    ...     print(str(error)[:62])
+    the season, line 2, column date: 2024-01-01 is 1095 days after
+    """
+    for earlier, later in zip(rows, rows[1:]):
+        days = _days(earlier, later)
+        if days > YEAR:
+            raise InputError(
+                f"the season, line {later.line}, column date: {later.date.date()} is {days:.0f} "
+                f"days after {earlier.date.date()} (line {earlier.line}); a season is one winter, "
+                "and snow lies no longer; is a year mistyped?"
+            )
+
+
+def _days(earlier: Weather, later: Weather) -> float:
+    return (later.date - earlier.date).total_seconds() / DAY
+
+
+def _check_years(rows: Sequence[Weather], table_rows: Sequence[Row]) -> None:
+    """Refuse implausible years, gaps of decades, and isolated years."""
+    for number, (earlier, later) in enumerate(zip(rows, rows[1:]), 1):
+        days = _days(earlier, later)
+        if days <= YEAR:
+            continue
+        few = min(number, len(rows) - number) <= FEW
+        if days > WEATHER_GAP or (few and days > LONE and later.source is Source.GIVEN):
+            raise InputError(
+                f"{table_rows[number].where}, column date: {later.date.date()} is "
+                f"{days / 365.25:.0f} "
+                f"years after {table_rows[number - 1].place}, {earlier.date.date()}; is a year "
+                "mistyped?"
+            )
+    for row, place in ((rows[0], table_rows[0]), (rows[-1], table_rows[-1])):
+        if not YEARS[0] <= row.date.year <= YEARS[1]:
+            raise InputError(
+                f"{place.where}, column date: {row.date.date()}; allowed: the years {YEARS[0]} to "
+                f"{YEARS[1]}; is a year mistyped?"
+            )
+
+
+def _check_amounts(rows: Sequence[Weather], table_rows: Sequence[Row], name: str) -> None:
+    """Refuse record-breaking amounts of a day, or of a winter."""
+    falls = _daily_sums(rows)
+    for day, (total, first) in falls.items():
+        daily = first > 0 and (rows[first].date - rows[first - 1].date).total_seconds() <= DAY
+        single = first + 1 == len(rows) or rows[first + 1].date.date() != day.date()
+        # a single row may be the snow of several days
+        most = RECORD_DAY if daily or not single else MOST_SNOWFALL
+        if total > most:
+            raise InputError(
+                f"{table_rows[first].where}, column snowfall_m: {total:.3g} m of snow on "
+                f"{day.date()}; "
+                f"{RECORD_WORDS}; {HINT}"
+            )
+    totals = sorted(total for total, _ in falls.values() if total)
+    if not totals:
+        return
+    middle = totals[len(totals) // 2]
+    if len(totals) >= 3 and middle > TYPICAL_SNOWFALL:
+        raise InputError(
+            f"{name}, column snowfall_m: half of the snowfalls are of {middle:g} m and more; {HINT}"
+        )
+    for begin, total in _yearly_sums(falls).items():
+        if total > RECORD_WINTER:
+            raise InputError(
+                f"{name}, column snowfall_m: {total:.3g} m of snow in the year from {begin}; no "
+                f"winter had more than {RECORD_WINTER:g} m (Leffler et al. 2001); {HINT}"
+            )
+
+
+def _yearly_sums(falls: Mapping[datetime, tuple[float, int]]) -> dict[date, float]:
+    """Return the snow of each year from January and from July, m, by its first day."""
+    sums: dict[date, float] = {}
+    for day, (total, _) in falls.items():
+        for begin in (date(day.year, 1, 1), date(day.year - (day.month < 7), 7, 1)):
+            sums[begin] = sums.get(begin, 0.0) + total
+    return sums
+
+
+def _daily_sums(rows: Sequence[Weather]) -> dict[datetime, tuple[float, int]]:
+    """Return the snow of each day, m, and the number of its first row."""
+    falls: dict[datetime, tuple[float, int]] = {}
+    for number, row in enumerate(rows):
+        day = datetime(row.date.year, row.date.month, row.date.day)
+        total, first = falls.get(day, (0.0, number))
+        falls[day] = (total + row.snowfall, first)
+    return falls

@@ -1,0 +1,206 @@
+"""Choice of a winter's column of snow, if several of a station contradict each other.
+
+New snow measured by hand goes first, then the gauge, then the depth of the cover. Two columns
+contradict each other where, on the days of a winter that both know, one has more than twice the
+snow of the other and a decimetre more. Both of gauge and depth fail towards too little snow: wind
+carries it past gauges, which catch half of it and less (Goodison, Louie and Yang 1998, WMO/TD-872),
+unheated ones stand still, and a cover settles while it grows. The larger of the two is therefore
+used. New snow by hand gives way to the depth where the depth rises by more, because no cover rises
+by more than what falls; and to either where it has no snow all winter, which means that it was not
+entered.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from snowshed.base.arrays import Booleans, Floats
+from snowshed.season.source import Source
+
+CONTRADICTION = 2.0  # one column over the other, over a winter
+LEAST_DIFFERENCE = 0.1  # m over a winter
+COLD = -4.0  # degrees C; what falls on such days is snow for certain
+
+
+@dataclass(frozen=True)
+class Column:
+    """The new snow that one column of a station tells.
+
+    Attributes
+    ----------
+    source
+        Source of the column.
+    snow : (n,)
+        New snow of each day, m; NaN: unknown.
+    filled : (n,)
+        Whether its value is no observation of that day.
+    """
+
+    source: Source
+    snow: Floats
+    filled: Booleans
+
+    @property
+    def known(self) -> Booleans:
+        """Whether the column observed the snow of each day (n,)."""
+        return np.asarray(~np.isnan(self.snow) & ~self.filled)
+
+
+@dataclass(frozen=True)
+class Choice:
+    """The columns that tell a winter's snow.
+
+    Attributes
+    ----------
+    observing
+        Columns in order of preference; a day uses the first with a value.
+    filling
+        The column that fills the remaining days, if any.
+    sums
+        Sum of each column over the days that all compared columns cover, m.
+    contradicted
+        Sources that were left out or used last, because another contradicts them.
+    """
+
+    observing: Sequence[Source]
+    filling: Source | None
+    sums: Mapping[Source, float]
+    contradicted: frozenset[Source] = frozenset()
+
+
+class Chooser:
+    """Chooses the columns for the winters of a station.
+
+    Parameters
+    ----------
+    columns
+        Columns by their sources.
+    temperature : (n,)
+        Temperature of every day, degrees C.
+    only
+        The one source that observes; None: by the rules of this module.
+    """
+
+    def __init__(
+        self, columns: Mapping[Source, Column], temperature: Floats, only: Source | None = None
+    ) -> None:
+        self.only = only
+        self._cold = temperature <= COLD
+        everything = np.ones(len(temperature), dtype=bool)
+        self._all = {
+            source: column for source, column in columns.items() if _tells(column, everything)
+        }
+        idle = {source for source in self._all if source is not only and self._idle(source)}
+        self._idle_columns = idle
+        self.columns = {
+            source: column for source, column in self._all.items() if source not in idle
+        }
+        self._gauge_fails = Source.DEPTH in self._against(Source.GAUGE, everything)
+
+    def of(self, winter: Booleans) -> Choice:
+        """Return the columns for the days of a winter (n,)."""
+        there = {source for source, column in self.columns.items() if _tells(column, winter)}
+        sums = self._sums(winter)
+        if self.only is not None:
+            others = [source for source in self.columns if source is not self.only]
+            return Choice([self.only], others[0] if others else None, sums)
+        with_hand = Source.HAND in self.columns
+        choice = (self._with_hand if with_hand else self._without_hand)(winter, there, sums)
+        if max(sums.values(), default=0.0) <= LEAST_DIFFERENCE:
+            return choice
+        unkept = {source for source in self._idle_columns if source in sums}
+        return replace(choice, contradicted=choice.contradicted | unkept)
+
+    def _with_hand(
+        self, winter: Booleans, there: set[Source], sums: Mapping[Source, float]
+    ) -> Choice:
+        order = [source for source in (Source.HAND, Source.DEPTH) if source in there]
+        stronger = self._against(Source.HAND, winter)
+        none_by_hand = sums.get(Source.HAND, 0.0) == 0.0 and Source.HAND in there
+        wrong: set[Source] = set()
+        if Source.DEPTH in stronger:
+            order = [Source.DEPTH, Source.HAND]
+            wrong.add(Source.HAND)
+        elif Source.GAUGE in stronger and none_by_hand and self._cold_gauge(winter):
+            return Choice([Source.GAUGE, *order], None, sums, frozenset({Source.HAND}))
+        filling: Source | None = None
+        if Source.GAUGE in there:
+            agrees = not any(self._contradict(Source.GAUGE, source, winter) for source in order)
+            filling = Source.GAUGE if agrees and not self._gauge_fails else None
+        return Choice(order, filling, sums, frozenset(wrong))
+
+    def _without_hand(
+        self, winter: Booleans, there: set[Source], sums: Mapping[Source, float]
+    ) -> Choice:
+        if Source.DEPTH in self._against(Source.GAUGE, winter):
+            return Choice([Source.DEPTH], None, sums, frozenset({Source.GAUGE}))
+        if Source.GAUGE in self._against(Source.DEPTH, winter):
+            return Choice([Source.GAUGE], None, sums, frozenset({Source.DEPTH}))
+        if self._gauge_fails and Source.DEPTH in there:
+            return Choice([Source.DEPTH], None, sums)
+        if self._gauge_fails:
+            return Choice([], Source.GAUGE, sums)
+        return Choice(
+            [source for source in (Source.GAUGE, Source.DEPTH) if source in there], None, sums
+        )
+
+    def _against(self, source: Source, days: Booleans) -> set[Source]:
+        """Return the other columns that contradict one with more snow than it has."""
+        return {
+            other
+            for other in self.columns
+            if other is not source
+            and source in self.columns
+            and self._contradict(other, source, days)
+            and np.subtract(*self._pair(other, source, days)) > 0.0
+        }
+
+    def _contradict(self, first: Source, other: Source, days: Booleans) -> bool:
+        if first not in self.columns or other not in self.columns:
+            return False
+        less, more = sorted(self._pair(first, other, days))
+        return bool(more > CONTRADICTION * less and more - less > LEAST_DIFFERENCE)
+
+    def _pair(self, reference: Source, other: Source, days: Booleans) -> tuple[float, float]:
+        """Return the sums of two columns on the days that both know."""
+        first, second = self.columns[reference], self.columns[other]
+        both = days & first.known & second.known
+        return float(first.snow[both].sum()), float(second.snow[both].sum())
+
+    def _cold_gauge(self, winter: Booleans) -> bool:
+        """Return whether the gauge has snow on days on which nothing else can fall."""
+        gauge = self.columns[Source.GAUGE]
+        return float(gauge.snow[winter & gauge.known & self._cold].sum()) > LEAST_DIFFERENCE
+
+    def _sums(self, winter: Booleans) -> dict[Source, float]:
+        """Return the sum of each column on the days that all know which know any of the winter."""
+        there = [column for column in self._all.values() if column.known[winter].any()]
+        both = winter.copy()
+        for column in there:
+            both &= column.known
+        days = both if both.any() else winter
+        return {
+            column.source: float(np.nansum(column.snow[days & column.known])) for column in there
+        }
+
+    def _idle(self, source: Source) -> bool:
+        """Return whether a column is zero throughout the file although another one has snow."""
+        own = self._all[source]
+        if np.nansum(own.snow) > 0.0:
+            return False
+        for other, column in self._all.items():
+            both = own.known & column.known
+            if other is Source.GAUGE:
+                both &= self._cold
+            least = LEAST_DIFFERENCE if Source.HAND in (source, other) else 0.0
+            if other is not source and float(column.snow[both].sum()) > least:
+                return True
+        return False
+
+
+def _tells(column: Column, days: Booleans) -> bool:
+    """Return whether a column has a value on any of some days."""
+    return bool((days & ~np.isnan(column.snow)).any())

@@ -1,0 +1,111 @@
+"""The natural snow cover on the ground during a season, below the stack.
+
+It is as deep as the season file says, on a straight line between two readings. Before the first
+one, in gaps of more than two months, and when the readings end before the season does, it is a
+column of the season's snowfalls that settles as the snow on the panel does, and melts in proportion
+to the degrees above 0 degrees C. After readings it begins with the depth of the last one. Snow
+falls on the ground and on the stack alike, so that the cover's depth is added to the stack's
+height.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Optional
+
+from snowshed.season.column import SnowColumn
+from snowshed.season.settings import SeasonSettings
+from snowshed.season.weather_row import Weather
+from snowshed.snow.relations.new_snow import NEW_SNOW_DENSITY
+
+DAY = 86400.0  # s
+#: Melt, kg/m2 (mm of water) per day and degree above 0 degrees C: amid the values for snow that
+#: Hock 2003, J. Hydrol. 282, 104-115, lists, which differ by a factor of four.
+DEGREE_DAY_FACTOR = 4.0
+#: Days from one reading to the next, between which a straight line is drawn.
+LONGEST_LINE = 61
+#: Density, kg/m3, of a cover of which only the depth is known: amid the bulk densities of seasonal
+#: snow of Sturm et al. 2010, J. Hydrometeorol. 11, 1380-1394 (217 to 373 kg/m3, by climate class).
+COVER_DENSITY = 300.0
+
+
+def natural_cover(
+    season: Sequence[Weather], settings: SeasonSettings, gravity: float = 9.81
+) -> list[float]:
+    """Return the depth of the natural snow cover at every row of a season, m.
+
+    Parameters
+    ----------
+    season
+        The rows, in order.
+    settings
+        Settings: source of the depth (`SeasonSettings.cover`), law of settling, and density of new
+        snow.
+    gravity
+        Gravity, m/s2.
+
+    Examples
+    --------
+    >>> from datetime import datetime
+    >>> rows = [Weather(2, datetime(2024, 12, 1), 0.4, 100.0, -4.0),
+    ...         Weather(3, datetime(2024, 12, 2), 0.0, None, 3.0),
+    ...         Weather(4, datetime(2024, 12, 4), 0.0, None, 3.0)]
+    >>> [round(depth, 2) for depth in natural_cover(rows, SeasonSettings())]
+    [0.4, 0.31, 0.1]
+    """
+    if settings.cover == "none":
+        return [0.0] * len(season)
+    if not isinstance(settings.cover, str):
+        return [settings.cover] * len(season)
+    measured = _measured(season)
+    snow = SnowColumn(load_factor=gravity)
+    depths: list[float] = []
+    for row, earlier, depth in zip(season, [None, *season], measured):
+        if depth is not None:
+            snow.clear()
+            snow.add(depth * COVER_DENSITY, COVER_DENSITY)
+            depths.append(depth)
+            continue
+        if earlier is not None:
+            elapsed = (row.date - earlier.date).total_seconds()
+            snow.settle(settings.settling_law, elapsed, earlier.temperature)
+            snow.melt(DEGREE_DAY_FACTOR * max(earlier.temperature, 0.0) * elapsed / DAY)
+        if row.snowfall:
+            density = row.density or NEW_SNOW_DENSITY[settings.density](row.temperature)
+            snow.add(density * row.snowfall, density)
+        depths.append(snow.thickness)
+    return depths
+
+
+def end_of_readings(season: Sequence[Weather]) -> Optional[Weather]:
+    """Return the row of the last reading of the depth if snow remains on the ground.
+
+    Examples
+    --------
+    >>> from datetime import datetime
+    >>> rows = [Weather(2, datetime(2024, 3, 1), 0.0, None, -4.0, snow_depth=0.6),
+    ...         Weather(3, datetime(2024, 3, 2), 0.0, None, -4.0)]
+    >>> end_of_readings(rows).line
+    2
+    """
+    readings = [number for number, row in enumerate(season) if row.snow_depth is not None]
+    if not readings or readings[-1] == len(season) - 1:
+        return None
+    last = season[readings[-1]]
+    return last if last.snow_depth else None
+
+
+def _measured(season: Sequence[Weather]) -> list[Optional[float]]:
+    """Return the depth that readings tell at each row, m; None where they do not."""
+    depths: list[Optional[float]] = [row.snow_depth for row in season]
+    readings = [number for number, row in enumerate(season) if row.snow_depth is not None]
+    for before, after in zip(readings, readings[1:]):
+        first, last = season[before], season[after]
+        span = (last.date - first.date).total_seconds()
+        if after == before + 1 or span > LONGEST_LINE * DAY:
+            continue
+        low, high = first.snow_depth or 0.0, last.snow_depth or 0.0
+        for number in range(before + 1, after):
+            part = (season[number].date - first.date).total_seconds() / span
+            depths[number] = low + part * (high - low)
+    return depths

@@ -1,0 +1,214 @@
+"""New snow from the rises of the snow depth, without invalid readings.
+
+A rise from one day to the next is new snow; it is too small, because snow settles meanwhile. A rise
+over some days without a reading is divided among them. These are not snowfall: a rise beyond the
+record of 24 hours, a spike or a drop-out that the next readings revert, and the seam of two series.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from datetime import date
+
+import numpy as np
+
+from snowshed.base.arrays import Booleans, Floats, Integers
+from snowshed.base.formatting import plural
+from snowshed.season.daily import LONGEST_GAP, Days
+from snowshed.season.extremes import RECORD_DAY, RECORD_WORDS
+
+LEAST_RISE = 0.02  # m; smaller rises of the snow depth are noise of the sensor
+LONGEST_TOTAL = 4  # days from reading to reading whose rise is still an observation
+SPIKE = 0.3  # m; from there on a change may be a spike
+TAKEN_BACK = 0.8  # of a spike, by the reading that ends it
+NO_MELT = 1.0  # degrees C; below, so much new snow does not vanish within days
+#: Longest duration of a spike, a drop-out and an impossible change, days.
+SPIKE_DAYS, DROPOUT_DAYS, IMPOSSIBLE_DAYS = 2, 7, 60
+
+
+@dataclass(frozen=True)
+class Total:
+    """A rise over several days, shared out among them.
+
+    Attributes
+    ----------
+    days
+        Numbers of the days.
+    rise
+        Rise of the depth, m.
+    """
+
+    days: range
+    rise: float
+
+
+@dataclass
+class DepthSnow:
+    """The new snow that the depth tells.
+
+    Attributes
+    ----------
+    snow : (n,)
+        New snow of each day, m; NaN: unknown.
+    filled : (n,)
+        Whether a rise is spread over so many days that it counts as unobserved.
+    depth : (n,)
+        The depth without wrong readings, m.
+    totals
+        Rises over several days.
+    notes
+        Notes on left-out readings, with reasons.
+    """
+
+    snow: Floats
+    filled: Booleans
+    depth: Floats
+    totals: list[Total] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+
+
+def snow_of_depth(days: Days, temperature: Floats) -> DepthSnow:
+    """Return the new snow that the depths of a station tell.
+
+    Parameters
+    ----------
+    days
+        From `days_of_station`.
+    temperature : (n,)
+        Temperature of every day, degrees C.
+    """
+    ordinals = days.ordinals
+    wrong = _wrong(ordinals, days.level, temperature, days.seams)
+    wrong |= _wrong(ordinals, days.depth, temperature, days.seams)
+    level = np.where(wrong, np.nan, days.level)
+    snow = DepthSnow(
+        np.full(len(ordinals), np.nan),
+        np.zeros(len(ordinals), dtype=bool),
+        np.where(wrong, np.nan, days.depth),
+    )
+    _tell_jumps(days, snow)
+    if wrong.any():
+        numbers = np.flatnonzero(wrong)
+        snow.notes.append(
+            f"{plural(len(numbers), 'reading')} of the snow depth "
+            f"({_some(days.dates, numbers)}) went up or down by {SPIKE:g} m or more and was taken "
+            "back: a spike or a drop-out of the sensor, not snow"
+        )
+    readings = np.flatnonzero(~np.isnan(level))
+    if len(readings):
+        snow.snow[readings[0]] = 0.0
+    for before, after in zip(readings, readings[1:]):
+        _take_rise(days, snow, int(before), int(after), float(level[after] - level[before]))
+    _tell_gaps(days, snow)
+    return snow
+
+
+def _take_rise(days: Days, snow: DepthSnow, before: int, after: int, rise: float) -> None:
+    """Enter the rise from one reading to the next."""
+    span = days.dates[after].toordinal() - days.dates[before].toordinal()
+    own = slice(before + 1, after + 1)
+    said = f"{rise:.2f} m from {days.dates[before]} to {days.dates[after]}"
+    if rise > RECORD_DAY * span:
+        snow.notes.append(f"the snow depth rises by {said}, which is not snowfall: {RECORD_WORDS}")
+        return
+    if span > LONGEST_GAP + 1:
+        if rise >= LEAST_RISE:
+            snow.notes.append(f"the snow depth rises by {said}, over a gap; it is not counted")
+        snow.snow[after] = 0.0
+        return
+    if span > LONGEST_TOTAL and rise < LEAST_RISE:
+        return  # the snow may have fallen and settled: unknown
+    share = rise / span if rise >= LEAST_RISE else 0.0
+    snow.snow[own] = share
+    if span > 1 and share:
+        snow.totals.append(Total(range(before + 1, after + 1), rise))
+    if span > LONGEST_TOTAL:
+        snow.filled[own] = True
+
+
+def _tell_gaps(days: Days, snow: DepthSnow) -> None:
+    """Note the rises that are spread over unobserved days."""
+    gaps = [total for total in snow.totals if len(total.days) > LONGEST_TOTAL]
+    if not gaps:
+        return
+    most = max(gaps, key=lambda total: total.rise)
+    said = (
+        f"by {most.rise:.2f} m in the {len(most.days)} days to {days.dates[most.days[-1]]}, of "
+        f"which {len(most.days) - 1} have no reading"
+    )
+    among = f" over {len(gaps)} gaps without readings, the most" if len(gaps) > 1 else ""
+    snow.notes.append(
+        f"the snow depth rises{among} {said}: this is not snowfall of a day, and is divided "
+        "evenly among the days"
+    )
+
+
+def _wrong(ordinals: Integers, depth: Floats, temperature: Floats, seams: Booleans) -> Booleans:
+    """Return the days whose reading is a spike or a drop-out."""
+    wrong = np.zeros(len(depth), dtype=bool)
+    readings = np.flatnonzero(~np.isnan(depth)).tolist()
+    joints = np.cumsum(seams)
+    place = 1
+    while place < len(readings):
+        good, first = readings[place - 1], readings[place]
+        change = depth[first] - depth[good]
+        if abs(change) < SPIKE or joints[first] != joints[good]:
+            place += 1
+            continue
+        limit, back = _longest(change, ordinals[first] - ordinals[good]), 0
+        for later in range(place + 1, len(readings)):
+            now = readings[later]
+            if ordinals[now] - ordinals[first] > limit or joints[now] != joints[good]:
+                break
+            beyond = (depth[good] - depth[now]) / change  # below 0: not all is taken back
+            frozen = change < 0.0 and temperature[good : first + 1].max() <= NO_MELT
+            if TAKEN_BACK - 1.0 <= beyond <= (np.inf if frozen else 1.0 - TAKEN_BACK):
+                back = later
+                break
+        melted = 0.0 < change <= RECORD_DAY and back > 0
+        if melted and temperature[first : readings[back] + 1].max() > NO_MELT:
+            back = 0
+        if back:
+            wrong[readings[place:back]] = True
+            readings[place:back] = []
+        place += 1
+    return wrong
+
+
+def _longest(change: float, days: int) -> int:
+    """Return how many days a spike of a size may last."""
+    if abs(change) > RECORD_DAY * days:
+        return IMPOSSIBLE_DAYS
+    return SPIKE_DAYS if change > 0.0 else DROPOUT_DAYS
+
+
+def _tell_jumps(days: Days, snow: DepthSnow) -> None:
+    seams = [(day, rise) for day, rise in days.jumps if day in _seam_dates(days)]
+    others = [(day, rise) for day, rise in days.jumps if day not in _seam_dates(days)]
+    rising = [(day, rise) for day, rise in seams if abs(rise) >= LEAST_RISE]
+    if rising:
+        snow.notes.append(
+            f"the snow depth jumps at {plural(len(rising), 'joint')} of two series "
+            f"({_sizes(rising)}), which is not snowfall"
+        )
+    if others:
+        snow.notes.append(
+            f"the snow depth jumps {plural(len(others), 'time')} faster than snow falls "
+            f"({_sizes(others)}), which is not snowfall"
+        )
+
+
+def _seam_dates(days: Days) -> set[date]:
+    return {days.dates[number] for number in np.flatnonzero(days.seams).tolist()}
+
+
+def _sizes(jumps: Sequence[tuple[date, float]]) -> str:
+    largest = sorted(jumps, key=lambda jump: -abs(jump[1]))[:3]
+    said = ", ".join(f"{rise:+.2f} m on {day}" for day, rise in largest)
+    return said if len(jumps) <= len(largest) else f"the largest: {said}"
+
+
+def _some(dates: Sequence[date], numbers: Integers) -> str:
+    said = ", ".join(str(dates[number]) for number in numbers[:3])
+    return said if len(numbers) <= 3 else f"{said} and others"

@@ -1,0 +1,293 @@
+"""A whole season: from a season file to a table, a figure, and the event that buries the panel."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any, Optional
+
+from snowshed._core import InputError
+from snowshed.base.progress import Reporter
+from snowshed.io.atomic import write_text
+from snowshed.io.csv_table import Table, read_csv, write_csv
+from snowshed.io.folders import check_empty
+from snowshed.methods.registry import resolution_of
+from snowshed.results.season_folder import SeasonFolder
+from snowshed.running.run import run_events
+from snowshed.scene.scene import PathLike, ResolvedScene, SceneLike, resolve_scene
+from snowshed.season.accumulation import Day, accumulate, stack_ageing
+from snowshed.season.clearance import Contact, first_contact, first_reached, panel_ends
+from snowshed.season.notes import assumptions, first_staying, notes
+from snowshed.season.quality import COVERAGE
+from snowshed.season.quality_table import caption
+from snowshed.season.record import Record, WinterList
+from snowshed.season.settings import SeasonSettings
+from snowshed.season.slabs import season_scene
+from snowshed.season.source import AUTO
+from snowshed.season.table import season_table
+from snowshed.season.weather import Season, read_record
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.figure import Figure
+
+
+@dataclass(frozen=True)
+class SeasonResult:
+    """The results of a season.
+
+    Attributes
+    ----------
+    table
+        As in season.csv.
+    releases, simulated
+        Number of releases, and of those that were simulated.
+    contact
+        The first contact of any kind between the snow below and the panel, if any: the verdict.
+    burial_event
+        First event after which the snow below the panel's lower edge reaches it, if any.
+    crest_event
+        First event after which the stack is anywhere as high as the lower edge, if any.
+    staying_event
+        First event after which snow stayed on the panel, if any.
+    winters
+        Quality of the snow data of each winter of the season.
+    notes
+        Notes on the limits of the results.
+    """
+
+    table: pd.DataFrame
+    releases: int
+    simulated: int
+    contact: Optional[Contact]
+    burial_event: Optional[int]
+    crest_event: Optional[int]
+    staying_event: Optional[int]
+    winters: WinterList
+    notes: Sequence[str]
+
+
+def run_season(
+    season: Season,
+    scene: SceneLike,
+    out_dir: PathLike,
+    *,
+    settings: Optional[SeasonSettings] = None,
+    resume: bool = False,
+    progress: Optional[Reporter] = None,
+    pictures: bool = True,
+    coverage: float = COVERAGE,
+    snow_from: str = AUTO,
+    temperature: Optional[PathLike] = None,
+) -> SeasonResult:
+    """Simulate a season: snow accumulates on a panel, is released, and piles up below it.
+
+    Parameters
+    ----------
+    season
+        A season file or a pandas DataFrame (see `read_season`), or rows of `Weather`.
+    scene
+        A scene, its JSON data, or the path of a scene file. Its panel, ground, obstacles, snow and
+        method are used; `season_scene` replaces its slab and its events. The panel's friction is
+        that of sliding snow.
+    out_dir
+        The results folder (``snowshed.results.season_folder``); new or empty, unless resuming.
+    settings
+        Settings of release, density and settling. [default: `SeasonSettings()`]
+    resume
+        Whether to resume an interrupted season in `out_dir`.
+    progress
+        Called about twice a second while a slide-off runs.
+    pictures
+        Whether to draw the figure.
+    coverage
+        Share of the days of the snow season on which snow should have been observed; a note tells
+        of winters with less.
+    snow_from, temperature
+        As for `read_record`: the column of a station that observes snow, and another file of its
+        temperatures.
+
+    Raises
+    ------
+    InputError
+        If the file or the scene is wrong, or the folder is not empty; nothing has been written.
+    SimulationError, Interrupted
+        As from `run_events`.
+
+    Examples
+    --------
+    >>> from datetime import datetime
+    >>> from tempfile import TemporaryDirectory
+    >>> from snowshed import Scene
+    >>> from snowshed.season import Weather
+    >>> row = Weather(2, datetime(2024, 12, 1), 0.1, 100.0, -4.0)
+    >>> with TemporaryDirectory() as folder:
+    ...     flat = Scene.preset("lab-40").set("panel.tilt", 20)
+    ...     run_season([row], flat, folder, pictures=False).releases
+    0
+    """
+    settings = settings or SeasonSettings()
+    plan = plan_season(
+        season, scene, settings=settings, coverage=coverage, snow_from=snow_from,
+        temperature=temperature,
+    )  # fmt: skip
+    folder = SeasonFolder(out_dir)
+    if not resume:
+        check_empty(folder.folder)
+    if plan.slides is not None:
+        run_events(
+            plan.slides,
+            folder.run.folder,
+            resume=resume and folder.run.scene.is_file(),
+            ageing=stack_ageing(plan.days, settings),
+            progress=progress,
+            pictures=pictures,
+        )
+    folder.folder.mkdir(parents=True, exist_ok=True)
+    result = _result(plan, settings, folder)
+    _write(result, plan.scene, settings, folder, pictures=pictures)
+    return result
+
+
+@dataclass(frozen=True)
+class SeasonPlan:
+    """A season before its simulation.
+
+    Attributes
+    ----------
+    record, winters
+        The weather, and the quality of its winters.
+    days
+        The snow on the panel, row after row.
+    panel
+        The scene of the panel.
+    slides
+        The scene whose events are the releases; None without a release.
+    """
+
+    record: Record
+    winters: WinterList
+    days: Sequence[Day]
+    panel: ResolvedScene
+    slides: Optional[ResolvedScene]
+
+    @property
+    def scene(self) -> ResolvedScene:
+        """The scene of the slide-offs, or that of the panel without a release."""
+        return self.slides or self.panel
+
+
+def plan_season(
+    season: Season,
+    scene: SceneLike,
+    *,
+    settings: SeasonSettings,
+    coverage: float = COVERAGE,
+    snow_from: str = AUTO,
+    temperature: Optional[PathLike] = None,
+) -> SeasonPlan:
+    """Return the releases of a season and the scene of its slide-offs, without simulating them.
+
+    Parameters and errors are those of `run_season`.
+    """
+    record = read_record(season, snow_from, temperature)
+    winters = record.winters(coverage)
+    panel = resolve_scene(scene)
+    data = panel.data
+    if "panel" not in data:
+        raise InputError("/panel: missing; a season needs a panel for the snow to gather on")
+    days = accumulate(record.rows, settings, data["panel"]["tilt"], data["gravity"])
+    slides = season_scene(panel, days, settings) if any(day.event for day in days) else None
+    return SeasonPlan(record, winters, days, panel, slides)
+
+
+def _result(plan: SeasonPlan, settings: SeasonSettings, folder: SeasonFolder) -> SeasonResult:
+    import pandas as pd
+
+    scene, days = plan.scene, plan.days
+    events = _table_or_empty(folder.run.events)
+    outlines = _table_or_empty(folder.run.outlines)
+    table = season_table(scene.data, days, settings, events, outlines)
+    simulated = table[pd.notna(table["event"]) & pd.notna(table["stack_height_m"])]
+    dx = resolution_of(scene.data)
+    staying = first_staying(events)
+    return SeasonResult(
+        table,
+        releases=sum(day.released for day in days),
+        simulated=len(simulated),
+        contact=first_contact(table, dx),
+        burial_event=first_reached(simulated["clearance_m"].tolist(), dx),
+        crest_event=first_reached(simulated["crest_clearance_m"].tolist(), dx),
+        staying_event=staying,
+        winters=plan.winters,
+        notes=[
+            *plan.record.notes,
+            *plan.winters.shortfalls,
+            *assumptions(table, days, settings),
+            *notes(dx, days, settings, events, staying),
+        ],
+    )
+
+
+def _table_or_empty(table: Table) -> pd.DataFrame:
+    import pandas as pd
+
+    return read_csv(table.path) if table.path.is_file() else pd.DataFrame(columns=table.columns)
+
+
+def _write(
+    result: SeasonResult,
+    scene: ResolvedScene,
+    settings: SeasonSettings,
+    folder: SeasonFolder,
+    *,
+    pictures: bool,
+) -> None:
+    summary = {name: value for name, value in vars(result).items() if name != "table"}
+    summary["contact"] = None if result.contact is None else asdict(result.contact)
+    summary["winters"] = result.winters.data()
+    text = json.dumps({"settings": asdict(settings), **summary}, indent=2, default=list)
+    write_csv(result.table, folder.table, float_format="%.6g")
+    write_text(folder.summary, text + "\n")
+    if pictures:
+        from snowshed.plot.figure_style import save
+
+        outlines = _table_or_empty(folder.run.outlines)
+        save(drawn(result, outlines, scene.data), folder.figure)
+
+
+def drawn(result: SeasonResult, outlines: pd.DataFrame, scene: Mapping[str, Any]) -> Figure:
+    """Return the figure of a season.
+
+    Parameters
+    ----------
+    result
+        As from `run_season`.
+    outlines
+        The profiles of the stack, as in outline.csv; without rows if nothing slid.
+    scene
+        The complete scene of the slide-offs.
+    """
+    from snowshed.plot.season_figure import season_figure
+
+    return season_figure(
+        result.table,
+        outlines,
+        scene,
+        panel=panel_ends(scene),
+        contact=result.contact,
+        title=f"{result.releases} releases; {verdict(result)}",
+        snow=caption(result.winters),
+    )
+
+
+def verdict(result: SeasonResult) -> str:
+    """Return in a few words whether, when and how anything first touches the panel."""
+    contact = result.contact
+    if contact is not None:
+        after = "before any slide-off" if contact.event is None else f"event {contact.event}"
+        return f"{contact.text}, {contact.date[:10]} ({after})"
+    if result.simulated:
+        return f"nothing reaches the panel within {result.simulated} slide-offs"
+    return "nothing slid"

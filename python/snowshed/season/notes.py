@@ -1,0 +1,142 @@
+"""Notes on the limits of a season's results."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Optional
+
+from snowshed.season.accumulation import Day
+from snowshed.season.cover import end_of_readings
+from snowshed.season.settings import SeasonSettings
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+#: Part of a slab that may stay on the panel; if more stays, the core lays the next slab on top.
+STAYING = 0.02
+
+
+def first_staying(events: pd.DataFrame) -> Optional[int]:
+    """Return the first event that leaves more than `STAYING` of its snow on the panel."""
+    total = events["mass_kg"] + events["on_panel_kg"]
+    brought = total.diff().fillna(total)
+    stayed = events["event"][events["on_panel_kg"] > STAYING * brought]
+    return int(stayed.iloc[0]) if len(stayed) else None
+
+
+def assumptions(
+    table: pd.DataFrame, days: Sequence[Day], settings: SeasonSettings
+) -> Iterator[str]:
+    """Yield the assumptions of a season on ground, settling and strength of the snow.
+
+    Parameters
+    ----------
+    table
+        As in season.csv.
+    days, settings
+        Days and settings of the season.
+    """
+    deepest = table["cover_m"].max()
+    if settings.cover == "none" or not deepest:
+        yield "the ground is bare: the stack lies on no natural snow cover"
+    elif not isinstance(settings.cover, str):
+        yield f"the stack lies on a natural snow cover of {settings.cover:g} m all season, as given"
+    else:
+        measured = any(day.weather.snow_depth is not None for day in days)
+        source = "measured" if measured else "from the same snowfalls, settled and melted"
+        date = table["date"].iloc[int(table["cover_m"].argmax())][:10]
+        yield (
+            f"the stack lies on a natural snow cover ({source}), at most {deepest:.2f} m deep on "
+            f"{date}"
+        )
+        last = end_of_readings([day.weather for day in days])
+        if last is not None:
+            yield (
+                f"the readings of the snow depth end on {last.date.date()} at "
+                f"{last.snow_depth:.2f} m; from then on, the cover settles and melts by the "
+                "temperature, and grows by the snowfalls"
+            )
+    if settings.settling is None:
+        yield "no snow settles"
+    if settings.strength is None:
+        yield "slabs of all densities have the strength of the scene's snow"
+    else:
+        yield f"the strength of a slab follows from its density ({settings.strength})"
+    if settings.pool_below:
+        slides = sum(day.event is not None for day in days)
+        yield (
+            f"{sum(day.released for day in days)} releases slide in {slides} slide-offs, of slabs "
+            f"of {1000 * settings.pool_below:g} mm and more"
+        )
+
+
+def notes(
+    dx: float,
+    days: Sequence[Day],
+    settings: SeasonSettings,
+    events: pd.DataFrame,
+    staying: Optional[int],
+) -> list[str]:
+    """Return notes on the limits of the results, a sentence each.
+
+    Parameters
+    ----------
+    dx
+        Resolution of the scene, m.
+    days
+        From `accumulate`.
+    settings
+        The settings of the season.
+    events
+        The table of the slide-offs, as in events.csv.
+    staying
+        From `first_staying`.
+    """
+    return [
+        *_of_slabs(dx, days, settings),
+        *_of_ageing(settings),
+        *_of_slide_offs(events, staying),
+    ]
+
+
+def _of_slabs(dx: float, days: Sequence[Day], settings: SeasonSettings) -> Iterator[str]:
+    released = [day for day in days if day.event is not None]
+    estimated = sum(day.density is not None and day.weather.density is None for day in days)
+    if estimated:
+        yield f"{estimated} densities are estimates ({settings.density})"
+    if released:
+        thinnest = min(day.slab_thickness for day in released)
+        if thinnest < 2.0 * dx:
+            yield (
+                f"the thinnest slab has {1000 * thinnest:.1f} mm, less than two cells of "
+                f"{1000 * dx:g} mm: its stack is coarse"
+            )
+    else:
+        yield "no snow slid: friction and adhesion held it"
+
+
+def _of_ageing(settings: SeasonSettings) -> Iterator[str]:
+    if settings.settling:
+        yield (
+            f"the stack settles between events ({settings.settling}), for which a factor of 4 and "
+            "more is published; settled heights are estimates for the time until the next"
+        )
+    if settings.sintering:
+        yield (
+            f"broken bonds regain strength ({settings.sintering}), all of it in "
+            f"{settings.strength_age:g} hours"
+        )
+
+
+def _of_slide_offs(events: pd.DataFrame, staying: Optional[int]) -> Iterator[str]:
+    if staying is not None:
+        yield (
+            f"from event {staying} on, snow that should have left stayed on the panel; later slabs "
+            "are laid on top of it"
+        )
+    unfinished = int((events["ended"] == "time_limit").sum())
+    if unfinished:
+        yield (
+            f"{unfinished} of {len(events)} slide-offs ended before the snow rested; "
+            "allow a longer --max-time"
+        )

@@ -1,0 +1,301 @@
+"""Days of a season from the observations of a station: the only place that decides.
+
+`Source` names the origin of a day's new snow, for every format. Each day uses the first of the
+winter's columns (`columns`) with a value; days without a value are filled by a stated rule, or are
+missing. Missing is not zero: such a day says so.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from datetime import datetime
+from typing import Optional
+
+import numpy as np
+
+from snowshed._core import InputError
+from snowshed.base.arrays import Booleans, Floats, Integers
+from snowshed.base.formatting import plural
+from snowshed.io.weather import Station
+from snowshed.season.columns import CONTRADICTION, Choice, Chooser, Column
+from snowshed.season.daily import Days, days_of_station
+from snowshed.season.depth_rises import LEAST_RISE, DepthSnow, Total, snow_of_depth
+from snowshed.season.extremes import RECORD_DAY, RECORD_WORDS
+from snowshed.season.gauge import RULE, snow_of_gauge
+from snowshed.season.record import Record
+from snowshed.season.source import Source
+from snowshed.season.temperatures import filled_temperatures, some_days
+from snowshed.season.weather_row import Weather
+from snowshed.season.winter_years import Calendar, calendar_of
+
+NAMED = 3  # winters that a note names
+
+
+@dataclass
+class _Snow:
+    """The new snow of every day, m, its source and the reason where it is not the file's."""
+
+    fall: Floats
+    source: list[Source]
+    reason: list[str]
+    choices: dict[int, Choice] = field(default_factory=dict)
+
+
+def record_of(station: Station, source: str, only: Optional[Source] = None) -> Record:
+    """Return the days of a station as a record.
+
+    Parameters
+    ----------
+    station
+        From `read_station`.
+    source
+        The file, for messages.
+    only
+        The one column that observes snow; None: the best of each winter.
+
+    Raises
+    ------
+    InputError
+        If no row has snow, no row has a temperature, or the requested column is missing.
+    """
+    _check_order(station, source)
+    days = days_of_station(station)
+    if np.isnan(days.temperature).all():
+        raise InputError(
+            f"{source}: no air temperature in any row of this {station.format} file; a season "
+            "needs them; give the file of its temperatures as well"
+        )
+    warm, far, of_temperature = filled_temperatures(days.dates, days.temperature, days.there)
+    depth = snow_of_depth(days, warm)
+    notes = [*station.notes, *_gaps(days), *of_temperature, *depth.notes]
+    columns = _columns(days, warm, far, depth, notes)
+    _check_columns(columns, only, station.format, source)
+    calendar = _calendar(days, warm, station.latitude)
+    snow = _chosen(days, Chooser(columns, warm, only), columns, calendar, depth.totals)
+    notes += _notes(snow, days, calendar)
+    modelled = station.typical_year
+    rows = [
+        Weather(
+            int(days.lines[n]),
+            datetime(day.year, day.month, day.day),
+            round(float(snow.fall[n]), 4),
+            None,
+            round(float(warm[n]), 2),
+            snow_depth=None if np.isnan(depth.depth[n]) else float(depth.depth[n]),
+            source=Source.MODEL if modelled and snow.source[n] is Source.GAUGE else snow.source[n],
+            reason=snow.reason[n],
+        )
+        for n, day in enumerate(days.dates)
+    ]
+    sums = {year: choice.sums for year, choice in snow.choices.items()}
+    return Record(rows, notes, station.latitude, sums)
+
+
+def _check_order(station: Station, source: str) -> None:
+    for earlier, later in zip(station.rows, station.rows[1:]):
+        if later.time <= earlier.time:
+            raise InputError(
+                f"{source}, line {later.line}, column date: {later.time.isoformat(' ')} is not "
+                f"after line {earlier.line}, {earlier.time.isoformat(' ')}"
+            )
+
+
+def _columns(
+    days: Days, warm: Floats, far: Booleans, depth: DepthSnow, notes: list[str]
+) -> dict[Source, Column]:
+    """Return the columns of a station with snow; appends notes on left-out values."""
+    hand = days.new_snow.copy()
+    beyond = hand > RECORD_DAY
+    if beyond.any():
+        first = int(np.flatnonzero(beyond)[0])
+        notes.append(
+            f"new snow of {hand[first]:.2f} m on {days.dates[first]}"
+            f"{' and on other days' if beyond.sum() > 1 else ''} is left out: {RECORD_WORDS}"
+        )
+        hand[beyond] = np.nan
+    gauge = snow_of_gauge(days.water, warm)
+    if (gauge >= RECORD_DAY).any():
+        first = int(np.flatnonzero(gauge >= RECORD_DAY)[0])
+        notes.append(
+            f"the precipitation of {days.dates[first]} ({days.water[first]:g} mm) counts as "
+            f"{RECORD_DAY:g} m of snow: {RECORD_WORDS}"
+        )
+    return {
+        Source.HAND: Column(Source.HAND, *_whole(hand, days.part_snow)),
+        Source.GAUGE: Column(
+            Source.GAUGE, *_whole(gauge, days.part_water | (far & (days.water > 0.0)))
+        ),
+        Source.DEPTH: Column(Source.DEPTH, depth.snow, depth.filled),
+    }
+
+
+def _whole(snow: Floats, part: Booleans) -> tuple[Floats, Booleans]:
+    """Return snow and whether it is no observation: without any, a part of a day tells nothing."""
+    return np.where(part & (snow == 0.0), np.nan, snow), part & (snow > 0.0)
+
+
+def _check_columns(
+    columns: Mapping[Source, Column], only: Optional[Source], form: str, source: str
+) -> None:
+    if only is not None and np.isnan(columns[only].snow).all():
+        raise InputError(f"{source}: no {only.label} in any row of this {form} file")
+    if all(np.isnan(column.snow).all() for column in columns.values()):
+        raise InputError(
+            f"{source}: neither new snow, precipitation nor snow depth in any row of this {form} "
+            "file"
+        )
+
+
+def _calendar(days: Days, warm: Floats, latitude: Optional[float]) -> Calendar:
+    rows = [
+        Weather(0, datetime(day.year, day.month, day.day), 0.0, None, float(temperature))
+        for day, temperature in zip(days.dates, warm)
+    ]
+    return calendar_of(rows, latitude)
+
+
+def _chosen(
+    days: Days,
+    chooser: Chooser,
+    columns: Mapping[Source, Column],
+    calendar: Calendar,
+    totals: Sequence[Total],
+) -> _Snow:
+    """Return the new snow of every day by the columns of its winter."""
+    count = len(days.dates)
+    snow = _Snow(np.zeros(count), [Source.MISSING] * count, [""] * count)
+    years = np.array([calendar.year(day) for day in days.dates])
+    for year in np.unique(years).tolist():
+        choice = chooser.of(years == year)
+        snow.choices[year] = choice
+        for n in np.flatnonzero(years == year).tolist():
+            _take(snow, n, choice, columns)
+    for total in totals:
+        _share_out(snow, total)
+    return snow
+
+
+def _take(snow: _Snow, n: int, choice: Choice, columns: Mapping[Source, Column]) -> None:
+    for source in choice.observing:
+        if columns[source].known[n]:
+            snow.fall[n], snow.source[n] = columns[source].snow[n], source
+            return
+    for source in (*choice.observing, *([choice.filling] if choice.filling else [])):
+        fall = columns[source].snow[n]
+        if not np.isnan(fall):
+            snow.fall[n], snow.source[n] = fall, Source.FILLED
+            part = columns[source].filled[n]
+            snow.reason[n] = f"from {'a part of ' if part else ''}the {source.label}"
+            return
+
+
+def _share_out(snow: _Snow, total: Total) -> None:
+    """Take snow that other columns observed out of a rise over several days."""
+    own, observed = [], 0.0
+    for n in total.days:
+        if snow.source[n] is Source.DEPTH or snow.reason[n].endswith(Source.DEPTH.label):
+            own.append(n)
+            snow.reason[n] = f"part of a rise of {total.rise:.2f} m over {len(total.days)} days"
+        else:
+            observed += snow.fall[n]
+    if len(own) < len(total.days):
+        for n in own:
+            snow.fall[n] = max(total.rise - observed, 0.0) / len(own)
+
+
+def _gaps(days: Days) -> list[str]:
+    """Return a note on the days that are missing in the file."""
+    ordinals = days.ordinals[days.there]
+    spans = np.diff(ordinals)
+    if not (spans > 1).any():
+        return []
+    longest = int(np.argmax(spans))
+    first, last = (
+        datetime.fromordinal(int(ordinals[longest + n] + (1, -1)[n])).date() for n in (0, 1)
+    )
+    missing = int((spans - 1).sum())
+    verb = "is" if missing == 1 else "are"
+    return [f"{plural(missing, 'day')} {verb} missing in {_gaps_text(spans)}from {first} to {last}"]
+
+
+def _gaps_text(spans: Integers) -> str:
+    gaps = int((spans > 1).sum())
+    return "1 gap, " if gaps == 1 else f"{gaps} gaps, the longest "
+
+
+def _notes(snow: _Snow, days: Days, calendar: Calendar) -> Iterator[str]:
+    if Source.GAUGE in snow.source:
+        yield RULE
+    if Source.DEPTH in snow.source:
+        yield (
+            f"new snow is the daily rise of the snow depth, from {100 * LEAST_RISE:g} cm; it is "
+            "too small, because snow settles meanwhile"
+        )
+    yield from _contradictions(snow, calendar)
+    filled = [n for n, source in enumerate(snow.source) if source is Source.FILLED]
+    if filled:
+        kinds = sorted({_kind(snow.reason[n]) for n in filled})
+        yield (
+            f"the snow of {some_days(days.dates, filled)} is filled, "
+            f"{sum(snow.fall[n] for n in filled):.2f} m in all: {'; '.join(kinds)}"
+        )
+    missing = [n for n, source in enumerate(snow.source) if source is Source.MISSING]
+    if missing:
+        yield (
+            f"the snow of {some_days(days.dates, missing)} is unknown; no snow is laid on the "
+            "panel, and these days count as not observed"
+        )
+
+
+def _kind(reason: str) -> str:
+    return "the rise over a gap, shared out" if reason.startswith("part") else reason
+
+
+def _contradictions(snow: _Snow, calendar: Calendar) -> Iterator[str]:
+    """Yield how columns contradict each other, with their sums, for some winters by name."""
+    groups: dict[tuple[Source, frozenset[Source]], list[int]] = {}
+    for year, choice in snow.choices.items():
+        wrong = choice.contradicted or _far_off(choice)
+        if wrong and choice.observing:
+            groups.setdefault((choice.observing[0], wrong), []).append(year)
+    for (used, wrong), years in groups.items():
+        named = "; ".join(
+            f"{calendar.name(year)}: "
+            + ", ".join(
+                f"{source.label} {total:.3g} m" for source, total in snow.choices[year].sums.items()
+            )
+            for year in years[:NAMED]
+        )
+        more = f"; and {len(years) - NAMED} more winters" if len(years) > NAMED else ""
+        yield (
+            f"columns contradict each other by more than a factor of {CONTRADICTION:g} ({named}"
+            f"{more}); the {used.label} is used, not the "
+            f"{' or the '.join(sorted(source.label for source in wrong))}{_why(used, wrong)}"
+        )
+
+
+def _far_off(choice: Choice) -> frozenset[Source]:
+    """Return the sources that contradict the one in use, which stands."""
+    if not choice.observing:
+        return frozenset()
+    own = choice.sums.get(choice.observing[0])
+    if own is None:
+        return frozenset()
+    return frozenset(
+        source
+        for source, total in choice.sums.items()
+        if max(total, own) > CONTRADICTION * min(total, own) and abs(total - own) > 0.1
+    )
+
+
+def _why(used: Source, wrong: frozenset[Source]) -> str:
+    if used is Source.DEPTH and Source.GAUGE in wrong:
+        return ": gauges catch too little snow in wind or stand still (WMO/TD-872, 1998)"
+    if used is Source.DEPTH:
+        return ": a cover cannot rise by more than the snowfall"
+    if used is Source.GAUGE and Source.DEPTH in wrong:
+        return ": a cover settles, melts and drifts away while it snows"
+    if used is Source.GAUGE:
+        return ": no new snow was entered all winter"
+    return ": measured new snow is preferred to derived"

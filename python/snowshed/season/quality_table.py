@@ -1,0 +1,83 @@
+"""The table of the winters of a file, for consoles and pages: the quality of their snow data."""
+
+from __future__ import annotations
+
+from snowshed.base.formatting import plural
+from snowshed.season.quality import WinterQuality
+from snowshed.season.record import WinterList, percent
+from snowshed.season.source import Source
+
+HEAD = ("winter", "snow observed", "new snow, m", "source", "filled", "not known", "counts")
+ALIGN = "lrrlrrl"
+MOST_ROWS = 24  # on a console
+
+
+def title(winters: WinterList) -> str:
+    """Return the title of the table."""
+    return f"Where the snow comes from (snow season {winters.season.text})"
+
+
+def quality_rows(winters: WinterList) -> list[tuple[str, ...]]:
+    """Return a row of texts for each winter, as `HEAD` names them.
+
+    Examples
+    --------
+    >>> from snowshed.season.generator import EXAMPLE_CLIMATE
+    >>> from snowshed.season.record import Record
+    >>> quality_rows(Record(EXAMPLE_CLIMATE.winters(1, seed=1)).winters())[0][:4]
+    ('2001/02', '169 of 169 days (100 %)', '3.37', 'season file')
+    """
+    return [_row(winter) for winter in winters.winters]
+
+
+def shortened(rows: list[tuple[str, ...]]) -> tuple[list[tuple[str, ...]], int]:
+    """Return the rows that a console shows, and how many it leaves out."""
+    if len(rows) <= MOST_ROWS:
+        return rows, 0
+    half = MOST_ROWS // 2
+    return [*rows[:half], ("...",) * len(HEAD), *rows[-half:]], len(rows) - 2 * half
+
+
+def caption(winters: WinterList) -> str:
+    """Return how well the snow of a season is known, in a line.
+
+    Examples
+    --------
+    >>> from snowshed.season.generator import EXAMPLE_CLIMATE
+    >>> from snowshed.season.record import Record
+    >>> caption(Record(EXAMPLE_CLIMATE.winters(1, seed=1)).winters())
+    'Snow of 2001/02: observed on 169 of 169 days (100 %), source: season file'
+    """
+    if len(winters.winters) > 1:
+        return f"Snow of {len(winters.winters)} winters; well observed in {len(winters.counted)}"
+    winter = winters.winters[0]
+    filled = f"; filled: {_filled(winter)}" if winter.sources[Source.FILLED] else ""
+    return (
+        f"Snow of {winter.name}: observed on {_observed(winter)}, source: {winter.source_text}"
+        f"{filled}"
+    )
+
+
+def _row(winter: WinterQuality) -> tuple[str, ...]:
+    missing = winter.sources[Source.MISSING]
+    return (
+        winter.name,
+        _observed(winter),
+        f"{winter.snowfall:.2f}" if winter.rows else "",
+        winter.source_text if winter.rows else "",
+        _filled(winter) if winter.sources[Source.FILLED] else "",
+        plural(missing, "day") if missing else "",
+        "yes" if winter.counts else "no",
+    )
+
+
+def _observed(winter: WinterQuality) -> str:
+    if winter.listed and winter.rows:
+        return "list of snowfalls"
+    if not winter.rows:
+        return "no rows"
+    return f"{winter.observed} of {plural(winter.season, 'day')} ({percent(winter.share)})"
+
+
+def _filled(winter: WinterQuality) -> str:
+    return f"{plural(winter.sources[Source.FILLED], 'day')}, {winter.filled_snow:.2f} m"

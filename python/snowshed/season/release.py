@@ -1,0 +1,51 @@
+"""The criterion for the release of snow from a panel."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Balance:
+    """The driving and the resisting stress of the snow on a panel, Pa."""
+
+    driving: float
+    resisting: float
+
+    @property
+    def releases(self) -> bool:
+        """True if the snow is released."""
+        return self.driving > self.resisting
+
+
+def balance(
+    load: float, tilt: float, friction: float, adhesion: float, gravity: float = 9.81
+) -> Balance:
+    """Return the downslope part of the snow's weight, and the friction and adhesion against it.
+
+    The snow is released if m g sin(Phi) > mu m g cos(Phi) + a (Mohr-Coulomb). Without adhesion the
+    load does not matter: snow is released if tan(Phi) > mu. With adhesion, snow accumulates until m
+    = a / (g (sin(Phi) - mu cos(Phi))).
+
+    Parameters
+    ----------
+    load
+        Mass of the snow, kg per m2 of the panel.
+    tilt
+        Phi, degrees from the horizontal.
+    friction
+        mu, static Coulomb coefficient between snow and panel.
+    adhesion
+        a, adhesion, Pa.
+    gravity
+        Gravity, m/s2.
+
+    Examples
+    --------
+    >>> balance(10.0, 40.0, 0.7, 0.0).releases, balance(10.0, 30.0, 0.7, 0.0).releases
+    (True, False)
+    """
+    weight = load * gravity
+    slope = math.radians(tilt)
+    return Balance(weight * math.sin(slope), friction * weight * math.cos(slope) + adhesion)

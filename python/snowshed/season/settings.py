@@ -1,0 +1,102 @@
+"""The settings of accumulation, release and ageing in a season."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Optional, Union
+
+from snowshed._core import InputError
+from snowshed.running.ageing import Ageing, Interval
+from snowshed.snow.relations.new_snow import NEW_SNOW_DENSITY
+from snowshed.snow.relations.relation import choose
+from snowshed.snow.relations.settling import SETTLING_LAWS, SettlingLaw
+from snowshed.snow.relations.strength import TENSILE_STRENGTH
+
+COVERS = ("weather", "none")  # or a depth
+
+
+@dataclass(frozen=True)
+class SeasonSettings:
+    """The settings of accumulation, release and ageing.
+
+    Attributes
+    ----------
+    friction
+        Static Coulomb coefficient between snow and panel. The laboratory measured 0.6 to 0.8 on
+        Plexiglas (thesis 2.1). Sliding snow has the friction of the scene's panel.
+    adhesion
+        Adhesion of the snow to the panel, Pa.
+    catch
+        Part of the snowfall that the panel catches; wind blows the rest past it.
+    density
+        Name of the relation (`NEW_SNOW_DENSITY`) for rows without a density.
+    settling
+        Name of a law in `SETTLING_LAWS` for the snow on the panel, in the stack and on the ground;
+        None: no settling.
+    sintering
+        Name of a law in `SINTERING_LAWS`, by which broken snow in the stack regains strength
+        between events; None: no sintering.
+    strength_age
+        Age at which bonds have the strength of the sliding snow, hours.
+    strength
+        Name of a relation in `TENSILE_STRENGTH`, which scales the strength and stiffness of a slab
+        with its density; None: all slabs have the strength of the scene's snow.
+    cover
+        Natural snow cover on the ground, below the stack: "weather" (depth of the season file, or
+        from its snowfalls), "none", or a constant depth in m.
+    pool_below
+        Releases are combined into one slide-off until their slab has at least this thickness, m
+        normal to the panel; 0: each slides alone.
+
+    Raises
+    ------
+    InputError
+        If a value is not allowed.
+    """
+
+    friction: float = 0.7
+    adhesion: float = 0.0
+    catch: float = 1.0
+    density: str = "hedstrom-pomeroy-1998"
+    settling: Optional[str] = "vionnet-2012"
+    sintering: Optional[str] = None
+    strength_age: float = 24.0
+    strength: Optional[str] = "sigrist-2006"
+    cover: Union[str, float] = "weather"
+    pool_below: float = 0.0
+
+    def __post_init__(self) -> None:
+        _check("release friction", self.friction, 0.0, 10.0, "")
+        _check("adhesion", self.adhesion, 0.0, 1e6, "Pa")
+        _check("catch", self.catch, 0.0, 1.0, "")
+        choose(self.density, NEW_SNOW_DENSITY, "density of new snow")
+        if self.strength is not None:
+            choose(self.strength, TENSILE_STRENGTH, "strength")
+        if not isinstance(self.cover, str):
+            _check("cover", self.cover, 0.0, 10.0, "m")
+        elif self.cover not in COVERS:
+            raise InputError(f"cover: {self.cover!r}; allowed: weather, none, a depth in m")
+        _check("pool below", self.pool_below, 0.0, 10.0, "m")
+        self.ageing({})
+
+    def ageing(self, pauses: Mapping[int, Sequence[Interval]]) -> Ageing:
+        """Return the ageing of the stack in the pauses before the events."""
+        return Ageing(pauses, self.settling, self.sintering, self.strength_age)
+
+    @property
+    def ages(self) -> bool:
+        """True if the stack settles or sinters."""
+        return bool(self.settling or self.sintering)
+
+    @property
+    def settling_law(self) -> Optional[SettlingLaw]:
+        """The law of settling, if there is one."""
+        return None if self.settling is None else SETTLING_LAWS[self.settling]
+
+
+def _check(name: str, value: float, low: float, high: float, unit: str) -> None:
+    if not (math.isfinite(value) and low <= value <= high):
+        allowed = f"{low:g} <= value <= {high:g} {unit}".rstrip()
+        raise InputError(f"{name}: {value:g} is outside the allowed range ({allowed})")

@@ -1,0 +1,53 @@
+"""An estimate of how far the stack has settled since the last slide-off.
+
+The simulated stack ages just before the next event (`snowshed.running.ageing`). For the time until
+then, the snow below its crest is treated as a column with the mean density of the stack, which
+settles under its own weight. The ratio of its thickness to the simulated height lowers the whole
+profile. The estimate is used in the table only.
+"""
+
+from __future__ import annotations
+
+from typing import Optional
+
+from snowshed.season.column import SnowColumn
+from snowshed.snow.relations.settling import SettlingLaw
+
+
+class SettlingStack:
+    """The column of snow below the crest of a stack.
+
+    Parameters
+    ----------
+    law
+        The law of settling; None: it does not settle.
+    gravity
+        Gravity, m/s2.
+
+    Examples
+    --------
+    >>> stack = SettlingStack(None, 9.81)
+    >>> stack.take(0.5, 200.0)
+    >>> stack.ratio
+    1.0
+    """
+
+    def __init__(self, law: Optional[SettlingLaw], gravity: float) -> None:
+        self._law = law
+        self._column = SnowColumn(load_factor=gravity)
+        self._height = 0.0
+
+    @property
+    def ratio(self) -> float:
+        """Ratio of settled to simulated height, at most 1."""
+        return min(self._column.thickness / self._height, 1.0) if self._height else 1.0
+
+    def take(self, height: float, density: float) -> None:
+        """Set the stack to the height, m, and the density, kg/m3, that an event left."""
+        self._column.clear()
+        self._column.add(height * density, density)
+        self._height = height
+
+    def wait(self, seconds: float, temperature: float) -> None:
+        """Let time pass at an air temperature, degrees C."""
+        self._column.settle(self._law, seconds, temperature)

@@ -1,0 +1,106 @@
+"""Temperatures of days without a measurement."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from datetime import date
+from typing import Optional
+
+import numpy as np
+
+from snowshed.base.arrays import Booleans, Floats, Integers
+
+LONGEST_BRIDGED = 3  # days without temperature, between which a straight line is drawn
+AROUND = 7  # half width of the window of the mean, days of the year
+LEAST = 5  # measured days for such a mean
+YEAR = 366
+
+
+def filled_temperatures(
+    dates: Sequence[date], measured: Floats, told: Optional[Booleans] = None
+) -> tuple[Floats, Booleans, list[str]]:
+    """Return the temperature of every day, the days it is far from a measured one, and notes.
+
+    Gaps of up to three days are interpolated linearly. In longer ones, a day gets the mean of the
+    file's temperatures within a week of the same day of the year, in all years; without such
+    temperatures, it is interpolated, too.
+
+    Parameters
+    ----------
+    dates
+        Days, in order.
+    measured : (n,)
+        Temperatures, degrees C; NaN: not measured; at least one is measured.
+    told : (n,)
+        The days that notes count; None: all.
+
+    Examples
+    --------
+    >>> days = [date(2024, 1, day) for day in (1, 2, 3)]
+    >>> filled_temperatures(days, np.array([-4.0, np.nan, -2.0]))[0].tolist()
+    [-4.0, -3.0, -2.0]
+    """
+    ordinals = np.array([day.toordinal() for day in dates])
+    measured_days = np.flatnonzero(~np.isnan(measured))
+    lined: Floats = np.interp(ordinals, ordinals[measured_days], measured[measured_days])
+    far = _distance(ordinals, ordinals[measured_days]) > LONGEST_BRIDGED
+    usual = _usual(dates, measured)
+    climate = far & ~np.isnan(usual)
+    filled = np.where(climate, usual, lined)
+    gaps = np.isnan(measured) & (True if told is None else told)
+    return filled, far, _notes(dates, gaps & climate, gaps & far & ~climate, gaps & ~far)
+
+
+def _notes(
+    dates: Sequence[date], climate: Booleans, lined: Booleans, bridged: Booleans
+) -> list[str]:
+    rules = (
+        (climate, "they have the mean of the file's same days of the year"),
+        (lined, "nor has any year of the file then; they are interpolated"),
+        (bridged, "they are interpolated from the days before and after"),
+    )
+    return [
+        f"without a temperature are {some_days(dates, np.flatnonzero(flags))}; {rule}"
+        for flags, rule in rules
+        if flags.any()
+    ]
+
+
+def some_days(dates: Sequence[date], numbers: Sequence[int] | Integers) -> str:
+    """Return how many days there are, and from when to when.
+
+    Examples
+    --------
+    >>> some_days([date(2024, 1, 1), date(2024, 1, 2)], [0, 1])
+    '2 days (2024-01-01 to 2024-01-02)'
+    """
+    first, last = dates[numbers[0]], dates[numbers[-1]]
+    return f"1 day ({first})" if len(numbers) == 1 else f"{len(numbers)} days ({first} to {last})"
+
+
+def _distance(days: Floats, measured_days: Floats) -> Floats:
+    """Return how far each day is from the nearest known one."""
+    near = np.searchsorted(measured_days, days)
+    before, after = (
+        measured_days[np.maximum(near - 1, 0)],
+        measured_days[np.minimum(near, len(measured_days) - 1)],
+    )
+    return np.asarray(np.minimum(np.abs(days - before), np.abs(after - days)), dtype=float)
+
+
+def _usual(dates: Sequence[date], measured: Floats) -> Floats:
+    """Return the mean temperature around each day of the year; NaN where too few were measured."""
+    place = np.array([_day_of_year(day) for day in dates])
+    is_measured = ~np.isnan(measured)
+    sums = np.bincount(place[is_measured], measured[is_measured], YEAR)
+    counts = np.bincount(place[is_measured], minlength=YEAR)
+    window = np.arange(-AROUND, AROUND + 1)
+    around = (np.arange(YEAR)[:, None] + window) % YEAR
+    total, number = sums[around].sum(axis=1), counts[around].sum(axis=1)
+    means = np.where(number >= LEAST, total / np.maximum(number, 1), np.nan)
+    return np.asarray(means[place], dtype=float)
+
+
+def _day_of_year(day: date) -> int:
+    """Return the day of a leap year, from 0, so that months fall on the same days in all years."""
+    return (date(2000, day.month, day.day) - date(2000, 1, 1)).days

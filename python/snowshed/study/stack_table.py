@@ -1,0 +1,325 @@
+"""Tables of stacks: from the store of a study, from a results folder, or from an exported file.
+
+Every analysis reads its stacks here. The columns are those of `snowshed.study.read_table`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Optional
+
+import numpy as np
+
+from snowshed._core import InputError
+from snowshed.base.arrays import Booleans, Floats
+from snowshed.base.extras import require
+from snowshed.base.messages import shortened
+from snowshed.io.csv_table import read_csv
+from snowshed.results.folder import read_events
+from snowshed.scene.accuracy_settings import ACCURACY, FORMER_NAMES
+from snowshed.scene.resolved import scene_data
+from snowshed.scene.scene import PathLike, ResolvedScene
+from snowshed.snow.stack.quantities import Measure, measure_named
+from snowshed.snow.stack.trimming import TRIMMINGS
+from snowshed.study.database import FILE as STORE
+from snowshed.study.factors import SEED
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+LARGEST_TABLE = 1_000_000  # rows of a Parquet file, which packs them well
+#: Columns that make two rows the result of different physics or methods where they differ.
+SETTINGS = ("version", "dimension", "trimming", *ACCURACY)
+
+
+@dataclass(frozen=True)
+class StackTable:
+    """Stacks of some runs, one row per run and event.
+
+    Attributes
+    ----------
+    frame
+        The columns of a study's table: ``hash``, what varies by dotted paths, ``seed``, ``event``,
+        the measures, and settings. Of a CSV file all cells are texts.
+    axes
+        Dotted paths of what varies, or is written down though it does not.
+    points
+        One row per run, computed or not: ``hash``, the axes, and ``seeding.seed``.
+    pending
+        Runs that are not computed yet, as far as that is known.
+    name
+        Of the study, or of the file.
+
+    Examples
+    --------
+    >>> import pandas as pd
+    >>> stacks = pd.DataFrame({"hash": ["a"], "seed": [1], "event": [1], "panel.tilt": [40.0],
+    ...                        "height_m": [0.2], "length_m": [0.5]})
+    >>> StackTable.of(stacks).measured("stack", ["height", "length"])[["height", "length"]]
+       height  length
+    0     0.2     0.5
+    """
+
+    frame: pd.DataFrame
+    axes: Sequence[str]
+    points: pd.DataFrame
+    pending: int = 0
+    name: str = "table"
+
+    @classmethod
+    def read(cls, source: PathLike, study: Optional[str] = None) -> StackTable:
+        """Read stacks from wherever they are.
+
+        Parameters
+        ----------
+        source
+            The folder of a study's store, that of a command which keeps such a store as ``runs``, a
+            results folder of one run, or a file that ``snowshed study export`` wrote (CSV or
+            Parquet).
+        study
+            Name of the study in a store; not needed if there is but one.
+
+        Raises
+        ------
+        InputError
+            If there is no table of stacks, or it is damaged; it names the source.
+        """
+        path = Path(source)
+        if not path.is_dir():
+            return cls.read_file(path)
+        if (path / "events.csv").is_file():
+            return cls._of_results(path)
+        if not (path / STORE).is_file() and (path / "runs" / STORE).is_file():
+            path = path / "runs"
+        return cls.read_study(path, study)
+
+    @classmethod
+    def read_study(cls, folder: PathLike, study: Optional[str] = None) -> StackTable:
+        """Read a study from its store, as far as it is computed.
+
+        Raises
+        ------
+        InputError
+            If there is no such study, or the store is damaged.
+        """
+        from snowshed.study.store import Store
+        from snowshed.study.table import read_table
+
+        with Store.open(folder) as store:
+            name = store.named(study)
+            axes = store.axes(name)
+            runs = store.runs(name)
+        scenes = {run.hash: scene_data(run.scene) for run in runs}
+        pending = sum(run.status == "pending" for run in runs)
+        return cls(read_table(folder, name), axes, _points(axes, scenes), pending, name)
+
+    @classmethod
+    def read_file(cls, path: Path) -> StackTable:
+        """Read a table that ``snowshed study export`` wrote; a CSV file's cells are texts."""
+        import pandas as pd
+
+        try:
+            if path.suffix != ".parquet":
+                return cls.of(read_csv(path, as_text=True), path.stem)
+            parquet = require("pyarrow.parquet", "study", "reading Parquet")
+            count = parquet.read_metadata(path).num_rows
+            if count > LARGEST_TABLE:
+                raise InputError(f"{path}: {count} rows; at most {LARGEST_TABLE} are allowed")
+            return cls.of(pd.read_parquet(path), path.stem)
+        except InputError:
+            raise
+        except OSError as error:
+            raise InputError(f"{path}: {error.strerror or error}") from None
+        except ValueError as error:
+            raise InputError(f"{path}: not a table: {error}") from None
+
+    @classmethod
+    def of(cls, frame: pd.DataFrame, name: str = "table") -> StackTable:
+        """Return the table of a DataFrame that has the columns of a study's table."""
+        from snowshed.study.table import with_trimming
+
+        frame = with_trimming(frame.rename(columns=FORMER_NAMES))
+        axes = [str(path) for path in frame if "." in str(path)]
+        points = frame[[path for path in ("hash", *axes) if path in frame]]
+        if "seed" in frame:
+            points = points.assign(**{SEED: frame["seed"]})
+        points = _as_numbers(points.drop_duplicates(ignore_index=True), [*axes, SEED])
+        return cls(frame, axes, points, name=name)
+
+    @classmethod
+    def _of_results(cls, folder: Path) -> StackTable:
+        """Read a results folder; all numbers and choices of its scene's panel are axes."""
+        from snowshed.study.scene_hash import Run
+        from snowshed.study.table import scene_columns
+
+        run = Run.of(ResolvedScene.load(folder / "scene.json"))
+        scene = scene_data(run.scene)
+        axes = [f"panel.{name}" for name in scene.get("panel", {})]
+        facts = {"hash": run.hash, **scene_columns(scene, axes)}
+        return cls.of(read_events(folder).assign(**facts), folder.name)
+
+    def chosen(self, where: Mapping[str, str]) -> StackTable:
+        """Return the rows that have some values in some columns.
+
+        Raises
+        ------
+        InputError
+            If there is no such column, or no row has the value.
+        """
+        frame = self.frame
+        for given, value in where.items():
+            column = FORMER_NAMES.get(given, given)
+            if column not in frame:
+                raise InputError(f"{column}: no such column; the table has {self.columns}")
+            cells = frame[column].astype(str)
+            if not (cells == value).any():
+                there = ", ".join(sorted(set(cells))[:8])
+                raise InputError(f"{column}: no row has the value {value}; there are: {there}")
+            frame = frame.loc[cells == value]
+        return replace(self, frame=frame)
+
+    @property
+    def columns(self) -> str:
+        """The names of the columns, for messages."""
+        return shortened(", ".join(map(str, self.frame)), 300)
+
+    def check_columns(self, needed: Sequence[str]) -> None:
+        """Raise InputError unless there are these columns."""
+        missing = [name for name in needed if name not in self.frame]
+        if not missing:
+            return
+        hint = ""
+        if any(name.startswith("panel.") for name in missing):
+            hint = (
+                "; a study's table has a column for each parameter in its axes, also with a single "
+                "value: axes.panel.tilt = 40"
+            )
+        elif any(name.startswith(tuple(TRIMMINGS)) for name in missing):
+            hint = "; its stacks were measured before there was that reading of A.4.2"
+        raise InputError(f"no column {', '.join(missing)}; it has {self.columns}{hint}")
+
+    def numbers(self, column: str, *, positive: bool = False) -> Floats:
+        """Return a column as numbers; raises InputError naming the line of what is none."""
+        import pandas as pd
+
+        numbers = np.asarray(pd.to_numeric(self.frame[column], errors="coerce"), dtype=float)
+        wrong = ~np.isfinite(numbers) | (numbers <= 0 if positive else False)
+        self.refuse(column, wrong, "a positive number" if positive else "a number")
+        return numbers
+
+    def refuse(self, column: str, wrong: Booleans, expected: str) -> None:
+        """Raise an error about the first wrong cell of a column, with its line in the file."""
+        if wrong.any():
+            row = int(np.argmax(wrong))
+            cell = str(self.frame[column].iloc[row])
+            raise InputError(f"line {self.line(row)}, {column}: {cell!r} is not {expected}")
+
+    def line(self, row: int) -> int:
+        """Return a row's line in its file: lines count from 1, and the first holds the names."""
+        return int(self.frame.index[row]) + 2
+
+    def without_stack(self, measure: Measure, quantities: Sequence[str]) -> Booleans:
+        """Return for each row whether the run failed, or all its snow stayed on the panel."""
+        import pandas as pd
+
+        cells = self.frame[list(measure.columns(quantities))]
+        nothing = cells.isna() | (cells.astype(str) == "")
+        nothing |= cells.apply(pd.to_numeric, errors="coerce") == 0
+        return np.asarray(nothing.any(axis=1))
+
+    def measured(self, measure: str, quantities: Sequence[str]) -> pd.DataFrame:
+        """Return the rows that have been measured, with the measures under plain names.
+
+        Parameters
+        ----------
+        measure
+            One of `snowshed.snow.stack.quantities.MEASURES`.
+        quantities
+            Which, of `snowshed.snow.stack.quantities.QUANTITIES`.
+
+        Raises
+        ------
+        InputError
+            If the measure is unknown, or there is no such row.
+        """
+        import pandas as pd
+
+        columns = measure_named(measure).columns(quantities)
+        self.check_columns(list(columns))
+        numbers = {
+            quantity: pd.to_numeric(self.frame[column], errors="coerce")
+            for column, quantity in columns.items()
+        }
+        frame = self.frame.drop(columns=list(columns)).assign(**numbers)
+        frame = frame.dropna(subset=list(quantities))
+        frame = _as_numbers(frame, [*self.axes, "seed", "event"])
+        if frame.empty:
+            raise InputError("nothing of it is computed yet; see `snowshed study status`")
+        return frame
+
+    def varying(self, paths: Sequence[str], purpose: str) -> list[str]:
+        """Return those of some axes that have several values; these must be numbers.
+
+        Raises
+        ------
+        InputError
+            If they are not, saying what needs numbers: the `purpose`.
+        """
+        import pandas as pd
+
+        varying = [path for path in paths if self.points[path].astype(str).nunique() > 1]
+        for path in varying:
+            values = self.points[path]
+            if pd.to_numeric(values, errors="coerce").isna().any() or values.dtype == bool:
+                raise InputError(f"{path}: holds {values.iloc[0]!r}; {purpose} needs numbers")
+        return varying
+
+    def common_settings(self, inputs: Sequence[str]) -> dict[str, str]:
+        """Return what all rows have in common, as text; refuse rows that differ otherwise.
+
+        Parameters
+        ----------
+        inputs
+            Columns in which rows may differ, besides the seed.
+        """
+        common = {}
+        for name in map(str, self.frame):
+            parameter = "." in name and name not in inputs and name != SEED
+            if not (parameter or name in SETTINGS):
+                continue
+            values = sorted(set(self.frame[name].astype(str)))
+            if len(values) > 1:
+                raise InputError(
+                    f"{name}: the rows have different values ({', '.join(values[:6])}), and it is "
+                    f"not an input; choose some with --where {name}={values[0]}"
+                )
+            common[name] = values[0]
+        return common
+
+
+def _as_numbers(frame: pd.DataFrame, columns: Sequence[str]) -> pd.DataFrame:
+    """Return a table in which columns of texts that are all numbers are numbers."""
+    import pandas as pd
+
+    found = {}
+    for name in columns:
+        if name in frame and not pd.api.types.is_numeric_dtype(frame[name]):
+            numbers = pd.to_numeric(frame[name], errors="coerce")
+            if not numbers.isna().any():
+                found[name] = numbers
+    return frame.assign(**found)
+
+
+def _points(axes: Sequence[str], scenes: Mapping[str, Mapping[str, object]]) -> pd.DataFrame:
+    import pandas as pd
+
+    from snowshed.study.table import value_at
+
+    paths = list(dict.fromkeys([*axes, SEED]))
+    rows = [
+        {"hash": hash_, **{path: value_at(scene, path) for path in paths}}
+        for hash_, scene in scenes.items()
+    ]
+    return pd.DataFrame(rows, columns=["hash", *paths])

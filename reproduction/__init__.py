@@ -1,1 +1,0 @@
-"""What reproductions of publications share: claims and verdicts, stages, sections, the report."""

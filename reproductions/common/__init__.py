@@ -1,0 +1,1 @@
+"""Shared parts of reproductions: declaration, command, stages, claims and verdicts, report."""

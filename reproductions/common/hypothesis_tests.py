@@ -1,0 +1,188 @@
+"""Tests of claims: a number, its noise, and what the claim says of the number."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Generic, TypeVar
+
+from snowshed.base.formatting import NOTHING, number, percent
+
+CONFIRMED, CONTRADICTED, UNDECIDED = "confirmed", "contradicted", "undecided"
+#: A difference counts if it is more than so many standard deviations of its noise.
+SIGMAS = 2.0
+
+Data = TypeVar("Data")
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A number with the standard deviation that noise gives it; NaN: the noise is not known.
+
+    Examples
+    --------
+    >>> (Estimate(3.0, 0.3) - Estimate(1.0, 0.4)).noise
+    0.5
+    """
+
+    value: float
+    noise: float
+
+    def __sub__(self, other: Estimate) -> Estimate:
+        return Estimate(self.value - other.value, math.hypot(self.noise, other.noise))
+
+    def scaled(self, factor: float) -> Estimate:
+        """Return the number in another unit, or as a part of a number that is known well."""
+        return Estimate(self.value * factor, self.noise * abs(factor))
+
+    def in_words(self, unit: str = "") -> str:
+        """Return number and noise; unit "%" for parts.
+
+        Examples
+        --------
+        >>> Estimate(0.0123, 0.0004).in_words("m"), Estimate(0.5, 0.01).in_words("%")
+        ('0.0123 ± 0.0004 m', '50 % ± 1 %')
+        """
+        if unit == "%":
+            return f"{percent(self.value)} ± {percent(self.noise, 2)}"
+        known = NOTHING if math.isnan(self.noise) else number(self.noise, 2)
+        return f"{number(self.value)} ± {known} {unit}".rstrip()
+
+
+def widening(freedom: float) -> float:
+    """Return by how much Student's t widens a noise that was estimated from few numbers.
+
+    `SIGMAS` of it then hold as much as they do where the noise is known well: 95 %.
+
+    Examples
+    --------
+    >>> [round(widening(freedom), 2) for freedom in (2, 6, 1000)]
+    [2.26, 1.26, 1.0]
+    """
+    if freedom <= 0:
+        return math.nan
+    from scipy import stats
+
+    return float(stats.t.ppf(stats.norm.cdf(SIGMAS), freedom)) / SIGMAS
+
+
+def mean_of(estimates: Sequence[Estimate]) -> Estimate:
+    """Return the mean of numbers whose noises are independent."""
+    mean = math.fsum(one.value for one in estimates) / len(estimates)
+    return Estimate(mean, math.hypot(*(one.noise for one in estimates)) / len(estimates))
+
+
+@dataclass(frozen=True)
+class Finding:
+    """The verdict of the data on a claim.
+
+    Attributes
+    ----------
+    verdict
+        "confirmed", "contradicted" or "undecided".
+    sentence
+        The number that says so, with its noise.
+    """
+
+    verdict: str
+    sentence: str
+
+
+@dataclass(frozen=True)
+class Claim(Generic[Data]):
+    """A claim of a publication.
+
+    Attributes
+    ----------
+    source
+        Where it says so.
+    text
+        What it says.
+    rule
+        When it is taken as confirmed; the opposite contradicts it, and anything closer than
+        `SIGMAS` deviations of noise leaves it open.
+    judge
+        From the data to the finding.
+    """
+
+    source: str
+    text: str
+    rule: str
+    judge: Callable[[Data], Finding]
+
+
+@dataclass(frozen=True)
+class Judged:
+    """A claim's text with its finding."""
+
+    source: str
+    text: str
+    rule: str
+    finding: Finding
+
+
+def judge(claims: Sequence[Claim[Data]], data: Data) -> list[Judged]:
+    """Test claims against the same data; missing data leave a claim undecided."""
+    return [Judged(one.source, one.text, one.rule, _finding(one, data)) for one in claims]
+
+
+def _finding(claim: Claim[Data], data: Data) -> Finding:
+    try:
+        return claim.judge(data)
+    except LookupError as missing:
+        return Finding(UNDECIDED, f"the data do not hold what it needs: {missing}")
+
+
+def positive(estimate: Estimate, what: str, unit: str = "") -> Finding:
+    """Test the claim that a number is above zero.
+
+    Examples
+    --------
+    >>> positive(Estimate(0.3, 0.1), "growth", "m")
+    Finding(verdict='confirmed', sentence='growth: 0.3 ± 0.1 m')
+    >>> [positive(Estimate(x, 0.1), "").verdict for x in (-0.3, 0.1)]
+    ['contradicted', 'undecided']
+    """
+    return Finding(_sign(estimate.value, estimate.noise), _sentence(what, estimate, unit))
+
+
+def negative(estimate: Estimate, what: str, unit: str = "") -> Finding:
+    """Test the claim that a number is below zero."""
+    return Finding(_sign(-estimate.value, estimate.noise), _sentence(what, estimate, unit))
+
+
+def small(estimate: Estimate, bound: float, what: str, unit: str = "") -> Finding:
+    """Test the claim that a number is hardly anything: not above a bound, whatever its sign.
+
+    Examples
+    --------
+    >>> [small(Estimate(x, 0.02), 0.1, "").verdict for x in (0.01, -0.2, 0.09)]
+    ['confirmed', 'contradicted', 'undecided']
+    """
+    verdict = _sign(bound - abs(estimate.value), estimate.noise)
+    return Finding(verdict, _sentence(what, estimate, unit))
+
+
+def near(estimate: Estimate, aim: float, bound: float, what: str, unit: str = "") -> Finding:
+    """Test the claim that a number is about another one: not farther from it than a bound."""
+    away = Estimate(estimate.value - aim, estimate.noise)
+    return Finding(small(away, bound, "").verdict, _sentence(what, estimate, unit))
+
+
+def all_of(findings: Sequence[Finding]) -> Finding:
+    """Return the finding on a claim with several parts: it holds if every part does."""
+    verdicts = {finding.verdict for finding in findings}
+    ranked = (CONTRADICTED, UNDECIDED, CONFIRMED)
+    verdict = next((one for one in ranked if one in verdicts), UNDECIDED)
+    return Finding(verdict, "; ".join(finding.sentence for finding in findings))
+
+
+def _sign(value: float, noise: float) -> str:
+    if math.isnan(value) or math.isnan(noise) or abs(value) <= SIGMAS * noise:
+        return UNDECIDED
+    return CONFIRMED if value > 0 else CONTRADICTED
+
+
+def _sentence(what: str, estimate: Estimate, unit: str) -> str:
+    return f"{what}: {estimate.in_words(unit)}"

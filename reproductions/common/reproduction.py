@@ -1,0 +1,92 @@
+"""The declaration of a reproduction."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Generic, Optional, Protocol, TypeVar
+
+import click
+
+from reproductions.common.folder import ReproductionFolder
+from reproductions.common.hypothesis_tests import Claim
+from reproductions.common.section import Section
+from reproductions.common.size import Size
+from reproductions.common.stage import Stage
+
+
+class Computation(Protocol):
+    """The stages of a reproduction in its folder, and whatever its sections read from them."""
+
+    @property
+    def stages(self) -> Sequence[Stage]:
+        """All stages, in order."""
+
+
+Work = TypeVar("Work", bound=Computation)
+
+
+@dataclass(frozen=True)
+class Reproduction(Generic[Work]):
+    """The declaration of a reproduction, from which its command and its report are made.
+
+    Attributes
+    ----------
+    name, alias
+        The package and its command; a short name, after which the report is named too.
+    author
+        Names the publication in text, such as "the paper".
+    title, about, noise
+        Of the report: its title, the publication and how it is reproduced, and where the noise of
+        the numbers comes from. The last two may hold HTML.
+    help, stage_help
+        Help texts of the command and of its option ``--stage``.
+    sizes
+        The first is the default.
+    stages
+        ``stages(folder, settings, **options)`` returns the computation. It writes nothing, and
+        raises InputError if an option is wrong.
+    claims
+        Every claim of the publication that a section may judge, in order.
+    sections
+        Of the report, in order.
+    jobs_help
+        Help text of ``--jobs``; None: the command has no such option.
+    options
+        Further options of the command.
+    identity, former
+        The options that decide what a folder holds, besides the size; and the values of folders
+        that do not name them.
+    """
+
+    name: str
+    alias: str
+    author: str
+    title: str
+    about: str
+    noise: str
+    help: str
+    stage_help: str
+    sizes: Sequence[Size[Any]]
+    stages: Callable[..., Work]
+    claims: Sequence[Claim[Any]]
+    sections: Sequence[Section[Work]]
+    jobs_help: Optional[str] = None
+    options: Sequence[click.Option] = ()
+    identity: Sequence[str] = ()
+    former: Mapping[str, str] = field(default_factory=dict)
+
+    def size(self, name: str) -> Size[Any]:
+        """Return the size of a name."""
+        return next(size for size in self.sizes if size.name == name)
+
+    def report(self, folder: Path) -> Path:
+        """Return the file of the report."""
+        return folder / f"{self.alias}.html"
+
+    def claim(self, folder: Path, size: str, options: Mapping[str, Any]) -> None:
+        """Take a folder, old or new; raises InputError if it holds something else."""
+        identity = {"publication": self.alias, "size": size}
+        identity.update({name: str(options[name]) for name in self.identity})
+        ReproductionFolder(folder).claim(identity, self.former)

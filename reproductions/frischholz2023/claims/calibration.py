@@ -1,0 +1,119 @@
+"""Claims of chapter 4, as far as they can be judged without the measured stacks."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from reproductions.common.hypothesis_tests import (
+    CONFIRMED,
+    CONTRADICTED,
+    UNDECIDED,
+    Claim,
+    Finding,
+)
+from reproductions.frischholz2023.printed import CALIBRATED
+from snowshed.base.formatting import percent
+from snowshed.plot.labels import settings
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    import pandas as pd
+
+#: The best part of the sets, among which a known snow should be found.
+BEST_PART = 0.25
+
+
+@dataclass(frozen=True)
+class Recovery:
+    """A known snow, looked for with its own synthetic stacks.
+
+    Attributes
+    ----------
+    ranked
+        From `snowshed.analysis.calibration.rank`: one row per parameter set, the best first.
+    ranges
+        From `snowshed.analysis.calibration.Posterior.ranges`.
+    """
+
+    ranked: pd.DataFrame
+    ranges: pd.DataFrame
+
+
+def is_ranked_well(data: Recovery) -> Finding:
+    """Test whether the ranking finds the snow that made the synthetic stacks."""
+    here = data.ranked
+    for path, value in CALIBRATED.items():
+        here = here[(here[path] / value - 1).abs() < 1e-9]
+    if here.empty:
+        raise LookupError("the calibrated snow among the parameter sets")
+    rank, count = int(here["rank"].iloc[0]), len(data.ranked)
+    best = settings({path: data.ranked[path].iloc[0] for path in CALIBRATED})
+    verdict = CONTRADICTED
+    if rank == 1:
+        verdict = CONFIRMED
+    elif rank <= max(1, round(BEST_PART * count)):
+        verdict = UNDECIDED
+    return Finding(verdict, f"the true snow has rank {rank} of {count}; the first is {best}")
+
+
+def is_in_the_ranges(data: Recovery) -> Finding:
+    """Test whether the 95 % ranges of the posterior hold the true snow.
+
+    One of three may miss it by chance, in one draw of the errors out of seven.
+
+    p0 and beta of the true snow lie at the ends of the grid, which no range between quantiles
+    reaches: a range that is open at an end goes on to it.
+    """
+    outside = [
+        row["parameter"]
+        for row in data.ranges.to_dict("records")
+        if not _lower(row) <= CALIBRATED[row["parameter"]] <= _upper(row)
+    ]
+    widths = (data.ranges["upper_95"] - data.ranges["lower_95"]) / (
+        data.ranges["high"] - data.ranges["low"]
+    )
+    words = f"{len(data.ranges) - len(outside)} of {len(data.ranges)} parameters inside"
+    verdict = (CONFIRMED, UNDECIDED, CONTRADICTED)[min(len(outside), 2)]
+    return Finding(
+        verdict, f"{words}; the ranges are {percent(widths.mean(), 2)} of the grid on average"
+    )
+
+
+def _lower(row: Mapping[Any, Any]) -> float:
+    return float(row["low"] if row["open"] in ("below", "both") else row["lower_95"])
+
+
+def _upper(row: Mapping[Any, Any]) -> float:
+    return float(row["high"] if row["open"] in ("above", "both") else row["upper_95"])
+
+
+def is_the_laboratory(data: Recovery) -> Finding:
+    """Say why nothing can be said of the laboratory's snow: its stacks exist in figures only."""
+    words = "the measured stacks are printed as figures only, so that nothing can be compared"
+    return Finding(UNDECIDED, words)
+
+
+CALIBRATION: tuple[Claim[Recovery], ...] = (
+    Claim(
+        "Table 4.3.1",
+        "The laboratory's snow is M 0.5, p₀ 7 kPa, β 0.2.",
+        "needs the measured stacks",
+        is_the_laboratory,
+    ),
+    Claim(
+        "4.1",
+        "The mean rescaled RMSE finds the snow (on synthetic stacks).",
+        "the true triplet has rank 1; undecided if it is among the best quarter (one draw of the "
+        "errors, no noise)",
+        is_ranked_well,
+    ),
+    Claim(
+        "beyond the thesis",
+        "The posterior finds the snow (on synthetic stacks).",
+        "the true values of all parameters lie in their 95 % ranges, which go on to the end of the "
+        "grid where they are open; undecided if one does not (one draw of the errors, no noise)",
+        is_in_the_ranges,
+    ),
+)

@@ -1,0 +1,276 @@
+"""Claims of section 3.4: what stacks do, on average over all other parameters.
+
+The data are the table of `snowshed.analysis.sensitivity.fixation` with a column ``noise_m``: the
+standard deviation that the seeding gives ``mean_m``. Where the event is not named, it is the last.
+Values of the other parameters are a design, no sample: the seeding is all that is by chance.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from reproductions.common.hypothesis_tests import (
+    Claim,
+    Estimate,
+    Finding,
+    all_of,
+    mean_of,
+    negative,
+    positive,
+    small,
+)
+from reproductions.frischholz2023.claims.s_index import (
+    COHESION,
+    HARDENING,
+    MODULUS,
+    PRESSURE,
+    SLOPE,
+)
+from snowshed.base.formatting import percent
+from snowshed.plot.labels import label
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+#: Part of the stack by which it may change over the whole range of a parameter that hardly matters.
+HARDLY = 0.1
+#: Below this cohesion the others are said to matter little (3.4.1, takeaways).
+DRIVES = 0.2
+#: Part of the stack up to which a deviation is an "almost insensitive" height.
+INSENSITIVE = 0.1
+YIELD = (SLOPE, PRESSURE, COHESION)
+
+
+def effect(table: pd.DataFrame, parameter: str, target: str) -> Estimate:
+    """Return by how much the mean stack changes over the range of a parameter, last event, m."""
+    rows = _last(_of(table, target), parameter)
+    low, high = (Estimate(row["mean_m"], row["noise_m"]) for row in (rows.iloc[0], rows.iloc[-1]))
+    return high - low
+
+
+def raises(table: pd.DataFrame, parameter: str, target: str) -> Finding:
+    """Test whether the stack grows over the range of a parameter."""
+    return positive(effect(table, parameter, target), _change(parameter, target), "m")
+
+
+def lowers(table: pd.DataFrame, parameter: str, target: str) -> Finding:
+    """Test whether the stack shrinks over the range of a parameter."""
+    return negative(effect(table, parameter, target), _change(parameter, target), "m")
+
+
+def shortens_at_first(table: pd.DataFrame, parameter: str) -> Finding:
+    """Test whether all stacks shrink from the first value of a parameter to the second."""
+    findings = []
+    for event, rows in _by_event(_of(table, "length"), parameter):
+        low, high = (Estimate(row["mean_m"], row["noise_m"]) for _, row in rows.iloc[:2].iterrows())
+        what = f"length, second minus lowest {label(parameter).symbol}, event {event:g}"
+        findings.append(negative(high - low, what, "m"))
+    return all_of(findings)
+
+
+def hardly_matter(table: pd.DataFrame, target: str) -> Finding:
+    """Test whether the stack changes little over the ranges of both hardening parameters."""
+    findings = []
+    for parameter in (HARDENING, MODULUS):
+        mean = _last(_of(table, target), parameter)["mean_m"].mean()
+        found = effect(table, parameter, target).scaled(1 / mean)
+        findings.append(small(found, HARDLY, _change(parameter, target), "%"))
+    return all_of(findings)
+
+
+def events_matter_more(table: pd.DataFrame, target: str) -> Finding:
+    """Test whether the events change the stack more than any parameter does over its range."""
+    first, last = _ends(_of(table, target))
+    found = {one: effect(table, one, target) for one in dict.fromkeys(table["parameter"])}
+    rival = max(found, key=lambda one: abs(found[one].value))
+    strongest = Estimate(abs(found[rival].value), found[rival].noise)
+    lead = (last - first) - strongest
+    words = f"{target}, growth by the events minus change by {label(rival).symbol}, the strongest"
+    return positive(lead, words, "m")
+
+
+def second_event_adds_most_length(table: pd.DataFrame) -> Finding:
+    """Test whether the second event adds more length than the third."""
+    rows = _of(table, "length")
+    events = sorted(rows["event"].unique())
+    if len(events) < 3:
+        raise LookupError("three events")
+    one, two, three = (_mean(rows[rows["event"] == event]) for event in events[:3])
+    more = 2 * two.value - one.value - three.value
+    noise = math.sqrt(one.noise**2 + 4 * two.noise**2 + three.noise**2)
+    return positive(Estimate(more, noise), "length, growth at the second minus at the third", "m")
+
+
+def cohesive_snow_is_more_sensitive(table: pd.DataFrame) -> Finding:
+    """Test whether heights scatter more at the highest value of a yield parameter than the lowest.
+
+    They scatter over the values of the other parameters.
+    """
+    findings = []
+    for parameter in YIELD:
+        rows = _last(_of(table, "height"), parameter)
+        low, high = (_deviation(row) for row in (rows.iloc[0], rows.iloc[-1]))
+        what = f"scatter at the highest {label(parameter).symbol} minus at the lowest"
+        findings.append(positive(high - low, what, "m"))
+    return all_of(findings)
+
+
+def mass_makes_sensitive(table: pd.DataFrame) -> Finding:
+    """Test whether heights scatter more after the last event than after the first."""
+    findings = []
+    for parameter in YIELD:
+        by_event = [rows for _, rows in _by_event(_of(table, "height"), parameter)]
+        first, last = (
+            mean_of([_deviation(row) for _, row in rows.iterrows()])
+            for rows in (by_event[0], by_event[-1])
+        )
+        what = f"mean scatter at values of {label(parameter).symbol}, last event minus first"
+        findings.append(positive(last - first, what, "m"))
+    return all_of(findings)
+
+
+def cohesion_drives(table: pd.DataFrame) -> Finding:
+    """Test whether heights of all events hardly scatter over M and p0 where beta is small."""
+    findings = []
+    for event, rows in _by_event(_of(table, "height"), COHESION):
+        for _, row in rows[rows["value"] < DRIVES * (1 - 1e-9)].iterrows():
+            scatter = _deviation(row).scaled(1 / row["mean_m"])
+            what = f"scatter at β {row['value']:g}, event {event:g}"
+            findings.append(small(scatter, INSENSITIVE, what, "%"))
+    return all_of(findings)
+
+
+def _of(table: pd.DataFrame, target: str) -> pd.DataFrame:
+    return table[table["target"] == target]
+
+
+def _last(rows: pd.DataFrame, parameter: str) -> pd.DataFrame:
+    return _by_event(rows, parameter)[-1][1]
+
+
+def _by_event(rows: pd.DataFrame, parameter: str) -> list[tuple[Any, pd.DataFrame]]:
+    """Return the rows of a parameter by event, each sorted by its values."""
+    rows = rows[rows["parameter"] == parameter]
+    if rows["value"].nunique() < 2:
+        raise LookupError(f"two values of {label(parameter).symbol}")
+    return list(rows.sort_values("value").groupby("event"))
+
+
+def _ends(rows: pd.DataFrame) -> tuple[Estimate, Estimate]:
+    """Return the mean stack after the first and the last event."""
+    first, last = rows["event"].min(), rows["event"].max()
+    return _mean(rows[rows["event"] == first]), _mean(rows[rows["event"] == last])
+
+
+def _mean(rows: pd.DataFrame) -> Estimate:
+    """Return the mean over the values of the first parameter, which covers all of its group."""
+    rows = rows[rows["parameter"] == rows["parameter"].iloc[0]]
+    return mean_of([Estimate(m, n) for m, n in zip(rows["mean_m"], rows["noise_m"])])
+
+
+def _deviation(row: pd.Series[float]) -> Estimate:
+    """Return the deviation over n points without the seeding's part, and what the seeding leaves.
+
+    A point's seeding has the variance s2 = n noise_m^2. The variance over the points is larger by
+    s2, and has itself the variance (4 D^2 s2 + 2 s2^2) / (n - 1) to first order.
+    """
+    points = float(row["points"])
+    if points < 2:
+        raise LookupError("several points at each value")
+    seeding = points * float(row["noise_m"]) ** 2
+    squared = max(float(row["deviation_m"]) ** 2 - seeding, 0.0)
+    of_squared = math.sqrt((4 * squared * seeding + 2 * seeding**2) / (points - 1))
+    deviation = math.sqrt(squared)
+    hidden = 4 * squared <= of_squared  # then the noise is what the seeding may hide
+    return Estimate(deviation, math.sqrt(of_squared) if hidden else of_squared / (2 * deviation))
+
+
+def _change(parameter: str, target: str) -> str:
+    return f"{target}, highest minus lowest {label(parameter).symbol}"
+
+
+RAISE = "mean over the others higher at the highest value than at the lowest, last event"
+FIXATION: tuple[Claim[pd.DataFrame], ...] = (
+    *(
+        Claim(
+            "3.4.1",
+            f"{label(one).symbol} raises the stack.",
+            RAISE,
+            partial(raises, parameter=one, target="height"),
+        )
+        for one in YIELD
+    ),
+    *(
+        Claim(
+            "3.4.1",
+            f"{label(one).symbol} shortens the stack.",
+            RAISE.replace("higher", "lower"),
+            partial(lowers, parameter=one, target="length"),
+        )
+        for one in (SLOPE, COHESION)
+    ),
+    Claim(
+        "3.4.1",
+        "p₀ lengthens the stack.",
+        RAISE,
+        partial(raises, parameter=PRESSURE, target="length"),
+    ),
+    *(
+        Claim(
+            source,
+            f"ξ and E hardly matter for the {target}.",
+            f"over the whole range of each the mean changes by less than {percent(HARDLY)}",
+            partial(hardly_matter, target=target),
+        )
+        for source, target in (("3.4.2", "height"), ("3.5", "length"))
+    ),
+    Claim(
+        "3.4.2",
+        "ξ lowers the stack when there is much snow.",
+        RAISE.replace("higher", "lower"),
+        partial(lowers, parameter=HARDENING, target="height"),
+    ),
+    Claim(
+        "3.4.2",
+        "ξ shortens the stack in the lowest part of its range, at every event.",
+        "mean over the others lower at the second value than at the lowest",
+        partial(shortens_at_first, parameter=HARDENING),
+    ),
+    *(
+        Claim(
+            "3.4",
+            f"Events matter more for the {target} than snow parameters.",
+            "growth from the first event to the last above the largest change over a parameter",
+            partial(events_matter_more, target=target),
+        )
+        for target in ("height", "length")
+    ),
+    Claim(
+        "3.4.1",
+        "The length grows more at the second event than at the third.",
+        "mean over the yield parameters",
+        second_event_adds_most_length,
+    ),
+    Claim(
+        "3.4.1",
+        "The more cohesive the snow, the more sensitive the height.",
+        "deviation over the other parameters larger at the highest value than at the lowest, for "
+        "M, p₀ and β",
+        cohesive_snow_is_more_sensitive,
+    ),
+    Claim(
+        "3.4.1",
+        "The more snow, the more sensitive the height.",
+        "deviation over the other parameters larger after the last event than after the first, for "
+        "M, p₀ and β, mean over their values",
+        mass_makes_sensitive,
+    ),
+    Claim(
+        "3.4.1",
+        f"Below β {DRIVES:g}, β drives the height: M and p₀ hardly matter.",
+        f"deviation over M and p₀ below {percent(INSENSITIVE)} of the height, every event",
+        cohesion_drives,
+    ),
+)

@@ -1,0 +1,260 @@
+"""Claims of section 5.1: how stacks depend on the panel.
+
+The data have one row per panel and event: ``event``, ``panel_height``, ``panel_length`` (m),
+``panel_tilt`` (degrees), and ``ratio``, ``height``, ``length`` of the stack. Each input is looked
+at among rows that share all others, relative to the mean of these rows. The noise is the standard
+error of a fitted slope, from the scatter about the fit. The events of one panel are no independent
+witnesses, since each builds on the one before: errors are summed by panels.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from reproductions.common.hypothesis_tests import (
+    CONFIRMED,
+    CONTRADICTED,
+    UNDECIDED,
+    Claim,
+    Estimate,
+    Finding,
+    negative,
+    positive,
+    small,
+)
+from snowshed.base.arrays import Floats
+from snowshed.base.formatting import percent
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+PANEL = ("panel_height", "panel_length", "panel_tilt")
+INPUTS = ("event", *PANEL)
+#: A shape fits better if it leaves so many times less variance.
+FITS_BETTER = 1.5
+#: Part of a straight line's change by which a parabola may depart from it.
+STRAIGHT = 0.25
+#: Part of the mean slope by which slopes may differ and still be the same.
+SAME = 0.25
+#: Part of the ratio by which it may change over all tilts and still hardly depend on them.
+HARDLY = 0.1
+
+#: Of the inputs, as slopes are given.
+UNITS = {
+    "panel_length": "unit of ln L",
+    "panel_height": "m of panel height",
+    "panel_tilt": "degree of panel tilt",
+}
+
+Shape = Callable[[Floats], Floats]
+
+
+@dataclass(frozen=True)
+class Fit:
+    """Slopes that all groups share, with an offset for each group.
+
+    Attributes
+    ----------
+    slopes
+        Part of the group's mean per unit of each shape.
+    variance
+        What the fit leaves, per degree of freedom.
+    span
+        From the lowest to the highest input.
+    """
+
+    slopes: Sequence[Estimate]
+    variance: float
+    span: float
+
+
+def fit(table: pd.DataFrame, varied: str, target: str, *shapes: Shape) -> Fit:
+    """Fit a target to functions of one input, among rows that share all others.
+
+    Standard errors are robust to errors that are alike within a panel (Liang and Zeger, 1986), and
+    not below those of independent errors.
+
+    Raises
+    ------
+    LookupError
+        If there are too few such rows.
+
+    Examples
+    --------
+    >>> import pandas as pd
+    >>> table = pd.DataFrame({name: 1.0 for name in INPUTS}, index=range(4))
+    >>> table["panel_height"] = [1.0, 2.0, 3.0, 4.0]
+    >>> table["ratio"] = 5 - table["panel_height"]
+    >>> round(fit(table, "panel_height", "ratio", straight).slopes[0].value, 6)  # of a mean of 2.5
+    -0.4
+    """
+    import pandas as pd
+
+    others = [name for name in INPUTS if name != varied]
+    table = table.reset_index(drop=True)
+    panel = table.groupby(list(PANEL)).ngroup().to_numpy()
+    groups = [rows for _, rows in table.groupby(others) if rows[varied].nunique() > 1]
+    count = sum(map(len, groups))
+    freedom = count - len(groups) - len(shapes)
+    if freedom < 1:
+        raise LookupError(f"enough rows that differ in nothing but {varied.replace('_', ' ')}")
+    inputs = [rows[varied].to_numpy(float) for rows in groups]
+    columns = np.concatenate([_centred([shape(x) for shape in shapes]) for x in inputs], axis=1).T
+    targets = np.concatenate([_relative(rows[target].to_numpy(float)) for rows in groups])
+    slopes, *_ = np.linalg.lstsq(columns, targets, rcond=None)
+    left = targets - columns @ slopes
+    variance = float((left**2).sum() / freedom)
+    inverse = np.linalg.pinv(columns.T @ columns)
+    panels = np.concatenate([panel[rows.index] for rows in groups])
+    sums = pd.DataFrame(columns * left[:, None]).groupby(panels).sum().to_numpy()
+    clusters = len(sums)
+    robust = inverse @ sums.T @ sums @ inverse * (clusters / max(clusters - 1, 1))
+    errors = np.sqrt(np.maximum(variance * np.diag(inverse), np.diag(robust)))
+    found = [Estimate(float(one), float(error)) for one, error in zip(slopes, errors)]
+    return Fit(found, variance, float(np.ptp(np.concatenate(inputs))))
+
+
+def straight(x: Floats) -> Floats:
+    """Return the input itself."""
+    return x
+
+
+def _centred(columns: Sequence[Floats]) -> Floats:
+    return np.array([column - column.mean() for column in columns])
+
+
+def _relative(values: Floats) -> Floats:
+    return np.asarray(values / values.mean() - 1)
+
+
+def grows_with(table: pd.DataFrame, varied: str, target: str) -> Finding:
+    """Test whether a target grows with an input."""
+    return positive(*_slope(table, varied, target))
+
+
+def falls_with(table: pd.DataFrame, varied: str, target: str) -> Finding:
+    """Test whether a target falls with an input."""
+    return negative(*_slope(table, varied, target))
+
+
+def _slope(table: pd.DataFrame, varied: str, target: str) -> tuple[Estimate, str]:
+    """Return the slope of a target on an input, of the length on its logarithm; and what it is."""
+    slope = fit(table, varied, target, np.log if varied == "panel_length" else straight).slopes[0]
+    return slope, f"relative change of {_name(target)} per {UNITS[varied]}"
+
+
+def slopes_are_the_same(table: pd.DataFrame) -> Finding:
+    """Test whether H/L falls with the panel's height at every event alike."""
+    slopes = []
+    for _, rows in table.groupby("event"):
+        slope = fit(rows, "panel_height", "ratio", straight).slopes[0]
+        slopes.append(slope.scaled(float(rows["ratio"].mean() / table["ratio"].mean())))
+    if len(slopes) < 2:
+        raise LookupError("several events")
+    low, high = min(slopes, key=_value), max(slopes, key=_value)
+    mean = abs(sum(map(_value, slopes))) / len(slopes)
+    if not mean:
+        raise LookupError("a slope")
+    words = "largest difference between slopes of two events, of the mean slope"
+    return small((high - low).scaled(1 / mean), SAME, words, "%")
+
+
+def is_logarithmic(table: pd.DataFrame) -> Finding:
+    """Test whether a logarithm of the panel's length fits H/L better than a straight line."""
+    line = fit(table, "panel_length", "ratio", straight).variance
+    logarithm = fit(table, "panel_length", "ratio", np.log).variance
+    better = line / logarithm
+    verdict = UNDECIDED
+    if better > FITS_BETTER:
+        verdict = CONFIRMED
+    elif better < 1 / FITS_BETTER:
+        verdict = CONTRADICTED
+    words = "variance left by a straight line over that left by a logarithm"
+    return Finding(verdict, f"{words}: {better:.2f}")
+
+
+def is_linear_in_height(table: pd.DataFrame) -> Finding:
+    """Test whether a parabola bends H/L away from a straight line by a small part of its change."""
+    middle = (table["panel_height"].min() + table["panel_height"].max()) / 2
+    found = fit(table, "panel_height", "ratio", straight, lambda x: (x - middle) ** 2)
+    slope, bend = found.slopes
+    change = slope.value * found.span
+    departure = bend.scaled((found.span / 2) ** 2 / change)
+    return small(departure, STRAIGHT, "departure from a line, of the line's change", "%")
+
+
+def hardly_depends_on_tilt(table: pd.DataFrame) -> Finding:
+    """Test whether the mean H/L of any two tilts differs little."""
+    first, *others = sorted(table["panel_tilt"].unique())
+    if not others:
+        raise LookupError("several tilts")
+    found = fit(table, "panel_tilt", "ratio", *(partial(_equal, value=tilt) for tilt in others))
+    means = [Estimate(0.0, 0.0), *found.slopes]  # relative to the first tilt
+    low, high = min(means, key=_value), max(means, key=_value)
+    tilts = [first, *others]
+    words = f"{tilts[means.index(high)]:g} and {tilts[means.index(low)]:g} degrees"
+    return small(high - low, HARDLY, f"largest relative difference of H/L, of {words}", "%")
+
+
+def _equal(x: Floats, value: float) -> Floats:
+    return np.asarray(x == value, dtype=float)
+
+
+def _value(found: Estimate) -> float:
+    return found.value
+
+
+def _name(target: str) -> str:
+    return "H/L" if target == "ratio" else f"stack {target}"
+
+
+def _grows(text: str, varied: str, target: str) -> Claim[pd.DataFrame]:
+    of_what = " on ln L" if varied == "panel_length" else ""
+    judge = partial(grows_with, varied=varied, target=target)
+    return Claim("5.1.2", text, f"slope{of_what} above zero", judge)
+
+
+def _falls(text: str, varied: str, target: str) -> Claim[pd.DataFrame]:
+    judge = partial(falls_with, varied=varied, target=target)
+    return Claim("5.1.2", text, "slope below zero", judge)
+
+
+GEOMETRY: tuple[Claim[pd.DataFrame], ...] = (
+    _grows("H/L grows with the panel's length.", "panel_length", "ratio"),
+    Claim(
+        "5.1.2",
+        "It grows like a logarithm.",
+        f"a logarithm leaves {FITS_BETTER} times less variance than a straight line (no noise)",
+        is_logarithmic,
+    ),
+    _grows("The stack's height grows with the panel's length.", "panel_length", "height"),
+    _grows("The stack's length grows with the panel's height.", "panel_height", "length"),
+    _grows("The stack's height grows with the panel's height too.", "panel_height", "height"),
+    _falls("H/L falls with the panel's height.", "panel_height", "ratio"),
+    Claim(
+        "5.1.2",
+        "It falls linearly.",
+        f"a parabola departs from the line by less than {percent(STRAIGHT)} of the line's change",
+        is_linear_in_height,
+    ),
+    Claim(
+        "5.1.2",
+        "It falls with the same slope at every event.",
+        f"no two events' slopes differ by more than {percent(SAME)} of the mean slope",
+        slopes_are_the_same,
+    ),
+    Claim(
+        "5.1.2",
+        "H/L hardly depends on the tilt.",
+        f"between no two tilts it changes by more than {percent(HARDLY)} of itself",
+        hardly_depends_on_tilt,
+    ),
+    _grows("The stack's length grows slightly with the tilt.", "panel_tilt", "length"),
+    _falls("The stack's height falls slightly with the tilt.", "panel_tilt", "height"),
+    _falls("H/L falls slightly with the tilt.", "panel_tilt", "ratio"),
+)

@@ -1,0 +1,233 @@
+"""Claims of section 5.3, about the two support vector regressions of H/L."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from reproductions.common.hypothesis_tests import (
+    CONFIRMED,
+    CONTRADICTED,
+    UNDECIDED,
+    Claim,
+    Estimate,
+    Finding,
+    all_of,
+    near,
+    positive,
+    widening,
+)
+from reproductions.frischholz2023.printed import THESIS_ERRORS, THESIS_QUARTILES, THESIS_ROWS
+from snowshed.analysis.regression.published import LINEAR_WORSE, QUARTILES_OFF
+from snowshed.base.arrays import Floats
+from snowshed.base.formatting import percent
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+#: "Sub-centimetre": H/L has no unit, so that its error is compared with the plain number.
+SUB_CENTIMETRE = 0.01
+#: Section 5.3.1, of the RBF kernel.
+VALIDATION_SCORE = 0.005
+#: Part by which a number may differ and still be about another.
+ABOUT = 0.25
+
+
+@dataclass(frozen=True)
+class Regressed:
+    """The results of the nested cross-validation for H/L.
+
+    Attributes
+    ----------
+    rows, panels
+        How many rows the data have, and of how many panels.
+    scores
+        One row per outer fold: ``model``, ``round``, ``fold``, ``development_score``,
+        ``validation_score``, ``C``.
+    errors
+        Table 5.3.2, by model: ``mean_absolute_error``, ``standard_deviation``.
+    quartiles
+        Table 5.3.1, by model: ``Q1`` to ``Q4``.
+    """
+
+    rows: int
+    panels: int
+    scores: pd.DataFrame
+    errors: pd.DataFrame
+    quartiles: pd.DataFrame
+
+
+def validation(data: Regressed, model: str) -> Estimate:
+    """Return the mean validation score of a model, with its standard error over the folds."""
+    of_model = _folds(data, model)
+    return _mean_over_folds(of_model, of_model["validation_score"].to_numpy(float))
+
+
+def _folds(data: Regressed, model: str) -> pd.DataFrame:
+    of_model = data.scores[data.scores["model"] == model]
+    if of_model.empty:
+        raise LookupError(f"the model {model}")
+    return of_model
+
+
+def _mean_over_folds(of_model: pd.DataFrame, values: Floats) -> Estimate:
+    """Return a mean over outer folds, with its standard error.
+
+    Rounds split the same rows again, so that only the folds of one round are independent.
+    """
+    spread = float(values.std(ddof=1)) if len(values) > 1 else math.nan
+    folds = len(values) / of_model["round"].nunique()
+    return Estimate(float(values.mean()), spread / math.sqrt(folds) * widening(folds - 1))
+
+
+def overfitting(data: Regressed, model: str) -> Estimate:
+    """Return by how much validation scores are worse than those on the development sets."""
+    folds = _folds(data, model)
+    lost = folds["validation_score"] - folds["development_score"]
+    return _mean_over_folds(folds, lost.to_numpy(float))
+
+
+def mean_error(data: Regressed, model: str) -> Estimate:
+    """Return the mean absolute error of a model; panels are independent, their events are not."""
+    deviation = float(data.errors["standard_deviation"][model])
+    error = float(data.errors["mean_absolute_error"][model])
+    return Estimate(error, deviation / math.sqrt(data.panels))
+
+
+def rbf_is_better(data: Regressed) -> Finding:
+    """Test whether the RBF kernel's median absolute error on validation sets is the smaller one."""
+    lead = validation(data, "linear") - validation(data, "rbf")
+    return positive(lead, "validation score, linear minus RBF")
+
+
+def rbf_is_so_much_better(data: Regressed) -> Finding:
+    """Test whether the linear kernel's validation score is about 2.5 times the RBF kernel's."""
+    linear, rbf = validation(data, "linear"), validation(data, "rbf")
+    ratio = linear.value / rbf.value
+    noise = ratio * math.hypot(linear.noise / linear.value, rbf.noise / rbf.value)
+    words = "validation score, linear over RBF"
+    return near(Estimate(ratio, noise), LINEAR_WORSE, ABOUT * LINEAR_WORSE, words)
+
+
+def score_is_the_thesis(data: Regressed) -> Finding:
+    """Test whether the RBF kernel's validation score is about 0.005."""
+    found = near(
+        validation(data, "rbf"), VALIDATION_SCORE, ABOUT * VALIDATION_SCORE, "validation score, RBF"
+    )
+    return _of_as_many_rows(found, data)
+
+
+def rbf_overfits_more(data: Regressed) -> Finding:
+    """Test whether the RBF kernel loses more from the development sets to the validation sets."""
+    more = overfitting(data, "rbf") - overfitting(data, "linear")
+    return positive(more, "validation minus development score, RBF minus linear")
+
+
+def linear_chooses_more_widely(data: Regressed) -> Finding:
+    """Test whether the chosen C varies more for the linear kernel than for the RBF kernel."""
+    linear, rbf = (float(np.log10(_folds(data, one)["C"]).std()) for one in ("linear", "rbf"))
+    words = f"deviation of log₁₀ C: {linear:.2f} for the linear kernel, {rbf:.2f} for RBF"
+    if linear == rbf or math.isnan(linear + rbf):
+        return Finding(UNDECIDED, words)
+    return Finding(CONFIRMED if linear > rbf else CONTRADICTED, words)
+
+
+def is_sub_centimetre(data: Regressed) -> Finding:
+    """Test whether the RBF models' mean absolute error is below 0.01."""
+    error = mean_error(data, "rbf")
+    left = Estimate(SUB_CENTIMETRE, 0.0) - error
+    return Finding(positive(left, "").verdict, f"mean absolute error of H/L: {error.in_words()}")
+
+
+def error_is_the_thesis(data: Regressed, model: str) -> Finding:
+    """Test whether a model's mean absolute error is about that of Table 5.3.2."""
+    aim = THESIS_ERRORS[model][0]
+    words = f"mean absolute error (thesis {aim})"
+    found = near(mean_error(data, model), aim, ABOUT * aim, words)
+    return _of_as_many_rows(found, data)
+
+
+def quartiles_are_the_thesis(data: Regressed) -> Finding:
+    """Test whether the quartiles of the predictions are those of Table 5.3.1."""
+    findings = []
+    for model, printed in THESIS_QUARTILES.items():
+        ours = data.quartiles.loc[model, ["Q1", "Q2", "Q3", "Q4"]].to_numpy(float)
+        off = np.abs(ours / np.array(printed) - 1)
+        scatter = math.hypot(
+            data.errors["mean_absolute_error"][model], data.errors["standard_deviation"][model]
+        )
+        # The largest is that of one panel, the others are of many.
+        noise = scatter / np.array([*[math.sqrt(data.panels)] * 3, 1.0]) / np.array(printed)
+        worst = Estimate(float(off.max()), float(noise[off.argmax()]))
+        findings.append(near(worst, 0.0, QUARTILES_OFF, f"{model}, worst quartile off by", "%"))
+    found = all_of(findings)
+    return _of_as_many_rows(found, data)
+
+
+def _of_as_many_rows(found: Finding, data: Regressed) -> Finding:
+    """Leave a finding open whose number is the thesis's only for as many rows."""
+    if data.rows == THESIS_ROWS:
+        return found
+    words = f"{found.sentence}, but of {data.rows} rows, not the thesis's {THESIS_ROWS}"
+    return Finding(UNDECIDED, words)
+
+
+REGRESSION: tuple[Claim[Regressed], ...] = (
+    Claim(
+        "5.3.1",
+        "The RBF kernel predicts better than the linear one.",
+        "smaller median absolute error on validation sets",
+        rbf_is_better,
+    ),
+    Claim(
+        "5.3.1",
+        f"It is about {LINEAR_WORSE} times better.",
+        f"ratio of validation scores within {percent(ABOUT)} of {LINEAR_WORSE}",
+        rbf_is_so_much_better,
+    ),
+    Claim(
+        "5.3.1",
+        f"The RBF kernel's validation score is about {VALIDATION_SCORE}.",
+        f"within {percent(ABOUT)}, for a data set of {THESIS_ROWS} rows",
+        score_is_the_thesis,
+    ),
+    Claim(
+        "5.3.1",
+        "The RBF kernel overfits more.",
+        "validation score minus development score larger than for the linear kernel",
+        rbf_overfits_more,
+    ),
+    Claim(
+        "Figure 5.3.2",
+        "The C that is chosen for the linear kernel varies more.",
+        "deviation of log₁₀ C over all folds above that of the RBF kernel (no noise)",
+        linear_chooses_more_widely,
+    ),
+    Claim(
+        "5.3",
+        "The RBF kernel predicts with sub-centimetre accuracy.",
+        f"mean absolute error of H/L below {SUB_CENTIMETRE}",
+        is_sub_centimetre,
+    ),
+    Claim(
+        "Table 5.3.2",
+        f"The RBF kernel's mean absolute error is {THESIS_ERRORS['rbf'][0]}.",
+        f"within {percent(ABOUT)}, for a data set of {THESIS_ROWS} rows",
+        lambda data: error_is_the_thesis(data, "rbf"),
+    ),
+    Claim(
+        "Table 5.3.2",
+        f"The linear kernel's mean absolute error is {THESIS_ERRORS['linear'][0]}.",
+        f"within {percent(ABOUT)}, for a data set of {THESIS_ROWS} rows",
+        lambda data: error_is_the_thesis(data, "linear"),
+    ),
+    Claim(
+        "Table 5.3.1",
+        "The quartiles of the predicted H/L.",
+        f"all within {percent(QUARTILES_OFF)}, for a data set of {THESIS_ROWS} rows",
+        quartiles_are_the_thesis,
+    ),
+)

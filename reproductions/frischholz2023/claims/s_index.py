@@ -1,0 +1,201 @@
+"""Claims of section 3.3, about the single-parameter index S.
+
+The data are the table of `snowshed.analysis.sensitivity.local_index`. S is that after the last
+event.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING
+
+from reproductions.common.hypothesis_tests import (
+    Claim,
+    Estimate,
+    Finding,
+    all_of,
+    mean_of,
+    negative,
+    positive,
+    small,
+)
+from snowshed.plot.labels import label
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+SLOPE = "snow.critical_state_slope"
+PRESSURE = "snow.preconsolidation_pressure"
+COHESION = "snow.cohesion"
+HARDENING = "snow.hardening_factor"
+MODULUS = "snow.youngs_modulus"
+#: |S| up to this is hardly any effect: doubling the parameter changes the stack by a tenth.
+HARDLY = 0.1
+
+
+def index(table: pd.DataFrame, parameter: str, target: str, *, last: bool = True) -> Estimate:
+    """Return S of a parameter after the last event, or after the first."""
+    return indices(table, parameter, target)[-1 if last else 0]
+
+
+def indices(table: pd.DataFrame, parameter: str, target: str) -> list[Estimate]:
+    """Return S of a parameter after each event."""
+    rows = table[(table["parameter"] == parameter) & (table["target"] == target)]
+    if rows.empty:
+        raise LookupError(f"S of {label(parameter).symbol}, {target}")
+    rows = rows.sort_values("event")
+    return [Estimate(float(s), float(e)) for s, e in zip(rows["s"], rows["standard_error"])]
+
+
+def _named(parameter: str, target: str) -> str:
+    return f"S of {label(parameter).symbol}, {target}"
+
+
+def raises(table: pd.DataFrame, parameter: str, target: str) -> Finding:
+    """Test whether S of a parameter is above zero."""
+    return positive(index(table, parameter, target), _named(parameter, target))
+
+
+def lowers(table: pd.DataFrame, parameter: str, target: str) -> Finding:
+    """Test whether S of a parameter is below zero."""
+    return negative(index(table, parameter, target), _named(parameter, target))
+
+
+def hardly_matter(table: pd.DataFrame, target: str) -> Finding:
+    """Test whether |S| of both hardening parameters is below `HARDLY`."""
+    return all_of(
+        [small(index(table, one, target), HARDLY, _named(one, target))
+         for one in (HARDENING, MODULUS)]
+    )  # fmt: skip
+
+
+def cohesion_is_strongest(table: pd.DataFrame) -> Finding:
+    """Test whether |S| of beta exceeds that of every other parameter."""
+    others = [one for one in _parameters(table) if one != COHESION]
+    found = {one: _magnitude(index(table, one, "height")) for one in others}
+    rival = max(found, key=lambda one: found[one].value)
+    lead = _magnitude(index(table, COHESION, "height")) - found[rival]
+    return positive(lead, f"|S| of β minus |S| of {label(rival).symbol}, the next, height")
+
+
+def length_less_than_height(table: pd.DataFrame) -> Finding:
+    """Test whether the mean |S| over the parameters is smaller for the length than the height."""
+    parameters = _parameters(table)
+    found = [
+        _magnitude(index(table, one, "height")) - _magnitude(index(table, one, "length"))
+        for one in parameters
+    ]
+    return positive(mean_of(found), "mean |S| of height minus that of length")
+
+
+def cohesion_gains_with_mass(table: pd.DataFrame) -> Finding:
+    """Test whether S of beta for the height is larger after the last event than after the first."""
+    gain = index(table, COHESION, "height") - index(table, COHESION, "height", last=False)
+    return positive(gain, "S of β for the height, last event minus first")
+
+
+def slope_needs_mass(table: pd.DataFrame) -> Finding:
+    """Test whether M matters for the height after the last event, and hardly after those before."""
+    *before, last = indices(table, SLOPE, "height")
+    what = _named(SLOPE, "height")
+    beyond = _magnitude(last) - Estimate(HARDLY, 0.0)
+    return all_of(
+        [
+            *(small(one, HARDLY, f"{what}, event {event}") for event, one in enumerate(before, 1)),
+            Finding(positive(beyond, "").verdict, f"after the last: {last.in_words()}"),
+        ]
+    )
+
+
+def length_effects_gain_with_mass(table: pd.DataFrame) -> Finding:
+    """Test whether S of M and of beta for the length falls from the first event to the last."""
+    return all_of(
+        [
+            negative(
+                index(table, one, "length") - index(table, one, "length", last=False),
+                f"{_named(one, 'length')}, last event minus first",
+            )
+            for one in (SLOPE, COHESION)
+        ]
+    )
+
+
+def _parameters(table: pd.DataFrame) -> list[str]:
+    found = list(dict.fromkeys(table["parameter"]))
+    if len(found) < 2:
+        raise LookupError("several parameters")
+    return found
+
+
+def _magnitude(found: Estimate) -> Estimate:
+    return Estimate(abs(found.value), found.noise)
+
+
+S_INDEX: tuple[Claim[pd.DataFrame], ...] = (
+    Claim(
+        "3.3",
+        "β has the strongest impact on the height.",
+        "|S| of β above that of every other parameter, last event",
+        cohesion_is_strongest,
+    ),
+    Claim(
+        "3.3",
+        "The effect of β on the height is positive.",
+        "S above zero, last event",
+        partial(raises, parameter=COHESION, target="height"),
+    ),
+    Claim(
+        "3.3",
+        "The effect of β on the height increases with the mass.",
+        "S after the last event above that after the first",
+        cohesion_gains_with_mass,
+    ),
+    Claim(
+        "3.3",
+        "p₀ lowers the height (the thesis says the opposite in 3.4.1).",
+        "S below zero, last event",
+        partial(lowers, parameter=PRESSURE, target="height"),
+    ),
+    Claim(
+        "3.3",
+        "M matters for the height only when there is much snow.",
+        f"|S| above {HARDLY} after the last event, below it after those before",
+        slope_needs_mass,
+    ),
+    Claim(
+        "3.3",
+        "ξ and E hardly matter for the height.",
+        f"|S| of both below {HARDLY}, last event",
+        partial(hardly_matter, target="height"),
+    ),
+    Claim(
+        "3.3",
+        "M shortens the stack.",
+        "S below zero, last event",
+        partial(lowers, parameter=SLOPE, target="length"),
+    ),
+    Claim(
+        "3.3",
+        "β shortens the stack.",
+        "S below zero, last event",
+        partial(lowers, parameter=COHESION, target="length"),
+    ),
+    Claim(
+        "3.3",
+        "M and β shorten the stack the more, the more snow there is.",
+        "S of both lower after the last event than after the first",
+        length_effects_gain_with_mass,
+    ),
+    Claim(
+        "3.3",
+        "ξ and E hardly matter for the length.",
+        f"|S| of both below {HARDLY}, last event",
+        partial(hardly_matter, target="length"),
+    ),
+    Claim(
+        "3.3",
+        "Snow parameters matter less for the length than for the height.",
+        "mean |S| over the parameters smaller, last event",
+        length_less_than_height,
+    ),
+)

@@ -1,0 +1,117 @@
+"""The page ``docs/trust/thesis-claims.md``: every claim of the thesis with our verdict.
+
+Its numbers come from the folder ``data``, which holds the claims of the last ``--middle``;
+``python -m reproductions.frischholz2023.claims_page`` writes it anew. What likely makes a claim
+fail stands in `reproductions.frischholz2023.claims.causes`.
+"""
+
+from __future__ import annotations
+
+import json
+import shutil
+import sys
+from collections import Counter
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Optional
+
+import click
+
+from reproductions.common.claims_tables import VERDICTS, claims_csv, claims_grid, read_claims
+from reproductions.common.folder import ReproductionFolder
+from reproductions.common.hypothesis_tests import CONTRADICTED, Judged
+from reproductions.common.markdown import markdown_table
+from reproductions.frischholz2023.claims.causes import CAUSES
+from snowshed._core import InputError
+from snowshed.cli.main import main as snowshed
+from snowshed.io.atomic import write_text
+from snowshed.study.store import Store
+
+DATA = Path(__file__).with_name("data")
+DOCS = Path(__file__).parents[2] / "docs" / "trust"
+PAGE, REPORT = DOCS / "thesis-claims.md", DOCS / "reports" / "thesis-middle.html"
+REPORT_FILE = "thesis.html"  # of `--middle`
+CLAIMS_FILE, COMPUTED_FILE = "claims.csv", "claims-computed.json"
+#: A store may hold runs of sizes that are not computed any more.
+OF_A_STUDY = "hash IN (SELECT hash FROM study_run)"
+
+
+def page(data: Path = DATA) -> str:
+    """Return the page, from the results in a folder.
+
+    Raises
+    ------
+    InputError
+        If the results are damaged, or a contradiction has no cause.
+    """
+    claims = read_claims(data / CLAIMS_FILE)
+    computed = json.loads((data / COMPUTED_FILE).read_text(encoding="utf-8"))
+    counts = Counter(one.finding.verdict for one in claims)
+    verdicts = ", ".join(f"{counts[verdict]} {verdict}" for verdict in VERDICTS)
+    parts = [
+        "# The thesis's claims",
+        "This page is written by `python -m reproductions.frischholz2023.claims_page` from the "
+        "results in `reproductions/frischholz2023/data`; change those, not this. It holds what "
+        "`snowshed reproduce frischholz2023 --middle` says of the thesis's "
+        f"{len(claims)} claims: {verdicts}. "
+        "[The report](reports/thesis-middle.html) has its figures and tables, and when "
+        "a claim counts as confirmed.",
+        f"Of its {computed['runs']} simulations the last ended on {computed['date']}, on "
+        f"{computed['cpu']}. [Reproducing the thesis](reproduce.md) says what `--middle` "
+        "computes and how claims are judged; [the gap](thesis-gap.md), how far the stacks of "
+        "chapter 5 are from the thesis's. A number after ± is the standard deviation of its noise.",
+        "## Contradicted claims, and what likely makes them so",
+        "\n".join(_contradiction(one) for one in _contradicted(claims)),
+        "## All claims",
+        markdown_table(claims_grid(claims, "the thesis")),
+    ]
+    return "\n\n".join(parts) + "\n"
+
+
+def _contradicted(claims: Sequence[Judged]) -> list[Judged]:
+    return [one for one in claims if one.finding.verdict == CONTRADICTED]
+
+
+def _contradiction(claim: Judged) -> str:
+    if claim.text not in CAUSES:
+        raise InputError(f"claims/causes.py: no cause for {claim.text!r}")
+    return f"- **{claim.text}** ({claim.source}) {CAUSES[claim.text]}"
+
+
+def keep(folder: Path, data: Path = DATA, report: Path = REPORT) -> None:
+    """Take the claims and the report of a reproduction's folder.
+
+    Raises
+    ------
+    InputError
+        If the folder holds no finished reproduction.
+    """
+    found = ReproductionFolder(folder)
+    claims = read_claims(found.claims)
+    with Store.open(found.runs) as store:
+        ((left,),) = store.read(
+            f"SELECT count(*) FROM run WHERE status = 'pending' AND {OF_A_STUDY}"
+        )
+        if left:
+            raise InputError(f"{folder}: {left} simulations are not computed yet")
+        ((runs, date, cpu),) = store.read(
+            "SELECT count(*), substr(max(finished), 1, 10), max(cpu) FROM run_timing"
+            f" WHERE {OF_A_STUDY}"
+        )
+    write_text(data / CLAIMS_FILE, claims_csv(claims))
+    write_text(data / COMPUTED_FILE, json.dumps({"runs": runs, "date": date, "cpu": cpu}) + "\n")
+    report.parent.mkdir(exist_ok=True)
+    shutil.copyfile(folder / REPORT_FILE, report)
+
+
+@click.command()
+@click.argument("folder", required=False, type=click.Path(path_type=Path))
+def main(folder: Optional[Path]) -> None:
+    """Write docs/trust/thesis-claims.md, after taking the results in FOLDER, if one is given."""
+    if folder is not None:
+        keep(folder)
+    write_text(PAGE, page())
+
+
+if __name__ == "__main__":
+    sys.exit(snowshed(command=main, name="python -m reproductions.frischholz2023.claims_page"))

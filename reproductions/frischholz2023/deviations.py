@@ -1,0 +1,138 @@
+"""Deviations of the default settings from the thesis, each with its reason.
+
+All deviations undone are the preset ``thesis``; each can be undone alone. What the thesis leaves
+open, as the panel's friction, is none: the docs say what is taken there. The settings are those of
+`snowshed.analysis.regression.deviations`, which `snowshed geometry --deviation` offers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Optional
+
+from snowshed._core import InputError
+from snowshed.analysis.regression.deviations import ALL, FRAME_RATE, deviations_named
+from snowshed.analysis.regression.deviations import deviating_settings as panel_settings
+from snowshed.snow.stack.trimming import DEFAULT_TRIMMING
+
+#: Frames of an event by the thesis's chapters: Tables 3.2.1, 4.1.1, 5.1.1.
+FRAMES: Mapping[int, int] = {3: 50, 4: 60, 5: 100}
+#: Size of the thesis's grid cells, m.
+THESIS_DX = 0.01
+
+
+@dataclass(frozen=True)
+class Deviation:
+    """A deviation from the thesis.
+
+    Attributes
+    ----------
+    name
+        Name of the deviation in options.
+    thesis, here, reason
+        What the thesis does, what is done here unless asked otherwise, and why; sentences.
+    trimming
+        The trimming rule (A.4.2) for measuring stacks, if it is about that.
+    """
+
+    name: str
+    thesis: str
+    here: str
+    reason: str
+    trimming: Optional[str] = None
+
+    @property
+    def simulated(self) -> bool:
+        """Whether the deviation changes the simulation, and not only the measuring."""
+        return self.trimming is None
+
+
+DEVIATIONS: Mapping[str, Deviation] = {
+    deviation.name: deviation
+    for deviation in (
+        Deviation(
+            "slip",
+            "The panel is SLIP: the normal speed of snow on it is zero.",
+            "Snow may leave the panel's face.",
+            "With SLIP to the letter snow leaves the plane of the panel over its edge only, and a "
+            "slab that tips over the edge is held down behind it.",
+        ),
+        Deviation(
+            "damping",
+            "FLIP has a share of 0.99 per step, for any size of step.",
+            "Panels of chapter 5 are damped at a rate, that of this share with the thesis's cells.",
+            "A share in each step makes the damping depend on the step, and so on the cells: a "
+            "shorter step damps more.",
+        ),
+        Deviation(
+            "reseed",
+            "Between events, the stack becomes a solid and is reseeded.",
+            "The particles stay as they are.",
+            "Reseeding heals broken bonds, discards compaction, and moves the stack.",
+        ),
+        Deviation(
+            "grid",
+            "Cells of 1 cm.",
+            "Cells of 1.5 cm for the panels of chapter 5, 1 cm elsewhere.",
+            "Cells of 1 cm take 3.4 times as long; the time went into more seedings.",
+        ),
+        Deviation(
+            "frames",
+            "An event is over after 50, 60 and 100 frames in chapters 3, 4 and 5: "
+            "2.1, 2.5 and 4.2 s at 24 frames a second (the rate is not printed).",
+            "An event is over when the snow rests.",
+            "A long slab on a rough panel slides longer than that, and moving snow is not a stack "
+            "yet.",
+        ),
+        Deviation(
+            "trimming",
+            "A.4.2, its second sentence to the letter: both ends of a 2D stack step inward by the "
+            "same increment.",
+            "The particle farthest from the centre of mass is dropped first, as in the first "
+            "sentence and in the 3D rule.",
+            "Where snow has rolled far off, steps at equal pace take the 3 % from the dense end; "
+            "the length of a stack then scatters more from seeding to seeding.",
+            trimming="equal_pace",
+        ),
+    )
+}
+
+
+def deviating_settings(chapter: int, names: Sequence[str] = (ALL,)) -> dict[str, object]:
+    """Return what deviations set in a scene: by default the preset ``thesis``.
+
+    Parameters
+    ----------
+    chapter
+        Chapter of the thesis: 3, 4 (with the laboratory of chapter 2) or 5.
+    names
+        Names of the deviations.
+
+    Returns
+    -------
+    dict
+        Values by dotted paths, as `snowshed.Scene.update` takes them.
+
+    Raises
+    ------
+    InputError
+        If there is no such chapter or deviation.
+
+    Examples
+    --------
+    >>> deviating_settings(4, ["frames"])
+    {'events.max_time': 2.5}
+    """
+    if chapter not in FRAMES:
+        raise InputError(f"chapter: {chapter!r}; allowed: {', '.join(map(str, FRAMES))}")
+    settings = panel_settings(names)
+    if "events.max_time" in settings:
+        settings["events.max_time"] = FRAMES[chapter] / FRAME_RATE
+    return settings
+
+
+def deviating_trimming(names: Sequence[str] = (ALL,)) -> str:
+    """Return the reading of A.4.2 by which stacks are measured with some deviations."""
+    named = (DEVIATIONS[name].trimming for name in deviations_named(names))
+    return next((trimming for trimming in named if trimming), DEFAULT_TRIMMING)

@@ -1,0 +1,150 @@
+"""Chapter 4: the calibration, on synthetic measurements."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from reproductions.common.hypothesis_tests import judge
+from reproductions.common.section import Content
+from reproductions.frischholz2023 import printed
+from reproductions.frischholz2023.claims.calibration import CALIBRATION, Recovery
+from reproductions.frischholz2023.printed import CALIBRATED
+from reproductions.frischholz2023.stages import ThesisComputation
+from reproductions.frischholz2023.studies import GRID, TRUTH, TRUTH_SEED
+from reproductions.frischholz2023.tables import PANEL_FRICTION, SAVED_DPI, settings_grid
+from snowshed._core import InputError
+from snowshed.analysis.calibration.comparison import read_simulated
+from snowshed.analysis.calibration.measurements import Measurement
+from snowshed.analysis.calibration.misfit import RANKED, statistics
+from snowshed.analysis.calibration.report import Calibration, calibrate, write
+from snowshed.base.formatting import number, percent
+from snowshed.plot.html_page import Grid, Picture
+from snowshed.plot.labels import label
+from snowshed.study.table import read_table
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+#: Standard deviation of the synthetic measurements, relative, and the seed of their errors.
+UNCERTAINTY, ERRORS_SEED = 0.05, 1
+TEXT = (
+    "The measured stacks are printed as figures only, so that the snow of the laboratory cannot be "
+    "calibrated again. What can be tested is the procedure: a snow that is known, the calibrated "
+    "one of Table 4.3.1 (M 0.5, p₀ 7 kPa, β 0.2), is simulated at both tilts with a placement of "
+    f"its particles that no other run has (seed {TRUTH_SEED}), \u201cmeasured\u201d with random "
+    f"errors of {percent(UNCERTAINTY)}, and looked for among the triplets.",
+    PANEL_FRICTION,
+    "All numbers below called synthetic compare simulations with this simulated truth. They are no "
+    "reproduction of the thesis's scores, which compare with the laboratory: they are what remains "
+    "of an RMSE where the model is exact, and hence smaller.",
+)
+FIGURES = {
+    "relative-error": ("Mean relative error", "As Figure 4.2.1, against the synthetic truth."),
+    "rmse": ("RMSE of the triplets", "As Figure 4.2.2, against the synthetic truth."),
+    "fit": ("Fit", "“Measured” are the synthetic stacks."),
+    "posterior": ("Posterior", "What the synthetic stacks allow; not in the thesis."),
+}
+SCORES = {
+    "height_mean_error_m": "height, mean error, m",
+    "length_mean_error_m": "length, mean error, m",
+    "height_rmse_m": "height, RMSE, m",
+    "length_rmse_m": "length, RMSE, m",
+    "rescaled_rmse": "RMSE, rescaled mean",
+}
+
+
+def build(work: ThesisComputation) -> Content:
+    """Return the content.
+
+    Raises
+    ------
+    InputError
+        If not enough is computed, or a library of the extra ``calibration`` is missing.
+    """
+    stage, folder = work.study_stages["calibration"], work.folder.of_stage("calibration")
+    if not stage.state().finished:
+        raise InputError("the grid is ranked when all of it is computed")
+    measured = synthetic(read_table(work.folder.runs, TRUTH))
+    result = calibrate(measured, read_simulated(work.folder.runs, GRID), steps=work.settings.steps)
+    write(result, folder)
+    tables = [
+        ("Table 4.1.1: settings", settings_grid(printed.CALIBRATION, stage.scenes(GRID))),
+        ("Table 4.2.1: RMSE over the triplets, m", statistics_grid(result)),
+        ("Table 4.3.1: scores of the calibrated snow", scores_grid(result)),
+        ("Ranges that the synthetic stacks allow", ranges_grid(result.ranges)),
+    ]
+    pictures = [
+        Picture.read(folder / f"{name}.png", title, caption, dpi=SAVED_DPI)
+        for name, (title, caption) in FIGURES.items()
+    ]
+    claims = judge(CALIBRATION, Recovery(result.ranked, result.ranges))
+    return Content(TEXT, tables, pictures, claims)
+
+
+def synthetic(truth: pd.DataFrame) -> list[Measurement]:
+    """Return measurements of the simulated truth, with random errors.
+
+    Raises
+    ------
+    InputError
+        If it is not computed.
+    """
+    truth = truth.dropna(subset=["height_m", "length_m"])
+    if truth.empty:
+        raise InputError("the runs that stand for the measurements are not computed")
+    errors = np.random.default_rng(ERRORS_SEED)
+    measured = []
+    for row in truth.sort_values(["panel.tilt", "event"]).to_dict("records"):
+        for quantity in RANKED:
+            true = row[f"{quantity}_m"]
+            value = true * (1 + UNCERTAINTY * errors.normal())
+            tilt, event = float(row["panel.tilt"]), int(row["event"])
+            measured.append(Measurement(tilt, event, 1, quantity, value, UNCERTAINTY * true))
+    return measured
+
+
+def statistics_grid(calibration: Calibration) -> Grid:
+    """Return Table 4.2.1, the thesis's beside the synthetic one."""
+    ours = statistics(calibration.ranked)
+    rows = []
+    for quantity, thesis in printed.RMSE_STATISTICS.items():
+        rows.append([quantity, "thesis, 48 triplets, laboratory", *map(_metres, thesis.values())])
+        synthetic_row = [_metres(ours[name][f"{quantity}_rmse_m"]) for name in thesis]
+        here = f"here, {len(calibration.ranked)} triplets, synthetic truth"
+        rows.append(["", here, *synthetic_row])
+    return Grid(["RMSE", "against", *thesis], rows, "ll" + "r" * len(thesis))
+
+
+def scores_grid(calibration: Calibration) -> Grid:
+    """Return the scores of the calibrated snow, the thesis's beside the synthetic ones."""
+    row = calibration.ranked
+    for path, value in CALIBRATED.items():
+        row = row[np.isclose(row[path], value)]
+    rows = [
+        [title, _metres(printed.CALIBRATED_SCORES[name]), _metres(row[name].iloc[0])]
+        for name, title in SCORES.items()
+        if len(row)
+    ]
+    if len(row):
+        rank = f"{row['rank'].iloc[0]} of {len(calibration.ranked)} (synthetic)"
+        rows.append(["rank by the rescaled mean", "1 of 48; " + printed.CALIBRATED_RANKS, rank])
+    return Grid(["score", "thesis (laboratory)", "here (synthetic truth)"], rows, "lrr")
+
+
+def ranges_grid(ranges: pd.DataFrame) -> Grid:
+    """Return the posterior's ranges beside the truth."""
+    rows = []
+    for row in ranges.to_dict("records"):
+        known = label(row["parameter"])
+        values = [CALIBRATED[row["parameter"]], row["best_set"], row["median"]]
+        ends = [f"{known.value(row[low])} to {known.value(row[high])}"
+                for low, high in (("lower_68", "upper_68"), ("lower_95", "upper_95"))]  # fmt: skip
+        rows.append([known.axis, *(known.value(value) for value in values), *ends, row["open"]])
+    head = ["parameter", "truth", "best triplet", "median", "68 %", "95 %", "open"]
+    return Grid(head, rows, "lrrrrrl")
+
+
+def _metres(value: float) -> str:
+    return f"{value:.3f}" if value == value else number(value)

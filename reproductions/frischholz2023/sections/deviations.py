@@ -1,0 +1,171 @@
+"""Our settings and the thesis's: each deviation undone, all undone, and settings varied."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Optional
+
+import numpy as np
+
+from reproductions.common.hypothesis_tests import SIGMAS, Estimate
+from reproductions.common.section import Content
+from reproductions.frischholz2023.deviations import DEVIATIONS
+from reproductions.frischholz2023.printed import THESIS_QUARTILES, THESIS_ROWS
+from reproductions.frischholz2023.stages import ThesisComputation
+from reproductions.frischholz2023.studies import DEFAULTS, PANEL, THESIS, VARIANTS, VARIATIONS
+from reproductions.frischholz2023.variants import (
+    by_size,
+    change,
+    is_unswitched,
+    quartiles,
+    read_variants,
+    with_runs_of_its_own,
+)
+from snowshed.analysis.regression.deviations import FRAME_RATE
+from snowshed.analysis.regression.geometry import DAMPING_RATE
+from snowshed.analysis.regression.summary import QUARTILES
+from snowshed.base.formatting import NOTHING, percent
+from snowshed.io.csv_table import write_csv
+from snowshed.plot.html_page import Grid
+from snowshed.snow.stack.trimming import DEFAULT_TRIMMING, TRIMMINGS
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+STACKS = "stacks.csv"
+#: What the variations are, beside our settings.
+WORDS: Mapping[str, str] = {
+    "coarse-cells": "cells a third larger",
+    "half-damping": f"damping {DAMPING_RATE / 2:g} 1/s instead of {DAMPING_RATE:g}",
+    "double-damping": f"damping {DAMPING_RATE * 2:g} 1/s",
+    "short-steps": "steps two thirds as long",
+    "short-steps-damped-each": "the same, with a share of 0.99 in each step",
+}
+QUANTITIES = {"height": "height", "length": "length", "ratio": "H/L"}
+
+
+def build(work: ThesisComputation) -> Content:
+    """Return the content; raises InputError if nothing of it is computed."""
+    stacks = read_variants(work.folder.runs)
+    folder = work.folder.of_stage("deviations")
+    folder.mkdir(exist_ok=True)
+    write_csv(stacks, folder / STACKS, float_format="%.6g")
+    tables = [
+        ("What the deviations are", deviations_grid()),
+        ("What each changes when it is undone", changes_grid(stacks)),
+        ("What changes where a setting of ours is varied", variations_grid(stacks)),
+        ("Quartiles of H/L, of the rows, by both readings of A.4.2", quartiles_grid(stacks)),
+    ]
+    return Content(sample_text(stacks), tables)
+
+
+def sample_text(stacks: pd.DataFrame) -> list[str]:
+    """Return in words what was computed, and how to read the tables."""
+    ours = stacks[stacks["variant"] == DEFAULTS]
+    stacks = stacks[stacks["variant"].isin(VARIANTS)]
+    panels, seeds = len(ours[list(PANEL)].drop_duplicates()), ours["seed"].nunique()
+    cells = " and ".join(f"{100 * dx:.3g} cm" for dx in sorted(stacks["dx"].unique(), reverse=True))
+    longest, events = ours["panel.length"].max(), ours["event"].max()
+    return [
+        f"A sample of {panels} of the 122 panels of chapter 5, up to {longest:g} m long, with "
+        f"{events:g} events and {seeds} seeding{'s' if seeds > 1 else ''} each: by our settings, "
+        "with each deviation undone alone, and with all undone together. It is chosen by the "
+        f"panels' geometry alone. Cells of {cells}; undoing the grid takes the smaller ones.",
+        "A change is that of the mean stack below a panel, against our settings with the same "
+        "seed; the noise is the standard error over the panels. Stacks are measured by "
+        "outermost_first, but for the deviation in the trimming and for all together. A change "
+        f"that is not above {SIGMAS:g} standard errors may be chance.",
+        f"Table 5.3.1 holds quartiles of predictions for {THESIS_ROWS} rows; these are of rows of "
+        "a sample, so compare rows only with each other.",
+        f"Frames are counted at {FRAME_RATE:g} a second; the thesis prints their number only.",
+    ]
+
+
+def deviations_grid() -> Grid:
+    """Return what each deviation is, and its reason."""
+    rows = [[one.name, one.thesis, one.here, one.reason] for one in DEVIATIONS.values()]
+    return Grid(["deviation", "the thesis", "here", "because"], rows, "llll")
+
+
+def changes_grid(stacks: pd.DataFrame) -> Grid:
+    """Return how much each deviation changes a stack, the largest change of H/L first."""
+    rows = []
+    for name in by_size(stacks):
+        rows.append([_title(stacks, name), *_changes(stacks, name)])
+    if THESIS in set(stacks["variant"]):
+        rows.append(["all but the trimming", *_changes(stacks, THESIS, DEFAULT_TRIMMING)])
+        rows.append([_title(stacks, THESIS), *_changes(stacks, THESIS)])
+    return Grid(["undone", *QUANTITIES.values()], rows, "l" + "r" * len(QUANTITIES))
+
+
+def variations_grid(stacks: pd.DataFrame) -> Grid:
+    """Return how much a stack changes where a setting of ours is varied."""
+    there = [name for name in VARIATIONS if name in set(stacks["variant"])]
+    rows = [[WORDS[name], *_changes(stacks, name)] for name in there]
+    return Grid(["varied", *QUANTITIES.values()], rows, "l" + "r" * len(QUANTITIES))
+
+
+def _changes(stacks: pd.DataFrame, name: str, trimming: Optional[str] = None) -> list[str]:
+    estimates = (change(stacks, name, quantity, trimming) for quantity in QUANTITIES)
+    return [change_in_words(one) for one in estimates]
+
+
+def errors_grid(errors: pd.DataFrame, stacks: pd.DataFrame) -> Grid:
+    """Return Tables 5.3.1 and 5.3.2 for the rows of each variant.
+
+    Parameters
+    ----------
+    errors
+        From `reproductions.frischholz2023.variant_errors`.
+    stacks
+        From `reproductions.frischholz2023.variants.read_variants`.
+    """
+    rows = []
+    for one in errors.to_dict("records"):
+        numbers = [f"{one[name]:.3f}" for name in QUARTILES]
+        numbers += [f"{one[name]:.4f}" for name in ("mean_absolute_error", "held_out_error")]
+        part = percent(one["mean_absolute_error"] / one["Q2"], 2)
+        name = _title(stacks, str(one["variant"]))
+        rows.append([name, str(one["trimming"]), str(one["model"]), *numbers, part])
+    head = ["undone", "reading of A.4.2", "model", *QUARTILES]
+    head += ["mean absolute error", "on rows not trained on", "of the median prediction"]
+    return Grid(head, rows, "lll" + "r" * 7)
+
+
+def change_in_words(change: Estimate) -> str:
+    """Return a relative change with its noise.
+
+    Examples
+    --------
+    >>> change_in_words(Estimate(-0.081, 0.02)), change_in_words(Estimate(0.0, 0.0))
+    ('-8 ± 2 %', 'none')
+    """
+    if change.value == 0 and change.noise == 0:
+        return "none"
+    noise = NOTHING if np.isnan(change.noise) else f"{100 * change.noise:.0f}"
+    return f"{100 * change.value:+.0f} ± {noise} %"
+
+
+def quartiles_grid(stacks: pd.DataFrame) -> Grid:
+    """Return the quartiles of H/L of each variant that has runs of its own, by both readings."""
+    rows = [
+        [
+            _title(stacks, name),
+            trimming,
+            *(f"{one:.3f}" for one in quartiles(of_one, trimming)),
+        ]
+        for name, of_one in with_runs_of_its_own(stacks)
+        for trimming in TRIMMINGS
+    ]
+    printed = [f"{one:.3f}" for one in THESIS_QUARTILES["rbf"]]
+    rows.append(["Table 5.3.1, RBF", "not printed", *printed])
+    return Grid(["undone", "reading of A.4.2", "Q1", "Q2", "Q3", "Q4"], rows, "llrrrr")
+
+
+def _title(stacks: pd.DataFrame, variant: str) -> str:
+    """Return a variant's name; a deviation that changes nothing in the scene says so."""
+    if variant in VARIATIONS:
+        return WORDS[variant]
+    if variant in (DEFAULTS, THESIS):
+        return {DEFAULTS: "none", THESIS: "all: the preset thesis"}[variant]
+    return f"{variant} (not switched)" if is_unswitched(stacks, variant) else variant

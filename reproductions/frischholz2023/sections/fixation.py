@@ -1,0 +1,114 @@
+"""Section 3.4: single-parameter fixation."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from reproductions.common.hypothesis_tests import judge
+from reproductions.common.section import Content
+from reproductions.frischholz2023 import printed
+from reproductions.frischholz2023.claims.fixation import FIXATION as CLAIMS
+from reproductions.frischholz2023.stages import ThesisComputation
+from reproductions.frischholz2023.studies import FIXATION, INDEX
+from reproductions.frischholz2023.tables import (
+    PANEL_FRICTION,
+    SAVED_DPI,
+    grouped,
+    plus_minus,
+    settings_grid,
+    widenings,
+)
+from snowshed._core import InputError
+from snowshed.analysis.sensitivity.noise import seeding_noise
+from snowshed.analysis.sensitivity.report import evaluate
+from snowshed.analysis.sensitivity.stored import StoredRuns, read_stored
+from snowshed.plot.html_page import Grid, Picture
+from snowshed.plot.labels import label
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+TEXT = (
+    "One parameter is held, all others of its group vary: mean and deviation of the stack, "
+    "rescaled from 0 to 1 over the group (3.4.1). The yield parameters (M, p₀, β) and the "
+    "hardening parameters (ξ, E) are separate groups. The thesis prints these results as figures "
+    "only.",
+    PANEL_FRICTION,
+)
+BORROWED = (
+    "Every point has one seeding, so that the noise is that of the index S (the same scene), "
+    "relative to the stack.",
+)
+TITLES = {"yield": ("3.4.1 and 3.4.2", "yield"), "hardening": ("3.4.3 and 3.4.4", "hardening")}
+
+
+def build(work: ThesisComputation) -> Content:
+    """Return the content; raises InputError if nothing of it is computed."""
+    runs, folder = work.folder.runs, work.folder.of_stage("fixation")
+    table = evaluate(runs, folder, "fixation", study=FIXATION)
+    stored = read_stored(runs, FIXATION)
+    own = work.settings.fixation_seeds > 1
+    noise = seeding_noise(stored if own else _other(work))
+    table = with_noise(table, noise, work.settings.fixation_seeds)
+    pictures = [
+        Picture.read(
+            folder / f"fixation-{group}.png",
+            f"Fixation of the {words} parameters",
+            f"As Figures {figures}. Envelope: one standard deviation over the other parameters.",
+            dpi=SAVED_DPI,
+        )
+        for group, (figures, words) in TITLES.items()
+        if (folder / f"fixation-{group}.png").is_file()
+    ]
+    scenes = work.study_stages["fixation"].scenes(FIXATION)
+    tables = [
+        ("Table 3.2.1: settings", settings_grid(printed.SENSITIVITY, scenes)),
+        ("Stacks at each value (mean ± deviation over the others, m)", fixation_grid(table)),
+    ]
+    text = TEXT if own else (*TEXT, *BORROWED)
+    claims = judge(CLAIMS, table)
+    return Content(text, tables, pictures, claims)
+
+
+def _other(work: ThesisComputation) -> StoredRuns:
+    try:
+        return read_stored(work.folder.runs, INDEX)
+    except InputError as error:
+        raise InputError(f"its noise is that of the stage s-index: {error}") from None
+
+
+def with_noise(table: pd.DataFrame, noise: pd.DataFrame, seeds: int) -> pd.DataFrame:
+    """Return the table of `fixation` with ``noise_m``, the deviation of ``mean_m`` by the seeding.
+
+    Parameters
+    ----------
+    table
+        From `snowshed.analysis.sensitivity.fixation`.
+    noise
+        From `snowshed.analysis.sensitivity.seeding_noise`, relative to the stack; any study like
+        that of the table will do.
+    seeds
+        Seedings of each point.
+    """
+    keys = list(zip(table["event"], table["target"]))
+    relative = np.array([noise["noise"].get(key, np.nan) for key in keys])
+    relative *= widenings(table, noise)
+    return table.assign(noise_m=relative * table["mean_m"] / np.sqrt(table["points"] * seeds))
+
+
+def fixation_grid(table: pd.DataFrame) -> Grid:
+    """Return means and deviations, one row per parameter, value and target."""
+    events = sorted(table["event"].unique())
+    rows = []
+    for (parameter, value, target), of_one in grouped(table, "parameter", "value", "target"):
+        known = label(parameter)
+        by_event = of_one.set_index("event")
+        cells = [
+            plus_minus(by_event.loc[event, "mean_m"], by_event.loc[event, "deviation_m"])
+            for event in events
+        ]
+        rows.append([known.symbol, known.quantity(value), target, *cells])
+    head = ["parameter", "value", "of the", *(f"event {event:g}" for event in events)]
+    return Grid(head, rows, "lll" + "r" * len(events))

@@ -1,0 +1,134 @@
+"""Settings of the reproduction: those of the thesis, or a trial within minutes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from snowshed.analysis.calibration.parameter_ranges import COHESION, GRID, PRESSURE, SLOPE
+from snowshed.analysis.regression.folds import CrossValidation
+from snowshed.scene.components import Condition
+
+#: Of the panel where there is one value: the least static coefficient that the thesis measured.
+MEASURED_FRICTION = 0.6
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How much is computed, and how finely.
+
+    Attributes
+    ----------
+    dimension, dx
+        Of the snow's simulations in chapters 3 and 4, and the grid size (m) of the laboratory too.
+    frictions, release_frictions
+        Of the panel: in the laboratory, and at 30 degrees.
+    lab_seeds, index_seeds, fixation_seeds, grid_seeds
+        Seedings of each point of the stages.
+    grid_events
+        Events of the calibration.
+    slopes, pressures, cohesions
+        Its triplets: M, p0 (Pa), beta.
+    steps
+        Of the posterior's Markov chains.
+    simulates_panels
+        Whether the panels of chapter 5 are simulated, the thesis's 122 and those with more tilts
+        besides; else the rows are those that come with snowshed.
+    deviation_dx
+        Size of the grid cells (m) where deviations from the thesis are undone one by one: ours, and
+        that which stands for the thesis's. They have the ratio of 1.5 cm to 1 cm.
+    deviation_panels, deviation_longest, deviation_seeds
+        Of the data set's panels up to some length, m, every n-th is simulated for it, so often. (n
+        has no factor in common with the numbers of lengths, or the same ones would come again.)
+    folds
+        Of the nested cross-validation.
+    one_seed_rounds
+        Of its rounds for the rows of one seed, where there are several.
+    condition
+        Of the panel: "separate", which is snowshed's default, or "slip", which is the thesis's.
+    """
+
+    dimension: int
+    dx: float
+    frictions: Sequence[float]
+    release_frictions: Sequence[float]
+    lab_seeds: int
+    index_seeds: int
+    fixation_seeds: int
+    grid_seeds: int
+    grid_events: int
+    slopes: Sequence[float]
+    pressures: Sequence[float]
+    cohesions: Sequence[float]
+    steps: int
+    simulates_panels: bool
+    deviation_dx: tuple[float, float]
+    deviation_panels: int
+    deviation_longest: float
+    deviation_seeds: int
+    folds: CrossValidation
+    one_seed_rounds: int
+    condition: Condition = "separate"
+
+
+FULL = Settings(
+    dimension=3,
+    dx=0.01,
+    frictions=(0.3, 0.6, 0.8),
+    release_frictions=(0.3, 0.5, 0.6),
+    lab_seeds=4,
+    index_seeds=4,
+    fixation_seeds=2,
+    grid_seeds=2,
+    grid_events=5,
+    slopes=GRID[SLOPE],
+    pressures=GRID[PRESSURE],
+    cohesions=GRID[COHESION],
+    steps=2000,
+    simulates_panels=True,
+    deviation_dx=(0.015, 0.01),
+    deviation_panels=4,
+    deviation_longest=10.0,
+    deviation_seeds=2,
+    folds=CrossValidation(),
+    one_seed_rounds=10,
+)
+#: The thesis's dimensions, cells and events, with the frictions that it measured, fewer seedings,
+#: and the panels that come with snowshed.
+MIDDLE = replace(
+    FULL,
+    frictions=(0.6, 0.8),
+    release_frictions=(0.5, 0.6),
+    lab_seeds=2,
+    index_seeds=2,
+    fixation_seeds=1,
+    grid_seeds=1,
+    simulates_panels=False,
+    deviation_panels=7,
+    deviation_longest=2.0,
+    deviation_seeds=1,
+    folds=CrossValidation(rounds=3),
+    one_seed_rounds=3,
+)
+QUICK = Settings(
+    dimension=2,
+    dx=0.02,
+    frictions=(0.3, 0.6),
+    release_frictions=(0.3, 0.6),
+    lab_seeds=2,
+    index_seeds=2,
+    fixation_seeds=1,
+    grid_seeds=1,
+    grid_events=3,
+    slopes=(0.4, 0.5, 0.7),
+    pressures=(4e3, 7e3),
+    cohesions=(0.05, 0.2),
+    steps=500,
+    simulates_panels=False,
+    deviation_dx=(0.03, 0.02),
+    deviation_panels=7,
+    deviation_longest=1.0,
+    deviation_seeds=1,
+    folds=CrossValidation(rounds=2, folds=5, inner_folds=3),
+    one_seed_rounds=1,
+)

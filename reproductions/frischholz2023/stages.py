@@ -1,0 +1,72 @@
+"""All stages of the reproduction of the thesis."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from typing import Optional
+
+from reproductions.common.folder import ReproductionFolder
+from reproductions.common.stage import Stage, StudyStage
+from reproductions.frischholz2023 import studies
+from reproductions.frischholz2023.regression_stage import GeometryRows, RegressionStage
+from reproductions.frischholz2023.settings import Settings
+from snowshed.analysis.regression.dataset import geometry_table
+from snowshed.analysis.regression.rows import read_rows
+from snowshed.scene.components import Condition
+
+#: Stages of panels, whose measure is in doubt: their particles are kept.
+KEPT = ("deviations", "variations", "geometry")
+MAKERS = {
+    "lab": studies.lab,
+    "s-index": studies.index,
+    "fixation": studies.fixation,
+    "calibration": studies.calibration,
+    "deviations": studies.deviations,
+    "variations": studies.variations,
+    "geometry": studies.geometry,
+}
+
+
+class ThesisComputation:
+    """The stages of a reproduction in its folder.
+
+    Parameters
+    ----------
+    path, settings
+        The folder, and how much is computed.
+    table
+        Rows of panels to use for chapter 5 instead of simulating them. Without it, a quick
+        reproduction takes the table that comes with snowshed.
+    """
+
+    def __init__(self, path: Path, settings: Settings, table: Optional[Path]) -> None:
+        self.folder = folder = ReproductionFolder(path)
+        self.settings = settings
+        if table is None and not settings.simulates_panels:
+            table = geometry_table()
+        self.table = table
+        self.study_stages = {
+            name: StudyStage(
+                name, folder.runs, partial(make, settings), keep_particles=name in KEPT
+            )
+            for name, make in MAKERS.items()
+            if name != "geometry" or table is None
+        }
+        self.rows = GeometryRows(folder, table, self.study_stages.get("geometry"))
+        self.regression = RegressionStage(folder, settings, self.rows)
+
+    @property
+    def stages(self) -> list[Stage]:
+        """All stages, in order."""
+        return [*self.study_stages.values(), self.regression]
+
+
+def stages(
+    folder: Path, settings: Settings, *, table: Optional[Path], condition: Condition
+) -> ThesisComputation:
+    """Return the stages, with a condition of the panel; raises InputError for a wrong table."""
+    if table is not None:
+        settings.folds.check(read_rows(table))
+    return ThesisComputation(folder, replace(settings, condition=condition), table)

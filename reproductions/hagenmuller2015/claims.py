@@ -1,0 +1,344 @@
+"""What is claimed of snow in compression, and the rules by which it is judged.
+
+The rules were set before anything was computed. Numbers are logarithms of ratios of stresses, each
+the mean over samples, with the standard error that the scatter between samples gives it, widened
+by Student's t.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
+from itertools import combinations
+from typing import TYPE_CHECKING
+
+from reproductions.common.hypothesis_tests import (
+    CONFIRMED,
+    CONTRADICTED,
+    UNDECIDED,
+    Claim,
+    Estimate,
+    Finding,
+    all_of,
+    near,
+    negative,
+    positive,
+    small,
+    widening,
+)
+from reproductions.hagenmuller2015.printed import YADE
+from reproductions.hagenmuller2015.studies import (
+    ELASTIC,
+    FEWER,
+    HEAVY_SNOW,
+    LIGHT_SNOW,
+    ROUGH,
+    SOFT,
+    THIN_NECKS,
+    TRAP,
+    WIDE_NECKS,
+)
+from snowshed.analysis.grains.ratios import STRESSES, LogMean, paired_ratios
+from snowshed.analysis.grains.variants import BASE
+from snowshed.base.formatting import percent
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+PEAK, EARLY, MIDDLE, DENSE = STRESSES
+SCALED = "density of ice x 100"
+HALF_EDGE = "volume / 8"
+#: Factor up to which a stress hardly differs; that from which it differs much.
+HARDLY, MUCH = math.log(1.3), math.log(2.0)
+#: Factor from which two of Yade's numbers differ by more than one sample's scatter.
+CLEAR = math.log(1.5)
+#: Of the peak strain: what may remain of a reversible strain. R2 of what is linear.
+REMAINS, LINEAR = 0.05, 0.95
+
+
+@dataclass(frozen=True)
+class LoadingTests:
+    """The computed loading tests.
+
+    Attributes
+    ----------
+    tables
+        One per comparison, with one row per variant and sample. Those that load further stand
+        before others.
+    """
+
+    tables: Sequence[pd.DataFrame]
+
+    def of(self, variant: str) -> pd.DataFrame:
+        """Return the tests of a variant; raises LookupError if there is none."""
+        table = self._with(variant)
+        return table[table["variant"] == variant]
+
+    def log(self, variant: str, stress: str) -> Estimate:
+        """Return the logarithm of a stress in Pa, as the mean over the samples."""
+        return _estimate(LogMean.of(self.of(variant)[stress].astype(float).tolist()))
+
+    def change(self, variant: str, stress: str, base: str = BASE) -> Estimate:
+        """Return the logarithm of a stress over that of another variant, sample by sample."""
+        table = self._with(variant, base)
+        return _estimate(LogMean.of(paired_ratios(table, variant, stress, base).tolist()))
+
+    def _with(self, *variants: str) -> pd.DataFrame:
+        """Return the first comparison with some variants; raises LookupError if there is none."""
+        for table in self.tables:
+            if set(variants) <= set(table["variant"]):
+                return table
+        raise LookupError(" beside ".join(variants))
+
+
+def _estimate(found: LogMean) -> Estimate:
+    if not found.count:
+        raise LookupError("a stress that is positive")
+    return Estimate(found.mean, found.error * widening(found.count - 1))
+
+
+def factor(found: Estimate, what: str) -> str:
+    """Return a ratio with its noise in words.
+
+    Examples
+    --------
+    >>> factor(Estimate(math.log(2.0), math.log(1.1)), "strength")
+    'strength: x 2 (noise: factor 1.1)'
+    """
+    noise = "not known" if math.isnan(found.noise) else f"factor {math.exp(found.noise):.2g}"
+    return f"{what}: x {math.exp(found.value):.3g} (noise: {noise})"
+
+
+def reversible(tests: LoadingTests) -> Finding:
+    """Test whether loading and unloading in the elastic phase leaves no trace."""
+    rows = tests.of(ELASTIC)
+    broken = (rows["broken_in_tension"] + rows["broken_in_shear"]).astype(float)
+    peak, rest = rows["elastic_limit_strain"].astype(float), rows["axial_strain"].astype(float)
+    linear = rows["linearity"].astype(float)
+    good = (broken == 0) & (rest.abs() <= REMAINS * peak) & (linear >= LINEAR)
+    verdict = CONFIRMED if good.all() else CONTRADICTED if not good.any() else UNDECIDED
+    return Finding(
+        verdict,
+        f"{int(good.sum())} of {len(rows)} samples: at most {int(broken.max())} bonds broken, "
+        f"{percent((rest.abs() / peak).max(), 2)} of the strain left, R2 from {linear.min():.3f}",
+    )
+
+
+def brittle(tests: LoadingTests) -> Finding:
+    """Test whether the stress falls after its peak."""
+    rows = tests.of(BASE)
+    drop = _estimate(LogMean.of((rows[EARLY].astype(float) / rows[PEAK].astype(float)).tolist()))
+    return _factors(negative(drop, ""), drop, "mean from 5 to 10 % over the peak below 5 %")
+
+
+def hardens(tests: LoadingTests) -> Finding:
+    """Test whether the stress more than doubles from 10-15 to 25-30 %, like an exponential."""
+    rows = tests.of(BASE)
+    growth = (rows[DENSE].astype(float) / rows[MIDDLE].astype(float)).tolist()
+    rise = _estimate(LogMean.of(growth))
+    found = _factors(positive(rise - Estimate(MUCH, 0.0), ""), rise, "25 to 30 % over 10 to 15 %")
+    onset = rows["hardening_onset_strain"].astype(float)
+    seen = int(onset.notna().sum())
+    begins = f"exponential from {percent(onset.mean(), 2)} in {seen} of {len(rows)}"
+    whole = seen == len(rows) or found.verdict != CONFIRMED
+    return Finding(found.verdict if whole else UNDECIDED, f"{found.sentence}; {begins}")
+
+
+def rises(variant: str, base: str, stresses: Sequence[str], tests: LoadingTests) -> Finding:
+    """Test whether stresses of a variant are larger than those of another."""
+    changes = [tests.change(variant, stress, base) for stress in stresses]
+    return all_of(
+        [_factors(positive(one, ""), one, STRESSES[name]) for one, name in zip(changes, stresses)]
+    )
+
+
+def falls(variant: str, stress: str, tests: LoadingTests, *, by: float = 0.0) -> Finding:
+    """Test whether a stress is less than the base's, by a logarithm."""
+    change = tests.change(variant, stress)
+    return _factors(negative(change - Estimate(-by, 0.0), ""), change, STRESSES[stress])
+
+
+def hardly(variants: Sequence[str], stress: str, tests: LoadingTests, base: str = BASE) -> Finding:
+    """Test whether a stress hardly differs from the base's."""
+    findings = []
+    for variant in variants:
+        change = tests.change(variant, stress, base)
+        findings.append(
+            _factors(small(change, HARDLY, ""), change, f"{variant}, {STRESSES[stress]}")
+        )
+    return all_of(findings)
+
+
+def as_much_as_yade(stress: str, tests: LoadingTests) -> Finding:
+    """Test whether a stress of the base is that of Yade within 30 %."""
+    value = YADE[BASE][list(STRESSES).index(stress)]
+    assert value is not None
+    found = tests.log(BASE, stress)
+    verdict = near(found, math.log(1e3 * value), HARDLY, "").verdict
+    words = f"{STRESSES[stress]} {math.exp(found.value) / 1e3:.3g} kPa, Yade {value:g} kPa"
+    return Finding(verdict, factor(found - Estimate(math.log(1e3 * value), 0.0), words))
+
+
+def same_signs(variant: str, tests: LoadingTests) -> Finding:
+    """Test whether stresses change as in Yade, where these change by more than the scatter."""
+    findings = []
+    for stress, printed, base in zip(STRESSES, YADE[variant], YADE[BASE]):
+        if printed is None or base is None or abs(math.log(printed / base)) < CLEAR:
+            continue
+        change = tests.change(variant, stress)
+        test = positive if printed > base else negative
+        words = f"{STRESSES[stress]} (Yade x {printed / base:.3g})"
+        findings.append(_factors(test(change, ""), change, words))
+    return all_of(findings)
+
+
+def same_order(stress: str, tests: LoadingTests) -> Finding:
+    """Test whether two variants are in Yade's order, for all pairs that are clearly apart."""
+    place = list(STRESSES).index(stress)
+    pairs = []
+    for one, other in combinations(YADE, 2):
+        high, low = YADE[one][place], YADE[other][place]
+        if high is None or low is None or abs(math.log(high / low)) < CLEAR:
+            continue
+        above, below = (one, other) if high > low else (other, one)
+        pairs.append((positive(tests.change(above, stress, below), "").verdict, above, below))
+    verdict = all_of([Finding(verdict, "") for verdict, _, _ in pairs]).verdict
+    right = sum(verdict == CONFIRMED for verdict, _, _ in pairs)
+    wrong = [f"{above} not above {below}" for found, above, below in pairs if found == CONTRADICTED]
+    words = f"{right} of {len(pairs)} pairs in this order beyond noise"
+    return Finding(verdict, "; ".join([words, *wrong]))
+
+
+def _factors(found: Finding, change: Estimate, what: str) -> Finding:
+    return Finding(found.verdict, factor(change, what))
+
+
+def _words(variant: str) -> str:
+    return f"{variant}: stresses change in the direction in which they change in Yade"
+
+
+PAPER: list[Claim[LoadingTests]] = [
+    Claim(
+        "elastic phase",
+        "At first the deformation is elastic: linear, reversible, and no bond breaks.",
+        "in every sample no bond breaks, less than 5 % of the strain is left, R2 above 0.95",
+        reversible,
+    ),
+    Claim(
+        "brittle phase",
+        "Then bonds break, and the stress falls from its peak.",
+        "the mean stress from 5 to 10 % is below the peak below 5 %",
+        brittle,
+    ),
+    Claim(
+        "hardening",
+        "At last the stress grows like an exponential.",
+        "it more than doubles from 10-15 to 25-30 %, and every sample has a hardening phase",
+        hardens,
+    ),
+    Claim(
+        "density",
+        "Density controls the stress.",
+        f"stresses at {HEAVY_SNOW} are above those at 318 kg/m3, in all ranges of strain",
+        lambda tests: rises(HEAVY_SNOW, BASE, list(STRESSES), tests),
+    ),
+    Claim(
+        "density",
+        "Density controls the stress, in light snow too.",
+        f"stresses at 318 kg/m3 are above those at {LIGHT_SNOW}, in all ranges of strain",
+        lambda tests: rises(BASE, LIGHT_SNOW, list(STRESSES), tests),
+    ),
+    Claim(
+        "snow types",
+        "Faceted snow is weaker than rounded or decomposed snow of equal density at first. (Here: "
+        "thin against wide necks of sphere packs; no facets can be made.)",
+        "the peak below 5 % with thin necks is below that with wide necks",
+        lambda tests: rises(WIDE_NECKS, THIN_NECKS, [PEAK], tests),
+    ),
+    Claim(
+        "snow types",
+        "At large strain types of equal density do not differ clearly. (Here: necks as above.)",
+        "stresses from 25 to 30 % differ by less than a factor of 1.3",
+        lambda tests: hardly([THIN_NECKS], DENSE, tests, WIDE_NECKS),
+    ),
+    Claim(
+        "sphere size",
+        "The brittle phase is insensitive to the size of the spheres.",
+        "peaks of spheres half and one and a half times as large differ by less than 1.3",
+        lambda tests: hardly(["spheres 50 um", "spheres 150 um"], PEAK, tests),
+    ),
+    Claim(
+        "segmentation",
+        "The brittle phase is insensitive to the number of grains.",
+        "the peak of half as many grains of the same ice differs by less than a factor of 1.3",
+        lambda tests: hardly([FEWER], PEAK, tests),
+    ),
+    Claim(
+        "volume",
+        "The volume is representative.",
+        "the peak of an eighth of the volume differs by less than a factor of 1.3",
+        lambda tests: hardly([HALF_EDGE], PEAK, tests),
+    ),
+    Claim(
+        "elastic modulus",
+        "The brittle phase is insensitive to Young's modulus.",
+        "the peak with a tenth of it differs by less than a factor of 1.3",
+        lambda tests: hardly([SOFT], PEAK, tests),
+    ),
+    Claim(
+        "elastic modulus",
+        "The dense phase is very sensitive to Young's modulus.",
+        "the stress from 25 to 30 % with a tenth of it is less than half",
+        lambda tests: falls(SOFT, DENSE, tests, by=MUCH),
+    ),
+    Claim(
+        "friction",
+        "Friction between grains raises the stress.",
+        "peak, and mean from 25 to 30 %, are above the base's with friction 0.5 instead of 0.2",
+        lambda tests: rises(ROUGH, BASE, [PEAK, DENSE], tests),
+    ),
+    Claim(
+        "density of ice",
+        "Denser ice, which saves time, hardly changes the brittle phase.",
+        "the peak with density_scaling 100 instead of 10 differs by less than a factor of 1.3",
+        lambda tests: hardly([SCALED], PEAK, tests),
+    ),
+]
+ENGINE: list[Claim[LoadingTests]] = [
+    Claim(
+        "density of ice",
+        "Far too dense ice raises the peak, by inertia.",
+        "the peak with density_scaling 10000 is above the base's",
+        lambda tests: rises(TRAP, BASE, [PEAK], tests),
+    ),
+    *(
+        Claim(
+            "base",
+            f"{STRESSES[stress]} as with Yade, on a comparable sample",
+            "within 30 % (a factor of 1.3)",
+            partial(as_much_as_yade, stress),
+        )
+        for stress in (PEAK, EARLY)
+    ),
+    *(
+        Claim(
+            "line",
+            _words(variant),
+            "for every stress that changes by more than a factor of 1.5 in Yade",
+            partial(same_signs, variant),
+        )
+        for variant in YADE
+        if variant != BASE
+    ),
+    *(
+        Claim(
+            "column",
+            f"{STRESSES[stress]}: the lines have Yade's order",
+            "for all pairs of lines that are apart by more than a factor of 1.5 in Yade",
+            partial(same_order, stress),
+        )
+        for stress in STRESSES
+    ),
+]

@@ -1,0 +1,90 @@
+"""The sections of the report: the paper's claims, Yade's numbers, and what matters."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from reproductions.common.hypothesis_tests import judge
+from reproductions.common.section import Content
+from reproductions.hagenmuller2015.claims import ENGINE, PAPER
+from reproductions.hagenmuller2015.printed import YADE
+from reproductions.hagenmuller2015.stages import GrainsComputation
+from reproductions.hagenmuller2015.studies import MAKERS
+from snowshed.analysis.grains.ratios import STRESSES, compare_variants
+from snowshed.analysis.grains.sensitivity import FIGURE, evaluate_sensitivity
+from snowshed.analysis.grains.variants import BASE
+from snowshed.base.formatting import NOTHING
+from snowshed.plot.html_page import Grid, Picture
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    import pandas as pd
+
+COMPARED = (
+    "Stresses on the top plate in kPa, geometric means over the samples, with the factor by which "
+    "samples differ; in brackets those of Yade on its one sample.",
+)
+
+
+def paper(work: GrainsComputation) -> Content:
+    """Return the paper's claims, and what the samples are."""
+    samples = [("Samples", sample_grid(work.tests.tables))]
+    return Content(tables=samples, claims=judge(PAPER, work.tests))
+
+
+def engine(work: GrainsComputation) -> Content:
+    """Return the stresses beside those of Yade."""
+    tables = [
+        (f"Stage {name}", stress_grid(compare_variants(table)))
+        for name, table in zip(reversed(list(MAKERS)), work.tests.tables)
+        if BASE in set(table["variant"])
+    ]
+    return Content(COMPARED, tables, claims=judge(ENGINE, work.tests))
+
+
+def sensitivity(work: GrainsComputation) -> Content:
+    """Return what the strength depends on."""
+    folder = work.folder.of_stage("sensitivity")
+    evaluate_sensitivity(work.comparisons["brittle"], work.folder.runs, folder)
+    caption = "As of `snowshed grains sensitivity`; the numbers are in sensitivity/sensitivity.csv."
+    return Content(pictures=[Picture.read(folder / FIGURE, "Sensitivity", caption, dpi=160)])
+
+
+def sample_grid(tables: Sequence[pd.DataFrame]) -> Grid:
+    """Return what the samples of each variant are."""
+    import pandas as pd
+
+    tests = pd.concat([one for one in tables if len(one)])
+    rows = []
+    for variant, own in tests.drop_duplicates(["variant", "sample"]).groupby("variant", sort=False):
+        numbers = [_span(own[name]) for name in ("final_particles", "spheres", "density_kg_m3")]
+        rows.append([str(variant), str(len(own)), *numbers])
+    return Grid(["variant", "samples", "grains", "spheres", "kg/m3"], rows, "lrrrr")
+
+
+def _span(values: pd.Series) -> str:
+    low, high = float(values.min()), float(values.max())
+    return f"{low:,.0f}" if round(low) == round(high) else f"{low:,.0f} to {high:,.0f}"
+
+
+def stress_grid(comparison: pd.DataFrame) -> Grid:
+    """Return the stresses of each variant beside those of Yade."""
+    known = set(comparison["stress"][np.isfinite(comparison["value_pa"])])
+    stresses = [name for name in STRESSES if name in known]  # that the tests reach
+    rows = []
+    for variant in dict.fromkeys(comparison["variant"]):
+        own = comparison[comparison["variant"] == variant].set_index("stress")
+        printed = dict(zip(STRESSES, YADE.get(str(variant), (None,) * len(STRESSES))))
+        rows.append([str(variant), *(_stress(own.loc[name], printed[name]) for name in stresses)])
+    titles = [STRESSES[name] for name in stresses]
+    return Grid(["variant", *titles], rows, "l" + "r" * len(stresses))
+
+
+def _stress(row: pd.Series, printed: object) -> str:
+    value, scatter = float(row["value_pa"]), float(row["scatter"])
+    text = f"{value / 1e3:.3g}" if np.isfinite(value) else NOTHING
+    text += f" x/ {np.exp(scatter):.2f}" if np.isfinite(scatter) else ""
+    return text if printed is None else f"{text} [{printed:g}]"

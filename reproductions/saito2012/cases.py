@@ -1,0 +1,319 @@
+"""The scenes: two slopes with an erodible layer, and a wooden slope with and without obstacles.
+
+The paper prints density, adhesive force, friction angle, viscosity, spacing and the thickness of
+the erodible layer. All shapes are ours, for its drawings are lost: tilts, lengths of slopes 1 and
+2, the amount of snow, stakes and board; so are the limits of the dilatant branch, of erosion and of
+deposition.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Optional
+
+import numpy as np
+
+from snowshed.base.arrays import Floats
+from snowshed.methods.mps.settings import MpsSettings
+from snowshed.scene.components import Body, Events, Obstacle
+from snowshed.scene.scene import Scene
+from snowshed.scene.shape import Shape
+
+#: Printed: slopes 1 and 2.
+SLOPE_SNOW = MpsSettings(
+    spacing=0.5, density=320, cohesion=100, friction_angle=24, viscosity=0.01, max_time_step=0.01
+)
+ERODIBLE = 0.25  # m, printed
+#: Printed: wooden slope.
+WOOD_SNOW = MpsSettings(
+    density=200, cohesion=0, friction_angle=24, viscosity=0.012, max_time_step=0.01
+)
+WOOD_LENGTH = 5.4  # m, printed
+#: Inferred, wooden slope.
+WOOD_TILT, RUN_OUT = 30.0, 1.5  # degrees, m
+BLOCK = (0.4, 0.2)  # m, length and height of the block of snow; it fills the slope's width
+OBSTACLE_AT = 0.3  # m above the foot of the slope
+STAKE, STAKE_HEIGHT = 0.02, 0.2  # m
+BOARD_HEIGHT, BOARD_GAP, NOTCH = 0.12, 0.04, (0.04, 0.06)  # m; the notch's width and depth
+#: Inferred, slopes 1 and 2: tilt and length from above, m, then level ground.
+SLOPES: Mapping[int, Sequence[tuple[float, float]]] = {
+    1: [(30.0, 40.0)],
+    2: [(38.0, 30.0), (20.0, 30.0)],
+}
+SOURCE = (12.0, 10.0, 1.5)  # m, length, width and height of the slab that is released
+LAYER_WIDTH = 20.0  # m
+#: The stress begins to grow as a power of the rate where snow slides at some 10 m/s by a wall.
+WOOD_LIMIT, SLOPE_LIMIT = 1000.0, 50.0  # 1/s
+STRESS_GROWTH = 1000.0  # s
+
+BINGHAM, COMBINED = "Bingham", "combined"
+NONE, NARROW, WIDE, BOARD = "no obstacle", "stakes 0.02 m", "stakes 0.04 m", "notched board"
+OBSTACLES = (NONE, NARROW, WIDE, BOARD)
+
+
+@dataclass(frozen=True)
+class Resolution:
+    """How finely the cases are resolved.
+
+    Attributes
+    ----------
+    wooden_spacing
+        Distance between particles on the wooden slope, m; the paper has 0.01 m.
+    wooden_width
+        Width of the wooden slope, m.
+    slope_dimension
+        Dimension of slopes 1 and 2. In two dimensions snow does not spread sideways.
+    """
+
+    wooden_spacing: float
+    wooden_width: float
+    slope_dimension: int
+
+
+QUICK, FULL = Resolution(0.02, 0.24, 2), Resolution(0.01, 0.4, 3)
+
+
+@dataclass(frozen=True)
+class Path:
+    """A piecewise plane ground, from above to the level ground at x > 0, z = 0.
+
+    Attributes
+    ----------
+    corners
+        (x, z) of the lower ends of the planes and of the upper end of the first, m, from above.
+    """
+
+    corners: Sequence[tuple[float, float]]
+
+    @classmethod
+    def of(cls, planes: Sequence[tuple[float, float]]) -> Path:
+        """Return the path of planes with tilts in degrees and lengths in m, from above.
+
+        Examples
+        --------
+        >>> path = Path.of([(30.0, 2.0)])
+        >>> path.along(np.array([[-1.7320508, 0, 1.0], [1, 0, 0]])).round(3).tolist()
+        [-2.0, 1.0]
+        """
+        corners = [(0.0, 0.0)]
+        for tilt, length in reversed(planes):
+            x, z = corners[0]
+            angle = math.radians(tilt)
+            corners.insert(0, (x - length * math.cos(angle), z + length * math.sin(angle)))
+        return cls(corners)
+
+    def along(self, positions: Floats) -> Floats:
+        """Return how far down the ground points lie, m; 0 where the level ground begins."""
+        xs = [x for x, _ in self.corners]
+        distances = [0.0]
+        for (x, z), (next_x, next_z) in zip(self.corners[-2::-1], self.corners[:0:-1]):
+            distances.insert(0, distances[0] - math.hypot(next_x - x, next_z - z))
+        along = np.interp(positions[:, 0], xs, distances)
+        beyond = positions[:, 0] > 0
+        along[beyond] = positions[beyond, 0]
+        return np.asarray(along)
+
+    def frame(self, distance: float) -> tuple[Floats, Floats, Floats, float]:
+        """Return a point of the ground, the directions down it and off it, and its tilt."""
+        for (x, z), (next_x, next_z) in zip(self.corners[-2::-1], self.corners[:0:-1]):
+            length = math.hypot(next_x - x, next_z - z)
+            down = np.array([next_x - x, 0.0, next_z - z]) / length
+            if distance > -length or (x, z) == self.corners[0]:
+                point = np.array([next_x, 0.0, next_z]) + distance * down
+                tilt = math.degrees(math.asin(-down[2]))
+                return point, down, np.array([-down[2], 0.0, down[0]]), tilt
+            distance += length
+        raise AssertionError("unreachable")
+
+    def ground(self) -> list[Obstacle]:
+        """Return the ground as planes; where it bends, it must be hollow."""
+        planes = [
+            Obstacle(name="ground", shape=Shape.plane((0, 0, 0), (0, 0, 1)), condition="sticky")
+        ]
+        for k, ((x, z), (next_x, next_z)) in enumerate(zip(self.corners, self.corners[1:])):
+            normal = (z - next_z, 0.0, next_x - x)
+            plane = Shape.plane((next_x, 0, next_z), normal)
+            planes.append(Obstacle(name=f"slope {k + 1}", shape=plane, condition="sticky"))
+        return planes
+
+    def box(
+        self,
+        distance: float,
+        size: tuple[float, float, float],
+        *,
+        across: float = 0.0,
+        above: float = 0.0,
+    ) -> Shape:
+        """Return a box on the ground, or above it, at a distance along the path and at a y."""
+        point, _, normal, tilt = self.frame(distance)
+        centre = point + (0.5 * size[2] + above) * normal + np.array([0.0, across, 0.0])
+        box = Shape.box((0, 0, 0), size)
+        return Shape.transform(box, axis=(0, 1, 0), angle=tilt, translate=tuple(centre))
+
+
+def folder_name(case: str) -> str:
+    """Return the name of the folder and of the stage of a case.
+
+    Examples
+    --------
+    >>> folder_name("wooden slope, stakes 0.02 m")
+    'wooden-slope-stakes-002-m'
+    """
+    return case.replace(",", "").replace(" ", "-").replace(".", "")
+
+
+@dataclass(frozen=True)
+class Case:
+    """A case of the paper.
+
+    Attributes
+    ----------
+    name
+        For people; files are named after it.
+    path
+        Its ground.
+    scene
+        What is simulated.
+    end, every
+        When it ends, and how often the snow is kept, s.
+    obstacle
+        Where its obstacle stands, m along the path, or where one would stand.
+    """
+
+    name: str
+    path: Path
+    scene: Scene
+    end: float
+    every: float
+    obstacle: Optional[float] = None
+
+    @property
+    def file(self) -> str:
+        """The name of its folder and of its stage."""
+        return folder_name(self.name)
+
+    @property
+    def times(self) -> list[float]:
+        """When the snow is kept, s."""
+        return [self.every * k for k in range(round(self.end / self.every) + 1)]
+
+
+def wooden(obstacle: str, resolution: Resolution) -> Case:
+    """Return the wooden slope with an obstacle at its foot."""
+    path = Path.of([(WOOD_TILT, WOOD_LENGTH)])
+    width = resolution.wooden_width
+    obstacles = path.ground()
+    for side in (-1, 1):
+        rail = Shape.plane((0, side * width / 2, 0), (0, -side, 0))
+        name = "rail right" if side < 0 else "rail left"
+        obstacles.append(Obstacle(name=name, shape=rail, condition="separate", friction=0.1))
+    if obstacle in (NARROW, WIDE):
+        gap = 0.02 if obstacle == NARROW else 0.04
+        obstacles.append(_solid("stakes", Shape.union(*_stakes(path, width, gap))))
+    elif obstacle == BOARD:
+        obstacles.append(_solid("board", _board(path, width)))
+    snow = path.box(-WOOD_LENGTH + BLOCK[0] / 2, (BLOCK[0], width, BLOCK[1]))
+    settings = replace(
+        WOOD_SNOW,
+        spacing=resolution.wooden_spacing,
+        dilatant_rate=WOOD_LIMIT,
+        stress_growth=STRESS_GROWTH,
+        erosion=True,
+        erosion_pressure=200.0,
+        deposition_pressure=100.0,
+        deposition_speed=0.005,  # less than snow has after a step, so that it is not kept at once
+    )
+    scene = _scene(f"wooden slope, {obstacle}", 3, settings, obstacles, [Body(shape=snow)], 4.0)
+    return Case(f"wooden slope, {obstacle}", path, scene, 4.0, 0.25, -OBSTACLE_AT)
+
+
+def slope(number: int, model: str, resolution: Resolution) -> Case:
+    """Return slope 1 or 2 with the Bingham or the combined model."""
+    path = Path.of(SLOPES[number])
+    spacing = SLOPE_SNOW.spacing
+    assert spacing is not None
+    top = sum(length for _, length in SLOPES[number])
+    snow = [Body(shape=path.box(-top + SOURCE[0] / 2, SOURCE, above=spacing))]
+    lengths = [length for _, length in SLOPES[number]]
+    ends = [-sum(lengths[k + 1 :]) for k in range(len(lengths))]
+    for end, length in zip(ends, lengths):
+        layer = (length - spacing, LAYER_WIDTH, spacing)
+        snow.append(Body(shape=path.box(end - length / 2, layer)))
+    snow.append(
+        Body(shape=Shape.box((10.0 + spacing, 0, spacing / 2), (20.0, LAYER_WIDTH, spacing)))
+    )
+    settings = replace(SLOPE_SNOW, stress_growth=STRESS_GROWTH, dilatant_rate=SLOPE_LIMIT)
+    if model == BINGHAM:
+        settings = replace(settings, rheology="bingham")
+        snow = snow[:1]  # nothing is taken up
+    else:
+        # The layer is thinner than a particle: it is the first row above the ground.
+        settings = replace(settings, erosion=True, erodible_thickness=1.2 * ERODIBLE)
+        settings = replace(
+            settings, erosion_pressure=1000, deposition_pressure=500, erosion_speed=1.0,
+            deposition_speed=0.1,
+        )  # fmt: skip
+    dimension = resolution.slope_dimension
+    scene = _scene(f"slope {number}, {model}", dimension, settings, path.ground(), snow, 20.0)
+    return Case(f"slope {number}, {model}", path, scene, 20.0, 1.0)
+
+
+def cases(resolution: Resolution) -> list[Case]:
+    """Return all cases."""
+    slopes = [
+        slope(number, model, resolution) for number in SLOPES for model in (BINGHAM, COMBINED)
+    ]
+    return [*(wooden(obstacle, resolution) for obstacle in OBSTACLES), *slopes]
+
+
+def _solid(name: str, shape: Shape) -> Obstacle:
+    return Obstacle(name=name, shape=shape, condition="sticky")
+
+
+def _stakes(path: Path, width: float, gap: float) -> list[Shape]:
+    count = int((width + 1e-9) // (STAKE + gap))
+    first = -0.5 * (count - 1) * (STAKE + gap)
+    size = (STAKE, STAKE, STAKE_HEIGHT)
+    return [path.box(-OBSTACLE_AT, size, across=first + k * (STAKE + gap)) for k in range(count)]
+
+
+def _board(path: Path, width: float) -> Shape:
+    """Return a board that leaves gaps at its ends and has a notch in the middle of its top."""
+    board = path.box(-OBSTACLE_AT, (STAKE, width - 2 * BOARD_GAP, BOARD_HEIGHT))
+    cut = (3 * STAKE, NOTCH[0], NOTCH[1] + 0.02)  # beyond the board's faces
+    return Shape.difference(board, path.box(-OBSTACLE_AT, cut, above=BOARD_HEIGHT - NOTCH[1]))
+
+
+def _scene(
+    title: str,
+    dimension: int,
+    settings: MpsSettings,
+    obstacles: list[Obstacle],
+    bodies: list[Body],
+    end: float,
+) -> Scene:
+    if dimension == 2:
+        obstacles = [replace(one, shape=_flat(one.shape)) for one in obstacles]
+        bodies = [replace(one, shape=_flat(one.shape)) for one in bodies]
+    events = Events(count=1, max_time=end + 1, between="carry")
+    return Scene(
+        title=title, dimension=dimension, method="mps", numerics=settings, obstacles=obstacles,
+        bodies=bodies, events=events,
+    )  # fmt: skip
+
+
+def _flat(shape: Optional[Shape]) -> Optional[Shape]:
+    """Return the section of a shape by the plane y = 0."""
+    if shape is None:
+        return None
+    parts = shape.shapes and [one for part in shape.shapes if (one := _flat(part))]
+    return replace(
+        shape, axis=None, center=_section(shape.center), size=_section(shape.size),
+        normal=_section(shape.normal), translate=_section(shape.translate), shapes=parts,
+    )  # fmt: skip
+
+
+def _section(vector: Optional[Sequence[float]]) -> Optional[Sequence[float]]:
+    return None if vector is None else (vector[0], vector[2])

@@ -1,0 +1,220 @@
+"""What the paper says, and the rules by which it is judged.
+
+A case is one simulation: nothing in it is random, so numbers have no noise. A claim is confirmed or
+contradicted where the number is clearly on one side of its bounds, and undecided between them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from reproductions.common.hypothesis_tests import (
+    CONFIRMED,
+    CONTRADICTED,
+    UNDECIDED,
+    Claim,
+    Finding,
+    all_of,
+)
+from reproductions.saito2012.cases import BINGHAM, BOARD, BOARD_GAP, COMBINED, NARROW, NONE, WIDE
+from reproductions.saito2012.measures import REST, Course
+
+#: Shares of the snow: held back from the first on, hardly any below the second.
+MUCH, HARDLY = 0.10, 0.03
+
+
+@dataclass(frozen=True)
+class Courses:
+    """All cases that are computed, by their names."""
+
+    known: Mapping[str, Course]
+
+    def of(self, name: str) -> Course:
+        """Return a case; raises LookupError if it is not complete."""
+        course = self.known.get(name)
+        if course is None:
+            raise LookupError(name)
+        return course
+
+    def wooden(self, obstacle: str) -> Course:
+        """Return the wooden slope with an obstacle."""
+        return self.of(f"wooden slope, {obstacle}")
+
+    def slope(self, number: int, model: str) -> Course:
+        """Return slope 1 or 2."""
+        return self.of(f"slope {number}, {model}")
+
+
+def between(value: float, low: float, high: float, words: str) -> Finding:
+    """Return confirmed above `high`, contradicted below `low`, undecided between them.
+
+    Examples
+    --------
+    >>> [between(x, 1, 2, "").verdict for x in (0.5, 1.5, 2.5)]
+    ['contradicted', 'undecided', 'confirmed']
+    """
+    verdict = CONFIRMED if value > high else CONTRADICTED if value < low else UNDECIDED
+    return Finding(verdict, words)
+
+
+def reaches_the_foot(data: Courses) -> Finding:
+    """Test whether the avalanche without obstacle lies on the foot of the slope at 4 s."""
+    course = data.wooden(NONE)
+    fronts = ", ".join(f"{course.front(course.at(t)):.2f}" for t in (1, 2, 3, 4))
+    share = course.passed(course.at(4))
+    words = f"front at {fronts} m after 1, 2, 3, 4 s; {100 * share:.0f} % below 0.3 m at 4 s"
+    return between(share, 0.5, 0.8, words)
+
+
+def held_share(obstacle: str, data: Courses) -> tuple[float, str]:
+    """Return which share of the snow lies above an obstacle that would not without it, in words."""
+    course, without = data.wooden(obstacle), data.wooden(NONE)
+    held, free = course.held(course.at(4)), without.held(without.at(4))
+    return held - free, f"{100 * held:.1f} % lie above it at 4 s, {100 * free:.1f} % without it"
+
+
+def holds(obstacle: str, data: Courses) -> Finding:
+    """Test whether an obstacle holds snow back that would pass without it."""
+    share, words = held_share(obstacle, data)
+    return between(share, HARDLY, MUCH, words)
+
+
+def leaks(obstacle: str, data: Courses) -> Finding:
+    """Test whether snow passes an obstacle more and more, but not all at once."""
+    course = data.wooden(obstacle)
+    early, late = course.passed(course.at(3)), course.passed(course.at(4))
+    words = f"{100 * early:.1f} % have passed at 3 s, {100 * late:.1f} % at 4 s"
+    return between(late - early, 0.001, 0.005, words)
+
+
+def keeps_none(obstacle: str, data: Courses) -> Finding:
+    """Test whether an obstacle holds back hardly any snow."""
+    share, words = held_share(obstacle, data)
+    return between(-share, -MUCH, -HARDLY, words)
+
+
+def leaks_at_edges(data: Courses) -> Finding:
+    """Test whether what passes the board late passes at its edges."""
+    course = data.wooden(BOARD)
+    width = course.snow[0].positions[:, 1].max()  # half that of the slope, less half a spacing
+    share = course.passed_at_edges(course.at(3), course.at(4), float(width) - 1.25 * BOARD_GAP)
+    return between(share, 0.3, 0.5, f"{100 * share:.0f} % of what passes from 3 to 4 s")
+
+
+def never_stops(data: Courses) -> Finding:
+    """Test whether Bingham snow still moves at the end."""
+    return all_of([_moves(data.slope(number, BINGHAM)) for number in (1, 2)])
+
+
+def stops(data: Courses) -> Finding:
+    """Test whether the combined model's snow rests at the end."""
+    findings = [_moves(data.slope(number, COMBINED)) for number in (1, 2)]
+    opposite = {CONFIRMED: CONTRADICTED, CONTRADICTED: CONFIRMED, UNDECIDED: UNDECIDED}
+    return all_of([Finding(opposite[one.verdict], one.sentence) for one in findings])
+
+
+def _moves(course: Course) -> Finding:
+    end = course.snow[-1]
+    speed, front = course.speed(end), course.front(end) - course.front(course.snow[-6])
+    words = (
+        f"{course.case.name}: {speed:.3g} m/s on average after {end.time:.0f} s, its front "
+        f"{front:+.2f} m in the last five"
+    )
+    return between(speed, REST, 5 * REST, words)
+
+
+def spreads_wider(data: Courses) -> Finding:
+    """Test whether Bingham snow spreads wider than that of the combined model."""
+    widths = []
+    for model in (BINGHAM, COMBINED):
+        course = data.slope(1, model)
+        widths.append(course.width(course.snow[-1]))
+    if widths[0] == 0:
+        raise LookupError("slope 1 in space: here it is a section")
+    words = f"{widths[0]:.1f} m, combined model {widths[1]:.1f} m"
+    return between(widths[0] / widths[1], 1.0, 1.05, words)
+
+
+def lost(what: str) -> Finding:
+    """Return an undecided finding: the reference data are unavailable."""
+    return Finding(UNDECIDED, f"{what} are not at hand")
+
+
+WOODEN_CLAIMS: list[Claim[Courses]] = [
+    Claim(
+        "experiments, fig. 14",
+        "Without an obstacle the snow is deposited at the foot of the slope.",
+        "more than 80 % is there at 4 s; contradicted below 50 %",
+        reaches_the_foot,
+    ),
+    Claim(
+        "experiments, fig. 15",
+        "Stakes 0.02 m apart hold snow back.",
+        f"at 4 s at least {MUCH:.0%} more lie above them than without; contradicted below "
+        f"{HARDLY:.0%}",
+        lambda data: holds(NARROW, data),
+    ),
+    Claim(
+        "experiments, fig. 15",
+        "In the simulation snow flows through the gaps gradually.",
+        "more than 0.5 % of the snow passes from 3 to 4 s; contradicted below 0.1 %",
+        lambda data: leaks(NARROW, data),
+    ),
+    Claim(
+        "experiments, fig. 16",
+        "Stakes 0.04 m apart keep almost no snow.",
+        f"at 4 s less than {HARDLY:.0%} more lie above them than without; contradicted above "
+        f"{MUCH:.0%}",
+        lambda data: keeps_none(WIDE, data),
+    ),
+    Claim(
+        "experiments, fig. 17",
+        "The notched board holds snow back.",
+        f"at 4 s at least {MUCH:.0%} more lie above it than without; contradicted below "
+        f"{HARDLY:.0%}",
+        lambda data: holds(BOARD, data),
+    ),
+    Claim(
+        "experiments, fig. 17",
+        "It leaks at its edges.",
+        "more than half of what passes from 3 to 4 s passes there; contradicted below 30 %",
+        leaks_at_edges,
+    ),
+    Claim(
+        "experiments, fig. 13",
+        "After 1 s simulation and experiment differ, after 2 s they agree.",
+        "needs the photographs",
+        lambda data: lost("the photographs"),
+    ),
+]
+SLOPE_CLAIMS: list[Claim[Courses]] = [
+    Claim(
+        "slope 1, fig. 10",
+        "With the Bingham model alone the snow never stops.",
+        f"on both slopes its mean speed is above {5 * REST:g} m/s at the end; contradicted below "
+        f"{REST:g} m/s",
+        never_stops,
+    ),
+    Claim(
+        "slope 1, fig. 10",
+        "With the combined model and deposition it stops.",
+        f"on both slopes its mean speed is below {REST:g} m/s at the end; contradicted above "
+        f"{5 * REST:g} m/s",
+        stops,
+    ),
+    Claim(
+        "slope 1, fig. 9",
+        "With the Bingham model alone the snow spreads too wide.",
+        "at the end 98 % of it lie more than 5 % wider than with the combined model; contradicted "
+        "if not wider",
+        spreads_wider,
+    ),
+    Claim(
+        "slope 2, fig. 11",
+        "Speed and path agree with the photographs.",
+        "needs the photographs",
+        lambda data: lost("the photographs and the slope's shape"),
+    ),
+]
+CLAIMS = (*WOODEN_CLAIMS, *SLOPE_CLAIMS)

@@ -1,0 +1,98 @@
+"""What is measured of the snow: its front, its deposit, and the share that passes an obstacle."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from reproductions.saito2012.cases import Case
+from reproductions.saito2012.runs import Snow
+from snowshed.base.arrays import Floats
+
+MOVING = 0
+#: The front is where so much of the moving snow has passed; single grains run ahead of it.
+FRONT_QUANTILE = 0.99
+#: Snow so far above an obstacle, m, and slower than this, m/s, is held by it.
+HELD_LENGTH, HELD_SPEED = 0.8, 0.3
+#: Snow has come to rest if all of it moves so slowly on average, m/s.
+REST = 0.02
+
+
+@dataclass(frozen=True)
+class Course:
+    """A case over time.
+
+    Attributes
+    ----------
+    case, snow
+        What it is of; the snow at each time.
+    released
+        Which particles are of the avalanche, not of the erodible layer.
+    """
+
+    case: Case
+    snow: Sequence[Snow]
+    released: Floats
+
+    @classmethod
+    def of(cls, case: Case, snow: Sequence[Snow]) -> Course:
+        """Return the course of what is kept of a case; it must hold the first time."""
+        return cls(case, snow, snow[0].kinds == MOVING)
+
+    @property
+    def times(self) -> Floats:
+        """Times in s."""
+        return np.array([one.time for one in self.snow])
+
+    def at(self, time: float) -> Snow:
+        """Return the snow at a time; raises LookupError if it is not kept."""
+        for one in self.snow:
+            if abs(one.time - time) < 0.5 * self.case.every:
+                return one
+        raise LookupError(f"{self.case.name} at {time:g} s")
+
+    def distances(self, snow: Snow) -> Floats:
+        """Return how far down its path the released snow is, m."""
+        return self.case.path.along(snow.positions[self.released].astype(float))
+
+    def front(self, snow: Snow) -> float:
+        """Return the position of the front along the path, m."""
+        return float(np.quantile(self.distances(snow), FRONT_QUANTILE))
+
+    def fronts(self) -> Floats:
+        """Return the position of the front at all times, m."""
+        return np.array([self.front(one) for one in self.snow])
+
+    def speed(self, snow: Snow) -> float:
+        """Return the mean speed of the released snow, m/s."""
+        return float(np.linalg.norm(snow.velocities[self.released], axis=1).mean())
+
+    def width(self, snow: Snow) -> float:
+        """Return the width that holds 98 % of the released snow, m."""
+        across = snow.positions[self.released][:, 1]
+        return float(np.quantile(across, 0.99) - np.quantile(across, 0.01))
+
+    def held(self, snow: Snow) -> float:
+        """Return the share of the snow that lies slow above the obstacle."""
+        assert self.case.obstacle is not None
+        distances = self.distances(snow)
+        near = (distances < self.case.obstacle) & (distances > self.case.obstacle - HELD_LENGTH)
+        slow = np.linalg.norm(snow.velocities[self.released], axis=1) < HELD_SPEED
+        return float((near & slow).mean())
+
+    def passed(self, snow: Snow) -> float:
+        """Return the share of the snow below the obstacle."""
+        assert self.case.obstacle is not None
+        return float((self.distances(snow) > self.case.obstacle).mean())
+
+    def passed_at_edges(self, first: Snow, second: Snow, half_width: float) -> float:
+        """Return of what passes the obstacle from one time to another, the share at its edges."""
+        assert self.case.obstacle is not None
+        before, after = self.distances(first), self.distances(second)
+        through = (before <= self.case.obstacle) & (after > self.case.obstacle)
+        if not through.any():
+            raise LookupError("snow that passes")
+        across = np.abs(first.positions[self.released][through][:, 1])
+        return float((across > half_width).mean())

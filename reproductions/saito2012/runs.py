@@ -1,0 +1,143 @@
+"""Computing a case: what is kept of the snow, and where.
+
+A case has a folder with one file for each time, and a checkpoint from which it goes on.
+"""
+
+from __future__ import annotations
+
+import io
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Optional
+
+import numpy as np
+
+from reproductions.common.stage import StageReporter, State
+from reproductions.saito2012.cases import Case
+from snowshed._core import SimulationError
+from snowshed.base.arrays import Floats, Integers
+from snowshed.io.atomic import replacing, write_text
+from snowshed.running.simulation import Simulation
+from snowshed.scene.scene import SceneLike
+
+CHECKPOINT, FAILURE = "checkpoint.bin", "failed.txt"
+#: Particle steps a second, and the usual speed of snow over that of a fall, by which times are
+#: guessed.
+SPEED, USUAL = 1e5, 0.3
+TIMES = 64  # parts of the time to the next kept one, between which progress is told
+
+
+@dataclass(frozen=True)
+class Snow:
+    """The snow at a time in s: positions in m, velocities in m/s, kinds (1 is erodible)."""
+
+    time: float
+    positions: Floats
+    velocities: Floats
+    kinds: Integers
+
+
+class CaseStage:
+    """The stage of a case.
+
+    Parameters
+    ----------
+    case, folder
+        What is computed, and the folder of all cases.
+    """
+
+    def __init__(self, case: Case, folder: Path) -> None:
+        self.case = case
+        self.folder = folder / case.file
+
+    @property
+    def name(self) -> str:
+        """The name by which ``--stage`` asks for it."""
+        return self.case.file
+
+    def state(self) -> State:
+        """Return how far it is."""
+        reason = self._reason()
+        done, count = len(self._kept()), len(self.case.times)
+        return State(done, count - done if reason else 0, count, "times", reason)
+
+    def failure(self) -> str:
+        """Return why it failed, or nothing."""
+        reason = self._reason()
+        return f"{self.case.name}: {reason}" if reason else ""
+
+    def expected_s(self, jobs: Optional[int]) -> float:
+        """Return about how long what is left takes, s."""
+        del jobs  # a case is one run
+        left = len(self.case.times) - len(self._kept())
+        if self.failure() or not left:
+            return 0.0
+        simulation = self._simulation(0)
+        spacing = float(getattr(self.case.scene.numerics, "spacing", 0) or 0.01)
+        speed = USUAL * math.sqrt(2 * 9.81 * self.case.path.corners[0][1])
+        steps = left * self.case.every * speed / (0.2 * spacing)
+        return steps * simulation.particle_count / SPEED
+
+    def snow(self) -> list[Snow]:
+        """Return the snow at all times that are kept."""
+        snow = []
+        for file in self._kept():
+            with np.load(file, allow_pickle=False) as data:
+                snow.append(
+                    Snow(float(data["time"]), data["positions"], data["velocities"], data["kinds"])
+                )
+        return snow
+
+    def compute(self, jobs: Optional[int], report: StageReporter) -> None:
+        """Compute what is left; a case that fails says why in its folder."""
+        del jobs
+        state = self.state()
+        if state.finished:
+            return
+        self.folder.mkdir(parents=True, exist_ok=True)
+        try:
+            self._go_on(state.done, report)
+        except SimulationError as error:
+            write_text(self.folder / FAILURE, f"{error}\n")
+
+    def _go_on(self, done: int, report: StageReporter) -> None:
+        simulation = self._simulation(done)
+        times = self.case.times
+        for number in range(done, len(times)):
+            start = simulation.time
+            for part in range(1, TIMES + 1):
+                simulation.run(until=start + (times[number] - start) * part / TIMES)
+                words = f"{self.case.name}: {simulation.time:.2f} of {times[-1]:g} s"
+                report(min(1.0, simulation.time / times[-1]), words)
+            self._keep(simulation, number)
+
+    def _simulation(self, done: int) -> Simulation:
+        file = self.folder / CHECKPOINT
+        if done and file.is_file():
+            return Simulation.load(file)
+        scene: SceneLike = self.case.scene
+        simulation = Simulation(scene)
+        simulation.begin_event()
+        return simulation
+
+    def _keep(self, simulation: Simulation, number: int) -> None:
+        file = io.BytesIO()
+        np.savez_compressed(
+            file,
+            time=simulation.time,
+            positions=simulation.positions().astype(np.float32),
+            velocities=simulation.velocities().astype(np.float32),
+            kinds=simulation.fields["particle_kind"].by_id().astype(np.uint8),
+        )
+        simulation.save(self.folder / CHECKPOINT)
+        with replacing(self.folder / f"{number:03d}.npz") as written:
+            written.write_bytes(file.getvalue())
+
+    def _reason(self) -> str:
+        """Return the error that ended it, or nothing."""
+        file = self.folder / FAILURE
+        return file.read_text(encoding="utf-8").strip() if file.is_file() else ""
+
+    def _kept(self) -> list[Path]:
+        return sorted(self.folder.glob("[0-9][0-9][0-9].npz"))

@@ -1,0 +1,45 @@
+"""Notes are warnings of one class, which scripts filter and results record."""
+
+import warnings
+
+import click
+import pytest
+
+from snowshed import SnowshedNote
+from snowshed.base.notes import recorded, tell
+from snowshed.cli.common_options import quiet_option
+from snowshed.cli.main import main
+
+
+@click.command()
+@quiet_option
+def reading(quiet):
+    tell("feet became metres")
+
+
+def test_the_command_line_prints_a_note_unless_quiet(capsys):
+    assert main([], command=reading) == 0
+    assert capsys.readouterr().err == "note: feet became metres\n"
+    assert main(["-q"], command=reading) == 0
+    assert capsys.readouterr().err == ""
+    assert main([], command=reading) == 0
+    assert capsys.readouterr().err == "note: feet became metres\n"
+
+
+def test_recorded_notes_are_said_again_and_stay_errors_where_these_are_wanted():
+    with pytest.warns(SnowshedNote, match="feet became metres"), recorded() as notes:
+        tell("feet became metres")
+        tell("feet became metres")
+    assert notes == ["feet became metres"]
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", SnowshedNote)
+        with pytest.raises(SnowshedNote), recorded():
+            tell("feet became metres")
+
+
+def test_notes_before_an_error_are_recorded():
+    raises = pytest.raises(ValueError, match="too far")
+    with pytest.warns(SnowshedNote), raises, recorded() as notes:
+        tell("feet became metres")
+        raise ValueError("too far")
+    assert notes == ["feet became metres"]

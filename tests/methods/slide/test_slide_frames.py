@@ -1,0 +1,86 @@
+"""A slide over time, from its film."""
+
+import numpy as np
+import pytest
+
+from snowshed import InputError
+from snowshed.io.film import Film
+from snowshed.methods.slide.frames import Frame, slide_frames
+from snowshed.methods.slide.maps import slide_maps
+from snowshed.running.run import run
+from snowshed.scene import Scene
+from snowshed.scene.builders import example_slide
+from snowshed.scene.terrain_grid import slide_terrain
+
+
+def test_a_frame_gives_back_what_it_saw():
+    frame = Frame(0.0, np.full((3, 3), 9.0, dtype=np.float32), 5, 2)
+    seen = frame.window(slice(4, 9), slice(0, 6))
+    expected = np.zeros((5, 6))
+    expected[1:4, 2:5] = 9.0
+    assert (seen == expected).all()
+    assert (frame.window(slice(6, 7), slice(3, 4)) == 9.0).all()
+    assert not frame.window(slice(10, 15), slice(0, 6)).any()
+
+
+@pytest.fixture(scope="module")
+def slide(tmp_path_factory) -> tuple[Scene, Film]:
+    folder = tmp_path_factory.mktemp("slide")
+    scene = example_slide(folder).set("events.max_time", 3.0)
+    run(scene, folder / "out", pictures=False)
+    return scene, Film(folder / "out/film.bin")
+
+
+def test_the_last_frame_is_the_snow_at_the_end(slide):
+    """Where particles hand on snow, and there alone, nodes have a thickness, of about as much."""
+    scene, film = slide
+    frames = slide_frames(film, slide_terrain(scene))
+    import snowshed._core as core
+
+    ready = scene.resolve()
+    simulation = core.Simulation(ready.json, ready.base_dir)
+    simulation.begin_event()
+    while simulation.time_s < frames[-1].time - 1e-9:
+        simulation.step(1)
+    truth = slide_maps(simulation).thickness
+    seen = frames[-1].window(*(slice(0, size) for size in truth.shape))
+    # Positions are rounded, so that a particle at the very border of a cell may change it.
+    assert ((seen > 0) != (truth > 0)).sum() <= 2
+    inside = truth > 0.5 * truth.max()
+    assert np.abs(seen - truth)[inside].mean() < 0.1 * truth[inside].mean()
+
+
+def test_a_film_of_some_particles_has_no_holes(slide):
+    scene, film = slide
+    ground = slide_terrain(scene)
+    whole = slide_frames(film, ground)[0]
+
+    class Thinned(Film):
+        def __iter__(self):
+            for one in super().__iter__():
+                kept = one.ids % 9 == 0
+                yield type(one)(
+                    one.time, one.event, one.ids[kept], one.events[kept], one.materials[kept],
+                    one.radii, one.positions[kept], one.codes[kept],
+                )  # fmt: skip
+
+    thinned = Thinned(film.path)
+    thinned.share = 1 / 9
+    frames = slide_frames(thinned, ground, most=2)
+    assert len(frames) == 2
+    area = tuple(slice(0, size) for size in ground.heights.shape)
+    snow, seen = (one.window(*area) > 0 for one in (whole, frames[0]))
+    assert (snow & ~seen).sum() < 0.1 * snow.sum()
+    middle = np.argwhere(snow).mean(axis=0) - np.argwhere(seen).mean(axis=0)
+    assert np.abs(middle).max() < 1.0  # cell
+
+
+def test_the_film_of_another_method_is_refused(tmp_path):
+    from snowshed import run_events
+
+    tiny = Scene.preset("lab-50").update({"dimension": 2, "numerics.dx": 0.02})
+    tiny = tiny.update({"events": {"count": 1, "max_time": 0.1}})
+    run_events(tiny, tmp_path, pictures=False)
+    ground = type("Ground", (), {"cell": 1.0, "heights": np.zeros((2, 2))})()
+    with pytest.raises(InputError, match="holds no thickness; it is not the film of a slide"):
+        slide_frames(Film(tmp_path / "film.bin"), ground)

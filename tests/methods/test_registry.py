@@ -1,0 +1,221 @@
+"""A method is a folder and a name in the registry; the rest of the package knows none by name."""
+
+import ast
+from pathlib import Path
+
+import pytest
+from conftest import tiny_mps, tiny_scene
+from grain_files import VOXEL, write_labels
+from paths import ROOT
+
+import snowshed
+from snowshed import InputError, Results, Simulation
+from snowshed.cli.main import main
+from snowshed.methods.grains.contacts import grain_contacts
+from snowshed.methods.grains.curve import loading_curve
+from snowshed.methods.method import Method, imported
+from snowshed.methods.mps.settings import MpsSettings
+from snowshed.methods.registry import FOLDERS, METHODS
+from snowshed.methods.slide.maps import slide_maps
+from snowshed.plot.stack_figures import stack_figure
+from snowshed.running.method_run import MethodRun
+from snowshed.scene.builders import example_slide
+from snowshed.scene.builders.grains import grains_scene
+from snowshed.scene.loading import LoadingStage
+
+PACKAGE = ROOT / "python" / "snowshed"
+
+PRESSED = LoadingStage(kind="compress", strain=2e-3, speed=0.05)
+
+#: Modules and folders that name a method, and why; each module names one, unless it names all.
+NAME_METHODS = {
+    "__init__.py": "exports the settings of all methods",
+    "scene/__init__.py": "exports the settings of all methods",
+    "methods/registry.py": "the registry",
+    "methods/summary.py": "the number of grains was a figure called `grains`",
+    "cli/main.py": "commands have names, and two are called as their method is",
+    "cli/": "a command may run scenes of one method, and the self-test has a check of each",
+    "scene/builders/": "a builder makes scenes of one method",
+    "plot/slide_figure.py": "draws maps, which slides alone have",
+    "plot/slide_page.py": "shows maps, which slides alone have",
+    "plot/loading_figure.py": "draws curves, which loading tests alone have",
+    "plot/force_chains.py": "draws contacts of grains",
+    "running/slide.py": "runs a slide from files in one call",
+    "results/avaframe.py": "writes the files of another program for slides",
+    "analysis/": "an analysis may ask about the results of one method",
+}
+NAME_ALL = {"__init__.py", "scene/__init__.py", "methods/registry.py", "cli/main.py"}
+#: Beneath folders that may name methods, what serves all of them.
+SERVE_ALL = {"cli/run_scene.py", "cli/run_output.py"}
+
+
+def modules():
+    """Yield the modules outside the folders of methods: name from the package's root, and tree."""
+    for path in sorted(PACKAGE.rglob("*.py")):
+        name = path.relative_to(PACKAGE).as_posix()
+        if not name.startswith(tuple(f"methods/{folder}/" for folder in FOLDERS)):
+            yield name, ast.parse(path.read_text(encoding="utf-8"))
+
+
+def docstrings(tree):
+    """Return the nodes of docstrings, whose examples may name methods."""
+    holders = (ast.Module, ast.ClassDef, ast.FunctionDef)
+    bodies = [node.body for node in ast.walk(tree) if isinstance(node, holders)]
+    return {body[0].value for body in bodies if body and isinstance(body[0], ast.Expr)}
+
+
+def named_methods(tree):
+    """Return the methods that a module names, as texts or by imports from their folders."""
+    examples = docstrings(tree)
+    texts = [
+        str(node.value)
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Constant) and node not in examples
+    ]
+    texts += [str(node.module) for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)]
+    found = {text for text in texts if text in METHODS}
+    inside = [text.split(".")[2] for text in texts if text.startswith("snowshed.methods.")]
+    return found | {name.partition(":")[0] for name in inside} & set(FOLDERS)
+
+
+def test_no_module_knows_a_method_by_name():
+    wrong = {}
+    for name, tree in modules():
+        allowed = name in NAME_METHODS or any(
+            name.startswith(place) for place in NAME_METHODS if place.endswith("/")
+        )
+        most = len(METHODS) if name in NAME_ALL else int(allowed and name not in SERVE_ALL)
+        if len(found := named_methods(tree)) > most:
+            wrong[name] = found
+    assert wrong == {}
+
+
+def test_every_folder_of_a_method_is_in_the_registry():
+    inside = {
+        path.name for path in (PACKAGE / "methods").iterdir() if (path / "settings.py").exists()
+    }
+    assert inside == set(FOLDERS) == set(METHODS)
+
+
+def test_the_parts_of_every_method_are_there():
+    for method in METHODS.values():
+        assert issubclass(method.run_class(), MethodRun), method.name
+        for result, reader in method.results.items():
+            assert callable(imported(reader)), (method.name, result)
+            assert hasattr(Results, result), result
+
+
+def test_nobody_imports_a_plug_in():
+    """It stands in a method's folder and imports what lies above; the registry names it."""
+    wrong = [
+        f"{path.relative_to(PACKAGE)}, line {node.lineno}"
+        for path in PACKAGE.rglob("*.py")
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, (ast.Import, ast.ImportFrom))
+        for name in [getattr(node, "module", None), *(alias.name for alias in node.names)]
+        if name and name.startswith("snowshed.methods.") and name.split(".")[3:4] == ["run"]
+    ]
+    assert wrong == []
+
+
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory):
+    """A run of every method, by its name."""
+    folder = tmp_path_factory.mktemp("runs")
+    scenes = {
+        "mpm": tiny_scene(**{"events.count": 1}),
+        "mps": tiny_mps(**{"events": {"count": 1, "max_time": 0.05}}),
+        "slide": example_slide(folder).set("events.max_time", 0.5),
+        "grains": grains_scene(write_labels(folder), VOXEL, [PRESSED]),
+    }
+    return {
+        name: snowshed.run(scene, folder / name, pictures=False) for name, scene in scenes.items()
+    }
+
+
+def test_results_have_what_the_method_has_and_say_so_otherwise(runs):
+    assert set(runs) == set(METHODS)
+    every = {result for method in METHODS.values() for result in method.results}
+    for name, results in runs.items():
+        for result in every:
+            if result in METHODS[name].results:
+                assert getattr(results, result) is not None
+                continue
+            has = ", ".join(METHODS[name].results)
+            with pytest.raises(InputError, match=f'method "{name}" has no {result}; it has {has}'):
+                getattr(results, result)
+        if "stack" not in METHODS[name].results:
+            with pytest.raises(InputError, match=f'method "{name}" has no events; it has summary'):
+                _ = results.events
+
+
+def test_results_are_what_the_run_measured(runs):
+    stack, last = runs["mpm"].stack, runs["mpm"].events.iloc[-1]
+    assert stack.height == pytest.approx(last.height_m, rel=1e-5)
+    maps, summary = runs["slide"].maps, runs["slide"].summary
+    assert float(maps.peak_speed.max()) == pytest.approx(summary.peak_speed_m_s, rel=1e-5)
+    assert maps.peak_speed.attrs["units"] == "m/s" and maps.x.attrs["units"] == "m"
+    curve = runs["grains"].curve
+    assert curve.top_stress_pa.iloc[-1] != 0.0 and curve.attrs["units"]["top_stress_pa"] == "Pa"
+    assert runs["grains"].forces.attrs["units"]["force_x_n"] == "N"
+
+
+def test_functions_of_a_method_take_the_simulation_that_users_have(tmp_path):
+    slide = Simulation(example_slide(tmp_path))
+    slide.begin_event()
+    assert slide_maps(slide).thickness.max() > 0.0
+    test = Simulation(grains_scene(write_labels(tmp_path), VOXEL, [PRESSED]))
+    test.begin_event()
+    assert len(loading_curve(test)) == 1 and len(grain_contacts(test).grains) == 2
+    stack = Simulation(tiny_scene())
+    stack.run()
+    title = stack_figure(stack, stack.measure(), stack.scene.data).get_suptitle()
+    assert title.startswith("Stack after event 1")
+
+
+def test_snow_that_cannot_age_is_refused_before_anything_is_written(tmp_path):
+    ageing = imported("snowshed.running.ageing:Ageing")(settling="vionnet-2012")
+    for name in set(METHODS) - {"mpm"}:
+        assert not METHODS[name].ages
+    with pytest.raises(InputError, match='the method "mps" does not age'):
+        snowshed.run(tiny_mps(), tmp_path / "out", ageing=ageing)
+    assert not (tmp_path / "out").exists()
+
+
+class BlockRun(MethodRun):
+    """The stand-in: it writes how far the snow has come to lie."""
+
+    UNIT = "blocks"
+
+    def finish(self):
+        """Write the largest x of the particles."""
+        place = self.simulation.positions()[:, 0].max()
+        (self.folder / "block.txt").write_text(f"{place:.6f}")
+
+
+def read_place(folder: Path) -> float:
+    """Read what `BlockRun` wrote."""
+    return float((folder / "block.txt").read_text())
+
+
+def test_an_entry_is_all_that_python_needs_of_a_method(tmp_path, monkeypatch, capsys):
+    """A stand-in takes the place of a method that the core has: one entry, and one class."""
+    entry = Method(
+        name="mps",
+        title="A block",
+        settings=MpsSettings,
+        run=f"{__name__}:BlockRun",
+        results={"place": f"{__name__}:read_place"},
+    )
+    monkeypatch.setitem(METHODS, "mps", entry)
+    scene = tiny_mps(**{"events": {"count": 2, "max_time": 0.05}})
+    told = []
+    results = snowshed.run(scene, tmp_path / "out", progress=told.append)
+    assert told[-1].description.startswith("2/2 blocks")
+    assert results.result("place") > 0.1
+    assert [row["event"] for row in BlockRun.rows(tmp_path / "out")] == [1, 2]
+    with pytest.raises(InputError, match='method "mps" has no maps; it has place'):
+        _ = results.maps
+    assert main(["run", str(tmp_path / "out/scene.json"), "-o", str(tmp_path / "two")]) == 0
+    assert read_place(tmp_path / "two") == results.result("place")
+    assert str(tmp_path / "two") in capsys.readouterr().out

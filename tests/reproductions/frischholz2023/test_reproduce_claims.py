@@ -1,0 +1,424 @@
+"""Every claim on made-up tables: confirmed, contradicted, undecided."""
+
+import itertools
+import math
+
+import numpy as np
+import pandas as pd
+import pytest
+from reproductions.common.hypothesis_tests import (
+    CONFIRMED,
+    CONTRADICTED,
+    UNDECIDED,
+    Claim,
+    Estimate,
+    Finding,
+    all_of,
+    judge,
+    mean_of,
+    near,
+    negative,
+    positive,
+    small,
+)
+from reproductions.frischholz2023.claims import (
+    calibration,
+    fixation,
+    geometry,
+    lab,
+    regression,
+    s_index,
+)
+
+ORDER = (CONFIRMED, CONTRADICTED, UNDECIDED)
+
+
+def verdicts(claim, *data):
+    return tuple(claim(one).verdict for one in data)
+
+
+def test_two_deviations_decide():
+    values = [Estimate(2.1, 1.0), Estimate(-2.1, 1.0), Estimate(1.9, 1.0)]
+    assert tuple(positive(one, "").verdict for one in values) == ORDER
+    mirrored = [Estimate(-one.value, one.noise) for one in values]
+    assert tuple(negative(one, "").verdict for one in mirrored) == ORDER
+    assert positive(Estimate(1.0, math.nan), "").verdict == UNDECIDED
+    assert positive(Estimate(math.nan, 0.1), "").verdict == UNDECIDED
+
+
+def test_hardly_and_about_have_bounds():
+    values = [Estimate(-0.2, 0.1), Estimate(1.0, 0.1), Estimate(0.6, 0.1)]
+    assert tuple(small(one, 0.5, "").verdict for one in values) == ORDER
+    values = [Estimate(2.1, 0.1), Estimate(3.0, 0.1), Estimate(2.6, 0.1)]
+    assert tuple(near(one, 2.0, 0.5, "").verdict for one in values) == ORDER
+
+
+def test_claims_with_parts_hold_if_all_parts_do():
+    yes, no, open_ = (Finding(verdict, verdict[:2]) for verdict in ORDER)
+    assert all_of([yes, yes]).verdict == CONFIRMED
+    assert all_of([yes, open_]).verdict == UNDECIDED
+    assert all_of([yes, open_, no]) == Finding(CONTRADICTED, "co; un; co")
+
+
+def test_noise_of_a_mean():
+    mean = mean_of([Estimate(1.0, 3.0), Estimate(3.0, 4.0)])
+    assert (mean.value, mean.noise) == (2.0, 2.5)
+
+
+def test_missing_data_leave_a_claim_open():
+    def lacking(data):
+        raise LookupError("it")
+
+    (found,) = judge([Claim("1", "x", "y", lacking)], None)
+    assert found.finding.verdict == UNDECIDED and "it" in found.finding.sentence
+
+
+# --- laboratory
+
+
+def lab_rows(*, noise=0.0005, tilts=(40, 50), seeds=(1, 2, 3), **changes):
+    """Stacks as the thesis describes them; `changes` are functions of event and tilt."""
+    shape = {
+        "height": lambda event, tilt: 0.05 * event**0.7,
+        "head": lambda event, tilt: 0.2 - 0.02 * event + 0.003 * (tilt - 40),
+        "tail": lambda event, tilt: 0.4 + (0.05 if event > 1 else 0.02) + 0.003 * (tilt - 40),
+        **changes,
+    }
+    generator = np.random.default_rng(1)
+    rows = []
+    for tilt, seed, event in itertools.product(tilts, seeds, range(1, 6)):
+        row = {name: one(event, tilt) + noise * generator.normal() for name, one in shape.items()}
+        rows.append({"tilt": tilt, "seed": seed, "event": event, **row})
+    table = pd.DataFrame(rows)
+    return table.assign(length=table["tail"] - table["head"])
+
+
+LAB = {
+    lab.head_walks_back: {"head": lambda event, tilt: 0.02 * event},
+    lab.tail_stays: {"tail": lambda event, tilt: 0.4 + 0.1 * event},
+    lab.head_makes_the_length: {"tail": lambda event, tilt: 0.4 + 0.1 * event},
+    lab.length_grows_most_at_second: {"tail": lambda event, tilt: 0.4 + 0.02 * event**2},
+    lab.height_grows_always: {"height": lambda event, tilt: 0.1 - 0.01 * event},
+    lab.height_slope_falls: {"height": lambda event, tilt: 0.02 * event**1.5},
+    lab.steeper_throws_further: {
+        "head": lambda event, tilt: 0.2 - 0.01 * (tilt - 40),
+        "tail": lambda event, tilt: 0.4 - 0.01 * (tilt - 40),
+    },
+    lab.mean_height: {"height": lambda event, tilt: 0.2 * event},
+    lab.mean_length: {"head": lambda event, tilt: -1.0},
+}
+
+
+@pytest.mark.parametrize("claim", LAB, ids=lambda one: one.__name__)
+def test_laboratory(claim):
+    as_told, otherwise, noisy = lab_rows(), lab_rows(**LAB[claim]), lab_rows(noise=0.3)
+    assert verdicts(claim, as_told, otherwise, noisy) == ORDER
+    assert claim(lab_rows(seeds=(1,))).verdict == UNDECIDED  # noise is not known
+
+
+def test_claims_about_several_tilts_need_them():
+    (found,) = judge([one for one in lab.GROWTH if "Steeper" in one.text], lab_rows(tilts=(40,)))
+    assert found.finding.verdict == UNDECIDED
+
+
+def test_ratio_of_dimensions():
+    two = lab_rows()
+    three = [lab_rows(height=lambda event, tilt, f=f: f * 0.05 * event**0.7) for f in (0.66, 0.95)]
+    noisy = lab_rows(noise=0.2)
+    data = [(three[0], two), (three[1], two), (noisy, two)]
+    assert verdicts(lab.ratio_of_dimensions, *data) == ORDER
+
+
+def test_noise_of_few_seedings_is_widened():
+    """Two means of two numbers that differ by chance: five in a hundred are decided."""
+    generator = np.random.default_rng(3)
+    rows = pd.DataFrame(itertools.product((40, 50), (1, 2)), columns=["tilt", "seed"])
+    rows = rows.assign(event=1)
+    decided = 0
+    for _ in range(400):
+        table = rows.assign(height=generator.normal(size=4))
+        mean = lab.mean_over_runs(table, lambda run: float(run["height"].iloc[0]))
+        decided += positive(mean, "").verdict != UNDECIDED
+    assert 8 <= decided <= 32  # of 18 expected; 74 with the plain standard error
+
+
+def test_slabs_stop_at_30_degrees():
+    rows = pd.DataFrame({"friction": [0.3, 0.6], "stayed": [0.0, 1.0]})
+    data = [rows, rows.assign(stayed=0.0), rows.assign(stayed=np.nan)]
+    expected = (UNDECIDED, CONTRADICTED, UNDECIDED)
+    assert verdicts(lab.slabs_stop_at_30_degrees, *data) == expected
+
+
+# --- the index S
+
+INDICES = {
+    ("height", s_index.SLOPE): 0.15,
+    ("height", s_index.PRESSURE): -0.1,
+    ("height", s_index.COHESION): 0.4,
+    ("height", s_index.HARDENING): 0.0,
+    ("height", s_index.MODULUS): 0.01,
+    ("length", s_index.SLOPE): -0.1,
+    ("length", s_index.PRESSURE): 0.02,
+    ("length", s_index.COHESION): -0.1,
+    ("length", s_index.HARDENING): 0.0,
+    ("length", s_index.MODULUS): 0.01,
+}
+
+
+def index_table(factor=1.0, error=0.01, **changes):
+    """S as the thesis describes it; the first event has half of it."""
+    values = {**{key: factor * s for key, s in INDICES.items()}, **changes.get("s", {})}
+    rows = [
+        {
+            "parameter": path,
+            "target": target,
+            "event": event,
+            "s": s * part,
+            "standard_error": error,
+        }
+        for (target, path), s in values.items()
+        for event, part in ((1, changes.get("first", 0.5)), (3, 1.0))
+    ]
+    return pd.DataFrame(rows)
+
+
+@pytest.mark.parametrize("claim", s_index.S_INDEX, ids=lambda one: one.text)
+def test_index(claim):
+    swapped = {
+        (("length" if target == "height" else "height"), path): s
+        for (target, path), s in INDICES.items()
+    }
+    large = {(target, s_index.MODULUS): 1.0 for target in ("height", "length")}
+    otherwise = [
+        index_table(-1.0),
+        index_table(s=swapped),
+        index_table(s=large),
+        index_table(first=2.0),
+    ]
+    assert claim.judge(index_table()).verdict == CONFIRMED
+    assert CONTRADICTED in verdicts(claim.judge, *otherwise)
+    assert claim.judge(index_table(error=1.0)).verdict == UNDECIDED
+    assert judge([claim], index_table().iloc[:0])[0].finding.verdict == UNDECIDED
+
+
+# --- fixation
+
+EFFECTS = {
+    s_index.SLOPE: (0.01, -0.02),
+    s_index.PRESSURE: (0.01, 0.02),
+    s_index.COHESION: (0.02, -0.02),
+    s_index.HARDENING: (-0.001, -0.003),
+    s_index.MODULUS: (0.0, 0.001),
+}
+
+
+def fixation_table(
+    sign=1.0, noise=0.0002, *, growth=0.03, bend=1.0, spread=1.0, hardening=None, scatter=0.0015
+):
+    """Means over three events that grow by `growth`; effects as the thesis describes them."""
+    rows = []
+    for path, effects in EFFECTS.items():
+        yielding = path in fixation.YIELD
+        strong = hardening if hardening is not None and not yielding else None
+        for (target, effect), (step, value), event in itertools.product(
+            zip(("height", "length"), effects), enumerate((0.1, 0.2, 0.3)), (1, 2, 3)
+        ):
+            added = event**0.5 if bend > 0 else event**2.0
+            change = (sign * effect if strong is None else strong) * step / 2
+            rows.append(
+                {
+                    "group": "yield" if yielding else "hardening",
+                    "parameter": path,
+                    "value": value,
+                    "event": event,
+                    "target": target,
+                    "points": 9 if yielding else 3,
+                    "mean_m": 0.1 + growth * added + change,
+                    "deviation_m": scatter * (1 + 9 * step) ** spread * event ** (0.3 * bend),
+                    "noise_m": noise,
+                }
+            )
+    return pd.DataFrame(rows)
+
+
+@pytest.mark.parametrize("claim", fixation.FIXATION, ids=lambda one: one.text)
+def test_fixation(claim):
+    assert claim.judge(fixation_table(growth=0.1)).verdict == CONFIRMED
+    otherwise = [
+        fixation_table(-1.0),
+        fixation_table(growth=0.001),
+        fixation_table(bend=-1.0),
+        fixation_table(spread=-1.0),
+        fixation_table(scatter=0.2),
+        fixation_table(hardening=0.2),
+    ]
+    assert CONTRADICTED in verdicts(claim.judge, *otherwise)
+    undecided = [fixation_table(noise=1.0), fixation_table(spread=0.0)]
+    assert UNDECIDED in verdicts(claim.judge, *undecided)
+
+
+# --- geometry
+
+
+def panels(of_length=np.log, *, height=-0.1, bend=0.0, tilt=-0.02, noise=0.002, **changes):
+    """Stacks whose ratio is a function of the panel."""
+    generator = np.random.default_rng(2)
+    sign, steeper = changes.get("sign", 1.0), changes.get("steeper", 0.0)
+    rows = []
+    for event, h, length, angle in itertools.product(
+        (1, 2), (1.0, 2.0, 3.0, 4.0), (0.5, 1.0, 2.0, 4.0, 8.0), (40.0, 55.0, 70.0)
+    ):
+        fall = height * (1 + steeper * (event - 1)) / event
+        shape = sign * 0.2 * of_length(length) + bend * (h - 2.5) ** 2
+        ratio = 0.1 * event * (1.2 + shape + fall * (h - 2.5) + tilt * (angle - 55) / 15)
+        ratio *= 1 + noise * generator.normal()
+        stack_length = 2.0 + sign * 0.6 * h + sign * 0.01 * (angle - 55) / 15
+        stack_height = ratio * stack_length
+        rows.append((event, h, length, angle, ratio, stack_height, stack_length))
+    names = [*geometry.INPUTS, "ratio", "height", "length"]
+    table = pd.DataFrame(rows, columns=names)
+    table["length"] *= 1 + noise * generator.normal(size=len(table))
+    return table
+
+
+@pytest.mark.parametrize("claim", geometry.GEOMETRY, ids=lambda one: one.text)
+def test_geometry(claim):
+    assert claim.judge(panels()).verdict == CONFIRMED
+    otherwise = [
+        panels(sign=-1.0, height=0.1),
+        panels(lambda length: 0.3 * length),
+        panels(bend=0.1),
+        panels(tilt=0.3),
+        panels(steeper=2.0),
+    ]
+    assert CONTRADICTED in verdicts(claim.judge, *otherwise)
+    assert claim.judge(panels(noise=3.0)).verdict == UNDECIDED
+    assert judge([claim], panels().iloc[:1])[0].finding.verdict == UNDECIDED
+
+
+def test_a_fit_recovers_slope_and_error():
+    """Against the closed form of a straight line with one offset."""
+    table = panels(noise=0.05)
+    table = table[
+        (table["event"] == 1) & (table["panel_tilt"] == 40) & (table["panel_length"] == 2)
+    ]
+    x = table["panel_height"].to_numpy()
+    y = table["ratio"].to_numpy() / table["ratio"].mean()
+    slope, offset = np.polyfit(x, y, 1)
+    left = y - slope * x - offset
+    error = math.sqrt((left @ left) / (len(x) - 2) / ((x - x.mean()) ** 2).sum())
+    (found,) = geometry.fit(table, "panel_height", "ratio", geometry.straight).slopes
+    assert (found.value, found.noise) == pytest.approx((slope, error))
+
+
+def test_events_of_one_panel_are_no_independent_witnesses():
+    """Panels that scatter, with events that repeat each, tell no more than one event."""
+    once = panels(noise=0.0)
+    once = once[(once["event"] == 1) & (once["panel_length"] == 2) & (once["panel_tilt"] == 40)]
+    once = pd.concat([once.assign(panel_height=height) for height in (1.0, 2.0)] * 3)
+    once["panel_height"] = np.linspace(1, 4, len(once))
+    once["ratio"] = 0.1 + 0.01 * np.random.default_rng(4).normal(size=len(once))
+    many = pd.concat([once.assign(event=event) for event in range(1, 10)])
+    (one,), (nine,) = (
+        geometry.fit(table, "panel_height", "ratio", geometry.straight).slopes
+        for table in (once, many)
+    )
+    assert nine.value == pytest.approx(one.value)
+    assert nine.noise == pytest.approx(one.noise, rel=0.4)  # independent: a third
+
+
+def test_a_dip_between_tilts_is_seen():
+    table = panels()
+    table.loc[table["panel_tilt"] == 55, "ratio"] *= 0.7
+    found = geometry.hardly_depends_on_tilt(table)
+    assert found.verdict == CONTRADICTED and "and 55 degrees" in found.sentence
+
+
+# --- regression
+
+
+def regressed(
+    rbf=0.005, linear=0.012, *, errors=(0.004, 0.015), spread=0.0002, off=1.0, rows=610, **changes
+):
+    models = {"linear": linear, "rbf": rbf}
+    overfit = changes.get("overfit", 0.6)
+    scores = [
+        {
+            "model": model,
+            "round": 1,
+            "fold": fold,
+            "development_score": (0.99 if model == "linear" else overfit) * score,
+            "validation_score": score + spread * (-1) ** fold,
+            "C": 10.0 ** (fold % 3 if (model == "linear") == (overfit < 1) else 1),
+        }
+        for model, score in models.items()
+        for fold in range(changes.get("folds", 10))
+    ]
+    table = pd.DataFrame({"mean_absolute_error": errors, "standard_deviation": 0.005})
+    table.index = ["rbf", "linear"]
+    quartiles = pd.DataFrame.from_dict(
+        {name: off * np.array(values) for name, values in regression.THESIS_QUARTILES.items()},
+        orient="index",
+        columns=["Q1", "Q2", "Q3", "Q4"],
+    )
+    return regression.Regressed(rows, rows // 5, pd.DataFrame(scores), table, quartiles)
+
+
+@pytest.mark.parametrize("claim", regression.REGRESSION, ids=lambda one: one.text)
+def test_regression(claim):
+    assert claim.judge(regressed()).verdict == CONFIRMED
+    otherwise = [
+        regressed(0.02, 0.010),
+        regressed(errors=(0.05, 0.05)),
+        regressed(off=3.0),
+        regressed(overfit=1.1),
+    ]
+    assert CONTRADICTED in verdicts(claim.judge, *otherwise)
+    tie = regressed()
+    tie.scores["C"] = 1.0
+    undecided = [
+        tie,
+        regressed(spread=0.1),
+        regressed(folds=1),
+        regressed(errors=(0.1, 0.1), off=1.3),
+        regressed(errors=(0.0101, 0.019)),
+        regressed(errors=(0.0051, 0.019)),
+        regressed(rows=27),
+    ]
+    assert UNDECIDED in verdicts(claim.judge, *undecided)
+
+
+# --- calibration
+
+
+def recovery(rank, inside=True):
+    truth = calibration.CALIBRATED
+    rows = [{"rank": place, **truth} for place in range(1, 13)]
+    for row in rows:
+        if row["rank"] != rank:
+            row["snow.cohesion"] = 0.05
+    ranges = pd.DataFrame(
+        {
+            "parameter": list(truth),
+            "low": [0.5 * value for value in truth.values()],
+            "high": [1.5 * value for value in truth.values()],
+            "lower_95": [value * (0.9 if inside else 1.1) for value in truth.values()],
+            "upper_95": [1.2 * value for value in truth.values()],
+            "open": "",
+        }
+    )
+    return calibration.Recovery(pd.DataFrame(rows), ranges)
+
+
+def test_calibration():
+    ranks = [recovery(1), recovery(12), recovery(3)]
+    assert verdicts(calibration.is_ranked_well, *ranks) == ORDER
+    both = [recovery(1), recovery(1, inside=False)]
+    assert verdicts(calibration.is_in_the_ranges, *both) == (CONFIRMED, CONTRADICTED)
+    ranges = recovery(1, inside=False).ranges.tail(1)  # of one parameter alone
+    for open_, verdict in (("", UNDECIDED), ("above", UNDECIDED), ("below", CONFIRMED)):
+        alone = calibration.Recovery(recovery(1).ranked, ranges.assign(open=open_))
+        assert calibration.is_in_the_ranges(alone).verdict == verdict
+    assert calibration.is_the_laboratory(recovery(1)).verdict == UNDECIDED
+    (found,) = judge(calibration.CALIBRATION[1:2], recovery(99))
+    assert found.finding.verdict == UNDECIDED

@@ -1,0 +1,200 @@
+"""Stages, their order and names, resuming, and what a folder accepts."""
+
+import json
+import re
+
+import pandas as pd
+import pytest
+from reproduce_helpers import TINY, TINY_WITH_PANELS, few_fits, fill, geometry_table
+from reproductions.common.stage import State, StudyStage, choose, compute
+from reproductions.frischholz2023 import studies
+from reproductions.frischholz2023.publication import REPRODUCTION
+from reproductions.frischholz2023.sections.regression import read_regressed
+from reproductions.frischholz2023.settings import FULL, MIDDLE, QUICK
+from reproductions.frischholz2023.stages import ThesisComputation
+
+from snowshed import Scene
+from snowshed._core import InputError
+from snowshed.study import Study
+
+NAMES = ["lab", "s-index", "fixation", "calibration", "deviations", "variations"]
+NAMES += ["geometry", "regression"]
+
+
+def test_full_is_what_the_thesis_computes():
+    """Tables 2.3.1, 3.2.1, 3.3.1, 4.1.1, 5.1.1, 5.2.1, with several seedings."""
+    counts = {study.name: len(study.runs()) for study in studies.fixation(FULL)}
+    counts.update({study.name: len(study.runs()) for study in studies.index(FULL)})
+    counts.update({study.name: len(study.runs()) for study in studies.calibration(FULL)})
+    assert counts["sensitivity-fixation"] == (27 + 9 - 1) * FULL.fixation_seeds
+    assert counts["sensitivity-s"] == 9 * FULL.index_seeds
+    assert counts["calibration"] == 48 * 2 * FULL.grid_seeds
+    assert (FULL.folds.rounds, FULL.folds.folds, FULL.folds.inner_folds) == (10, 10, 5)
+    for make in (studies.index, studies.fixation, studies.calibration):
+        for study in make(FULL):
+            scene = json.loads(study.runs()[0].scene)
+            assert (scene["dimension"], scene["numerics"]["dx"]) == (3, 0.01)
+
+
+def test_middle_is_the_thesis_at_the_frictions_it_measured():
+    assert MIDDLE.frictions == (0.6, 0.8) and not MIDDLE.simulates_panels
+    for make in (studies.lab, studies.index, studies.fixation, studies.calibration):
+        few, many = (sum(len(one.runs()) for one in make(size)) for size in (MIDDLE, FULL))
+        assert few < many
+        scene = json.loads(make(MIDDLE)[-1].runs()[0].scene)
+        assert (scene["dimension"], scene["numerics"]["dx"]) == (3, 0.01)
+
+
+def test_the_laboratory_has_both_dimensions_and_30_degrees():
+    scenes = {study.name: [json.loads(run.scene) for run in study.runs()]
+              for study in studies.lab(FULL)}  # fmt: skip
+    assert {scene["dimension"] for scene in scenes[studies.LAB_2D]} == {2}
+    assert {scene["dimension"] for scene in scenes[studies.LAB_3D]} == {3}
+    for name in (studies.LAB_2D, studies.LAB_3D):
+        assert {scene["panel"]["tilt"] for scene in scenes[name]} == {40, 50}
+        assert {scene["events"]["count"] for scene in scenes[name]} == {5}
+    assert {scene["panel"]["tilt"] for scene in scenes[studies.RELEASE]} == {30}
+    assert len(scenes[studies.RELEASE]) == len(FULL.release_frictions) > 1
+
+
+def test_the_panels_of_more_tilts_differ_from_the_data_set_in_nothing_else():
+    scenes = [json.loads(run.scene) for study in studies.geometry(FULL) for run in study.runs()]
+    for scene in scenes:
+        for name in ("height", "length", "tilt"):
+            del scene["panel"][name]
+        del scene["slab"]["length"]
+    assert all(scene == scenes[0] for scene in scenes)
+
+
+def test_the_synthetic_truth_is_no_run_of_the_grid():
+    grid, truth = studies.calibration(QUICK)
+    assert not {run.hash for run in grid.runs()} & {run.hash for run in truth.runs()}
+    snow = json.loads(truth.runs()[0].scene)["snow"]
+    assert (snow["critical_state_slope"], snow["cohesion"]) == (0.5, 0.2)
+    assert snow["preconsolidation_pressure"] == 7e3
+
+
+def test_stages_are_chosen_by_name(tmp_path):
+    found = ThesisComputation(tmp_path / "out", TINY_WITH_PANELS, None)
+    assert [stage.name for stage in choose(found.stages, [])] == NAMES
+    assert [stage.name for stage in choose(found.stages, ["regression", "lab"])] == [
+        "lab",
+        "regression",
+    ]
+    with pytest.raises(InputError, match="stage: 'x' is unknown; allowed: lab, s-index"):
+        choose(found.stages, ["x"])
+
+
+def test_a_table_takes_the_place_of_the_panels(tmp_path):
+    table = geometry_table(tmp_path / "rows.csv")
+    found = ThesisComputation(tmp_path / "out", FULL, table)
+    assert [stage.name for stage in found.stages] == [one for one in NAMES if one != "geometry"]
+    assert len(found.rows.read()) == found.rows.count() == 72
+
+
+def claim(folder, size="quick", condition="separate"):
+    REPRODUCTION.claim(folder, size, {"condition": condition})
+
+
+def test_a_folder_is_for_one_size_and_one_condition(tmp_path):
+    claim(tmp_path / "out")
+    claim(tmp_path / "out")
+    with pytest.raises(InputError, match="with --quick; take a new folder for --full"):
+        claim(tmp_path / "out", "full")
+    with pytest.raises(InputError, match="with --condition separate; take a new folder for"):
+        claim(tmp_path / "out", condition="slip")
+    (tmp_path / "other").mkdir()
+    (tmp_path / "other" / "file").touch()
+    with pytest.raises(InputError, match="not empty, and holds no reproduction"):
+        claim(tmp_path / "other")
+    for content in (b"", b"\xff", b"[]", b"[" * 100_000):
+        (tmp_path / "out" / "reproduction.json").write_bytes(content)
+        with pytest.raises(InputError, match=r"reproduction\.json: damaged: "):
+            claim(tmp_path / "out")
+
+
+def test_a_folder_of_former_days_is_gone_on_with(tmp_path):
+    """Folders named neither the publication nor the condition at first."""
+    (tmp_path / "reproduction.json").write_text('{"size": "quick"}')
+    claim(tmp_path)
+    with pytest.raises(InputError, match="take a new folder for --condition slip"):
+        claim(tmp_path, condition="slip")
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "message"),
+    [
+        ("scores.csv", b"", "not a table: "),
+        (
+            "scores.csv",
+            b"model\nrbf\nlinear\n",
+            "damaged: no numbers in a column development_score",
+        ),
+        ("ratio/errors.csv", b"\xff\xfe\x00", "not a table: not UTF-8 text"),
+        (
+            "ratio/errors.csv",
+            b"model,held_out_error\nrbf,x\n",
+            "damaged: no numbers in a column mean",
+        ),
+        ("ratio/quartiles.csv", b"model,Q1,Q2,Q3,Q4\nrbf,1,2,3,4\n", "damaged: not a row of each"),
+    ],
+)
+def test_damaged_tables_of_the_regression_are_named(tmp_path, name, content, message):
+    numbers = {"development_score": 1.0, "validation_score": 1.0, "C": 1.0}
+    numbers.update({"mean_absolute_error": 1.0, "standard_deviation": 1.0})
+    numbers.update({"held_out_error": 1.0, "Q1": 1.0, "Q2": 2.0, "Q3": 3.0, "Q4": 4.0})
+    table = pd.DataFrame([{"model": model, **numbers} for model in ("data", "rbf", "linear")])
+    (tmp_path / "ratio").mkdir()
+    for whole in ("scores.csv", "ratio/errors.csv", "ratio/quartiles.csv"):
+        table.to_csv(tmp_path / whole, index=False)
+    assert read_regressed(tmp_path, 96, 32).errors.loc["rbf", "held_out_error"] == 1.0
+    (tmp_path / name).write_bytes(content)
+    with pytest.raises(InputError, match=rf"{re.escape(name)}(, line 1)?: {message}"):
+        read_regressed(tmp_path, 96, 32)
+
+
+def tiny_studies():
+    scene = Scene.preset("lab-50").update({"dimension": 2, "numerics.dx": 0.03})
+    scene.update({"events": {"count": 1, "max_time": 0.05}})
+    return [Study.product(scene, {"snow.cohesion": [0.1, 0.2]}, name="tiny")]
+
+
+def test_a_stage_that_is_done_is_not_repeated(tmp_path):
+    stage = StudyStage("tiny", tmp_path / "runs", tiny_studies)
+    assert stage.state() == State(0, 0, 2) and stage.expected_s(1) > 0
+    told = []
+    compute([stage], jobs=1, progress=told.append)
+    assert stage.state().finished and stage.expected_s(1) == 0
+    fractions = [one.fraction for one in told]
+    assert fractions == sorted(fractions) and fractions[-1] == 1
+    assert told[-1].doing == "tiny: 2/2 simulations"
+    again = []
+    compute([StudyStage("tiny", tmp_path / "runs", tiny_studies)], jobs=1, progress=again.append)
+    assert again == []
+
+
+def test_regression_is_resumed_and_not_repeated(tmp_path):
+    table = geometry_table(tmp_path / "rows.csv")
+    found = ThesisComputation(tmp_path / "out", TINY, table)
+    stage = found.regression
+    assert stage.state() == State(0, 0, 4, "folds") and stage.expected_s(1) > 0
+    with few_fits():
+        compute([stage], jobs=1)
+    assert stage.state().finished and stage.expected_s(1) == 0
+    fold = next(stage.parts()[0].folder.glob("folds/*/*/*.npz"))
+    before = fold.stat().st_mtime_ns
+    compute([stage], jobs=1)
+    assert fold.stat().st_mtime_ns == before
+
+
+def test_regression_waits_for_the_panels(tmp_path):
+    found = ThesisComputation(tmp_path / "out", TINY_WITH_PANELS, None)
+    with pytest.raises(InputError, match="stage geometry: 0 of 125 simulations done"):
+        found.regression.compute(1, lambda fraction, words: None)
+    fill(found, ["geometry"])
+    assert len(found.rows.read()) == 610
+
+
+def test_a_quick_reproduction_takes_the_rows_that_come_with_snowshed(tmp_path):
+    found = ThesisComputation(tmp_path / "out", TINY, None)
+    assert "geometry" not in found.study_stages and len(found.rows.read()) == 610

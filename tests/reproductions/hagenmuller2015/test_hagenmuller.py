@@ -1,0 +1,139 @@
+"""The reproduction of the paper on grains: its rules on made-up tests, and its command."""
+
+import math
+
+import numpy as np
+import pandas as pd
+from plot.browser import check_page
+from reproductions.common.hypothesis_tests import CONFIRMED, CONTRADICTED, UNDECIDED, judge
+from reproductions.common.report import write_report
+from reproductions.hagenmuller2015 import claims, printed, studies
+from reproductions.hagenmuller2015.claims import ENGINE, PAPER, LoadingTests
+from reproductions.hagenmuller2015.publication import REPRODUCTION
+from reproductions.hagenmuller2015.sections import stress_grid
+from reproductions.hagenmuller2015.snows import Samples
+from reproductions.hagenmuller2015.stages import GrainsComputation
+
+from snowshed.analysis.grains.ratios import STRESSES, compare_variants
+from snowshed.analysis.grains.variants import BASE
+from snowshed.cli.main import main
+
+#: Stresses of the base in kPa, and what each variant makes of them, as the paper and Yade say.
+AS_PRINTED = {BASE: (69.0, 26.0, 47.0, 2516.0)}
+AS_PRINTED.update({name: line for name, line in printed.YADE.items() if name != BASE})
+AS_CLAIMED = {
+    studies.THIN_NECKS: (40.0, 20.0, 40.0, 2000.0),
+    studies.WIDE_NECKS: (80.0, 30.0, 50.0, 2050.0),
+    studies.FEWER: (70.0, 27.0, 45.0, 2500.0),
+    studies.TRAP: (400.0, 100.0, 90.0, 2600.0),
+    claims.SCALED: (72.0, 30.0, 50.0, 2500.0),
+    claims.HALF_EDGE: (66.0, 20.0, 40.0, 2400.0),
+    "spheres 50 um": (72.0, 25.0, 47.0, 2500.0),
+    "spheres 150 um": (65.0, 25.0, 47.0, 2500.0),
+}
+
+
+def made_up(noise=0.02, **changed):
+    """Tests of three samples that scatter a little; a variant's stresses may be others."""
+    random = np.random.default_rng(1)
+    lines = {**AS_PRINTED, **AS_CLAIMED, **changed}
+    rows = []
+    for name, line in lines.items():
+        for sample in range(3):
+            stresses = [
+                math.nan if kpa is None else 1e3 * kpa * math.exp(noise * random.normal())
+                for kpa in line
+            ]
+            facts = {"variant": name, "varied": name, "sample": sample, "hash": name}
+            figures = {**dict(zip(STRESSES, stresses)), "hardening_onset_strain": 0.12}
+            rows.append({**facts, **figures})
+    elastic = {"broken_in_tension": 0, "broken_in_shear": 0, "elastic_limit_strain": 1e-4,
+               "axial_strain": 1e-7, "linearity": 0.99}  # fmt: skip
+    rows += [{"variant": studies.ELASTIC, "sample": sample, **elastic} for sample in range(3)]
+    return LoadingTests([pd.DataFrame(rows)])
+
+
+def verdicts(tests):
+    return [one.finding.verdict for one in judge([*PAPER, *ENGINE], tests)]
+
+
+def test_what_is_as_claimed_is_confirmed():
+    for one in judge([*PAPER, *ENGINE], made_up()):
+        assert one.finding.verdict == CONFIRMED, (one.text, one.finding.sentence)
+
+
+def test_noise_leaves_claims_open():
+    found = verdicts(made_up(noise=3.0))
+    assert found.count(UNDECIDED) > len(found) / 2
+    assert set(verdicts(LoadingTests([made_up().tables[0].query("sample == 0")]))[1:]) == {
+        UNDECIDED
+    }
+
+
+def test_the_opposite_contradicts():
+    """Each of these turns a claim of the paper round."""
+    for changed, text in (
+        ({studies.SOFT: (20.0, 54.0, 57.0, 439.0)}, "insensitive to Young"),
+        ({studies.SOFT: (63.0, 54.0, 57.0, 2500.0)}, "very sensitive to Young"),
+        ({studies.THIN_NECKS: (100.0, 20.0, 40.0, 2000.0)}, "Faceted"),
+        ({studies.THIN_NECKS: (40.0, 20.0, 40.0, 500.0)}, "do not differ"),
+        ({studies.HEAVY_SNOW: (60.0, 20.0, 40.0, 2000.0)}, "Density controls the stress."),
+        ({"spheres 50 um": (490.0, 25.0, 47.0, 2500.0)}, "size of the spheres"),
+        ({claims.SCALED: (200.0, 25.0, 47.0, 2500.0)}, "Denser ice"),
+        ({studies.ROUGH: (60.0, 46.0, 38.0, 2000.0)}, "Friction"),
+        ({BASE: (30.0, 60.0, 70.0, 80.0)}, "At last the stress"),
+    ):
+        judged = {one.text: one.finding.verdict for one in judge(PAPER, made_up(**changed))}
+        (verdict,) = [found for claim, found in judged.items() if text in claim]
+        assert verdict == CONTRADICTED, text
+
+
+def test_broken_bonds_are_not_elastic():
+    tests = made_up()
+    tests.tables[0].loc[tests.tables[0]["variant"] == studies.ELASTIC, "broken_in_shear"] = [
+        0,
+        3,
+        2,
+    ]
+    (found,) = [one for one in judge(PAPER, tests) if one.source == "elastic phase"]
+    assert found.finding.verdict == UNDECIDED
+    tests.tables[0].loc[tests.tables[0]["variant"] == studies.ELASTIC, "broken_in_shear"] = [
+        1,
+        3,
+        2,
+    ]
+    (found,) = [one for one in judge(PAPER, tests) if one.source == "elastic phase"]
+    assert found.finding.verdict == CONTRADICTED
+
+
+def test_the_table_has_yade_beside_us():
+    grid = stress_grid(compare_variants(made_up().tables[0].query("variant != 'elastic'")))
+    (row,) = [row for row in grid.rows if row[0] == studies.ROUGH]
+    assert row[1].endswith("[106]")
+
+
+def test_the_variants_have_the_names_that_claims_use(tmp_path):
+    made = studies.Comparisons(Samples(40, 1), tmp_path)
+    names = {one.name for stage in studies.MAKERS for one in made[stage].variants}
+    assert names >= {*AS_PRINTED, *AS_CLAIMED, studies.ELASTIC}
+
+
+def test_the_page_of_all_stages_can_be_read_by_everyone(tmp_path):
+    found = GrainsComputation(tmp_path, Samples(40, 1))
+    sizes = {"final_particles": 90, "spheres": 900, "density_kg_m3": 250.0}
+    found.tests = LoadingTests([table.assign(**sizes) for table in made_up().tables])
+    write_report(REPRODUCTION, REPRODUCTION.size("quick"), tmp_path, found)
+    text = (tmp_path / "hagenmuller.html").read_text(encoding="utf-8")
+    assert "Nothing is computed yet" not in text and "confirmed" in text
+    check_page(tmp_path / "hagenmuller.html")
+
+
+def test_a_report_of_nothing_says_so(tmp_path, capsys):
+    folder = tmp_path / "out"
+    assert main(["reproduce", "hagenmuller", "-o", str(folder), "--report-only"]) == 0
+    assert "Nothing is computed yet" in (folder / "hagenmuller.html").read_text(encoding="utf-8")
+    check_page(folder / "hagenmuller.html")
+    assert main(["reproduce", "hagenmuller", "-o", str(folder), "--full", "--report-only"]) == 2
+    assert "take a new folder for --full" in capsys.readouterr().err
+    assert main(["reproduce", "hagenmuller", "-o", str(folder), "--stage", "x"]) == 2
+    assert "stage: 'x' is unknown" in capsys.readouterr().err

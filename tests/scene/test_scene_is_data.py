@@ -1,0 +1,112 @@
+"""A scene is text where it enters and leaves the process; between, it is parsed once."""
+
+import ast
+import copy
+import json
+import pickle
+
+import pytest
+from conftest import tiny_scene
+from paths import ROOT
+
+import snowshed._core as core
+from snowshed import ResolvedScene
+from snowshed.cli.main import main
+from snowshed.scene.scene import resolve_scene
+
+#: Texts that the core gives or takes: of scenes, their snow and their schema.
+OF_SCENES = {"scene", "json", "snow", "snows", "scene_json", "ready", "resolved", "run", "task"}
+
+
+def test_only_the_room_of_scenes_parses_them():
+    """What `json.loads` reads elsewhere has another name."""
+    package = ROOT / "python" / "snowshed"
+    wrong = []
+    for path in package.rglob("*.py"):
+        if path.is_relative_to(package / "scene"):
+            continue
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Call) and ast.unparse(node.func) in ("json.loads", "loads"):
+                inside = [one for argument in node.args for one in ast.walk(argument)]
+                names = {one.attr for one in inside if isinstance(one, ast.Attribute)}
+                names |= {one.id for one in inside if isinstance(one, ast.Name)} - {"json"}
+                if names & OF_SCENES:
+                    wrong.append(f"{path.relative_to(package)}, line {node.lineno}")
+    assert wrong == []
+
+
+@pytest.fixture
+def handled(monkeypatch):
+    """What turns scenes into data or into text, call by call."""
+    calls = []
+
+    def is_scene(value):
+        text = value if isinstance(value, str) else ""
+        keys = value if isinstance(value, dict) else ()
+        return ('"snowshed"' in text and '"numerics"' in text) or "numerics" in keys
+
+    def counted(place, name, wanted):
+        real = getattr(place, name)
+
+        def call(*arguments, **options):
+            if wanted(arguments[0]):
+                calls.append(name)
+            return real(*arguments, **options)
+
+        monkeypatch.setattr(place, name, staticmethod(call) if isinstance(place, type) else call)
+
+    for name in ("loads", "dumps"):
+        counted(json, name, is_scene)
+    for name in ("load", "parse"):
+        counted(core.ParsedScene, name, lambda argument: True)
+    for name in ("create", "resume"):
+        counted(core.EventSequence, name, is_scene)
+    for name in ("plan", "expected_work", "scene_checksum", "update_version"):
+        counted(core, name, is_scene)
+    return calls
+
+
+@pytest.mark.parametrize("energy", [False, True])
+def test_a_run_parses_its_scene_twice(tmp_path, handled, energy):
+    """The core reads the file, and Python reads the text that the core completed."""
+    scene = tiny_scene(**{"events.count": 2, "output.energy": energy}).resolve()
+    scene.save(tmp_path / "scene.json")
+    handled.clear()
+    assert main(["run", str(tmp_path / "scene.json"), "-o", str(tmp_path / "out")]) == 0
+    assert handled == ["load", "loads"]
+
+
+def test_data_of_a_scene_is_made_once_and_stays_as_it_is():
+    scene = tiny_scene().resolve()
+    assert scene.data is scene.data
+    for change in (
+        lambda data: data.update(gravity=1.0),
+        lambda data: data["panel"].pop("tilt"),
+        lambda data: data["obstacles"].append({}),
+        lambda data: data.__setitem__("title", ""),
+    ):
+        with pytest.raises(TypeError, match="read-only"):
+            change(scene.data)
+    mine = scene.copied_data()
+    mine["panel"]["tilt"] = 10.0
+    assert scene.data["panel"]["tilt"] == 50.0
+    assert json.loads(json.dumps(scene.data)) == json.loads(scene.json) == scene.data
+
+
+def test_a_scene_is_pickled_and_copied_as_its_text():
+    scene = tiny_scene().resolve()
+    assert scene.data and scene.core
+    for other in (pickle.loads(pickle.dumps(scene)), copy.deepcopy(scene)):
+        assert other == scene and set(vars(other)) == {"json", "base_dir"}
+    assert core.Simulation(other.core).event_count == 2
+    assert pickle.loads(pickle.dumps(scene.data)) == copy.deepcopy(scene.data) == scene.data
+
+
+def test_the_core_takes_a_scene_as_text_too():
+    scene = tiny_scene().resolve()
+    assert core.Simulation(scene.json).scene == core.Simulation(scene.core).scene == scene.json
+    with pytest.raises(core.InputError):
+        core.Simulation("{}")
+    with pytest.raises(TypeError):
+        core.Simulation(5)
+    assert resolve_scene(ResolvedScene.parse(scene.json)) == scene

@@ -1,0 +1,153 @@
+"""Gathering, letting go and settling, against closed forms and an ODE solver."""
+
+import datetime
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from snowshed import InputError
+from snowshed.season import SeasonSettings, Weather, accumulate, balance
+from snowshed.season.accumulation import pauses
+from snowshed.season.column import SnowColumn
+from snowshed.season.stack_settling import SettlingStack
+from snowshed.snow.relations import SETTLING_LAWS
+
+DAY = 86400.0
+
+
+def season(*snowfalls, density=100.0, temperature=-5.0, days=1):
+    start = datetime.datetime(2024, 12, 1)
+    step = datetime.timedelta(days=days)
+    return [
+        Weather(2 + i, start + i * step, snowfall, density, temperature)
+        for i, snowfall in enumerate(snowfalls)
+    ]
+
+
+@pytest.mark.parametrize("tilt", [10.0, 30.0, 40.0, 50.0])
+def test_without_adhesion_the_tangent_of_the_tilt_decides(tilt):
+    limit = math.tan(math.radians(tilt))
+    for load in (0.1, 100.0):
+        assert balance(load, tilt, limit * 0.999, 0.0).releases
+        assert not balance(load, tilt, limit * 1.001, 0.0).releases
+
+
+def test_the_lab_panel_at_30_degrees_stops_over_the_measured_friction_and_goes_below():
+    load = 210.0 * 0.02
+    assert not any(balance(load, 30.0, friction, 0.0).releases for friction in (0.6, 0.7, 0.8))
+    assert balance(load, 30.0, 0.57, 0.0).releases
+    assert all(balance(load, 40.0, friction, 0.0).releases for friction in (0.6, 0.7, 0.8))
+
+
+def test_with_adhesion_snow_gathers_up_to_the_closed_form():
+    tilt, friction, adhesion, gravity = 40.0, 0.6, 40.0, 9.81
+    slope = math.radians(tilt)
+    limit = adhesion / (gravity * (math.sin(slope) - friction * math.cos(slope)))
+    each = 100.0 * 0.05 * math.cos(slope)  # kg per m2 of the panel
+    events = [
+        day.event
+        for day in accumulate(
+            season(*[0.05] * 20),
+            SeasonSettings(friction=friction, adhesion=adhesion),
+            tilt,
+            gravity,
+        )
+    ]
+    needed = math.floor(limit / each) + 1
+    assert [i + 1 for i, event in enumerate(events) if event] == list(range(needed, 21, needed))
+    assert [event for event in events if event] == list(range(1, 20 // needed + 1))
+
+
+def test_mass_per_area_of_ground_is_that_of_the_snowfall():
+    tilt = 60.0
+    (day,) = accumulate(season(0.4, density=80.0), SeasonSettings(friction=5.0), tilt)
+    assert day.load / math.cos(math.radians(tilt)) == pytest.approx(0.4 * 80.0)
+    assert day.thickness == pytest.approx(0.4 * math.cos(math.radians(tilt)))
+
+
+def test_the_wind_takes_its_part_and_a_day_its_own_friction():
+    rows = season(0.4)
+    (day,) = accumulate(rows, SeasonSettings(catch=0.25), 0.0)
+    assert day.load == pytest.approx(10.0)
+    slippery = [Weather(2, rows[0].date, 0.4, 100.0, 0.0, friction=0.1, adhesion=0.0)]
+    (day,) = accumulate(slippery, SeasonSettings(friction=0.9, adhesion=1e4), 20.0)
+    assert day.event == 1
+
+
+def test_a_missing_density_is_estimated_from_the_temperature():
+    (day,) = accumulate(season(0.2, density=None, temperature=0.0), SeasonSettings(), 0.0)
+    assert day.density == pytest.approx(67.92 + 51.25)
+
+
+@pytest.mark.parametrize("name", SETTLING_LAWS)
+def test_settling_of_one_layer_against_an_ode_solver(name):
+    law, mass, start, temperature = SETTLING_LAWS[name], 40.0, 90.0, -3.0
+    stress = np.array([0.5 * mass * 9.81])
+
+    def rate(_, density):
+        return density * law(density, stress, temperature)
+
+    exact = solve_ivp(rate, (0.0, 10 * DAY), [start], rtol=1e-9, atol=1e-9).y[0, -1]
+    column = SnowColumn(load_factor=9.81)
+    column.add(mass, start)
+    column.settle(law, 10 * DAY, temperature)
+    assert column.density == pytest.approx(exact, rel=0.01)
+    assert column.mass == mass
+
+
+def test_lower_layers_settle_more_and_warm_ones_faster():
+    def settled(temperature):
+        column = SnowColumn(load_factor=9.81)
+        for _ in range(3):
+            column.add(20.0, 100.0)
+        column.settle(SETTLING_LAWS["vionnet-2012"], 5 * DAY, temperature)
+        return column.densities
+
+    assert np.all(np.diff(settled(-10.0)) < 0)
+    assert np.all(settled(-1.0) > settled(-10.0))
+
+
+def test_settling_never_changes_the_mass():
+    rows = season(0.3, 0.0, 0.0, days=10)
+    still = accumulate(rows, SeasonSettings(friction=2.0, settling=None), 30.0)
+    settled = accumulate(rows, SeasonSettings(friction=2.0, settling="essery-2013"), 30.0)
+    assert still[0].thickness == still[2].thickness
+    assert settled[2].thickness < settled[1].thickness < settled[0].thickness
+    assert settled[2].load == still[2].load
+
+
+def test_a_stack_settles_between_events_and_starts_anew_with_each():
+    stack = SettlingStack(SETTLING_LAWS["vionnet-2012"], 9.81)
+    stack.take(0.5, 150.0)
+    stack.wait(20 * DAY, -5.0)
+    assert 0.3 < stack.ratio < 1.0
+    stack.take(1.0, 160.0)
+    assert stack.ratio == 1.0
+
+
+def test_pauses_lie_between_events_at_the_temperature_of_the_earlier_row():
+    rows = season(0.3, 0.0, 0.3, 0.3, days=2)
+    days = accumulate(rows, SeasonSettings(friction=0.1), 30.0)
+    assert [day.event for day in days] == [1, None, 2, 3]
+    temperatures = [row.temperature for row in rows]
+    assert pauses(days) == {
+        2: [(2 * DAY, temperatures[0]), (2 * DAY, temperatures[1])],
+        3: [(2 * DAY, temperatures[2])],
+    }
+
+
+@pytest.mark.parametrize(
+    ("values", "message"),
+    [
+        ({"friction": -1.0}, "release friction: -1 is outside the allowed range"),
+        ({"adhesion": math.nan}, "adhesion: nan is outside the allowed range .* Pa"),
+        ({"catch": 1.5}, "catch: 1.5 is outside the allowed range"),
+        ({"density": "guess"}, "density of new snow: 'guess' is unknown; allowed: hedstrom"),
+        ({"settling": "guess"}, "settling: 'guess' is unknown; allowed: vionnet-2012"),
+    ],
+)
+def test_settings_that_are_refused(values, message):
+    with pytest.raises(InputError, match=message):
+        SeasonSettings(**values)

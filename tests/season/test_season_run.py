@@ -1,0 +1,248 @@
+"""A whole season through the interface and the command line, on a grid as coarse as can be."""
+
+import dataclasses
+import json
+import math
+
+import numpy as np
+import pandas as pd
+import pytest
+from processes import modules_after
+
+from snowshed import InputError, Scene, _core
+from snowshed.cli.main import main
+from snowshed.scene.panel_edge import panel_edge
+from snowshed.season import SeasonSettings, accumulate, read_season, run_season
+from snowshed.season.clearance import (
+    Contact,
+    below_panel,
+    clearance,
+    first_reached,
+)
+from snowshed.season.driver import drawn, verdict
+from snowshed.season.slabs import season_scene
+
+SEASON = """date,snowfall_m,density_kg_m3,temperature_c
+2024-12-01,0.03,200,-4
+2024-12-05,0.05,,-2
+2024-12-20,0.00,,3
+2024-12-24,0.06,240,-1
+"""
+
+
+def panel_scene(**values):
+    """The laboratory's panel on cells of 3 cm; soft snow, so that steps are long."""
+    scene = Scene.preset("lab-50").update({"dimension": 2, "numerics.dx": 0.03})
+    scene.update({"events.max_time": 3.0, "numerics.threads": 1})
+    scene.update({"seeding.particles_per_voxel": 4, "snow.youngs_modulus": 2e5})
+    return scene.update(values)
+
+
+@pytest.fixture(scope="module")
+def season_file(tmp_path_factory):
+    file = tmp_path_factory.mktemp("season") / "season.csv"
+    file.write_text(SEASON)
+    return file
+
+
+@pytest.fixture(scope="module")
+def finished(season_file, tmp_path_factory):
+    """A season of four rows: two that let go, one held by adhesion, one without snow."""
+    folder = tmp_path_factory.mktemp("season") / "results"
+    settings = SeasonSettings(friction=0.6, adhesion=20.0, settling="vionnet-2012")
+    return run_season(season_file, panel_scene(), folder, settings=settings), folder
+
+
+def test_a_season_ends_in_a_table_and_a_figure(finished):
+    result, folder = finished
+    table = pd.read_csv(folder / "season.csv")
+    assert table["released"].tolist() == ["no", "yes", "no", "yes"]
+    assert table["date"].tolist()[0] == "2024-12-01"
+    assert (folder / "season.png").stat().st_size > 10_000
+    summary = json.loads((folder / "season.json").read_text())
+    assert summary["releases"] == summary["simulated"] == 2
+    assert summary["settings"]["adhesion"] == 20.0
+    assert summary["burial_event"] == result.burial_event
+    assert any("estimates (hedstrom-pomeroy-1998)" in note for note in summary["notes"])
+    assert not any("before the snow rested" in note for note in summary["notes"])
+
+
+def test_the_stack_stands_still_between_events_but_for_its_settling(finished):
+    table = pd.read_csv(finished[1] / "season.csv")
+    height, settled = table["stack_height_m"], table["settled_height_m"]
+    assert height[0] == 0.0
+    assert 0.0 < height[1] == height[2]  # an event may flatten the stack, waiting may not
+    assert height[3] > 0.0
+    assert settled[1] == pytest.approx(height[1])
+    assert settled[2] < settled[1]
+    assert (table["settled_clearance_m"] >= table["clearance_m"] - 1e-9).all()
+
+
+def test_the_figure_names_the_event_that_buries_the_panel(finished):
+    result, folder = finished
+    scene = json.loads((folder / "run" / "scene.json").read_text())
+    outlines = pd.read_csv(folder / "run" / "outline.csv")
+    buried = dataclasses.replace(result, contact=Contact("2024-12-24", 2, "crest"))
+    figure = drawn(buried, outlines, scene)
+    texts = [text.get_text() for text in figure.axes[1].texts]
+    assert "first contact: crest, event 2" in texts
+    assert verdict(buried) in figure.get_suptitle()
+    assert verdict(buried).endswith("the lower edge, 2024-12-24 (event 2)")
+
+
+def test_all_released_mass_slides_and_the_table_repeats_the_slide_offs(finished):
+    result, folder = finished
+    table = result.table[result.table["released"] == "yes"]
+    events = pd.read_csv(folder / "run" / "events.csv")
+    gathered = table["panel_load_kg_m2"].cumsum() * 0.245  # the panel's length
+    total = events["mass_kg"] + events["on_panel_kg"]
+    np.testing.assert_allclose(total, gathered, rtol=1e-5)
+    np.testing.assert_allclose(table["stack_height_m"], events["height_m"], rtol=1e-5)
+
+
+def test_the_clearance_is_that_of_the_outline(finished):
+    result, folder = finished
+    scene = json.loads((folder / "run" / "scene.json").read_text())
+    outline = pd.read_csv(folder / "run" / "outline.csv")
+    last = outline[outline["event"] == 2]
+    edge = 0.5 * 0.245 * math.cos(math.radians(50.0))
+    surface = np.interp(edge, last["x"], last["z"], left=0.0, right=0.0)
+    cover = result.table["cover_m"].iloc[-1]
+    assert result.table["clearance_m"].iloc[-1] == pytest.approx(max(0.33 - cover - surface, 0.0))
+    left = clearance(scene, last[["x", "z"]].to_numpy(), 0.2)
+    assert left.crest == pytest.approx(0.13)
+
+
+def test_resuming_a_finished_season_changes_nothing(finished, season_file):
+    result, folder = finished
+    before = (folder / "season.csv").read_bytes()
+    settings = SeasonSettings(friction=0.6, adhesion=20.0, settling="vionnet-2012")
+    again = run_season(
+        season_file, panel_scene(), folder, settings=settings, resume=True, pictures=False
+    )
+    assert (folder / "season.csv").read_bytes() == before
+    assert again.table.equals(result.table)
+    with pytest.raises(InputError, match="not empty"):
+        run_season(season_file, panel_scene(), folder)
+
+
+def test_a_scene_may_be_a_file_or_its_data(season_file, tmp_path):
+    """Nothing lets go of a flat panel, so that nothing is simulated."""
+    flat = panel_scene(**{"panel.tilt": 1.0}).resolve()
+    flat.save(tmp_path / "scene.json")
+    tables = [
+        run_season(season_file, scene, tmp_path / name, pictures=False).table
+        for name, scene in (("a", flat), ("b", flat.data), ("c", tmp_path / "scene.json"))
+    ]
+    assert tables[0]["event"].isna().all()
+    assert tables[0].equals(tables[1]) and tables[0].equals(tables[2])
+
+
+def test_slabs_lie_where_the_core_would_lay_them(season_file):
+    days = accumulate(read_season(season_file), SeasonSettings(friction=0.1), 50.0)
+    for dimension in (2, 3):
+        values = {"ground.tilt": 10.0, "seeding.particles_per_voxel": 6}
+        base = panel_scene(dimension=dimension, **values).resolve()
+        scene = season_scene(base, days)
+        simulation = _core.Simulation(scene.json, scene.base_dir)
+        frame = simulation.panel_frame()
+        np.testing.assert_allclose(
+            panel_edge(scene.data).center, np.asarray(frame["center"])[[0, 2]], atol=1e-9
+        )
+        simulation.begin_event()
+        away = simulation.positions() - frame["center"]
+        thickness = days[0].thickness
+        for axis, low, high in (
+            (frame["normal"], 0.0, thickness),
+            (frame["slope"], -0.1225, 0.1225),
+        ):
+            along = away @ axis
+            assert low <= along.min() and along.max() <= high
+        assert simulation.masses().sum() == pytest.approx(
+            days[0].load * 0.245 * (1.0 if dimension == 2 else 2 / 3 * base.data["panel"]["width"])
+        )
+
+
+def test_snow_over_the_panel_is_no_part_of_the_stack_below():
+    scene = Scene.preset("lab-50").resolve().data
+    outline = np.array([[0.0, 0.6], [0.05, 0.1], [0.07, 0.45], [0.3, 0.2]])
+    np.testing.assert_array_equal(below_panel(scene, outline), outline[[1, 3]])
+    assert clearance(scene, outline, 0.2).below == 0.0
+
+
+def test_burial_is_the_first_event_that_closes_the_clearance():
+    assert first_reached([0.5, 0.2, 0.03, 0.1], 0.03) == 3
+    assert first_reached([0.5, 0.2], 0.03) is None
+
+
+def test_what_stays_on_the_panel_bears_the_next_slabs(season_file, tmp_path):
+    """Let go by its static friction, snow is held by a rougher panel at once."""
+    result = run_season(
+        season_file,
+        panel_scene(**{"panel.friction": 3.0, "events.max_time": 0.2}),
+        tmp_path / "results",
+        settings=SeasonSettings(friction=0.1),
+        pictures=False,
+    )
+    assert (result.staying_event, result.simulated, result.releases) == (1, 3, 3)
+    left = result.table["left_on_panel_kg"][result.table["released"] == "yes"].tolist()
+    assert left[0] < left[1] < left[2]
+    assert any("from event 1 on, snow" in note for note in result.notes)
+
+
+def test_scenes_without_a_panel_or_with_snow_of_their_own(season_file, tmp_path):
+    body = {"shape": {"type": "sphere", "center": [0, 1], "radius": 0.1}}
+    bare = Scene(dimension=2).append("bodies", body)
+    with pytest.raises(InputError, match="a season needs a panel"):
+        run_season(season_file, bare, tmp_path / "results")
+    with pytest.raises(InputError, match="/bodies: a season lays its own snow"):
+        run_season(season_file, panel_scene().append("bodies", body), tmp_path / "results")
+    assert not (tmp_path / "results").exists()
+
+
+def command(season_file, folder, *options):
+    panel = ("--height", "0.5", "--length", "1", "--tilt", "30", "--dim", "2", "-o", str(folder))
+    return main(["season", str(season_file), *panel, *options])
+
+
+def test_the_command_says_what_came_of_it(season_file, tmp_path, capsys):
+    assert command(season_file, tmp_path / "held", "--release-friction", "0.8") == 0
+    shown = capsys.readouterr().out
+    assert "no snow slid: friction and adhesion held it" in shown
+    assert "2024-12-24" in shown
+    assert (tmp_path / "held" / "season.png").is_file()
+    assert not (tmp_path / "held" / "run").exists()
+
+
+def test_the_command_names_bad_files_and_options(season_file, tmp_path, capsys):
+    bad = tmp_path / "bad.csv"
+    bad.write_text(SEASON + "2024-12-25,lots,,0\n")
+    assert command(bad, tmp_path / "a") == 2
+    error = capsys.readouterr().err
+    assert error.startswith("error: ") and "bad.csv, line 6, column snowfall_m: 'lots'" in error
+    assert command(season_file, tmp_path / "a", "--settling", "guess") == 2
+    assert "allowed: vionnet-2012, essery-2013" in capsys.readouterr().err
+    assert command(season_file, tmp_path / "a", "--width", "-1") == 2
+    assert "--width (/panel/width)" in capsys.readouterr().err
+    assert not (tmp_path / "a").exists()
+
+
+def test_wrong_values_of_a_scene_file_are_named_with_it(season_file, tmp_path, capsys):
+    scene = panel_scene().resolve().data
+    layered = {**scene, "slab": {"layers": [{"thickness": 0.1}]}}
+    for data, message in [
+        ({**scene, "panel": {**scene["panel"], "length": -1}}, "/panel/length: -1"),
+        ({**layered, "panel": {**scene["panel"], "tilt": 200}}, "/panel/tilt: 200"),
+        ({"panle": {}}, "panle"),
+    ]:
+        file = tmp_path / "scene.json"
+        file.write_text(json.dumps(data))
+        arguments = ["season", str(season_file), "--scene", str(file), "-o", str(tmp_path / "a")]
+        assert main(arguments) == 2
+        error = capsys.readouterr().err
+        assert error.startswith(f"error: {file}: ") and message in error
+        assert error.count(str(file)) == 1
+
+
+def test_the_season_is_not_imported_with_the_package():
+    assert [m for m in modules_after("import snowshed") if "season" in m] == []

@@ -1,0 +1,101 @@
+"""The one table of stacks: the same stacks from a store, its exports and results folders."""
+
+import copy
+import shutil
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from snowshed import InputError, Scene, run_events
+from snowshed.analysis.sensitivity.stored import read_stored
+from snowshed.study import Study, export
+from snowshed.study.stack_table import StackTable
+
+SCENE = Scene.preset("lab-50").update(
+    {"dimension": 2, "numerics.dx": 0.02, "events.count": 2, "events.max_time": 0.4}
+)
+
+
+@pytest.fixture(scope="module")
+def store(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("stacks") / "store"
+    axes = {"panel.tilt": [40.0, 50.0], "snow.cohesion": [0.2]}
+    Study.product(SCENE, axes, name="tilts", seeds=[1, 2]).compute(folder, jobs=1, threads=1)
+    return folder
+
+
+@pytest.mark.parametrize("ending", ["csv", "parquet"])
+def test_a_file_holds_the_stacks_of_its_store(store, tmp_path, ending):
+    export(store, tmp_path / f"table.{ending}")
+    ours = StackTable.read(store)
+    theirs = StackTable.read(tmp_path / f"table.{ending}")
+    for measure in ("stack", "body"):
+        one, other = (table.measured(measure, ["height", "length"]) for table in (ours, theirs))
+        for name in ("panel.tilt", "seed", "event", "height", "length"):
+            np.testing.assert_array_equal(one[name].to_numpy(float), other[name].to_numpy(float))
+    assert ours.varying(ours.axes, "this") == theirs.varying(theirs.axes, "this") == ["panel.tilt"]
+    stored, exported = read_stored(store), read_stored(tmp_path / f"table.{ending}")
+    assert stored.parameters == exported.parameters == ["panel.tilt"]
+    assert stored.rows["height"].tolist() == exported.rows["height"].tolist()
+
+
+def test_a_results_folder_is_the_run_of_the_study(store, tmp_path):
+    run_events(copy.deepcopy(SCENE).set("panel.tilt", 40.0), tmp_path / "out", pictures=False)
+    alone = StackTable.read(tmp_path / "out")
+    frame = StackTable.read(store).frame
+    same = frame[frame["hash"] == alone.frame["hash"].iloc[0]]
+    assert len(same) == 2 and set(same["panel.tilt"]) == {40.0} and set(same["seed"]) == {1}
+    heights = alone.measured("stack", ["height"])["height"]
+    assert heights.tolist() == pytest.approx(same["height_m"].tolist(), rel=1e-8)
+    assert alone.numbers("panel.tilt").tolist() == [40.0, 40.0]
+
+
+def test_a_folder_that_keeps_its_store_as_runs_is_read_there(store, tmp_path):
+    """What ``sensitivity -o results`` writes may be given as ``--stored results``."""
+    shutil.copytree(store, tmp_path / "results" / "runs")
+    found = StackTable.read(tmp_path / "results")
+    pd.testing.assert_frame_equal(found.frame, StackTable.read(store).frame)
+    with pytest.raises(InputError, match="holds no study"):
+        StackTable.read(tmp_path)
+
+
+def test_what_is_no_table_of_stacks_is_named(store, tmp_path):
+    (tmp_path / "a.csv").write_text("event,height_m\n1,much\n2,0.1\n")
+    table = StackTable.read(tmp_path / "a.csv")
+    with pytest.raises(InputError, match="line 2, height_m: 'much' is not a positive number"):
+        table.numbers("height_m", positive=True)
+    with pytest.raises(InputError, match="no column length_m; it has event, height_m"):
+        table.measured("stack", ["height", "length"])
+    with pytest.raises(InputError, match="measure: 'heap' is unknown; allowed: stack, body"):
+        table.measured("heap", ["height"])
+    with pytest.raises(InputError, match="holds no study 'x'"):
+        StackTable.read(store, "x")
+    with pytest.raises(InputError, match=r"none\.csv: No such file"):
+        StackTable.read(tmp_path / "none.csv")
+
+
+def test_a_table_of_before_is_of_the_reading_that_there_was(store, tmp_path):
+    """Its measures are found by the name of that reading; the other one it does not have."""
+    export(store, tmp_path / "new.csv")
+    new = pd.read_csv(tmp_path / "new.csv")
+    former = [name for name in new if "trimm" in name or "_pace_" in name or "most_first" in name]
+    assert len(former) == 1 + 2 * 4
+    new.drop(columns=former).to_csv(tmp_path / "old.csv", index=False)
+    old = StackTable.read(tmp_path / "old.csv")
+    assert set(old.frame["trimming"]) == {"equal_pace"}
+    for name in ("height", "length", "head", "tail"):
+        plain, named = (old.measured(one, [name])[name].tolist() for one in ("stack", "equal_pace"))
+        assert plain == named == new[f"{name}_m"].dropna().tolist()  # all in the air: no stack
+    with pytest.raises(InputError, match=r"no column outermost_first_height_m.*A\.4\.2"):
+        old.measured("outermost_first", ["height"])
+
+
+def test_every_stack_has_both_readings(store):
+    table = StackTable.read(store)
+    of_each = {
+        name: table.measured(name, ["length"])["length"].to_numpy()
+        for name in ("stack", "outermost_first", "equal_pace")
+    }
+    assert (of_each["stack"] == of_each["outermost_first"]).all()
+    assert (of_each["equal_pace"] != of_each["outermost_first"]).any()

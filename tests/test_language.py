@@ -1,0 +1,221 @@
+"""Words and names: texts are read once, and one concept has one word."""
+
+import ast
+import inspect
+import re
+
+import click
+import pytest
+from paths import DOCS, ROOT
+
+from snowshed.cli.deferred import Deferred
+from snowshed.cli.main import cli
+
+PACKAGE = ROOT / "python" / "snowshed"
+#: Rooms whose names and texts follow the rules; others join when they do.
+CLEAN = ("base", "io", "scene", "snow", "plot", "season", "analysis", "cli")
+#: Names that say nothing about their values.
+EMPTY_NAMES = {"found", "one", "way", "kept", "places"}
+
+#: First words of descriptions that begin with their object or a relative clause.
+OPENINGS = re.compile(r"(Of|What|By|That|How|Which|Whose|Where to) ")
+#: Constructions that need a second reading.
+CONSTRUCTIONS = re.compile(
+    "|".join(
+        (
+            r"\bfor want of\b",
+            r"\bnobody knows\b",
+            r"\bnobody (listens|reads|writes|entered|can guess)\b",
+            r"\bso-manieth\b",
+            r"\blets? go\b",
+            r"\bwhoever\b",
+            r"\b(is|are) to be\b",
+            r"\bif it likes\b",
+            r"\bat hand\b",
+            r"\bnone (of|that)\b.*\bis read\b",
+            r"\bare (?-i:none)\b",
+            r"\ball but\b",
+            r"\bbut for\b",
+            r"\bby what\b",
+            r"\bwhat (is|are|was|were|has|have) (known|asked|wanted|left|there)\b",
+            r"\bwhat stands\b",
+            r"\bone more of\b",
+            r"\bis no (list|number|table|archive)\b",
+            r"\bas far as (it|they) (is|are)\b",
+            r"\bin words\b",
+            r"\bhangs? on\b",
+            r"\btells? nobody\b",
+            r"\bit says so\b",
+        )
+    ),
+    re.IGNORECASE,
+)
+#: The same for pages, most of which describe methods.
+IN_PAGES = re.compile(
+    r"\bfor want of\b|\bnobody knows\b|\bso-manieth\b|\blets? go\b|\bwhoever\b|\bif it likes\b"
+    r"|\b(is|are) to be\b|\bRead are\b|\bTold are\b|\bby what\b"
+)
+#: Files whose field descriptions come from the core's description of a scene.
+FROM_THE_CORE = ("components", "loading", "output", "scene", "shape")
+SECTION = re.compile(r"^(Parameters|Attributes|Returns|Yields|Raises|Examples|Notes)\n-+$", re.M)
+
+
+def sources(rooms=CLEAN):
+    return [path for room in rooms for path in sorted((PACKAGE / room).rglob("*.py"))]
+
+
+def name_of(path):
+    return path.relative_to(PACKAGE).as_posix()
+
+
+def bound_names(tree):
+    """Yield line and name of all assignments, loop variables, parameters and functions."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
+            yield node.lineno, node.id
+        elif isinstance(node, ast.arg):
+            yield node.lineno, node.arg
+        elif isinstance(node, ast.FunctionDef):
+            yield node.lineno, node.name.strip("_")
+
+
+@pytest.mark.parametrize("room", CLEAN)
+def test_names_say_what_they_hold(room):
+    wrong = [
+        f"{name_of(path)}:{line}: {name}"
+        for path in sources([room])
+        for line, name in bound_names(ast.parse(path.read_text(encoding="utf-8")))
+        if name in EMPTY_NAMES
+    ]
+    assert wrong == []
+
+
+def paragraphs(doc):
+    """Yield the summary and the descriptions of a numpydoc docstring, a paragraph each."""
+    parts = SECTION.split(inspect.cleandoc(doc))
+    yield from re.split(r"\n\s*\n", parts[0])
+    for section, body in zip(parts[1::2], parts[2::2]):
+        if section != "Examples":
+            yield from re.findall(r"(?:^ {4}.*\n?)+", body, re.MULTILINE)
+
+
+def docstrings(path, tree):
+    """Yield line and text of every paragraph in docstrings."""
+    for node in ast.walk(tree):
+        kinds = (ast.Module, ast.ClassDef, ast.FunctionDef)
+        doc = ast.get_docstring(node, clean=False) if isinstance(node, kinds) else None
+        from_core = path.parent.name == "scene" and path.stem in FROM_THE_CORE
+        if doc and not (from_core and isinstance(node, ast.ClassDef)):
+            for text in paragraphs(doc):
+                yield getattr(node, "lineno", 1), " ".join(text.split())
+
+
+def literals(tree):
+    """Yield line and text of every string with several words, docstrings and f-strings, too."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.JoinedStr):
+            pieces = (str(v.value) if isinstance(v, ast.Constant) else "…" for v in node.values)
+            yield node.lineno, "".join(pieces)
+        elif isinstance(node, ast.Constant) and isinstance(node.value, str):
+            yield node.lineno, " ".join(node.value.split())
+
+
+def help_texts(command, name):
+    """Yield the name and the help of every option and command that is listed."""
+    command = command.load() if isinstance(command, Deferred) else command
+    yield name, command.help or ""
+    for option in command.params:
+        if isinstance(option, click.Option) and not option.hidden:
+            yield f"{name} {option.opts[0]}", option.help or ""
+    if isinstance(command, click.Group):
+        for each, child in command.commands.items():
+            if not child.hidden and each != "reproduce":
+                yield from help_texts(child, f"{name} {each}")
+
+
+@pytest.mark.parametrize("room", CLEAN)
+def test_docstrings_begin_with_their_subject(room):
+    wrong = [
+        f"{name_of(path)}:{line}: {text[:80]}"
+        for path in sources([room])
+        for line, text in docstrings(path, ast.parse(path.read_text(encoding="utf-8")))
+        if OPENINGS.match(text)
+    ]
+    assert wrong == []
+
+
+@pytest.mark.parametrize("room", CLEAN)
+def test_texts_need_no_second_reading(room):
+    wrong = [
+        f"{name_of(path)}:{line}: …{match[0]}…"
+        for path in sources([room])
+        for line, text in literals(ast.parse(path.read_text(encoding="utf-8")))
+        if (match := CONSTRUCTIONS.search(text)) and " " in text
+    ]
+    assert wrong == []
+
+
+def test_the_help_begins_with_its_subject_and_needs_no_second_reading():
+    generated = {f"snowshed {name}" for name in ("panel", "scene", "season", "slide", "grains")}
+    wrong = [
+        f"{name}: {text}"
+        for name, text in help_texts(cli, "snowshed")
+        if CONSTRUCTIONS.search(text)
+        or (OPENINGS.match(text) and not any(name.startswith(start) for start in generated))
+    ]
+    assert wrong == []
+
+
+def prose(page):
+    """Return the paragraphs of a page without code, by line."""
+    text = re.sub(r"^```.*?^```", "", page.read_text(encoding="utf-8"), flags=re.M | re.S)
+    return [re.sub(r"`[^`]*`", "`…`", part) for part in re.split(r"\n\s*\n", text)]
+
+
+PAGES = [ROOT / "README.md", *sorted(DOCS.rglob("*.md"))]
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+def test_pages_need_no_second_reading(page):
+    wrong = [match[0] for part in prose(page) for match in IN_PAGES.finditer(part)]
+    assert wrong == []
+
+
+def former_words():
+    """Return the former words of the glossary, by the term that replaces them."""
+    (page,) = DOCS.rglob("glossary.md")
+    rows = re.findall(r"^\| ([^|]+) \| [^|]+ \| ([^|]*)\|$", page.read_text("utf-8"), re.MULTILINE)
+    return {word: term for term, cell in rows for word in re.findall(r"`([^`]+)`", cell)}
+
+
+def test_one_concept_has_one_word():
+    former = former_words()
+    assert former["snowshed verify"] == "self-test" and former["--plan"] == "dry run"
+    texts = [(name, text) for name, text in help_texts(cli, "snowshed")]
+    texts += [
+        (f"{name_of(path)}:{line}", text)
+        for path in sources()
+        if path.name not in ("common_options.py", "main.py")  # they define the former spellings
+        for line, text in literals(ast.parse(path.read_text(encoding="utf-8")))
+    ]
+    wrong = [
+        f"{name}: {word} (write: {term})"
+        for name, text in texts
+        for word, term in former.items()
+        if re.search(rf"(?<![\w-]){re.escape(word)}(?![\w-])", text)
+    ]
+    assert wrong == []
+
+
+def test_pages_use_the_words_of_the_glossary():
+    former = {
+        word: term for word, term in former_words().items() if word[0] == "-" or "snow" in word
+    }
+    wrong = [
+        f"{page.name}: {word} (write: {term})"
+        for page in PAGES
+        if page.name != "glossary.md"
+        for word, term in former.items()
+        if re.search(rf"(?<![\w-]){re.escape(word)}(?![\w-])", page.read_text(encoding="utf-8"))
+    ]
+    assert wrong == []

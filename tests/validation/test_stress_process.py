@@ -1,0 +1,49 @@
+"""A run that crashes, hangs or raises gives a record, and the next run goes on."""
+
+import os
+import sys
+import time
+from pathlib import Path
+
+from validation.stress import process
+from validation.stress.process import Run, record, stress_pool
+from validation.stress.space import reference
+
+
+def clumsy(run, report):
+    """Stand in for `process.compute`; `steps` says what goes wrong."""
+    if run.steps == 1:
+        sys.stderr.write("first\nlast words\n")
+        sys.stderr.flush()
+        os.abort()
+    if run.steps == 2:
+        time.sleep(600)
+    return {"ended": str(run.steps), "message": os.environ["OMP_NUM_THREADS"]}
+
+
+def test_crashes_and_hangs_are_records_and_the_next_run_goes_on(monkeypatch):
+    monkeypatch.syspath_prepend(str(Path(__file__).parent))
+    monkeypatch.setattr(process, "compute", clumsy)
+    with stress_pool(limit_s=10.0) as pool:
+        assert record(pool, Run({}, 7)) == {"ended": "7", "message": "1"}
+        crash = record(pool, Run({}, 1))
+        assert crash["ended"] == "crashed"
+        assert crash["message"] == "was killed by signal 6 (Aborted) last words"
+        assert record(pool, Run({}, 8))["ended"] == "8"
+        assert record(pool, Run({}, 2)) == {"ended": "hung", "message": "took more than 10 s"}
+        assert record(pool, Run({}, 9))["ended"] == "9"
+
+
+def test_the_record_says_what_solve_found():
+    with stress_pool() as pool:
+        found = record(pool, Run({**reference(), "kind": "collide"}, 30))
+        assert found["ended"] == "time_limit"
+        assert found["finite"] and found["checkpoint"]
+        raised = record(pool, Run({"kind": "no such kind"}, 30))
+        assert raised["ended"] == "raised"
+        assert "KeyError" in raised["message"]
+        refused = record(
+            pool, Run({**reference(), "ground_tilt": 45.0, "tilt": 1.0, "cells": 1}, 30)
+        )
+        assert refused["ended"] == "refused"
+        assert refused["message"].startswith("/panel/tilt")

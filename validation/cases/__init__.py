@@ -1,1 +1,0 @@
-"""The verification cases, one module each."""

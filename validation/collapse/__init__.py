@@ -1,0 +1,1 @@
+"""The collapse of a granular column."""

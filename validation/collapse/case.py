@@ -1,0 +1,286 @@
+"""Collapse of a column of loose snow against the run-out laws of granular columns."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from snowshed import _core
+from snowshed.analysis.accuracy.measurements import Measured, Settings
+from snowshed.scene.components import Body, Events, Ground, Snow
+from snowshed.scene.scene import Scene
+from snowshed.scene.shape import Shape
+from snowshed.snow.stack.connected_components import largest_body
+from validation.collapse.granular_column import (
+    critical_state_slope,
+    front,
+    glass_runout_law,
+    height_law,
+    runout_law,
+)
+from validation.framework.case import Case, Outcome, Quantity
+from validation.framework.drive import apply_settings, relative
+
+RADIUS = 0.1  # m; half the width of a plane column
+DENSITY = 210.0  # kg/m3
+GRAVITY = 9.81  # m/s2
+#: Young's modulus over the weight of the column: elastic strains stay below one percent.
+STIFFNESS = 300.0
+#: Initial preconsolidation over the weight of the column: strength is gone at once.
+PRECONSOLIDATION = 0.02
+#: Hardening factor: p0 follows the pressure within volume changes of about pressure / (xi K).
+HARDENING = 10.0
+
+#: Aspect ratios from which the exponent for tall columns is fitted.
+TALL: Mapping[int, Sequence[float]] = {2: (3.0, 5.0, 7.0, 10.0), 3: (2.0, 3.0, 4.0)}
+SAND, GLASS = 30.0, 22.0  # friction angles of sand and of glass beads, degrees
+OWN = frozenset({"aspect", "friction_angle"})
+
+
+@dataclass(frozen=True)
+class Deposit:
+    """The deposit of a column; run-out and height in units of the column's radius."""
+
+    runout: float
+    height: float
+    ended: str
+    wall_s: float
+    updates: int
+    steps: int
+    particles: int
+
+
+def column_scene(settings: Settings, aspect: float) -> Scene:
+    """Return the scene: the column on rough ground, released at once.
+
+    Parameters
+    ----------
+    settings
+        Scene parameters, and ``friction_angle`` (degrees) unless ``critical_state_slope`` is given.
+    aspect
+        Initial height over radius.
+    """
+    dimension, height = int(settings["dimension"]), aspect * RADIUS
+    weight = DENSITY * GRAVITY * max(height, RADIUS)
+    snow = Snow(
+        density=DENSITY,
+        youngs_modulus=STIFFNESS * weight,
+        preconsolidation_pressure=PRECONSOLIDATION * weight,
+        cohesion=0.0,
+        hardening_factor=HARDENING,
+    )
+    if "friction_angle" in settings:
+        angle = float(settings["friction_angle"])
+        snow.critical_state_slope = critical_state_slope(angle, dimension)
+    if dimension == 2:
+        shape = Shape.box((0.0, height / 2), (2 * RADIUS, height))
+    else:
+        shape = Shape.cylinder((0.0, 0.0, 0.0), (0.0, 0.0, height), RADIUS)
+    scene = Scene(
+        gravity=GRAVITY,
+        snow=snow,
+        ground=Ground(condition="sticky"),
+        bodies=[Body(shape=shape)],
+        events=Events(max_time=10 * math.sqrt(height / GRAVITY)),
+    )
+    return apply_settings(scene, settings, own=OWN)
+
+
+def collapse(settings: Settings, aspect: float) -> Deposit:
+    """Let a column collapse and measure what lies there at the end.
+
+    Examples
+    --------
+    >>> collapse({"dimension": 2, "dx": 0.025, "friction_angle": 30.0}, 1.0).ended
+    'rest'
+    """
+    simulation = _core.Simulation(column_scene(settings, aspect).resolve().json)
+    simulation.begin_event()
+    started = time.perf_counter()
+    ended = simulation.run(lambda info: True)
+    wall = time.perf_counter() - started
+    positions = simulation.positions()
+    body = positions[largest_body(positions, simulation.masses(), float(settings["dx"]))]
+    return Deposit(
+        runout=front(body) / RADIUS - 1,
+        height=float(body[:, 2].max()) / RADIUS,
+        ended=ended,
+        wall_s=wall,
+        updates=simulation.particle_updates,
+        steps=simulation.total_steps,
+        particles=simulation.particle_count,
+    )
+
+
+def measure(settings: Settings) -> Outcome:
+    """Let one column collapse, or the tall ones for their exponent."""
+    dimension = int(settings["dimension"])
+    if settings["aspect"] == "tall":
+        return _measure_exponent(settings, TALL[dimension])
+    aspect = float(settings["aspect"])
+    deposit = collapse(settings, aspect)
+    if settings.get("friction_angle") == GLASS:
+        measured = [relative("runout_glass", deposit.runout, glass_runout_law(aspect))]
+    else:
+        measured = [
+            relative("runout", deposit.runout, runout_law(aspect, dimension)),
+            relative("height", deposit.height, height_law(aspect, dimension)),
+        ]
+    return _outcome([deposit], measured)
+
+
+def _measure_exponent(settings: Settings, aspects: Sequence[float]) -> Outcome:
+    deposits = [collapse(settings, aspect) for aspect in aspects]
+    runouts = [deposit.runout for deposit in deposits]
+    exponent = float(np.polyfit(np.log(aspects), np.log(runouts), 1)[0])
+    exact = 2 / 3 if settings["dimension"] == 2 else 1 / 2
+    return _outcome(deposits, [relative("exponent", exponent, exact)])
+
+
+def _outcome(deposits: Sequence[Deposit], measured: Sequence[Measured]) -> Outcome:
+    return Outcome(
+        measured,
+        wall_s=sum(deposit.wall_s for deposit in deposits),
+        updates=sum(deposit.updates for deposit in deposits),
+        steps=sum(deposit.steps for deposit in deposits),
+        particles=max(deposit.particles for deposit in deposits),
+    )
+
+
+def matrix(full: bool) -> list[Settings]:
+    """Return the settings to solve with."""
+    plane: Settings = {"dimension": 2, "dx": 0.01, "friction_angle": SAND, "transfer": "flip"}
+    space: Settings = {**plane, "dimension": 3, "dx": 1 / 60}
+    if not full:
+        coarse: list[Settings] = [{**plane, "dx": 0.02, "aspect": a} for a in (1.0, 3.0)]
+        return [*coarse, {**plane, "aspect": 1.0}, {**space, "dx": 0.02, "aspect": 1.0}]
+    columns: list[Settings] = [
+        {**plane, "transfer": transfer, "aspect": aspect}
+        for transfer in ("flip", "apic")
+        for aspect in (0.5, 1.0, 1.5, 3.0, 5.0, "tall")
+    ]
+    grids: list[Settings] = [
+        {**plane, "transfer": transfer, "aspect": 1.5, "dx": dx}
+        for transfer in ("flip", "apic")
+        for dx in (0.02, 0.005)
+    ]
+    damping: list[Settings] = [
+        {**plane, "aspect": 1.5, **scheme}
+        for scheme in (
+            {"flip_ratio": 0.95},
+            {"flip_ratio": 0.999},
+            {"courant_factor": 0.3},
+            # The same share of PIC per second as 0.99 at three times the step: 0.99^(1/3).
+            {"courant_factor": 0.3, "flip_ratio": 0.9967},
+            {"sleep_speed": 0.005},
+            {"sleep_speed": 0.02},
+        )
+    ]
+    glass: list[Settings] = [
+        {**plane, "transfer": transfer, "aspect": 1.5, "friction_angle": GLASS}
+        for transfer in ("flip", "apic")
+    ]
+    round_columns: list[Settings] = [
+        {**space, "aspect": aspect} for aspect in (0.5, 1.0, 2.0, 4.0, "tall")
+    ]
+    round_columns += [{**space, "aspect": 1.0, "dx": 0.01}, {**space, "aspect": 1.0, "dx": 0.02}]
+    round_columns += [{**space, "aspect": 1.0, "transfer": "apic"}]
+    round_columns += [{**_without_angle(space), "aspect": 1.0, "critical_state_slope": 0.866}]
+    return [*columns, *grids, *damping, *glass, *round_columns]
+
+
+def _without_angle(settings: Settings) -> Settings:
+    return {name: value for name, value in settings.items() if name != "friction_angle"}
+
+
+SOURCE = (
+    "Round columns: G. Lube, H. Huppert, S. Sparks and M. Hallworth, J. Fluid Mech. 508 (2004) "
+    "175. Plane columns: G. Lube, H. Huppert, S. Sparks and A. Freundt, Phys. Rev. E 72 (2005) "
+    "041301, Eq. 4, and E. Lajeunesse, J. Monnier and G. Homsy, Phys. Fluids 17 (2005) 103302, "
+    "both as summarised by P.-Y. Lagrée, L. Staron and S. Popinet, J. Fluid Mech. 686 (2011) 378."
+)
+
+DESCRIPTION = """
+A column of loose snow, a times as high as its radius (in the plane: as half its width), stands on
+rough ground and is released at once. Sand, rice and sugar leave nearly the same deposit, which
+depends on a alone: in the plane the run-out (r∞ - r0) / r0 is 1.2 a for a < 1.8 and 1.9 a^(2/3) for
+a > 2.8; for round columns 1.24 a for a < 1.7 and 1.6 a^(1/2) above. The height h∞ / r0 is that of
+the column as long as its middle stays, then a^(2/5) in the plane and 0.88 a^(1/6) for round
+columns. Glass beads, more slippery (22 degrees), run out 1.8 a in the plane below a = 3. The
+experiments scatter by 10 to 20 % about their own laws. The error is the departure from the law.
+"Tall" fits the exponent of the run-out to a = 3, 5, 7, 10 in the plane and 2, 3, 4 in space; the
+laws say 2/3 and 1/2.
+
+How snow is made to act as sand: no cohesion (beta = 0); an initial preconsolidation pressure of 2 %
+of the column's weight, so that it has no strength of its own; and a hardening factor of 10, with
+which p0 follows the pressure within volume changes of a thousandth. Sheared snow is then at its
+critical state q = M p at once, flows at constant volume, carries no tension, and parts freely. M is
+that of Coulomb friction of 30 degrees (sand): sqrt(3) sin(phi) in the plane, where the match is
+exact, and 6 sin(phi) / (3 - sin(phi)), the match in triaxial compression, in space. Neither of the
+two constants matters for the deposit: preconsolidation from 0.2 to 20 % and hardening factors from
+1 to 100 change the run-out by less than 1 %. The analogy ends there: the friction of sand grows
+with the rate of shear, sand dilates before it flows and loses energy where grains collide; this
+snow does nothing of the kind, and its grains have no size.
+"""
+
+REMARKS = """
+Heights agree with the laws within 18 %; most are 10 to 16 % low, and they hardly depend on grid or
+scheme. They are what can be asked of the method here.
+
+The run-out is less certain, because the front decides it. A deposit thins out towards its edge, and
+where it is thinner than about a cell it cannot slide over ground that holds the nodes below it: the
+front stops two to four cells short. At ten cells to the radius the default scheme is 12 to 20 %
+below the law in the plane, 40 % for the lowest column, and at twenty cells it meets the law (a =
+1.5). That is not convergence: with less numerical damping the front creeps on as the grid is
+refined, APIC to 35 % beyond the law. Other continuum models in the plane do the same (Lagrée et al.
+2.2 a; S. Dunatunga and K. Kamrin, J. Fluid Mech. 779 (2015) 483, 2.3 a). The experiments have side
+walls, and a front that cannot be thinner than a grain. The linear regime also reaches to higher
+columns than in the experiments, so the exponent of tall ones comes out too large.
+
+In space a deposit of the same volume is thinner, a fifth of the radius in the mean, so at six cells
+to the radius the run-out is only half the law's. With 16 cells, APIC and M = 0.866 it was 86 % of
+the law (a = 1; measured once, not part of the suite). Besides, M matched in triaxial compression
+makes snow in plane shear as strong as sand of 44 degrees; M = 0.866, matched in plane shear, runs
+out further and leaves the middle too low.
+
+FLIP damps per step. The share of PIC, 1 - flip_ratio, is taken in every step, whatever its length,
+so smaller steps, and stiffer snow, which needs them, damp more: a third of the time step shortens
+the run-out by 17 %. If flip_ratio is brought to 0.9967 along with it, so that the share of PIC per
+second stays, the run-out stays too, within 2 %. The solution does not converge in the time step
+alone. APIC loses some energy in every step as well, with the same effect on the run-out.
+
+Snow that comes to rest may sleep without harm: with a sleep_speed of 5 or 20 mm/s the run-out and
+the height change by less than a thousandth (a = 1.5). All other columns never sleep.
+"""
+
+CASE = Case(
+    name="collapse",
+    title="Collapse of a column of loose snow",
+    source=SOURCE,
+    description=DESCRIPTION,
+    quantities=[
+        # What the method can do on these grids (see the remarks), not what one would wish.
+        Quantity(
+            "runout",
+            "Run-out over radius, against Lube et al.",
+            bar=0.55,
+            bar_for={"friction_angle": SAND},
+        ),
+        # No smaller than the experiments' own scatter.
+        Quantity(
+            "height",
+            "Final height over radius, against Lube et al.",
+            bar=0.2,
+            bar_for={"friction_angle": SAND},
+        ),
+        Quantity("runout_glass", "Run-out over radius, against Lajeunesse et al."),
+        Quantity("exponent", "Exponent of the run-out of tall columns"),
+    ],
+    matrix=matrix,
+    measure=measure,
+    remarks=REMARKS,
+)

@@ -1,0 +1,1 @@
+"""Elastic bodies that vibrate and spin."""

@@ -1,0 +1,87 @@
+"""Damping of small vibrations by the transfers between particles and grid, in theory.
+
+On a grid full of particles a wave exp(i k x) loses the factor s = (sin(k h/2)/(k h/2))^m in every
+interpolation with a spline, m = 3 for the quadratic one and 4 for the cubic one. Let V be the
+amplitude of the grid's velocity before forces, q that of the displacement, and Omega the frequency
+that the grid would have without smoothing. A step is
+
+    w = V - dt Omega^2 q,  q <- q + dt w,  V <- g V - f dt Omega^2 q.
+
+FLIP with the ratio a hands back the change of velocity, smoothed twice, and of the rest the part a
+as it was: f = s^2, g = 1 - (1 - a)(1 - s^2). With APIC all of w goes to the particles and back,
+with the slope within each cell: f = g = s^2 + (ds/dk)^2/D, D = h^2/4 or h^2/3. The amplitude falls
+by the root of the step's determinant,
+
+    g - dt^2 Omega^2 (g - f),  Omega^2 = omega^2/f,
+
+that is 1 - (1 - s^2) dt^2 Omega^2 even for pure FLIP: forces move the particles' positions at once,
+but reach their velocities smoothed.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from snowshed.analysis.accuracy.measurements import Settings
+
+
+@dataclass(frozen=True)
+class Smoothing:
+    """The effect of one way of transferring velocities on a wave of small amplitude.
+
+    Attributes
+    ----------
+    kept
+        g, the part of the velocity that a step hands on.
+    felt
+        f, the part of the forces that reaches the velocity.
+    """
+
+    kept: float
+    felt: float
+
+    @classmethod
+    def of(cls, settings: Settings, wavenumber: float) -> Smoothing:
+        """Return the smoothing of a wave.
+
+        Parameters
+        ----------
+        settings
+            "dx", "basis", "transfer" and for FLIP "flip_ratio".
+        wavenumber
+            k, 1/m.
+
+        Examples
+        --------
+        PIC loses (k h/2)^2 of a long wave's velocity in every step.
+
+        >>> pic = {"transfer": "flip", "flip_ratio": 0.0, "dx": 0.1, "basis": "quadratic"}
+        >>> round((1 - Smoothing.of(pic, 0.1).kept) / (0.1 * 0.1 / 2) ** 2, 3)
+        1.0
+        """
+        dx, quadratic = float(settings["dx"]), settings["basis"] == "quadratic"
+        factors = 3 if quadratic else 4
+        half = wavenumber * dx / 2
+        wave = math.sin(half) / half
+        once = wave**factors
+        if settings["transfer"] == "apic":
+            slope = factors * wave ** (factors - 1) * (math.cos(half) - wave) / half / 2  # over dx
+            affine = once**2 + slope**2 * (4 if quadratic else 3)
+            return cls(kept=affine, felt=affine)
+        lost = (1 - float(settings["flip_ratio"])) * (1 - once**2)
+        return cls(kept=1 - lost, felt=once**2)
+
+    def lost(self, frequency: float, time_step: float) -> float:
+        """Return the part of the amplitude that is lost in a period.
+
+        Parameters
+        ----------
+        frequency
+            Hz.
+        time_step
+            s.
+        """
+        angle = (2 * math.pi * frequency * time_step) ** 2 / self.felt
+        step = self.kept - angle * (self.kept - self.felt)
+        return -math.expm1(math.log(step) / (2 * frequency * time_step))

@@ -1,0 +1,93 @@
+"""Bars: what the cases demand of errors and orders of convergence, and what was measured."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from math import inf, isnan, nan
+from typing import TYPE_CHECKING, Optional
+
+from snowshed.analysis.accuracy.measurements import Settings
+from snowshed.analysis.accuracy.solutions import records, rows_of, solutions
+from validation.framework.case import Case, Quantity, Wanted
+from validation.framework.convergence import convergences
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+@dataclass(frozen=True)
+class Bar:
+    """A demand on a quantity, and what was found.
+
+    Attributes
+    ----------
+    kind
+        ``"error"`` (the largest allowed) or ``"order"`` of convergence (the smallest allowed).
+    demanded, found
+        The bar, and the worst that was measured (NaN if that failed; None if nothing was).
+    settings
+        Those of the worst.
+    count
+        How many errors or orders were compared with the bar.
+    """
+
+    case: str
+    quantity: Quantity
+    kind: str
+    demanded: float
+    found: Optional[float]
+    settings: Settings
+    count: int
+
+    @property
+    def meant(self) -> Wanted:
+        """The settings that the demand is for; an order is not for one size alone."""
+        order_in = self.quantity.order_in if self.kind == "order" else None
+        return {name: value for name, value in self.quantity.bar_for.items() if name != order_in}
+
+    @property
+    def holds(self) -> Optional[bool]:
+        """True if the bar holds; None if nothing was measured that it is for."""
+        if self.found is None:
+            return None
+        return self.found >= self.demanded if self.kind == "order" else self.found <= self.demanded
+
+
+def compare(table: pd.DataFrame, cases: Iterable[Case]) -> list[Bar]:
+    """Compare every demand of the cases with what was measured."""
+    found = []
+    for case in cases:
+        for quantity in case.quantities:
+            rows = rows_of(table, case.name, quantity.name)
+            if quantity.bar is not None:
+                found.append(_error_bar(case.name, quantity, quantity.bar, rows))
+            if quantity.least_order is not None and quantity.order_in is not None:
+                found.append(_order_bar(case.name, quantity, quantity.least_order, rows))
+    return found
+
+
+def _error_bar(case: str, quantity: Quantity, demanded: float, rows: pd.DataFrame) -> Bar:
+    """Every single measurement must be within the bar; one that failed is not."""
+    meant = [row for row in records(rows) if _matches(row.settings, quantity.bar_for)]
+    if not meant:
+        return Bar(case, quantity, "error", demanded, None, {}, 0)
+    worst = max(meant, key=lambda row: inf if isnan(row.error) else abs(row.error))
+    return Bar(case, quantity, "error", demanded, abs(worst.error), worst.settings, len(meant))
+
+
+def _order_bar(case: str, quantity: Quantity, demanded: float, rows: pd.DataFrame) -> Bar:
+    """Every series must converge fast enough; one with a failed measurement does not."""
+    order_in = quantity.order_in or ""
+    demand = {name: value for name, value in quantity.bar_for.items() if name != order_in}
+    meant = [(one.order, one.settings) for one in convergences(solutions(rows), order_in)]
+    meant += [(nan, row.settings) for row in records(rows) if isnan(row.error)]
+    meant = [(order, settings) for order, settings in meant if _matches(settings, demand)]
+    if not meant:
+        return Bar(case, quantity, "order", demanded, None, {}, 0)
+    order, settings = min(meant, key=lambda one: -inf if isnan(one[0]) else one[0])
+    return Bar(case, quantity, "order", demanded, order, settings, len(meant))
+
+
+def _matches(settings: Settings, wanted: Wanted) -> bool:
+    return all(settings.get(name) == value for name, value in wanted.items())

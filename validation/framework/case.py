@@ -1,0 +1,100 @@
+"""Cases: problems with known answers, and ways of solving them.
+
+A module of cases makes one `Case`, or several. `measure_cases` takes every entry of its
+matrix of settings through `Case.measure`, in a process of its own, and the report compares.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Optional
+
+from snowshed.analysis.accuracy.measurements import Measured, Settings, Value
+from snowshed.base.formatting import number, percent
+
+#: Settings that are asked for; None: not given.
+Wanted = Mapping[str, Optional[Value]]
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """Something measured, with what is demanded of it.
+
+    Parameters
+    ----------
+    name:
+        Key, such as ``"acceleration"``.
+    title:
+        What it is, with its unit if it has one.
+    bar:
+        Largest error allowed; `None` where nothing is demanded.
+    bar_for:
+        The settings that the bar is for: every name given here must have this value; None: it must
+        not be given.
+    order_in:
+        The setting whose power law the error follows (``"dx"``, ``"courant_factor"``), if any.
+    least_order:
+        The smallest order of convergence allowed.
+    relative:
+        Whether the error is relative to the exact value (shown in %) or in the quantity's unit.
+    """
+
+    name: str
+    title: str
+    bar: Optional[float] = None
+    bar_for: Wanted = field(default_factory=dict)
+    order_in: Optional[str] = None
+    least_order: Optional[float] = None
+    relative: bool = True
+
+    def error_in_words(self, error: Optional[float]) -> str:
+        """Return an error in percent, or in the quantity's unit."""
+        return percent(error) if self.relative else number(error)
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """The results of one entry of the matrix.
+
+    ``wall_s`` is the time of the solution alone (without seeding, imports or evaluation);
+    ``updates`` counts particles times steps (for a material path: its increments).
+    """
+
+    measured: Sequence[Measured]
+    wall_s: float
+    updates: int
+    steps: int = 0
+    particles: int = 0
+
+
+@dataclass(frozen=True)
+class Case:
+    """A problem with a known answer.
+
+    Parameters
+    ----------
+    name, title:
+        Key and heading.
+    source:
+        Where the answer comes from: closed form, equation, paper.
+    description:
+        A paragraph for the report: the problem, the answer, what the error is.
+    quantities:
+        All that `measure` returns.
+    matrix:
+        ``matrix(full)`` lists the settings to solve with; the quick list takes seconds in all.
+    measure:
+        Solves once. Must not depend on anything but its settings.
+    remarks:
+        Where the method is poor here, and why; the report prints it with the numbers.
+    """
+
+    name: str
+    title: str
+    source: str
+    description: str
+    quantities: Sequence[Quantity]
+    matrix: Callable[[bool], list[Settings]]
+    measure: Callable[[Settings], Outcome]
+    remarks: str = ""

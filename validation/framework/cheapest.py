@@ -1,0 +1,101 @@
+"""The cost of accuracy: Pareto fronts, and the quickest way to each accuracy."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Iterable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from snowshed.analysis.accuracy.measurements import Settings
+from snowshed.analysis.accuracy.solutions import (
+    Solution,
+    assured_errors,
+    key_of,
+    quickest,
+    rows_of,
+    solutions,
+)
+from snowshed.base.arrays import Booleans
+from validation.framework.case import Case, Quantity
+from validation.framework.schemes import problem_of
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+#: Accuracies for which the cheapest settings are looked up.
+WANTED = (0.10, 0.05, 0.02, 0.01)
+
+
+@dataclass(frozen=True)
+class Cheapest:
+    """The quickest way to a wanted accuracy; the best there is where none reached it.
+
+    Attributes
+    ----------
+    problem
+        The settings that make the problem.
+    error
+        Assured by all finer solutions (`assured_errors`).
+    """
+
+    case: str
+    quantity: str
+    problem: Settings
+    wanted: float
+    reached: bool
+    error: float
+    solution: Solution
+
+
+def pareto_front(costs: Sequence[float], errors: Sequence[float]) -> Booleans:
+    """Return which points no other point beats in both cost and error.
+
+    Examples
+    --------
+    >>> pareto_front([1.0, 2.0, 3.0, 4.0], [0.3, 0.4, 0.1, 0.1]).tolist()
+    [True, False, True, False]
+    """
+    front = np.zeros(len(costs), dtype=bool)
+    best = np.inf
+    for i in np.lexsort((errors, costs)):
+        if errors[i] < best:
+            front[i], best = True, errors[i]
+    return front
+
+
+def by_problem(case: Case, found: Iterable[Solution]) -> list[tuple[Settings, list[Solution]]]:
+    """Return the problems among solutions, each with all ways in which it was solved."""
+    groups: dict[Hashable, tuple[Settings, list[Solution]]] = {}
+    for one in found:
+        problem = problem_of(case, one.settings)
+        groups.setdefault(key_of(problem), (problem, []))[1].append(one)
+    return list(groups.values())
+
+
+def cheapest(
+    table: pd.DataFrame, cases: Iterable[Case], wanted: Sequence[float] = WANTED
+) -> list[Cheapest]:
+    """Return the quickest way to each accuracy.
+
+    For each quantity with a relative error and each problem that was solved in several ways.
+    """
+    return [
+        _cheapest(case.name, quantity, problem, found, accuracy)
+        for case in cases
+        for quantity in case.quantities
+        if quantity.relative
+        for problem, found in by_problem(case, solutions(rows_of(table, case.name, quantity.name)))
+        if len(found) > 1
+        for accuracy in wanted
+    ]
+
+
+def _cheapest(
+    case: str, quantity: Quantity, problem: Settings, found: Sequence[Solution], wanted: float
+) -> Cheapest:
+    errors = assured_errors(found, quantity.order_in)
+    i = quickest([one.wall_s for one in found], errors, wanted)
+    reached = errors[i] <= wanted
+    return Cheapest(case, quantity.name, problem, wanted, reached, errors[i], found[i])

@@ -1,0 +1,388 @@
+"""Figures of the report: convergence, and error against run time."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Callable, Collection, Hashable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from itertools import cycle
+from string import ascii_uppercase
+from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Tuple
+
+import matplotlib
+import numpy as np
+from matplotlib.lines import Line2D
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+from snowshed.analysis.accuracy import setting_labels
+from snowshed.analysis.accuracy.measurements import Settings, Value
+from snowshed.analysis.accuracy.solutions import Solution, key_of
+from snowshed.base import formatting
+from snowshed.plot.figure_style import BODY, COLOURS, FAINT, INK, STYLE, blank
+from validation.framework.case import Quantity
+from validation.framework.cheapest import pareto_front
+from validation.framework.convergence import Convergence
+from validation.framework.schemes import varying
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
+    from matplotlib.figure import Figure
+
+#: For a setting's name, how each of its values is drawn.
+StylesOfValues = Mapping[str, Mapping[Optional[Value], Any]]
+
+#: The settings that make a problem, and the ways in which it was solved.
+Problem = Tuple[Settings, Sequence[Solution]]
+
+MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
+DASHES = ("-", (0, (5, 2)), (0, (1, 1.4)), (0, (6, 1.5, 1, 1.5)), (0, (9, 3)))
+#: Which settings get colours before others get markers and dashes.
+FIRST = ("transfer", "law", "between", "dimension", "events", "basis", "precision")
+#: Points on a Pareto front closer than this part are not both named.
+NEARLY = 0.1
+#: Problems of a quantity that get a Pareto front, at most.
+MOST_FRONTS = 3
+#: Times too short to be measured lie here, s.
+SHORTEST = 1e-6
+#: Errors of exact answers are zero; on a logarithmic axis they lie here.
+ZERO = 1e-17
+
+
+class KeyLine(NamedTuple):
+    """Text beside a diagram about a point; without a letter, about those that follow."""
+
+    letter: str
+    cost: str
+    settings: str
+
+
+@dataclass(frozen=True)
+class LineStyles:
+    """Styles that tell settings apart: one by colour, one by marker, one by dashes.
+
+    Attributes
+    ----------
+    colours, markers, dashes
+        For a setting's name the style of each of its values; empty where no setting is left.
+    """
+
+    colours: StylesOfValues
+    markers: StylesOfValues
+    dashes: StylesOfValues
+
+    @classmethod
+    def of(
+        cls, choices: Sequence[Settings], drawn: Sequence[Settings], along: Collection[str] = ()
+    ) -> LineStyles:
+        """Return the styles for what is drawn.
+
+        Parameters
+        ----------
+        choices
+            All choices of settings, so that a value looks the same in every figure of a case.
+        drawn
+            Those that are drawn: the settings in which they differ are told apart.
+        along
+            Settings that are told by the lines. Where there are none, dashes tell nothing.
+        """
+        names = [name for name in varying(drawn) if name not in along]
+        names.sort(key=lambda n: FIRST.index(n) if n in FIRST else len(FIRST))
+        shapes = (COLOURS, MARKERS, DASHES) if along else (COLOURS, MARKERS)
+        of_names: list[dict[str, dict[Optional[Value], Any]]] = [{}, {}, {}]
+        for of_name, name, of_values in zip(of_names, names, shapes):
+            values = dict.fromkeys(one.get(name) for one in choices)
+            of_name[name] = dict(zip(values, cycle(of_values)))
+        return cls(*of_names)
+
+    def for_line(self, settings: Settings) -> dict[str, Any]:
+        """Return the arguments that draw the line of some settings."""
+        return {
+            "color": _pick(self.colours, settings, COLOURS[0]),
+            "marker": _pick(self.markers, settings, MARKERS[0]),
+            "linestyle": _pick(self.dashes, settings, DASHES[0]),
+        }
+
+    def key(self, drawn: Sequence[Settings]) -> list[Line2D]:
+        """Return the entries of a legend: every value that is drawn."""
+        kinds = (("color", self.colours), ("marker", self.markers), ("linestyle", self.dashes))
+        return [
+            _entry(keyword, shape, setting_labels.setting(name, value))
+            for keyword, styles in kinds
+            for name, shapes in styles.items()
+            for value, shape in shapes.items()
+            if any(one.get(name) == value for one in drawn)
+        ]
+
+
+def convergence_figure(
+    panels: Sequence[tuple[Quantity, Sequence[Convergence]]], choices: Sequence[Settings]
+) -> Figure:
+    """Draw errors against the setting they fall with, both axes logarithmic.
+
+    Parameters
+    ----------
+    panels
+        Quantities, and how their errors converge.
+    choices
+        All choices of settings of the case.
+    """
+    drawn = [one.settings for _, series in panels for one in series]
+    styles = LineStyles.of(choices, drawn, _orders_in(panels))
+    with _figure(styles, drawn, rows=-(-len(panels) // 2)) as figure:
+        for axes, (quantity, series) in zip(_pairs(figure, len(panels)), panels):
+            _draw_convergence(axes, quantity, series, styles)
+    return figure
+
+
+def work_precision_figure(
+    panels: Sequence[tuple[Quantity, Sequence[Problem]]], choices: Sequence[Settings]
+) -> Figure:
+    """Draw errors against the time of the solution, with Pareto fronts and the names on them.
+
+    Parameters
+    ----------
+    panels
+        Quantities, and the problems they were solved for in. No more than `MOST_FRONTS` of these
+        get a front: those that were solved in most ways.
+    choices
+        All choices of settings of the case.
+    """
+    drawn = [one.settings for _, problems in panels for _, found in problems for one in found]
+    styles = LineStyles.of(choices, drawn, _orders_in(panels))
+    with _figure(styles, drawn, rows=len(panels)) as figure:
+        grid = figure.subplots(len(panels), 2, squeeze=False, width_ratios=(1.25, 1))
+        for (axes, beside), (quantity, problems) in zip(grid, panels):
+            _write_key(beside, _draw_work_precision(axes, quantity, problems, styles))
+    return figure
+
+
+def _orders_in(panels: Sequence[tuple[Quantity, Any]]) -> list[str]:
+    """Return the settings along which lines are drawn."""
+    return [quantity.order_in for quantity, _ in panels if quantity.order_in is not None]
+
+
+def _entry(keyword: str, shape: Any, label: str) -> Line2D:
+    """Return an entry of a legend that shows a colour, a marker or dashes, and nothing else."""
+    drawn: dict[str, Any] = {"color": INK, "marker": "o", "linestyle": "-"}
+    if keyword == "marker":
+        drawn["linestyle"] = ""
+    if keyword == "linestyle":
+        drawn["marker"] = ""
+    return Line2D([], [], label=label, markersize=5, linewidth=1.4, **{**drawn, keyword: shape})
+
+
+@contextmanager
+def _figure(styles: LineStyles, drawn: Sequence[Settings], *, rows: int) -> Iterator[Figure]:
+    """Yield a figure for some rows of panels, with a legend of the styles that are drawn."""
+    with matplotlib.rc_context(STYLE):
+        figure = blank(8.2, 2.9 * rows + 0.6)
+        yield figure
+        if key := styles.key(drawn):
+            lines = -(-len(key) // 8)
+            figure.legend(handles=key, loc="outside lower center", ncols=-(-len(key) // lines))
+
+
+def _pairs(figure: Figure, count: int) -> list[Axes]:
+    """Return panels in two columns."""
+    panels = list(figure.subplots(-(-count // 2), 2, squeeze=False).flat)
+    for unused in panels[count:]:
+        unused.axis("off")
+    return panels[:count]
+
+
+def _draw_convergence(
+    axes: Axes, quantity: Quantity, series: Sequence[Convergence], styles: LineStyles
+) -> None:
+    for one in series:
+        errors = np.maximum(one.errors, ZERO)
+        axes.plot(one.sizes, errors, markersize=4.5, linewidth=1.3, **styles.for_line(one.settings))
+    axes.set(xscale="log", yscale="log", title=_title(quantity))
+    axes.set_xlabel((quantity.order_in or "").replace("_", " "))
+    sizes = sorted({size for one in series for size in one.sizes})
+    axes.set_xticks(sizes, [formatting.number(size) for size in sizes])
+    axes.minorticks_off()
+    _draw_slope(axes, series, quantity.least_order)
+    _errors_on(axes, quantity)
+
+
+def _draw_slope(axes: Axes, series: Sequence[Convergence], least: Optional[float]) -> None:
+    """Draw a line with the slope that is demanded, or else a whole number near what there is."""
+    orders = [one.order for one in series if np.isfinite(one.order)]
+    order = least or max(1.0, round(float(np.median(orders)))) if orders else 0.0
+    if not order:
+        return
+    best = min(series, key=lambda one: one.errors[-1])
+    ends = np.array([best.sizes.max(), best.sizes.min()])
+    line = 0.6 * max(best.errors[0], ZERO) * (ends / ends[0]) ** order
+    axes.plot(ends, line, color=FAINT, linewidth=1.2, linestyle=(0, (2, 2)), zorder=1)
+    middle = np.sqrt(ends.prod()), np.sqrt(line.prod())
+    place: dict[str, Any] = {"textcoords": "offset points", "va": "top", "fontsize": 8}
+    axes.annotate(f"order {order:g}", middle, (5, -3), color=FAINT, **place)
+
+
+def _draw_work_precision(
+    axes: Axes, quantity: Quantity, problems: Sequence[Problem], styles: LineStyles
+) -> list[KeyLine]:
+    """Draw one diagram and return what is to be said about its fronts."""
+    for _, found in problems:
+        _draw_points(axes, found, quantity.order_in, styles)
+    axes.set(xscale="log", yscale="log", title=_title(quantity), xlabel="time of the solution")
+    axes.margins(0.1)
+    axes.set_xlim(_widened(*axes.get_xlim()))
+    _label(axes.xaxis, formatting.duration)
+    _errors_on(axes, quantity)
+    names, letters = varying(problem for problem, _ in problems), iter(ascii_uppercase)
+    lines: list[KeyLine] = []
+    for problem, found in _with_fronts(problems):
+        if names:
+            lines.append(KeyLine("", setting_labels.settings(problem, names), ""))
+        lines += _draw_front(axes, quantity, found, letters)
+    return lines
+
+
+def _with_fronts(problems: Sequence[Problem]) -> list[Problem]:
+    """Return the problems that were solved in most ways; one way alone makes no front."""
+    several = [problem for problem in problems if len(problem[1]) > 1]
+    return sorted(several, key=lambda problem: -len(problem[1]))[:MOST_FRONTS]
+
+
+def _draw_points(
+    axes: Axes, found: Sequence[Solution], order_in: Optional[str], styles: LineStyles
+) -> None:
+    for line in _lines(found, order_in):
+        points = [_time(found[i]) for i in line], [_size(found[i]) for i in line]
+        drawn = styles.for_line(found[line[0]].settings)
+        axes.plot(*points, markersize=5, linewidth=0.9, alpha=0.8, markeredgewidth=0, **drawn)
+
+
+def _draw_front(
+    axes: Axes, quantity: Quantity, found: Sequence[Solution], letters: Iterator[str]
+) -> list[KeyLine]:
+    """Draw the Pareto front of one problem, and name the points on it."""
+    times, errors = [_time(one) for one in found], [_size(one) for one in found]
+    on_front = pareto_front(times, errors)
+    front = [int(i) for i in np.argsort(times) if on_front[i]]
+    corners = np.array([(times[i], errors[i]) for i in front]).T
+    axes.step(*corners, where="post", color=FAINT, linewidth=3.5, alpha=0.45, zorder=1)
+    names = varying(one.settings for one in found)
+    lines = []
+    for i, letter in zip(worth_naming(front, times, errors), letters):
+        _name_point(axes, letter, times[i], errors[i])
+        error = quantity.error_in_words(errors[i])
+        cost = f"{formatting.duration(times[i])}, {error}"
+        lines.append(KeyLine(letter, cost, setting_labels.settings(found[i].settings, names)))
+    return lines
+
+
+def _time(one: Solution) -> float:
+    return max(one.wall_s, SHORTEST)
+
+
+def _size(one: Solution) -> float:
+    return max(abs(one.error), ZERO)
+
+
+def worth_naming(
+    front: Sequence[int], times: Sequence[float], errors: Sequence[float]
+) -> list[int]:
+    """Return the points of a Pareto front but those that another one all but equals.
+
+    Left out is what costs nearly as much as a more accurate one, or is hardly more accurate than
+    a cheaper one.
+
+    Parameters
+    ----------
+    front
+        Indices, from the quickest to the most accurate.
+    times, errors
+        Of all points.
+
+    Examples
+    --------
+    >>> worth_naming([0, 1, 2, 3], [1.0, 1.05, 4.0, 8.0], [0.4, 0.2, 0.19, 0.1])
+    [1, 3]
+    """
+    named: list[int] = []
+    for i, following in zip(front, [*front[1:], None]):
+        if following is not None and times[following] < (1 + NEARLY) * times[i]:
+            continue
+        if not named or errors[i] < (1 - NEARLY) * errors[named[-1]]:
+            named.append(i)
+    return named
+
+
+def _lines(found: Sequence[Solution], order_in: Optional[str]) -> list[list[int]]:
+    """Return the indices of solutions that a line joins: alike but for the setting `order_in`."""
+    if order_in is None:
+        return [[i] for i in range(len(found))]
+    groups: dict[Hashable, list[int]] = {}
+    for i, one in enumerate(found):
+        groups.setdefault(key_of(one.settings, without=[order_in]), []).append(i)
+    return [
+        sorted(group, key=lambda i: found[i].settings.get(order_in, 0)) for group in groups.values()
+    ]
+
+
+def _name_point(axes: Axes, letter: str, time: float, error: float) -> None:
+    offset: dict[str, Any] = {
+        "textcoords": "offset points",
+        "ha": "right",
+        "va": "top",
+        "zorder": 5,
+    }
+    axes.annotate(letter, (time, error), (-4, -3), color=INK, fontsize=9, weight="bold", **offset)
+
+
+def _write_key(axes: Axes, lines: Sequence[KeyLine]) -> None:
+    """List what lies on the Pareto fronts."""
+    axes.axis("off")
+    if not lines:
+        return
+    axes.set_title("on the Pareto front", fontsize=9, color=FAINT)
+    two = len(lines) < 8  # room for two lines each
+    step = 0.98 / max(len(lines), 7 if two else 13)
+    place: dict[str, Any] = {"transform": axes.transAxes, "va": "top", "color": INK, "fontsize": 8}
+    for row, line in enumerate(lines):
+        y = 0.98 - row * step
+        axes.text(0.0, y, line.letter, weight="bold", **place)
+        texts = [text for text in (line.cost, line.settings) if text]
+        where = 0.06 if line.letter else 0.0
+        axes.text(where, y, ("\n" if two else ": ").join(texts), **place)
+
+
+def _errors_on(axes: Axes, quantity: Quantity) -> None:
+    """Label the axis of the errors, and draw the bar."""
+    axes.set_ylabel("error, relative" if quantity.relative else "error")
+    low, high = _widened(*axes.get_ylim())
+    axes.set_ylim(low, high)
+    in_percent = quantity.relative and low > formatting.SMALL
+    _label(axes.yaxis, formatting.percent if in_percent else formatting.number)
+    if quantity.bar is not None:
+        axes.axhline(quantity.bar, color=BODY, linewidth=1.0, linestyle=(0, (6, 3)), zorder=1)
+
+
+def _label(axis: Axis, words: Callable[[float], str]) -> None:
+    """Label decades, or also twice and five times them where there are few."""
+    low, high = axis.get_view_interval()
+    steps = (1.0,) if high > 200 * low else (1.0, 2.0, 5.0)
+    axis.set_major_locator(LogLocator(subs=steps, numticks=9))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: words(value)))
+    axis.set_minor_formatter(NullFormatter())
+
+
+def _title(quantity: Quantity) -> str:
+    return textwrap.fill(quantity.title, 46)
+
+
+def _widened(low: float, high: float) -> tuple[float, float]:
+    """Return limits of a logarithmic axis that span a decade and a half, so that it has labels."""
+    factor = max(1.0, np.sqrt(30.0 * low / high))
+    return low / factor, high * factor
+
+
+def _pick(styles: StylesOfValues, settings: Settings, plain: Any) -> Any:
+    for name, shapes in styles.items():
+        return shapes.get(settings.get(name), plain)
+    return plain

@@ -1,0 +1,163 @@
+"""Measuring every case over its matrix, one measurement after another.
+
+Nothing runs at the same time, since times are measured. A measurement that fails becomes a result
+that says why.
+"""
+
+from __future__ import annotations
+
+import datetime
+import math
+import time
+from collections.abc import Iterable, Mapping, Sequence
+from typing import NamedTuple, Optional
+
+from snowshed import _core
+from snowshed.analysis.accuracy import setting_labels
+from snowshed.analysis.accuracy.measurements import Measured, Measurement, Settings, key_of
+from snowshed.base.machine import cpu_name
+from snowshed.base.progress import Progress, Reporter
+from validation.framework.case import Case, Outcome
+from validation.framework.measurement_file import MeasurementFile
+from validation.framework.process import Answer, measure_once, measuring_pool
+
+LONGEST = 60  # characters of what a progress bar says is being measured
+
+
+class Task(NamedTuple):
+    """One entry of a case's matrix."""
+
+    case: Case
+    settings: Settings
+
+    @property
+    def key(self) -> str:
+        """The key of its measurement."""
+        return key_of(self.case.name, self.settings)
+
+
+def tasks_of(cases: Iterable[Case], *, full: bool) -> list[Task]:
+    """Return the entries of the cases' matrices; what a matrix lists twice only once."""
+    tasks = [Task(case, settings) for case in cases for settings in case.matrix(full)]
+    return list({task.key: task for task in tasks}.values())
+
+
+def measure_cases(
+    cases: Sequence[Case],
+    file: MeasurementFile,
+    *,
+    full: bool = False,
+    progress: Optional[Reporter] = None,
+    durations: Optional[Mapping[str, float]] = None,
+) -> list[Measurement]:
+    """Measure all that `file` does not hold yet, and return all measurements.
+
+    Parameters
+    ----------
+    cases
+        What to measure.
+    file
+        Where measurements are kept. Those of this version that did not fail are not made again.
+    full
+        Whether to take the full matrices or the quick ones.
+    progress
+        Called before every measurement.
+    durations
+        What measurements took on another occasion, by key, s: for the estimate of the time left.
+
+    Returns
+    -------
+    list of Measurement
+        In the order of the matrices.
+    """
+    tasks = tasks_of(cases, full=full)
+    held = {one.key: one for one in file.read() if one.version == _core.version and not one.failure}
+    due = [task for task in tasks if task.key not in held]
+    estimate = Estimate(due, durations or {})
+    with measuring_pool() as pool:
+        for done, task in enumerate(due):
+            if progress is not None:
+                fraction, left_s = estimate.after(done)
+                before = len(tasks) - len(due)
+                doing = f"{task.case.name}: {setting_labels.settings(task.settings)}"[:LONGEST]
+                told = Progress(
+                    fraction, before + done, len(tasks), "measured", doing, left_s=left_s
+                )
+                progress(told)
+            answer = measure_once(pool, task.case.measure, task.settings)
+            held[task.key] = _measurement(task, answer)
+            file.append(held[task.key])
+    return [held[task.key] for task in tasks]
+
+
+class Estimate:
+    """Estimated duration of tasks: what they took before, scaled by how it goes this time.
+
+    A task about which nothing is known counts as the mean of its case, or of all.
+
+    Parameters
+    ----------
+    tasks
+        All that is to be done, in order.
+    durations
+        What tasks took on another occasion, by key, s.
+    """
+
+    def __init__(self, tasks: Sequence[Task], durations: Mapping[str, float]) -> None:
+        self._known = any(task.key in durations for task in tasks)
+        self._expected = [_expected(task, tasks, durations) for task in tasks]
+        self._started = time.monotonic()
+
+    def after(self, done: int) -> tuple[float, Optional[float]]:
+        """Return the part of the time that is over after so many tasks, and the time left, s."""
+        over, ahead = math.fsum(self._expected[:done]), math.fsum(self._expected[done:])
+        if over > 0.0:
+            pace = (time.monotonic() - self._started) / over
+        elif self._known:
+            pace = 1.0
+        else:
+            return 0.0, None
+        return over / (over + ahead), pace * ahead
+
+
+def _expected(task: Task, tasks: Sequence[Task], durations: Mapping[str, float]) -> float:
+    if task.key in durations:
+        return durations[task.key]
+    alike = [other for other in tasks if other.case.name == task.case.name]
+    for group in (alike, tasks):
+        known = [durations[other.key] for other in group if other.key in durations]
+        if known:
+            return math.fsum(known) / len(known)
+    return 1.0
+
+
+def _measurement(task: Task, answer: Answer) -> Measurement:
+    failure = answer.failure or _breach(task.case, answer.outcome)
+    outcome = Outcome([], 0.0, 0) if failure or answer.outcome is None else answer.outcome
+    nothing = [Measured(one.name, math.nan, math.nan, math.nan) for one in task.case.quantities]
+    return Measurement(
+        case=task.case.name,
+        settings=dict(task.settings),
+        measured=nothing if failure else list(outcome.measured),
+        wall_s=outcome.wall_s,
+        updates=outcome.updates,
+        steps=outcome.steps,
+        particles=outcome.particles,
+        peak_memory_mb=answer.peak_memory_mb,
+        elapsed_s=answer.elapsed_s,
+        version=_core.version,
+        machine=cpu_name(),
+        date=datetime.date.today().isoformat(),
+        failure=failure,
+    )
+
+
+def _breach(case: Case, outcome: Optional[Outcome]) -> str:
+    """Return how an outcome breaks the contract of its case; empty if it does not."""
+    returned = [one.quantity for one in outcome.measured] if outcome else []
+    listed = [quantity.name for quantity in case.quantities]
+    if not returned:
+        return "measure returned no quantity"
+    if wrong := [name for name in returned if name not in listed or returned.count(name) > 1]:
+        return f"measure returned {wrong[0]!r}, which the case does not list, or twice"
+    return ""

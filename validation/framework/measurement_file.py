@@ -1,0 +1,68 @@
+"""Measurements as lines of a file that grows.
+
+A measurement is written the moment it is there, so an interrupted suite loses nothing, and what has
+been measured is not measured again.
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from snowshed.analysis.accuracy.measurements import Measurement
+from snowshed.io.input_file import read_regular
+from snowshed.io.json_file import parse_object
+
+
+class MeasurementFile:
+    """Measurements as JSON lines; a line that was cut off by a crash is dropped.
+
+    Parameters
+    ----------
+    path
+        The file; it need not exist.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> from snowshed.analysis.accuracy.measurements import Measured
+    >>> with TemporaryDirectory() as folder:
+    ...     file = MeasurementFile(Path(folder) / "m.jsonl")
+    ...     file.append(Measurement("bar", {"dx": 0.1}, [Measured("height", 0.9, 1.0, -0.1)]))
+    ...     [one.case for one in file.read()]
+    ['bar']
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+
+    def read(self) -> list[Measurement]:
+        """Return all measurements, in the order in which they were made.
+
+        Raises
+        ------
+        InputError
+            If a line that is whole holds none, naming file and line.
+        """
+        lines = self._whole().split(b"\n")[:-1]
+        places = [f"{self.path}:{number}" for number in range(1, len(lines) + 1)]
+        return [
+            Measurement.from_json(parse_object(line, where), where)
+            for line, where in zip(lines, places)
+        ]
+
+    def append(self, measurement: Measurement) -> None:
+        """Add a measurement; it is on disk when this returns."""
+        line = json.dumps(measurement.to_json(), allow_nan=False) + "\n"
+        try:
+            with self.path.open("ab") as file:
+                file.truncate(len(self._whole()))
+                file.write(line.encode())
+        except OSError as error:  # writing does not say in which file
+            error.filename = error.filename or str(self.path)
+            raise
+
+    def _whole(self) -> bytes:
+        """Return what is in the file up to the end of its last complete line."""
+        data = read_regular(self.path) if self.path.exists() else b""
+        return data[: data.rfind(b"\n") + 1]

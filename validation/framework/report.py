@@ -1,0 +1,190 @@
+"""The report: ``validation.html``, which needs no other file, its figures and its tables.
+
+==================== ========================================================================
+validation.html      the report
+results.csv          one row per measured quantity, from `to_table`
+results.json         the same, with orders of convergence, cheapest settings and bars
+stress.csv           one row per run of the stress suite, if it ran
+figures/             the figures of the report (.png)
+==================== ========================================================================
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Optional
+
+from snowshed.analysis.accuracy import setting_labels
+from snowshed.analysis.accuracy.measurements import Measurement, to_table
+from snowshed.analysis.accuracy.solutions import rows_of, solutions
+from snowshed.base import formatting
+from snowshed.io.atomic import write_text
+from snowshed.io.csv_table import write_csv
+from snowshed.plot.html_page import template, write_pictures
+from validation.framework import sections
+from validation.framework.bars import Bar, compare
+from validation.framework.case import Case
+from validation.framework.cheapest import Cheapest, cheapest
+from validation.framework.convergence import convergences
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from validation.stress import SummaryTable
+
+TEMPLATE = "validation.html.j2"
+
+
+@dataclass(frozen=True)
+class Stress:
+    """Results of the stress suite: one row per run, and the tables that sum them up."""
+
+    runs: pd.DataFrame
+    tables: Sequence[SummaryTable]
+
+    @property
+    def failed(self) -> int:
+        """Number of runs that ended in a way that is not allowed."""
+        return int((self.runs["outcome"] == "failed").sum())
+
+
+@dataclass(frozen=True)
+class Validation:
+    """Cases and what was measured of them.
+
+    Attributes
+    ----------
+    cases, measurements
+        What was asked for, and all that was measured of it.
+    full
+        Whether the matrices were the full ones.
+    stress
+        The stress suite's results, if it ran.
+    """
+
+    cases: Sequence[Case]
+    measurements: Sequence[Measurement]
+    full: bool
+    stress: Optional[Stress] = None
+
+    def facts(self) -> dict[str, str]:
+        """Return what made the results."""
+        failed = sum(1 for one in self.measurements if one.failure)
+        return {
+            "suite": "full" if self.full else "quick",
+            "version": _all({one.version for one in self.measurements}),
+            "machine": _all({one.machine for one in self.measurements}),
+            "date": _all({one.date for one in self.measurements}),
+            "measurements": f"{len(self.measurements)}, {failed} failed",
+            "duration": formatting.duration(math.fsum(one.elapsed_s for one in self.measurements)),
+        }
+
+
+def write_report(validation: Validation, folder: Path) -> list[Bar]:
+    """Write the report's files into a folder; return what was demanded and what was found."""
+    table = to_table(validation.measurements)
+    bars = compare(table, validation.cases)
+    answers = cheapest(table, validation.cases)
+    about_cases = [
+        sections.section(case, [m for m in validation.measurements if m.case == case.name], table)
+        for case in validation.cases
+    ]
+    pictures = [picture for about in about_cases for picture in about.pictures]
+    write_pictures(pictures, folder / "figures")
+    write_csv(table, folder / "results.csv", float_format="%.9g")
+    write_text(folder / "results.json", json_text(validation, table, bars, answers))
+    if validation.stress is not None:
+        write_csv(validation.stress.runs, folder / "stress.csv", float_format="%.9g")
+    page = render(validation, bars, answers, about_cases)
+    write_text(folder / "validation.html", page)
+    return bars
+
+
+def problems(validation: Validation, bars: Sequence[Bar]) -> list[str]:
+    """Return everything that is not as it should be, a line each."""
+    titles = {case.name: case.title for case in validation.cases}
+    lines = [
+        f"{titles[bar.case]}, {bar.quantity.title}: demanded {sections.demanded(bar)}, "
+        f"worst {sections.found(bar)}, {setting_labels.settings(bar.settings)}"
+        for bar in bars
+        if bar.holds is False
+    ]
+    lines += [
+        f"{titles[one.case]}, {setting_labels.settings(one.settings)}: {one.failure}"
+        for one in validation.measurements
+        if one.failure
+    ]
+    if validation.stress is not None and validation.stress.failed:
+        lines.append(f"stress suite: {validation.stress.failed} runs failed")
+    return lines
+
+
+def render(
+    validation: Validation,
+    bars: Sequence[Bar],
+    answers: Sequence[Cheapest],
+    about_cases: Sequence[sections.Section],
+) -> str:
+    """Return the report as HTML."""
+    return template("validation.framework", TEMPLATE).render(
+        facts=validation.facts(),
+        counts=Counter(bar.holds for bar in bars),
+        problems=problems(validation, bars),
+        bars=sections.bars_grid(bars, validation.cases),
+        cheapest=sections.cheapest_grid(answers, validation.cases, validation.measurements),
+        sections=about_cases,
+        stress=validation.stress,
+        grid_of=sections.frame_grid,
+    )
+
+
+def json_text(
+    validation: Validation,
+    table: pd.DataFrame,
+    bars: Sequence[Bar],
+    answers: Sequence[Cheapest],
+) -> str:
+    """Return the results as JSON; numbers that are not finite are null."""
+    data = {
+        "about": validation.facts(),
+        "bars": [
+            {**asdict(bar), "quantity": bar.quantity.name, "holds": bar.holds} for bar in bars
+        ],
+        "cheapest": [asdict(one) for one in answers],
+        "orders": _orders(validation, table),
+        "measurements": [one.to_json() for one in validation.measurements],
+    }
+    return json.dumps(_plain(data), indent=1, allow_nan=False) + "\n"
+
+
+def _orders(validation: Validation, table: pd.DataFrame) -> list[dict[str, Any]]:
+    return [
+        {"case": case.name, "quantity": quantity.name, "in": quantity.order_in, **asdict(one)}
+        for case in validation.cases
+        for quantity in case.quantities
+        if quantity.order_in is not None
+        for one in convergences(
+            solutions(rows_of(table, case.name, quantity.name)),
+            quantity.order_in,
+        )
+    ]
+
+
+def _plain(value: Any) -> Any:
+    """Return data as JSON has it."""
+    if isinstance(value, Mapping):
+        return {str(name): _plain(inner) for name, inner in value.items()}
+    if isinstance(value, (str, bool, int)) or value is None:
+        return value
+    if isinstance(value, float):
+        return float(value) if math.isfinite(value) else None
+    return [_plain(inner) for inner in value]
+
+
+def _all(values: set[str]) -> str:
+    return ", ".join(sorted(values)) or formatting.NOTHING

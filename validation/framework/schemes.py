@@ -1,0 +1,42 @@
+"""Settings that say how a problem is solved; all others make another problem.
+
+An accuracy may be bought with a better scheme, not with an easier problem, so only ways of solving
+the same problem are compared with each other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from snowshed.analysis.accuracy.measurements import Settings
+from snowshed.analysis.accuracy.solutions import SAMPLING
+from snowshed.scene.accuracy_settings import ACCURACY
+from validation.framework.case import Case
+
+
+def problem_of(case: Case, settings: Settings) -> Settings:
+    """Return the settings that make the problem.
+
+    Examples
+    --------
+    >>> from validation.framework.cases import load_cases
+    >>> case = load_cases(["panel_edge"])[0]
+    >>> problem_of(case, {"dx": 0.01, "transfer": "apic", "friction": 0.3})
+    {'friction': 0.3}
+    """
+    sizes = {quantity.order_in for quantity in case.quantities}
+    ways = {*ACCURACY, *SAMPLING, *sizes}
+    return {name: value for name, value in settings.items() if name not in ways}
+
+
+def varying(settings: Iterable[Settings]) -> list[str]:
+    """Return the names of the settings in which several choices differ, in order of appearance.
+
+    Examples
+    --------
+    >>> varying([{"dx": 0.1, "basis": "cubic"}, {"dx": 0.2, "basis": "cubic"}])
+    ['dx']
+    """
+    listed = list(settings)
+    names = dict.fromkeys(name for one in listed for name in one)
+    return [name for name in names if len({one.get(name) for one in listed}) > 1]

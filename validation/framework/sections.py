@@ -1,0 +1,356 @@
+"""The report's section on each case: tables of texts, and figures."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Optional
+
+import numpy as np
+
+from snowshed.analysis.accuracy import setting_labels
+from snowshed.analysis.accuracy.measurements import Measurement, Settings
+from snowshed.analysis.accuracy.solutions import Solution, key_of, rows_of, solutions
+from snowshed.base import formatting
+from snowshed.plot.html_page import Grid, Picture
+from validation.framework import figures
+from validation.framework.bars import Bar
+from validation.framework.case import Case, Quantity
+from validation.framework.cheapest import Cheapest, by_problem
+from validation.framework.convergence import Convergence, convergences
+from validation.framework.schemes import problem_of, varying
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.figure import Figure
+
+#: What a measurement costs, in words.
+COSTS: Mapping[str, Callable[[Measurement], str]] = {
+    "time": lambda one: formatting.duration(one.wall_s),
+    "particles": lambda one: formatting.count(one.particles or None),
+    "steps": lambda one: formatting.count(one.steps or None),
+    "10⁶ updates/s": lambda one: formatting.number(
+        one.updates / one.wall_s / 1e6 if one.wall_s else None
+    ),
+    "memory, MB": lambda one: formatting.number(one.peak_memory_mb),
+}
+#: Stands for what the cell to the left says.
+SAME = "←"
+CONVERGENCE = (
+    "Dashed: the slope of the order named. Red, where there is one: the largest error allowed."
+)
+WORK_PRECISION = (
+    "Left is quick, low is accurate; no other way of solving the same problem beats the points "
+    "with letters in both. Red, where there is one: the largest error allowed."
+)
+
+
+@dataclass(frozen=True)
+class Section:
+    """The report's section on a case.
+
+    Attributes
+    ----------
+    common
+        The settings that all measurements share.
+    results, orders, extremes
+        Every measurement; orders of convergence; the smallest and largest errors.
+    """
+
+    case: Case
+    paragraphs: Sequence[str]
+    remarks: Sequence[str]
+    common: str
+    results: Grid
+    orders: Grid
+    extremes: Grid
+    pictures: Sequence[Picture]
+
+
+def section(case: Case, measurements: Sequence[Measurement], table: pd.DataFrame) -> Section:
+    """Return the section on a case.
+
+    Parameters
+    ----------
+    case
+        The case.
+    measurements
+        Of this case.
+    table
+        The same as a table.
+    """
+    found = {one.name: solutions(rows_of(table, case.name, one.name)) for one in case.quantities}
+    series = {
+        one.name: convergences(found[one.name], one.order_in)
+        for one in case.quantities
+        if one.order_in is not None
+    }
+    choices = [one.settings for one in measurements]
+    shared = {k: v for k, v in (choices or [{}])[0].items() if k not in varying(choices)}
+    return Section(
+        case=case,
+        paragraphs=_paragraphs(case.description),
+        remarks=_paragraphs(case.remarks),
+        common=setting_labels.settings(shared),
+        results=results_grid(case, measurements),
+        orders=orders_grid(case, series),
+        extremes=extremes_grid(case, found),
+        pictures=_pictures(case, found, series),
+    )
+
+
+def results_grid(case: Case, measurements: Sequence[Measurement]) -> Grid:
+    """Return all measurements of a case: what varies, every quantity, the cost."""
+    solved = [one for one in measurements if not one.failure]
+    names = varying([one.settings for one in measurements])
+    given = {m.quantity for one in solved for m in one.measured}
+    quantities = [_Columns.of(one, solved) for one in case.quantities if one.name in given]
+    costs = {name: [words(one) for one in solved] for name, words in COSTS.items()}
+    costs = {name: texts for name, texts in costs.items() if set(texts) != {formatting.NOTHING}}
+    rows = [
+        [
+            *(_cell(one.settings, name) for name in names),
+            *(text for columns in quantities for text in columns.texts(one)),
+            *(texts[i] for texts in costs.values()),
+        ]
+        for i, one in enumerate(solved)
+    ]
+    groups = [("", len(names)), *((c.heading, len(c.head)) for c in quantities), ("", len(costs))]
+    head = [
+        *(name.replace("_", " ") for name in names),
+        *(title for columns in quantities for title in columns.head),
+        *costs,
+    ]
+    align = "l" * len(names) + "r" * (len(head) - len(names))
+    return Grid(head, rows, align, [group for group in groups if group[1]])
+
+
+def orders_grid(case: Case, series: Mapping[str, Sequence[Convergence]]) -> Grid:
+    """Return the observed orders of convergence."""
+    titles = {one.name: one.title for one in case.quantities}
+    settings_in = {one.name: one.order_in or "" for one in case.quantities}
+    rows = [
+        [
+            titles[name],
+            setting_labels.settings(one.settings, varying([other.settings for other in listed]))
+            or "all",
+            settings_in[name].replace("_", " "),
+            f"{formatting.number(one.sizes[0])} … {formatting.number(one.sizes[-1])}",
+            ", ".join(_order(slope) for slope in one.pairwise),
+            _order(one.order),
+        ]
+        for name, listed in series.items()
+        for one in listed
+    ]
+    head = ("quantity", "settings", "in", "from … to", "between neighbours", "order")
+    return Grid(head, rows, "lllllr")
+
+
+def extremes_grid(case: Case, found: Mapping[str, Sequence[Solution]]) -> Grid:
+    """Return the smallest, the median and the largest error of every quantity, and where."""
+    rows = []
+    for quantity in case.quantities:
+        listed = sorted(found[quantity.name], key=lambda one: abs(one.error))
+        if not listed:
+            continue
+        names = varying([one.settings for one in listed])
+        middle = float(np.median([abs(one.error) for one in listed]))
+        ends = [
+            (
+                quantity.error_in_words(abs(one.error)),
+                setting_labels.settings(one.settings, names),
+            )
+            for one in (listed[0], listed[-1])
+        ]
+        median = quantity.error_in_words(middle)
+        rows.append([quantity.title, *ends[0], median, *ends[1]])
+    head = ("quantity", "smallest error", "with", "median", "largest error", "with")
+    return Grid(head, rows, "lrlrrl")
+
+
+def bars_grid(bars: Sequence[Bar], cases: Sequence[Case]) -> Grid:
+    """Return what was demanded and what was found, what does not hold first."""
+    titles = {case.name: case.title for case in cases}
+    rank = {False: 0, True: 1, None: 2}
+    rows = [
+        [
+            {True: "holds", False: "does not hold", None: "not measured"}[bar.holds],
+            titles[bar.case],
+            bar.quantity.title,
+            setting_labels.settings(bar.meant) or "all settings",
+            demanded(bar),
+            found(bar),
+            setting_labels.settings(bar.settings),
+        ]
+        for bar in sorted(bars, key=lambda one: rank[one.holds])
+    ]
+    head = ("", "case", "quantity", "for", "demanded", "worst", "with")
+    return Grid(head, rows, "llllrrl")
+
+
+def demanded(bar: Bar) -> str:
+    """Return what is demanded, in words."""
+    if bar.kind == "order":
+        return f"order ≥ {bar.demanded:g} in {bar.quantity.order_in}".replace("_", " ")
+    return f"≤ {bar.quantity.error_in_words(bar.demanded)}"
+
+
+def found(bar: Bar) -> str:
+    """Return the worst that was found, in words."""
+    if bar.found is None:
+        return formatting.NOTHING
+    if np.isnan(bar.found):
+        return "failed"
+    if bar.kind == "order":
+        return _order(bar.found)
+    return bar.quantity.error_in_words(bar.found)
+
+
+def cheapest_grid(
+    answers: Sequence[Cheapest], cases: Sequence[Case], measurements: Sequence[Measurement]
+) -> Grid:
+    """Return the quickest settings for every wanted accuracy, a row for each problem."""
+    wanted = sorted({one.wanted for one in answers}, reverse=True)
+    head = ("case", "quantity", "problem", *(formatting.percent(one) for one in wanted))
+    rows = [row for case in cases for row in _cheapest_rows(case, answers, measurements)]
+    return Grid(head, rows, "l" * len(head))
+
+
+def frame_grid(frame: pd.DataFrame) -> Grid:
+    """Return a table of numbers and words as one of texts."""
+    from pandas.api.types import is_numeric_dtype
+
+    rows = [[_text(value) for value in row] for row in frame.itertuples(index=False)]
+    align = "".join("r" if is_numeric_dtype(frame[name]) else "l" for name in frame)
+    return Grid([str(name).replace("_", " ") for name in frame], rows, align)
+
+
+@dataclass(frozen=True)
+class _Columns:
+    """The columns of one quantity: its value, its exact value where that varies, its error."""
+
+    quantity: Quantity
+    heading: str
+    head: Sequence[str]
+
+    @classmethod
+    def of(cls, quantity: Quantity, measurements: Iterable[Measurement]) -> _Columns:
+        """Return the columns that measurements need."""
+        measured = [m for one in measurements for m in one.measured if m.quantity == quantity.name]
+        exact = {m.exact for m in measured if not np.isnan(m.exact)}
+        if exact == {0.0} and all(m.value == m.error for m in measured if not np.isnan(m.exact)):
+            return cls(quantity, quantity.title, ("error",))
+        if len(exact) == 1:
+            heading = f"{quantity.title} (exact: {formatting.number(exact.pop(), 4)})"
+            return cls(quantity, heading, ("value", "error"))
+        return cls(quantity, quantity.title, ("value", "exact", "error"))
+
+    def texts(self, one: Measurement) -> list[str]:
+        """Return the cells of a measurement."""
+        for measured in one.measured:
+            if measured.quantity == self.quantity.name:
+                cells = [formatting.number(measured.value, 4), formatting.number(measured.exact, 4)]
+                error = self.quantity.error_in_words(measured.error)
+                return [*cells[: len(self.head) - 1], error]
+        return [formatting.NOTHING] * len(self.head)
+
+
+def _pictures(
+    case: Case,
+    found: Mapping[str, Sequence[Solution]],
+    series: Mapping[str, Sequence[Convergence]],
+) -> list[Picture]:
+    choices = [one.settings for listed in found.values() for one in listed]
+    quantities = {one.name: one for one in case.quantities}
+    converging = [(quantities[name], listed) for name, listed in series.items() if listed]
+    solved = [(quantities[name], by_problem(case, listed)) for name, listed in found.items()]
+    solved = [
+        (quantity, problems) for quantity, problems in solved if _compared(quantity, problems)
+    ]
+    pictures = []
+    if converging:
+        figure = figures.convergence_figure(converging, choices)
+        pictures.append(_picture(figure, case, "Convergence", CONVERGENCE))
+    if solved:
+        figure = figures.work_precision_figure(solved, choices)
+        pictures.append(_picture(figure, case, "Error against run time", WORK_PRECISION))
+    return pictures
+
+
+def _compared(quantity: Quantity, problems: Sequence[tuple[Settings, Sequence[Solution]]]) -> bool:
+    """Return whether errors say which way of solving is better.
+
+    There must be several ways for one problem, and a measure of what a small error is.
+    """
+    measured_by = quantity.relative or quantity.order_in or quantity.bar is not None
+    return bool(measured_by) and any(len(found) > 1 for _, found in problems)
+
+
+def _picture(figure: Figure, case: Case, title: str, caption: str) -> Picture:
+    name = f"{case.name}-{title.lower()}".replace(" ", "-")
+    return Picture.drawn(figure, name, title, caption)
+
+
+def _cheapest_rows(
+    case: Case, answers: Sequence[Cheapest], measurements: Sequence[Measurement]
+) -> list[list[str]]:
+    """Return a row for each quantity and problem of a case; its title stands in the first."""
+    groups: dict[Hashable, list[Cheapest]] = {}
+    for one in answers:
+        if one.case == case.name:
+            groups.setdefault((one.quantity, key_of(one.problem)), []).append(one)
+    titles = {quantity.name: quantity.title for quantity in case.quantities}
+    problems = varying(group[0].problem for group in groups.values())
+    ways = varying(
+        {k: v for k, v in one.settings.items() if k not in problem_of(case, one.settings)}
+        for one in measurements
+        if one.case == case.name
+    )
+    rows: list[list[str]] = []
+    for group in groups.values():
+        texts = [_cheapest_cell(one, ways) for one in sorted(group, key=lambda one: -one.wanted)]
+        rows.append(
+            [
+                "" if rows else case.title,
+                titles[group[0].quantity],
+                setting_labels.settings(group[0].problem, problems),
+                *(SAME if text == left else text for left, text in zip(["", *texts], texts)),
+            ]
+        )
+    return rows
+
+
+def _cheapest_cell(one: Cheapest, ways: Sequence[str]) -> str:
+    if not one.reached:
+        return f"not reached; best {formatting.percent(one.error)}"
+    with_what = setting_labels.settings(one.solution.settings, ways)
+    return f"{formatting.duration(one.solution.wall_s)}: {with_what}".rstrip(": ")
+
+
+def _cell(settings: Settings, name: str) -> str:
+    value: Optional[Any] = settings.get(name)
+    if value is None:
+        return setting_labels.unset(name)
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if name == "dimension":
+        return setting_labels.setting(name, value)
+    return value.replace("_", " ") if isinstance(value, str) else formatting.number(value, 4)
+
+
+def _text(value: Any) -> str:
+    if isinstance(value, (bool, str)):
+        return str(value)
+    if isinstance(value, (int, np.integer)):
+        return formatting.count(int(value))
+    return formatting.number(float(value)) if isinstance(value, float) else str(value)
+
+
+def _order(slope: float) -> str:
+    return f"{slope:.2f}" if np.isfinite(slope) else formatting.NOTHING
+
+
+def _paragraphs(text: str) -> list[str]:
+    """Return the paragraphs of a text, each in one line."""
+    return [" ".join(part.split()) for part in re.split(r"\n\s*\n", text) if part.strip()]

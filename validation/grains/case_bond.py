@@ -1,0 +1,103 @@
+"""Bonds between two grains that are pulled, sheared and pressed, against closed forms."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from snowshed.analysis.accuracy.measurements import Measured, Settings
+from snowshed.scene.loading import LoadingStage
+from validation.framework.case import Case, Outcome, Quantity
+from validation.framework.drive import relative
+from validation.grains.loading import grains_drive, load_all, residual
+
+VOXEL = 5e-5  # m
+WIDE, HIGH = 5, 6  # voxels; the bond lies in the middle
+MODULUS, RATIO, STRENGTH = 1e9, 0.3, 1e6  # Pa, 1, Pa
+OWN = frozenset({"test", "speed"})
+DEFAULTS: Settings = {
+    "test": "pull",
+    "speed": 0.005,
+    "courant_factor": 0.3,
+    "density_scaling": 1.0,
+    "damping": 0.5,
+    "elastic_modulus": MODULUS,
+    "stiffness_ratio": RATIO,
+    "tensile_strength": STRENGTH,
+    "shear_strength": STRENGTH,
+    "friction": 0.0,
+}
+#: Springs in a row, at both plates and in the bond; how far each gives way, m/Pa: (2 r)²/(E r).
+SPRINGS, COMPLIANCE = 3, 4 * (VOXEL / 2) / MODULUS
+
+
+def stage_of(test: str, speed: float) -> LoadingStage:
+    """Return what loads the bond until it breaks, or elastically."""
+    to_break = STRENGTH * SPRINGS * COMPLIANCE / (HIGH * VOXEL)
+    if test == "pull":
+        return LoadingStage(kind="stretch", speed=speed, strain=1.3 * to_break)
+    if test == "shear":
+        return LoadingStage(kind="shear", speed=speed, strain=1.3 * to_break / RATIO)
+    return LoadingStage(kind="compress", speed=speed, strain=to_break)
+
+
+def measure(settings: Settings) -> Outcome:
+    """Load two blocks that fill the box, frozen to the plates."""
+    test = str(settings["test"])
+    labels = np.ones((HIGH, WIDE, WIDE), dtype=np.int64)
+    labels[HIGH // 2 :] = 2
+    settings = {**settings, "bonded_plates": True}
+    if test == "shear":  # it tilts no further than its springs let it, and breaks in shear alone
+        settings["tensile_strength"] = 1e3 * STRENGTH
+    stages = [stage_of(test, float(settings["speed"]))]
+    drive = grains_drive(labels, VOXEL, stages, settings, OWN)
+    curve = load_all(drive, stages, HIGH * VOXEL)
+    missing = residual(curve)
+    measured = [Measured("residual", missing, 0.0, missing)]
+    if test == "pull":
+        measured.append(relative("strength", -float(curve["top_stress_pa"].min()), STRENGTH))
+    elif test == "shear":
+        measured.append(relative("strength", float(curve["shear_stress_pa"].max()), STRENGTH))
+    else:
+        exact = HIGH * VOXEL / (SPRINGS * COMPLIANCE)
+        slope = np.polyfit(curve["axial_strain"], curve["top_stress_pa"], 1)[0]
+        measured.append(relative("modulus", float(slope), exact))
+    return drive.outcome(measured)
+
+
+def matrix(full: bool) -> list[Settings]:
+    """Return tests over speeds, steps and scaled inertia."""
+    listed: list[Settings] = []
+    for test in ("pull", "shear", "press"):
+        one: Settings = {**DEFAULTS, "test": test}
+        speeds = (0.1, 0.03, 0.01, 0.005, 0.002) if full else (0.02, 0.005)
+        listed += [{**one, "speed": speed} for speed in speeds]
+        factors = (1.0, 0.6, 0.15) if full else (0.6,)
+        listed += [{**one, "courant_factor": factor} for factor in factors]
+        scalings = (4.0, 16.0, 100.0) if full else (16.0,)
+        listed += [{**one, "density_scaling": scaling} for scaling in scalings]
+    return listed
+
+
+CASE = Case(
+    name="grains_bond",
+    title="A bond between two grains, pulled, sheared and pressed",
+    source="springs in a row, and strength times area, in closed form",
+    description="""
+    Two blocks of 5 x 5 x 3 voxels fill the box and are frozen to each other and to both plates. The
+    top plate moves until the bond breaks, or presses. Strength times area is what the bond bears,
+    and three layers of springs of stiffness E r give the modulus. Compared are the largest stress
+    and the slope of the stress; and the energy that is missing at the end, over the work of the
+    plate.
+    """,
+    quantities=(
+        Quantity("strength", "strength, Pa", bar=0.02, bar_for={"speed": 0.005}),
+        Quantity("modulus", "modulus, Pa", bar=0.01, bar_for={"speed": 0.005}),
+        Quantity("residual", "energy that is missing", bar=0.01),
+    ),
+    matrix=matrix,
+    measure=measure,
+    remarks="""
+    The stress is that of a moment, so it swings with the waves that the plate's start sends through
+    the blocks, in proportion to the speed and to the root of the scaled density.
+    """,
+)

@@ -1,0 +1,1 @@
+"""A slab on an incline, with friction."""

@@ -1,0 +1,1 @@
+"""Manufactured motions of an elastic body."""

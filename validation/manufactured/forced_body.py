@@ -1,0 +1,107 @@
+"""A body that body forces take along a chosen motion."""
+
+from __future__ import annotations
+
+import math
+from typing import Optional
+
+import numpy as np
+
+from snowshed.analysis.accuracy.measurements import Settings
+from snowshed.base.arrays import Floats
+from snowshed.scene.shape import Shape
+from validation.elastic.bodies import elastic_scene, from_plane, in_plane
+from validation.framework.drive import Drive
+from validation.manufactured.motions import DENSITY, YOUNGS_MODULUS, Motion
+
+#: Settings that are the cases' own.
+OWN = frozenset({"motion", "amplitude"})
+
+
+class ForcedBody:
+    """The unit square under the body forces of a chosen motion.
+
+    Particle velocities are those in the middle of the last step, as in every leapfrog: the body
+    starts with the velocity of half a step before time zero, and a force applied between two steps
+    is that of the time and place where the particles are. It must be given over a step whose length
+    is known only afterwards. The last one's length is taken, and the difference made up for with
+    the next force.
+
+    Parameters
+    ----------
+    motion
+        The motion.
+    settings
+        Of the scene.
+
+    Attributes
+    ----------
+    drive
+        The simulation.
+    time
+        s, since the body was at rest in its place.
+
+    Examples
+    --------
+    >>> from validation.manufactured.motions import AxialWaves
+    >>> body = ForcedBody(AxialWaves(0.01), {"dx": 1 / 16, "pattern": "regular"})
+    >>> for _ in range(10):
+    ...     body.step()
+    >>> root_mean_square(body.residual()) < 0.1 * root_mean_square(body.displacement())
+    True
+    """
+
+    def __init__(self, motion: Motion, settings: Settings) -> None:
+        self.motion = motion
+        self._settings = settings
+        trial, _ = self._start(0.0)
+        trial.step()
+        self._last_step = trial.core.time_step_s
+        self.drive, self._points = self._start(-self._last_step / 2)
+        self._owed = np.zeros_like(self._points)
+
+    def _start(self, time: float) -> tuple[Drive, Floats]:
+        """Return the body with the velocities of a time, and where its particles are at first."""
+        motion, square = self.motion, Shape.box((0.5, 0.5), (1.0, 1.0))
+        material: Settings = {
+            "youngs_modulus": YOUNGS_MODULUS,
+            "poissons_ratio": motion.poissons_ratio,
+            "density": DENSITY,
+        }
+        drive = Drive(elastic_scene(square, {**material, **self._settings}, OWN))
+        points = in_plane(drive.core.positions())
+        drive.core.add_velocity(from_plane(motion.velocity(points, time)))
+        return drive, points
+
+    @property
+    def time(self) -> float:
+        """The time of the positions, s."""
+        return self.drive.core.time_s
+
+    def step(self) -> None:
+        """Apply the body force and take a step."""
+        force = self.motion.body_force(self._points, self.time)
+        self.drive.core.add_velocity(from_plane(self._last_step * force + self._owed))
+        self.drive.step()
+        taken = self.drive.core.time_step_s
+        self._owed = (taken - self._last_step) * force
+        self._last_step = taken
+
+    def displacement(self, time: Optional[float] = None) -> Floats:
+        """Return the displacements that the motion has at a time, by default now, m."""
+        return self.motion.displacement(self._points, self.time if time is None else time)
+
+    def residual(self) -> Floats:
+        """Return by how far the particles' displacements are off, m."""
+        return in_plane(self.drive.core.positions()) - self._points - self.displacement()
+
+
+def root_mean_square(vectors: Floats) -> float:
+    """Return the root of the mean of the squared lengths of vectors.
+
+    Examples
+    --------
+    >>> root_mean_square(np.array([[3.0, 4.0], [0.0, 0.0]])).__round__(6)
+    3.535534
+    """
+    return math.sqrt(np.mean(np.sum(vectors**2, axis=1)))

@@ -1,0 +1,1 @@
+"""The snow's constitutive law along paths of strain."""

@@ -1,0 +1,1 @@
+"""Fluids by the moving particle semi-implicit method."""

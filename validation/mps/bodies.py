@@ -1,0 +1,56 @@
+"""Fluids of particles for the cases: bodies of snow or water among walls, in the plane."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+
+from snowshed.analysis.accuracy.measurements import Settings
+from snowshed.methods.mps.settings import MpsSettings
+from snowshed.scene.components import Body, Events, Obstacle
+from snowshed.scene.scene import Scene
+from snowshed.scene.shape import Shape
+from validation.framework.drive import Drive
+
+GRAVITY = 9.81  # m/s2
+WATER = MpsSettings(density=1000.0, viscosity=1e-3, rheology="newtonian")
+#: What the cases compare, besides distances: walls, and the forms of Koshizuka and Oka.
+VARIANTS: Sequence[Settings] = (
+    {"walls": "particles"},
+    {"gradient": "conservative", "walls": "particles"},
+    {"gradient": "published", "spacing_law": "collision"},
+    {"gradient": "published", "spacing_law": "collision", "walls": "particles"},
+)
+
+
+def floor_and_sides(*sides: float) -> list[Obstacle]:
+    """Return a floor at z = 0, a wall at x = 0, and walls that face it; snow sticks to all."""
+    planes = [((0.0, 0.0), (0.0, 1.0)), ((0.0, 0.0), (1.0, 0.0))]
+    planes += [((x, 0.0), (-1.0, 0.0)) for x in sides]
+    return [
+        Obstacle(name=f"wall {k}", shape=Shape.plane(point, normal), condition="sticky")
+        for k, (point, normal) in enumerate(planes, start=1)
+    ]
+
+
+def block(width: float, height: float) -> Body:
+    """Return a body in the corner of the walls, m."""
+    return Body(shape=Shape.box((width / 2, height / 2), (width, height)))
+
+
+def mps_drive(
+    fluid: MpsSettings,
+    obstacles: Sequence[Obstacle],
+    bodies: Sequence[Body],
+    settings: Settings,
+    own: Collection[str] = (),
+) -> Drive:
+    """Return a drive of a fluid with a case's settings, on one thread."""
+    scene = Scene(
+        dimension=2, method="mps", numerics=MpsSettings(**vars(fluid)), obstacles=list(obstacles),
+        bodies=list(bodies), events=Events(count=1, max_time=1000.0, between="carry"),
+    )  # fmt: skip
+    scene.set("numerics.threads", 1)
+    for name, value in settings.items():
+        if name not in own:
+            scene.set(f"numerics.{name}", value)
+    return Drive(scene)

@@ -1,0 +1,113 @@
+"""Fluids of particles at the extremes of their settings: sound, and on the right side of walls."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from snowshed._core import SimulationError
+from snowshed.analysis.accuracy.measurements import Measured, Settings
+from snowshed.methods.mps.settings import MpsSettings
+from snowshed.scene.components import Body, Obstacle
+from snowshed.scene.shape import Shape
+from validation.framework.case import Case, Outcome, Quantity
+from validation.mps.bodies import mps_drive
+
+SNOW = MpsSettings(density=200.0, friction_angle=24.0)
+OWN = frozenset({"tilt", "board"})
+STEPS = 60
+EDGE = 0.2  # m, of a block of snow that falls by a quarter of it onto a tilted plane
+BOARD_AT, BOARD_HEIGHT = 0.25, 0.3  # m, down the plane from the block's middle; above the plane
+
+DEFAULTS: Settings = {"spacing": 0.02, "tilt": 35.0, "board": 0.0}
+VALUES = (0.0, 1.0, 1e2, 1e4)
+
+
+def measure(settings: Settings) -> Outcome:
+    """Let a block slide against a board; look for numbers that are none, and where it is."""
+    tilt, board = float(settings["tilt"]), float(settings["board"])
+    angle = math.radians(tilt)
+    down = np.array([math.cos(angle), 0.0, -math.sin(angle)])
+    normal = np.array([math.sin(angle), 0.0, math.cos(angle)])
+    obstacles = [_sticky("plane", Shape.plane((0, 0), (normal[0], normal[2])))]
+    if board > 0:
+        size = (board * float(settings["spacing"]), BOARD_HEIGHT)
+        obstacles.append(
+            _sticky("board", _box(BOARD_AT * down + 0.5 * size[1] * normal, size, tilt))
+        )
+    snow = Body(shape=_box(0.75 * EDGE * normal, (EDGE, EDGE), tilt))
+    drive = mps_drive(SNOW, obstacles, [snow], settings, OWN)
+    stopped = 0.0
+    try:
+        drive.step(STEPS)
+    except SimulationError:  # it names its cause, and the snow is as it was
+        stopped = 1.0
+    places, speeds = drive.core.positions(), drive.core.velocities()
+    fields = [drive.core.field_by_id(name) for name in ("pressure", "apparent_viscosity")]
+    unsound = sum(int((~np.isfinite(values)).sum()) for values in (places, speeds, *fields))
+    height, way = places @ normal, places @ down
+    through = int((height < 0).sum())
+    if board > 0:
+        inside = np.abs(way - BOARD_AT) < 0.5 * board * float(settings["spacing"])
+        through += int((inside & (height < BOARD_HEIGHT)).sum())
+        low = height < 0.8 * BOARD_HEIGHT  # nothing has come over the board
+        through += int((low & (way > BOARD_AT)).sum()) if height.max() < BOARD_HEIGHT else 0
+    density = float(drive.core.field_by_id("number_density").max())
+    return drive.outcome(
+        [
+            Measured("unsound", float(unsound), 0.0, float(unsound)),
+            Measured("through", float(through), 0.0, float(through)),
+            Measured("stopped", stopped, 0.0, stopped),
+            Measured("density", density, 1.0, density - 1),
+        ]
+    )
+
+
+def _sticky(name: str, shape: Shape) -> Obstacle:
+    return Obstacle(name=name, shape=shape, condition="sticky")
+
+
+def _box(centre: np.ndarray, size: tuple[float, float], tilt: float) -> Shape:
+    box = Shape.box((0, 0), size)
+    return Shape.transform(box, angle=tilt, translate=(float(centre[0]), float(centre[2])))
+
+
+def matrix(full: bool) -> list[Settings]:
+    """Return viscosities with yield stresses; spacings, tilts and boards; each with both walls."""
+    values = VALUES if full else VALUES[::3]
+    listed: list[Settings] = [{"viscosity": v, "cohesion": c} for v in values for c in values]
+    listed += [{"tilt": tilt} for tilt in ((0.0, 20.0, 60.0, 85.0) if full else (0.0, 85.0))]
+    listed += [
+        {"board": board} for board in ((0.05, 0.2, 0.5, 1.0, 2.0, 4.0) if full else (0.2, 2.0))
+    ]
+    listed += [{"spacing": one} for one in ((0.1, 0.05, 0.005) if full else (0.05,))]
+    listed += [{"radius": one} for one in ((1.5, 3.1, 4.5) if full else (3.1,))]
+    listed += [{"viscosity": 1e4, "cohesion": 1e4, "board": 0.2}]
+    walls: list[Settings] = [{}, {"walls": "particles"}]
+    return [{**DEFAULTS, **one, **wall} for one in listed for wall in walls]
+
+
+CASE = Case(
+    name="mps_extremes",
+    title="Fluids of particles at the extremes of their settings",
+    source="nothing but numbers, nothing behind a wall",
+    description="""
+    A block of snow falls a little and slides down a plane, against a board that stands on it or
+    not. Viscosity and yield stress go up to 1e4 Pa s and Pa, tilts to 85 degrees, boards are
+    thinner than a particle (their thickness is in distances between particles). After 60 steps
+    everything must be a number and no particle behind or in a wall; a run may stop with an error.
+    """,
+    quantities=(
+        Quantity("unsound", "values that are no numbers", bar=0.0, relative=False),
+        Quantity("through", "particles behind or in a wall", bar=0.0, relative=False),
+        Quantity("stopped", "runs that stopped with an error", relative=False),
+        Quantity("density", "largest density over that of a lattice"),
+    ),
+    matrix=matrix,
+    measure=measure,
+    remarks="""
+    Stiff fluids are compressed, and snow that falls on a plane is for a moment: the density is
+    reported without a bar.
+    """,
+)

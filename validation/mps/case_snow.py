@@ -1,0 +1,146 @@
+"""Snow as a fluid of particles: a slab that slides, and a heap that comes to rest."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from snowshed.analysis.accuracy.measurements import Settings
+from snowshed.base.arrays import Floats
+from snowshed.methods.mps.settings import MpsSettings
+from snowshed.scene.components import Body, Obstacle
+from snowshed.scene.shape import Shape
+from validation.framework.case import Case, Outcome, Quantity
+from validation.framework.drive import absolute, relative
+from validation.mps.bodies import GRAVITY, block, floor_and_sides, mps_drive
+
+SNOW = MpsSettings(density=200.0, viscosity=0.012, friction_angle=24.0, rheology="bingham")
+SLAB, LENGTH, SLIDING = 0.1, 2.4, 0.2  # m, m, s
+TILTS = (30.0, 35.0, 45.0)  # degrees
+MUD = MpsSettings(
+    density=1000.0, viscosity=5.0, cohesion=100.0, friction_angle=0.0, rheology="bingham"
+)
+HEAP = (0.3, 0.2)  # m, width and height before it slumps
+
+
+def coulomb(tilt: float) -> float:
+    """Return g (sin a - cos a tan phi), m/s2.
+
+    Examples
+    --------
+    >>> round(coulomb(30.0), 3)
+    1.122
+    """
+    angle = math.radians(tilt)
+    return GRAVITY * (math.sin(angle) - math.cos(angle) * math.tan(math.radians(24.0)))
+
+
+def measure_slab(settings: Settings) -> Outcome:
+    """Let a long slab slide, and take the mean speed of its middle."""
+    tilt = float(settings["tilt"])
+    angle = math.radians(tilt)
+    down, normal = (math.cos(angle), -math.sin(angle)), (math.sin(angle), math.cos(angle))
+    plane = Obstacle(name="plane", shape=Shape.plane((0, 0), normal), condition="sticky")
+    slab = Shape.transform(
+        Shape.box((0, SLAB / 2), (LENGTH, SLAB)), angle=tilt, translate=(0.0, 0.0)
+    )
+    drive = mps_drive(SNOW, [plane], [Body(shape=slab)], settings, {"tilt"})
+    along = np.array([down[0], 0.0, down[1]])
+    middle = np.abs(drive.core.positions() @ along) < LENGTH / 12
+    drive.run_to(SLIDING)
+    speed = float((drive.core.velocities()[middle] @ along).mean())
+    return drive.outcome([relative("speed", speed, coulomb(tilt) * drive.core.time_s)])
+
+
+def slab_matrix(full: bool) -> list[Settings]:
+    """Return tilts, distances between particles, and walls of particles."""
+    spacings = (0.02, 0.01, 0.005) if full else (0.02, 0.01)
+    listed: list[Settings] = [{"tilt": t, "spacing": s} for t in TILTS for s in spacings]
+    return listed + [{"tilt": t, "spacing": 0.01, "walls": "particles"} for t in TILTS]
+
+
+#: 2 tau0/(rho g), m.
+SCALE = 2 * 100.0 / (1000.0 * GRAVITY)
+
+
+def resting_front() -> float:
+    """Return where a heap of this volume ends at rest, m."""
+    return float((1.5 * HEAP[0] * HEAP[1] / math.sqrt(SCALE)) ** (2 / 3))
+
+
+def resting_heap(places: Floats) -> Floats:
+    """Return the height at places of a Bingham fluid at rest: sqrt(2 tau0 (xf - x)/(rho g)).
+
+    Examples
+    --------
+    >>> float(resting_heap(np.array([0.0]))[0].__round__(3))
+    0.122
+    """
+    return np.asarray(np.sqrt(SCALE * np.maximum(resting_front() - places, 0.0)))
+
+
+def measure_heap(settings: Settings) -> Outcome:
+    """Let a heap slump until it rests, and compare its height over four particles."""
+    drive = mps_drive(MUD, floor_and_sides(), [block(*HEAP)], settings)
+    drive.run_to(2.0)
+    spacing = float(settings["spacing"])
+    width = 4 * spacing
+    x = drive.core.positions()[:, 0]
+    counts = np.bincount((x / width).astype(int), minlength=int(2.0 / width))
+    height = counts * spacing**2 / width
+    exact = resting_heap((np.arange(len(height), dtype=np.float64) + 0.5) * width)
+    off = float(np.sqrt(((height - exact) ** 2).sum() / (exact**2).sum()))
+    density = float(drive.core.field_by_id("number_density").max())
+    return drive.outcome(
+        [
+            absolute("profile", off, 0.0),
+            relative("front", float(x.max()) + spacing / 2, resting_front()),
+            absolute("density", density - 1, 0.0),
+        ]
+    )
+
+
+def heap_matrix(full: bool) -> list[Settings]:
+    """Return distances between particles, and walls of particles."""
+    spacings = (0.03, 0.02, 0.015) if full else (0.03, 0.02)
+    listed: list[Settings] = [{"spacing": spacing} for spacing in spacings]
+    return [*listed, {"spacing": 0.02, "walls": "particles"}]
+
+
+CASES = (
+    Case(
+        name="mps_slab",
+        title="Slab of snow that slides down a plane, as a fluid of particles",
+        source="Newton's law with Coulomb's friction, g (sin a - cos a tan phi)",
+        description="""
+        Snow without cohesion, 0.1 m thick and 2.4 m long, with a friction angle of 24 degrees,
+        slides down a plane for 0.2 s. Compared is the mean speed of its middle sixth.
+        """,
+        quantities=(
+            Quantity("speed", "speed, m/s", bar=0.02, bar_for={"spacing": 0.01}),
+        ),
+        matrix=slab_matrix,
+        measure=measure_slab,
+    ),
+    Case(
+        name="mps_heap",
+        title="Heap of a Bingham fluid at rest",
+        source="Liu & Mei (1989), Journal of Fluid Mechanics 207, 505-529",
+        description="""
+        A Bingham fluid with a yield stress of 100 Pa slumps and comes to rest. After 2 s its
+        height, over four particles, is compared with that of a shallow heap that is just about to
+        yield. The density is the largest one over that of a lattice, less one.
+        """,
+        quantities=(
+            Quantity(
+                "profile", "L2 of the height over it", bar=0.1,
+                bar_for={"spacing": 0.02}, relative=False,
+            ),
+            Quantity("front", "front, m"),
+            Quantity("density", "largest error of the density", relative=False),
+        ),
+        matrix=heap_matrix,
+        measure=measure_heap,
+    ),
+)  # fmt: skip

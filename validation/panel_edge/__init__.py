@@ -1,0 +1,1 @@
+"""A slab that tips over the edge of a panel."""

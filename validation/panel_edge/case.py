@@ -1,0 +1,204 @@
+"""A slab that slides off a panel, and where it comes down."""
+
+from __future__ import annotations
+
+from typing import NamedTuple, cast
+
+import numpy as np
+
+from snowshed._core import SimulationError
+from snowshed.analysis.accuracy.measurements import Measured, Settings
+from snowshed.base.arrays import Floats
+from snowshed.scene.components import Condition, Panel, Slab
+from snowshed.scene.scene import Scene
+from validation.framework.case import Case, Outcome, Quantity
+from validation.framework.drive import Drive, apply_settings, relative
+from validation.panel_edge.rigid_slab import RigidSlab
+
+TILT, PANEL_LENGTH, PANEL_HEIGHT = 40.0, 2.0, 5.0  # degrees, m, m
+LENGTH, THICKNESS, WIDTH = 0.2, 0.04, 0.1  # of the slab, m; the width in 3D only
+DROP = 1.0  # m below the edge, where it lands
+#: Settings that are no parameters of the scene's numerics.
+OWN = frozenset({"friction", "condition", "length"})
+SLAB: Settings = {
+    "dimension": 2,
+    "dx": 0.01,
+    "friction": 0.3,
+    "transfer": "flip",
+    "basis": "quadratic",
+    "precision": "float",
+    "condition": "separate",
+    "model": "cam_clay",
+    "length": LENGTH,
+}
+#: Steps between two samples, and how many cells past the edge a slab is free.
+STEPS, FREE_CELLS = 20, 3
+
+
+class Moment(NamedTuple):
+    """The slab at a time; vectors (x, y, z) from the panel's edge."""
+
+    time_s: float
+    position: Floats  # of the centre of mass, m
+    velocity: Floats  # m/s
+    spin: float  # nose down, rad/s
+    rear: float  # where its last particle is, down the slope from the edge, m
+
+
+def panel_scene(settings: Settings) -> Scene:
+    """Return a panel with a slab in its middle, and nothing below."""
+    panel = Panel(height=PANEL_HEIGHT, length=PANEL_LENGTH, width=2 * WIDTH, tilt=TILT)
+    panel.friction = float(settings["friction"])
+    panel.condition = cast(Condition, settings["condition"])
+    slab = Slab(thickness=THICKNESS, length=float(settings["length"]), width=WIDTH)
+    return apply_settings(Scene(dimension=2, panel=panel, slab=slab), settings, OWN)
+
+
+class Throw:
+    """A slab let go on a panel, followed until it has fallen below the edge."""
+
+    def __init__(self, settings: Settings) -> None:
+        scene = panel_scene(settings)
+        self.drive = Drive(scene)
+        frame = self.drive.core.panel_frame()
+        assert frame is not None
+        self._slope = np.array(frame["slope"])
+        self._edge = np.array(frame["center"]) + frame["length"] / 2 * self._slope
+        self._free = FREE_CELLS * float(settings["dx"])
+        self._longest = 4 * self.rigid(settings).landing(DROP).time_s
+
+    @staticmethod
+    def rigid(settings: Settings) -> RigidSlab:
+        """Return the same slab as a rigid body."""
+        length = float(settings["length"])
+        return RigidSlab(length, THICKNESS, TILT, float(settings["friction"]), PANEL_LENGTH / 2)
+
+    def fly(self) -> list[Moment]:
+        """Slide and fall; return the moments in free flight, the last one below the drop.
+
+        Raises
+        ------
+        SimulationError
+            If the slab does not come down.
+        """
+        flight = []
+        moment = self._sample()
+        while moment.position[2] > -DROP:
+            if moment.time_s > self._longest:
+                raise SimulationError(f"the slab has not come down after {moment.time_s:.3g} s")
+            self.drive.step(STEPS)
+            moment = self._sample()
+            if moment.rear > self._free:
+                flight.append(moment)
+        return flight
+
+    def _sample(self) -> Moment:
+        core, mean = self.drive.core, self.drive.mean
+        places, speeds = core.positions() - self._edge, core.velocities()
+        position, velocity = mean(places), mean(speeds)
+        arms, turning = places - position, speeds - velocity
+        moment = mean(arms[:, 2] * turning[:, 0] - arms[:, 0] * turning[:, 2])
+        spin = moment / mean(arms[:, 0] ** 2 + arms[:, 2] ** 2)
+        rear = (places @ self._slope).min()
+        return Moment(core.time_s, position, velocity, float(spin), float(rear))
+
+
+def landing(flight: list[Moment]) -> float:
+    """Return the distance from the edge where the centre of mass crosses the drop, m."""
+    before, after = flight[-2].position, flight[-1].position
+    part = (-DROP - before[2]) / (after[2] - before[2])
+    return float(before[0] + part * (after[0] - before[0]))
+
+
+def off_parabola(flight: list[Moment], gravity: float = 9.81) -> float:
+    """Return the largest distance from the parabola of the first moment, over the way flown."""
+    first = flight[0]
+    times = np.array([one.time_s for one in flight])[:, np.newaxis] - first.time_s
+    fall = np.array([0.0, 0.0, -gravity / 2])
+    parabola = first.position + times * first.velocity + times**2 * fall
+    places = np.array([one.position for one in flight])
+    way = np.linalg.norm(places[-1] - first.position)
+    return float(np.linalg.norm(places - parabola, axis=1).max() / way)
+
+
+def measure(settings: Settings) -> Outcome:
+    """Let a slab slide off and compare its flight with a rigid slab's and with a parabola."""
+    throw = Throw(settings)
+    exact = throw.rigid(settings).landing(DROP)
+    flight = throw.fly()
+    off = off_parabola(flight)
+    return throw.drive.outcome(
+        [
+            relative("landing", landing(flight), exact.distance),
+            Measured("flight", off, 0.0, off),
+            relative("spin", flight[0].spin, exact.spin),
+            relative("spin_kept", flight[-1].spin / flight[0].spin, 1.0),
+        ]
+    )
+
+
+def matrix(full: bool) -> list[Settings]:
+    """Return frictions, and in full resolutions, methods and lengths."""
+    if not full:
+        coarse: Settings = {**SLAB, "dx": 0.02}
+        return [{**coarse, "friction": 0.0}, coarse, {**SLAB, "transfer": "apic"}]
+    frictions = (0.0, 0.3, 0.6)
+    listed = [{**SLAB, "dx": dx, "friction": mu} for dx in (0.02, 0.01) for mu in frictions]
+    variants: list[Settings] = [
+        {"dx": 0.005},
+        {"transfer": "apic"},
+        {"transfer": "apic", "dx": 0.02},
+        {"transfer": "apic", "dx": 0.005},
+        {"flip_ratio": 1.0},
+        {"condition": "slip"},
+        {"precision": "double"},
+        {"basis": "cubic"},
+        {"model": "elastic"},
+        {"length": 0.1},
+        {"seed": 2},
+        {"dimension": 3},
+    ]
+    return [*listed, *({**SLAB, **variant} for variant in variants)]
+
+
+CASE = Case(
+    name="panel_edge",
+    title="Slab thrown from a panel's edge",
+    source=(
+        "Newton's equations for a rigid slab that slides down with Coulomb friction, tips over the "
+        "edge and falls, integrated by an adaptive Runge-Kutta method; the parabola of free flight"
+    ),
+    description="""
+    A slab, 20 cm long and 4 cm thick, is let go in the middle of a panel 2 m long and tilted by 40
+    degrees. It slides off the lower edge and falls. Compared are where its centre of mass is when
+    it has come to 1 m below the edge; how far it strays, from the moment when all snow is three
+    cells past the edge, from the parabola of that moment; and how fast it turns.
+    """,
+    quantities=(
+        Quantity("landing", "distance of landing from the edge, m", bar=0.01),
+        Quantity("flight", "largest distance from the parabola over the way flown", bar=1e-3),
+        # What the method can do (see the remarks), not what one would wish.
+        Quantity("spin", "angular velocity on leaving, nose down, rad/s", bar=0.65),
+        Quantity(
+            "spin_kept",
+            "angular velocity on landing over that on leaving",
+            bar=1e-3,
+            bar_for={"transfer": "apic"},
+        ),
+    ),
+    matrix=matrix,
+    measure=measure,
+    remarks="""
+    Where the slab lands is right to half a percent; how it turns is not. It leaves the edge turning
+    1.1 to 1.6 times as fast as a rigid slab, however fine the grid. The panel's nodes stop the snow
+    along the panel's normal, not along that of the slab's tipped face, and a gap between the two
+    that is much thinner than a cell still counts as contact; the tenths of a millimetre by which
+    the tipping slab's rear lifts off are not seen.
+
+    FLIP with 0.99 then damps the turning of a slab a few cells thick away: at dx 1 cm 70 % of it
+    is gone after a fall of 1 m, at 2 cm 95 %. APIC keeps all of it, pure FLIP 98 %.
+
+    The parabola is met to rounding: the deviation named is the time step's, since symplectic Euler
+    falls g dt t/2 too far.
+    """,
+)

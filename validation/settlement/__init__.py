@@ -1,0 +1,1 @@
+"""Columns that settle under their own weight."""

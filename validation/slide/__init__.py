@@ -1,0 +1,1 @@
+"""Snow slides on analytical ground."""

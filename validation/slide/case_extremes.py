@@ -1,0 +1,115 @@
+"""Slides at the extremes of ground, thickness, steps, bonds and friction: sound, or refused."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+
+from snowshed.analysis.accuracy.measurements import Measured, Settings
+from validation.framework.case import Case, Outcome, Quantity
+from validation.slide.site import Height, Site, rectangle, slide_drive
+
+SLOPE = math.tan(math.radians(38.0))
+STEPS = 300
+OWN = frozenset({"ground", "thickness", "steps_to_take"})
+
+GROUNDS: Mapping[str, Height] = {
+    "slope": lambda x, y: -SLOPE * x,
+    "flat": lambda x, y: 0.0 * x,
+    "cliff": lambda x, y: np.where(x < 20.0, 100.0 - SLOPE * x, -SLOPE * x),
+    "steps": lambda x, y: -SLOPE * 8.0 * np.floor(x / 8.0),
+    "pit": lambda x, y: np.where(np.hypot(x - 24.0, y) < 8.0, -100.0, -SLOPE * x),
+    "gully": lambda x, y: -SLOPE * x - 6.0 * (np.abs(y) < 1.0),
+    "ridge": lambda x, y: -np.abs(x) * 3.0,
+}
+
+DEFAULTS: Settings = {
+    "ground": "slope",
+    "thickness": 0.5,
+    "cell": 2.0,
+    "time_step": 0.01,
+    "friction_law": "voellmy",
+    "artificial_viscosity": 100.0,
+    "bonds": True,
+}
+#: What is varied on the slope, one at a time.
+EXTREMES: tuple[Settings, ...] = (
+    {"time_step": 1e-5},
+    {"time_step": 1.0, "bonds": False},
+    {"bond_modulus": 0.0},
+    {"bond_modulus": 1e7},
+    {"max_strain": 1e-6},
+    {"max_strain": 10.0},
+    {"turbulence": 1e-3},
+    {"turbulence": 1e6},
+    {"friction": 0.0},
+    {"friction": 2.0},
+    {"artificial_viscosity": 0.0},
+    {"artificial_viscosity": 1e6},
+    {"layer_thickness": 0.01},
+    {"layer_thickness": 100.0},
+    {"density": 1000.0},
+)
+
+
+def measure(settings: Settings) -> Outcome:
+    """Run some steps, and look at mass, numbers and what must lie still."""
+    height = GROUNDS[str(settings["ground"])]
+    settings = {"layer_thickness": float(settings["thickness"]) / 2, **settings}
+    snow = rectangle(-12.3, -12.3, 12.3, 12.3, float(settings["thickness"]))
+    drive = slide_drive(Site(height, -30.0, -30.0, 60.0, 30.0, [snow]), settings, OWN)
+    released = drive.masses.sum()
+    while drive.core.total_steps < int(settings["steps_to_take"]) and drive.core.particle_count:
+        drive.step()
+    facts = drive.core.slide_facts()
+    speeds = np.linalg.norm(drive.core.velocities(), axis=1)
+    unsound = np.count_nonzero(~np.isfinite(drive.core.positions()))
+    mass = (drive.core.masses().sum() + facts["left_terrain_kg"]) / released - 1
+    measured = [
+        Measured("unsound", float(unsound), 0.0, float(unsound)),
+        Measured("mass", float(mass), 0.0, float(mass)),
+    ]
+    if settings.get("friction") == 2.0:
+        middle = float(np.median(speeds))
+        measured.append(Measured("creep", middle, 0.0, middle))
+    return drive.outcome(measured)
+
+
+def matrix(full: bool) -> list[Settings]:
+    """Return grounds with thicknesses, and settings at their extremes."""
+    steps = 3000 if full else STEPS
+    thicknesses = (0.001, 0.05, 0.5, 10.0) if full else (0.001, 10.0)
+    base: Settings = {**DEFAULTS, "steps_to_take": steps}
+    listed: list[Settings] = [
+        {**base, "ground": ground, "thickness": thickness}
+        for ground in GROUNDS
+        for thickness in thicknesses
+    ]
+    return listed + [{**base, **one} for one in EXTREMES]
+
+
+CASE = Case(
+    name="slide_extremes",
+    title="Slides at the extremes",
+    source="conservation of mass; Coulomb's law; all numbers are finite",
+    description="""
+    A slab slides over cliffs, steps, pits, a gully of one cell, level ground and a sharp ridge, 1
+    mm to 10 m thick; and on a slope with time steps, bonds, friction, viscosity and particles at
+    the extremes of what is allowed. No number may be other than finite, the mass on the terrain and
+    beyond it stays what it was, and with μ = 2 snow on a slope of 38 degrees stays where it is.
+    """,
+    quantities=(
+        Quantity("unsound", "coordinates that are no number", bar=0.0, relative=False),
+        Quantity("mass", "change of mass", bar=1e-12),
+        Quantity("creep", "median speed that friction holds, m/s", bar=0.0, relative=False),
+    ),
+    matrix=matrix,
+    measure=measure,
+    remarks="""
+    Bonds that are too stiff for the time step shorten it; where more than a hundred steps were
+    needed in place of one, an error names the step that they need. Left alone the slab would shake
+    itself to pieces.
+    """,
+)

@@ -1,0 +1,65 @@
+"""The suite: every trial of the design computed and judged, in one table."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, Optional
+
+import pandas as pd
+
+from snowshed.base.progress import Progress, Reporter
+from validation.stress.design import Trial, trials
+from validation.stress.judge import judge
+from validation.stress.process import Run, record, stress_pool
+
+
+def run(full: bool, seed: int = 1, progress: Optional[Reporter] = None) -> pd.DataFrame:
+    """Make all runs of the quick or the full stress suite.
+
+    Parameters
+    ----------
+    full:
+        Whether to make the full suite (thousands of runs, about ten minutes on one core) or the
+        quick one (seconds).
+    seed:
+        Of the random combinations.
+    progress:
+        Called after every run.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row per run: ``design``, ``varied``, a column for each parameter of
+        `space.PARAMETERS`, ``outcome`` (one of `judge.OUTCOMES`), ``reason`` where it failed, and
+        the measures of `solve.solve`.
+
+    Raises
+    ------
+    InputError
+        If `allpairspy` is not installed.
+    """
+    return run_trials(trials(full, seed), progress)
+
+
+def run_trials(plan: Sequence[Trial], progress: Optional[Reporter] = None) -> pd.DataFrame:
+    """Make the given runs; the table is that of `run`."""
+    rows: list[dict[str, Any]] = []
+    failed = 0
+    with stress_pool() as pool:
+        for trial in plan:
+            found = {**trial.point, **record(pool, Run(trial.point, trial.steps))}
+            outcome, reason = judge(found)
+            failed += outcome == "failed"
+            rows.append(
+                {
+                    "design": trial.design,
+                    "varied": trial.varied,
+                    "outcome": outcome,
+                    "reason": reason,
+                    **found,
+                }
+            )
+            if progress is not None:
+                done, count = len(rows), len(plan)
+                progress(Progress(done / count, done, count, "stress runs", failed=failed))
+    return pd.DataFrame(rows)

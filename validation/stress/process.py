@@ -1,0 +1,63 @@
+"""Computes stress runs in a process of their own: a crash or a hang is an answer, not the end."""
+
+from __future__ import annotations
+
+import traceback
+from collections.abc import Callable
+from typing import NamedTuple
+
+from snowshed.base.pool.pool import Ended, Isolation, Pool
+from validation.stress.solve import Record, solve
+from validation.stress.space import Point
+
+LIMIT_S = 60.0  # s that a run may take
+
+
+class Run(NamedTuple):
+    """A run of the suite: the parameters of its scene, and its time steps."""
+
+    point: Point
+    steps: int
+
+
+def stress_pool(limit_s: float = LIMIT_S) -> Pool[Run, Record]:
+    """Return the pool that computes runs, one after another, each in no more than `limit_s`.
+
+    Examples
+    --------
+    >>> from validation.stress.space import reference
+    >>> with stress_pool() as pool:
+    ...     record(pool, Run(reference(), 20))["ended"]
+    'time_limit'
+    """
+    return Pool(1, compute, Isolation(limit_s=limit_s, environment={"OMP_NUM_THREADS": "1"}))
+
+
+def record(pool: Pool[Run, Record], run: Run) -> Record:
+    """Return the record of a run, with ``ended`` "crashed", "hung" or "raised" where it is so.
+
+    "raised" is an exception that is neither `InputError` nor `SimulationError`.
+    """
+    pool.submit(run)
+    while not (found := pool.collect(LIMIT_S)):
+        pass
+    return _record(found[0])
+
+
+def compute(run: Run, report: Callable[[float], None]) -> Record:
+    """Compute a run in this process."""
+    try:
+        return solve(run.point, run.steps)
+    except Exception:
+        # Whatever it is, it belongs into the table of the suite.
+        return {"ended": "raised", "message": traceback.format_exc(limit=-3)}
+
+
+def _record(ended: Ended[Run, Record]) -> Record:
+    if ended.result is not None:
+        return ended.result
+    if ended.error is not None:
+        return {"ended": "raised", "message": f"{type(ended.error).__name__}: {ended.error}"}
+    if ended.hung:
+        return {"ended": "hung", "message": ended.death}
+    return {"ended": "crashed", "message": f"{ended.death} {ended.last_words}".strip()}
