@@ -55,8 +55,6 @@ IN_PAGES = re.compile(
     r"\bfor want of\b|\bnobody knows\b|\bso-manieth\b|\blets? go\b|\bwhoever\b|\bif it likes\b"
     r"|\b(is|are) to be\b|\bRead are\b|\bTold are\b|\bby what\b"
 )
-#: Files whose field descriptions come from the core's description of a scene.
-FROM_THE_CORE = ("components", "loading", "output", "scene", "shape")
 SECTION = re.compile(r"^(Parameters|Attributes|Returns|Yields|Raises|Examples|Notes)\n-+$", re.M)
 
 
@@ -104,8 +102,7 @@ def docstrings(path, tree):
     for node in ast.walk(tree):
         kinds = (ast.Module, ast.ClassDef, ast.FunctionDef)
         doc = ast.get_docstring(node, clean=False) if isinstance(node, kinds) else None
-        from_core = path.parent.name == "scene" and path.stem in FROM_THE_CORE
-        if doc and not (from_core and isinstance(node, ast.ClassDef)):
+        if doc:
             for text in paragraphs(doc):
                 yield getattr(node, "lineno", 1), " ".join(text.split())
 
@@ -156,12 +153,10 @@ def test_texts_need_no_second_reading(room):
 
 
 def test_the_help_begins_with_its_subject_and_needs_no_second_reading():
-    generated = {f"snowshed {name}" for name in ("panel", "scene", "season", "slide", "grains")}
     wrong = [
         f"{name}: {text}"
         for name, text in help_texts(cli, "snowshed")
-        if CONSTRUCTIONS.search(text)
-        or (OPENINGS.match(text) and not any(name.startswith(start) for start in generated))
+        if CONSTRUCTIONS.search(text) or OPENINGS.match(text)
     ]
     assert wrong == []
 

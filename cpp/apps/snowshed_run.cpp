@@ -24,8 +24,8 @@ constexpr const char* usage =
     "\n"
     "Runs the scene's events and writes into DIR scene.json, run.json,\n"
     "particles.pvd (ParaView), particles/, snapshots/, film.bin and checkpoint.bin.\n"
-    "Exit codes: 0 done; 2 bad input, nothing was written; 3 the run could not go on, for the\n"
-    "simulation failed, the disk is full or memory is short; 130 interrupted.\n";
+    "Exit codes: 0 done; 2 bad input, nothing was written; 3 the run started but could not\n"
+    "finish (simulation failed, disk full, out of memory); 130 interrupted.\n";
 
 struct Options {
   std::string scene, folder;
@@ -163,7 +163,7 @@ int run(const Options& o) {
     std::fprintf(stderr, "note: %s\n", note.c_str());
   if (!run_all(sequence, o.quiet)) {
     return fail(
-        "interrupted; go on with: snowshed-run " + o.scene + " -o " + o.folder + " --resume", 130);
+        "interrupted; resume with: snowshed-run " + o.scene + " -o " + o.folder + " --resume", 130);
   }
   if (!o.quiet)
     std::fprintf(stderr, "for tables and pictures: snowshed run %s -o %s --resume\n",

@@ -44,7 +44,7 @@ double spacing_of(const openvdb::FloatGrid& grid) {
     step[axis] = 1;
     const openvdb::Vec3d off = to_world.indexToWorld(step) - origin - spacing * step;
     if (!(off.length() <= 1e-6 * spacing))
-      fail("its voxels are no cubes along the axes; resample it without rotation and stretching");
+      fail("its voxels are not cubes along the axes; resample it without rotation and stretching");
   }
   return spacing;
 }

@@ -137,7 +137,7 @@ def test_nor_are_they_in_a_raster_or_in_a_scene(tmp_path, capsys):
     (tmp_path / "thick.json").write_text(json.dumps(scene.to_data()))
     capsys.readouterr()
     assert main(["run", str(tmp_path / "thick.json"), "-o", str(tmp_path / "other"), "-q"]) == 2
-    message = "/terrain/release/0/thickness: 50 m of snow; at most 10 m are believed"
+    message = "/terrain/release/0/thickness: 50 m of snow; at most 10 m are accepted"
     assert message in capsys.readouterr().err
     assert not (tmp_path / "other").exists()
 

@@ -122,7 +122,7 @@ def test_a_run_goes_on_with_no_other_film_than_its_own(tmp_path, tiny):
         film_files.film_bytes(frames, version=1),
     ):
         film.write_bytes(content)
-        with pytest.raises(InputError, match=r"film\.bin.*bring back the file, or remove it"):
+        with pytest.raises(InputError, match=r"film\.bin.*restore the file, or remove it"):
             run_events(tiny, tmp_path, resume=True, pictures=False)
         assert film.read_bytes() == content
     film.write_bytes(whole)

@@ -106,7 +106,7 @@ def test_interrupted_and_resumed_equals_uninterrupted(longer, tmp_path, file):
     out = tmp_path / "out"
     code, said = interrupt(scene, out, lambda folder: (folder / file).exists())
     assert code == 130
-    assert said == f"error: interrupted; go on with: snowshed-run {scene} -o {out} --resume\n"
+    assert said == f"error: interrupted; resume with: snowshed-run {scene} -o {out} --resume\n"
     assert json.loads((out / "run.json").read_text())["status"] == "interrupted"
     assert snowshed_run(scene, "-o", out, "--resume", "-q").returncode == 0
     assert particle_files(out) == particle_files(results)

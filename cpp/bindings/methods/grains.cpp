@@ -80,7 +80,7 @@ void bind_labels(py::module_& m) {
   m.def("check_grain_diameter", &check_grain_diameter, py::arg("median"),
         "InputError unless the median diameter of grains (m) is that of snow.");
   m.def("label_note", &checked_label_note, py::arg("labels"), py::arg("split"),
-        "What should be known of labels (nz, ny, nx), or nothing; InputError if they are none.");
+        "Warnings about labels (nz, ny, nx), or an empty text; InputError if they are not labels.");
   m.def("split_labels", &split_labels, py::arg("labels"),
         "Labels of which each piece has a number of its own.");
 }

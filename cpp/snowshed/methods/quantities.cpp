@@ -17,7 +17,7 @@ const std::vector<Quantity>& shared_quantities() {
       {"pressure", "Pa", "Kirchhoff pressure, positive in compression", 1, 100.0},
       {"id", "1", "Number that a particle keeps as long as it exists"},
       {"event", "1", "Event in which the particle was released, from 1"},
-      {"material_id", "1", "Which of the scene's snows the particle is of, from 0"},
+      {"material_id", "1", "Index of the particle's snow among the snows of the scene, from 0"},
   };
   return all;
 }

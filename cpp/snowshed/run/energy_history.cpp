@@ -53,7 +53,7 @@ void EnergyHistory::load(const BinaryReader& in) {
   if (!in.has("energy_history")) return;
   const auto values = in.view<double>("energy_history");
   if (values.size % columns_.size() != 0)
-    throw InputError(in.path().string(), "the energies over time are not those of this method");
+    throw InputError(in.path().string(), "the energies over time belong to another method");
   values_.assign(values.begin(), values.end());
 }
 

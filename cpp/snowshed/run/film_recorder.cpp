@@ -121,7 +121,7 @@ FilmWriter begun_or_reopened(const std::filesystem::path& file, const FilmHeader
     return FilmWriter::reopen(file, keeps, mark);
   } catch (const InputError& error) {
     throw InputError(error.what(),
-                     "bring back the file, or remove it: then a film begins where the run goes on");
+                     "restore the file, or remove it: the film then begins where the run resumes");
   }
 }
 

@@ -57,7 +57,7 @@ void ResultsFolder::require_empty(const fs::path& folder) {
     return std::all_of(begin(entries), end(entries), is_leftover);
   });
   if (!empty)
-    throw InputError(folder.string(), "not empty; choose a new folder, or go on with --resume");
+    throw InputError(folder.string(), "not empty; choose a new folder, or resume with --resume");
 }
 
 ResultsFolder ResultsFolder::create(fs::path folder, const Scene& scene) {

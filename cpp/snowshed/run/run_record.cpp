@@ -189,8 +189,7 @@ void RunRecord::check_files(const std::filesystem::path& folder) const {
     Crc32 sum;
     sum.update(bytes.data(), std::min<std::size_t>(bytes.size(), mark.bytes));
     if (bytes.size() < mark.bytes || hexadecimal(sum.value()) != mark.checksum)
-      throw InputError(file.string(),
-                       "damaged: not as the run wrote it; bring it back, or remove it");
+      throw InputError(file.string(), "damaged: not as the run wrote it; restore it, or remove it");
   }
 }
 

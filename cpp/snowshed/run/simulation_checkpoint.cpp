@@ -21,7 +21,7 @@ void check_file(const BinaryReader& in, const std::string& file, std::int64_t th
   if (file.empty())
     throw InputError(in.path().string(), "holds the mark of a file that its scene does not name");
   throw InputError(file, "has changed since the checkpoint " + in.path().string() +
-                             " was made; bring back the file, or start anew");
+                             " was made; restore the file, or start a new run");
 }
 
 /// Throws InputError where a file that the method read is another than when the checkpoint was
@@ -54,10 +54,10 @@ void check_kernels(const BinaryReader& in) {
   if (!in.has("kernels")) return;
   const std::string then = in.text("kernels"), now = kernel_variant();
   if (then != now)
-    throw InputError(in.path().string(), "made with the kernels " + quote(then) + ", and " +
-                                             quote(now) +
-                                             " are used now; set SNOWSHED_KERNELS to " +
-                                             "those where the machine has them, or start anew");
+    throw InputError(in.path().string(),
+                     "made with the kernels " + quote(then) + ", and " + quote(now) +
+                         " are used now; set SNOWSHED_KERNELS to " +
+                         "those where the machine has them, or start a new run");
 }
 
 /// Throws InputError unless the numbers of the particles' snows mean the same in another scene.

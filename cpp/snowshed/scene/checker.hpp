@@ -41,7 +41,7 @@ class Checker : public PathVisitor<Checker> {
 
   void choice(const char* key, const Choice& value, const char*) {
     if (!value.name())
-      throw InputError(at(key), std::to_string(value.number()) + " is no known choice");
+      throw InputError(at(key), std::to_string(value.number()) + " is not a known choice");
   }
 
   void vector(const char* key, Vec3& value, const char* unit, const Range& range, const char*) {

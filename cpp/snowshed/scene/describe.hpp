@@ -41,7 +41,7 @@ struct EnumNames<MisplacedSnow> {
 };
 
 inline constexpr const char* condition_doc =
-    "What snow that touches it may do: stay (sticky), slide in the surface (slip), slide and leave "
+    "Motion of touching snow: stay (sticky), slide in the surface (slip), slide and leave "
     "(separate)";
 
 template <class V>
@@ -104,7 +104,7 @@ void describe(V& v, ShapeSpec& s) {
     v.text("grid", s.grid, "Name of the grid; empty: the only one of floats");
     v.number("scale", s.scale, "m", positive.up_to(1e6), "Length of one unit of the file");
     v.number("threshold", s.threshold, "", positive.up_to(1e6),
-             "Of a fog volume: the solid is where its value is above this");
+             "Threshold of a fog volume: the solid is where its value is larger");
   }
   if (v.variant("union", "Everything in any of the shapes")) {
     v.list("shapes", s.shapes, between(1, 10000).required(), "The parts");
@@ -149,7 +149,8 @@ void describe(V& v, BodySpec& b) {
   v.vector("velocity", b.velocity, "m/s", allowed::speed, "Initial velocity");
   v.integer("event", b.event, non_negative.up_to(1000),
             "Event at whose start it appears, 1 the first; 0: at the start of every event");
-  v.optional("snow", b.snow, "Snow of its own; what it leaves out is as in the scene's snow");
+  v.optional("snow", b.snow,
+             "Snow of its own; values that are left out are those of the scene's snow");
 }
 
 template <class V>
@@ -174,7 +175,8 @@ template <class V>
 void describe(V& v, Layer& l) {
   v.number("thickness", l.thickness, "m", allowed::size.required(),
            "Thickness, normal to the panel");
-  v.optional("snow", l.snow, "Snow of its own; what it leaves out is as in the scene's snow");
+  v.optional("snow", l.snow,
+             "Snow of its own; values that are left out are those of the scene's snow");
   v.integer("event", l.event, non_negative.up_to(1000),
             "Event at whose start it is laid, 1 the first; 0: at the start of every event");
 }
@@ -222,7 +224,7 @@ void describe(V& v, ResistanceSpec& r) {
 template <class V>
 void describe(V& v, TerrainSpec& t) {
   v.file("file", t.file, "Elevations, m: an ESRI ASCII grid; relative to the scene file");
-  v.text("crs", t.crs, "Coordinate system of the raster and the areas, handed on to the results");
+  v.text("crs", t.crs, "Coordinate system of the raster and the areas, passed on to the results");
   v.flag("single_precision", t.single_precision,
          "Whether the mode \"compatible\" rounds elevations to single precision, as AvaFrame reads "
          "text");
@@ -234,10 +236,11 @@ void describe(V& v, TerrainSpec& t) {
   v.number("max_slope", t.max_slope, "deg", positive.up_to(90.0),
            "Steepest ground between neighbouring nodes under a release, where they differ by more "
            "than 10 m in height");
-  v.text("notes", t.notes, "What was assumed of the files, a line each, handed on to the results");
-  v.list("release", t.release, between(1, 10000).required(), "Where snow is released");
-  v.list("entrainment", t.entrainment, between(0, 10000), "Where the slide takes up snow");
-  v.list("resistance", t.resistance, between(0, 10000), "Where forest or the like holds it back");
+  v.text("notes", t.notes, "Assumptions about the files, one a line, passed on to the results");
+  v.list("release", t.release, between(1, 10000).required(), "Areas of release");
+  v.list("entrainment", t.entrainment, between(0, 10000), "Areas where the slide takes up snow");
+  v.list("resistance", t.resistance, between(0, 10000),
+         "Areas where forest or the like holds the slide back");
 }
 
 /// Of a loading, so that its curve fits into memory.
@@ -250,19 +253,19 @@ void describe(V& v, SampleSpec& s) {
          "grain; relative to the scene file");
   v.number("voxel_size", s.voxel_size, "m", between(1e-9, 1.0).required(), "Edge of a voxel");
   v.flag("split_labels", s.split_labels,
-         "Whether each piece of a label that lies in several places is a grain; else all of them "
-         "are one rigid grain");
+         "Whether each connected piece of a label is a grain; else all pieces of a label are one "
+         "rigid grain");
 }
 
 template <class V>
 void describe(V& v, LoadingStage& s) {
   v.choice("kind", s.kind,
-           "What moves: the top plate down (compress), up until the stress has fallen (unload), up "
+           "Motion: the top plate down (compress), up until the stress has fallen (unload), up "
            "(stretch) or along x (shear); all sides inward (isotropic); a cone down (penetrate); "
            "nothing, until the snow rests (hold)");
-  v.number("speed", s.speed, "m/s", positive.up_to(1e3), "Speed of what moves");
+  v.number("speed", s.speed, "m/s", positive.up_to(1e3), "Speed of the plates or of the cone");
   v.number("strain", s.strain, "", positive.up_to(10.0),
-           "Way over the sample's initial height at which the stage ends");
+           "Displacement over the sample's initial height at which the stage ends");
   v.number("stress", s.stress, "Pa", non_negative.up_to(1e12),
            "Stress that ends the stage (compress, isotropic; 0: none; unload), or is kept on the "
            "top plate (shear; 0: constant height)");
@@ -270,9 +273,10 @@ void describe(V& v, LoadingStage& s) {
 
 template <class V>
 void describe(V& v, Cone& c) {
-  v.number("radius", c.radius, "m", between(1e-9, 1.0), "Of the cone's base and the shaft");
+  v.number("radius", c.radius, "m", between(1e-9, 1.0),
+           "Radius of the cone's base and of the shaft");
   v.number("half_angle", c.half_angle, "degrees", positive.up_to(90.0),
-           "Between the axis and the cone's side");
+           "Angle between the axis and the cone's side");
 }
 
 template <class V>
@@ -286,7 +290,7 @@ void describe(V& v, Seeding& s) {
   v.accuracy({"particles_per_voxel", "pattern"});
   v.number("particles_per_voxel", s.particles_per_voxel, "", non_negative.up_to(1000.0),
            "Particles per voxel of edge dx, at least 4 in 2D and 6 in 3D; 0: 6 in 2D, 8 in 3D");
-  v.choice("pattern", s.pattern, "How particles are placed");
+  v.choice("pattern", s.pattern, "Arrangement of the particles");
   v.integer("seed", s.seed, non_negative, "Seed of the random numbers");
   v.flag("allow_sparse", s.allow_sparse, "Accept fewer particles per voxel");
 }
@@ -299,7 +303,7 @@ void describe(V& v, Events& e) {
   v.number("max_time", e.max_time, "s", allowed::duration, "Longest duration of an event");
   v.number("rest_speed", e.rest_speed, "m/s", positive.up_to(1e4),
            "Speed below which the snow counts as resting");
-  v.number("rest_time", e.rest_time, "s", allowed::time, "How long it must rest to end the event");
+  v.number("rest_time", e.rest_time, "s", allowed::time, "Duration of rest that ends the event");
 }
 
 template <class V>
@@ -350,13 +354,13 @@ void describe(V& v, MethodChoice& m) {
 
 template <class V>
 void describe(V& v, Scene& s) {
-  v.version("snowshed", scene_version, "Version of this form");
+  v.version("snowshed", scene_version, "Version of the scene format");
   // Before any vector: it decides how they are written.
   v.integer("dimension", s.dimension, between(2, 3), "2: the plane (x, z); 3: space");
-  v.text("title", s.title, "What this scene is");
+  v.text("title", s.title, "Title of the scene");
   v.number("gravity", s.gravity, "m/s2", non_negative.up_to(1e3), "Gravity, along -z");
   v.choice("misplaced_snow", s.misplaced_snow,
-           "What becomes of a scene that seeds more than 1 % of a body of snow inside an obstacle, "
+           "Treatment of a scene that seeds more than 1 % of a body of snow inside an obstacle, "
            "below the ground, outside the domain, or within other snow");
   v.method_ahead("method", s.numerics);
   if (v.shows(s.numerics, Part::snow)) v.object("snow", s.snow, Need::optional, "The material");
@@ -368,14 +372,14 @@ void describe(V& v, Scene& s) {
   v.taken_by(Part::ground);
   v.optional("ground", s.ground, "An inclined plane through the origin");
   v.taken_by(Part::terrain);
-  v.optional("terrain", s.terrain, "Ground from a raster of elevations, and where snow lies on it");
+  v.optional("terrain", s.terrain,
+             "Ground from a raster of elevations, with the areas of its snow");
   v.taken_by(Part::sample);
-  v.optional("sample", s.sample, "Segmented snow to be loaded");
+  v.optional("sample", s.sample, "Segmented snow for a loading test");
   if (v.shows(s.numerics, Part::sample))  // other scenes, and their hashes, lack the list
-    v.list("loading", s.loading, between(0, most_stages),
-           "How the sample is loaded, stage by stage");
+    v.list("loading", s.loading, between(0, most_stages), "Stages of the loading test");
   v.taken_by(Part::sample);
-  v.optional("cone", s.cone, "The tip that stages \"penetrate\" push in");
+  v.optional("cone", s.cone, "Cone that the stages \"penetrate\" push in");
   v.taken_by(Part::obstacles);
   v.list("obstacles", s.obstacles, between(0, 10000), "Further solids that snow collides with");
   v.taken_by(Part::bodies);
@@ -383,10 +387,10 @@ void describe(V& v, Scene& s) {
   v.taken_by(Part::domain);
   v.optional("domain", s.domain, "A box with sticky sides; unbounded without it");
   if (v.shows(s.numerics, Part::seeding))
-    v.object("seeding", s.seeding, Need::optional, "How snow is filled with particles");
+    v.object("seeding", s.seeding, Need::optional, "Seeding of the snow with particles");
   v.method("method", "numerics", s.numerics, "The numerical method", "The method's settings");
-  v.object("events", s.events, Need::optional, "How many events, and when one ends");
-  v.object("output", s.output, Need::optional, "What is written during a run");
+  v.object("events", s.events, Need::optional, "Number of events, and their end");
+  v.object("output", s.output, Need::optional, "Output during a run");
 }
 
 }  // namespace snowshed

@@ -25,7 +25,7 @@ void rename_slip(json& scene, std::vector<std::string>& notes) {
     scene[place] = "separate";
     notes.push_back(place.to_string() +
                     ": \"slip\" of version 1 is read as \"separate\", its name since version 2; "
-                    "there \"slip\" lets no snow leave the surface but over its edge");
+                    "there \"slip\" holds snow on the surface except at its edge");
   }
 }
 

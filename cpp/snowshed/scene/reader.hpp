@@ -30,7 +30,7 @@ class Reader : public Checker {
   void version(const char* key, int number, const char*) {
     const json* value = take(key, Need::required, "the version " + std::to_string(number));
     if (value && *value != number)
-      throw InputError(at(key), shown(*value) + " is no version that this program reads (" +
+      throw InputError(at(key), shown(*value) + " is not a version that this program reads (" +
                                     std::to_string(oldest_scene_version) + " to " +
                                     std::to_string(number) + ")");
   }

@@ -12,7 +12,7 @@ std::string scene_schema() {
       {"$id", "urn:snowshed:scene:" + std::to_string(scene_version)},
       {"title", "snowshed scene"},
       {"description",
-       "What is to be simulated. SI units, angles in degrees. Vectors are [x, y, z] in 3D and "
+       "Description of a simulation. SI units, angles in degrees. Vectors are [x, y, z] in 3D and "
        "[x, z] in 2D; x points down the slide direction, z up."},
   };
   schema.update(scene);

@@ -203,7 +203,7 @@ class SceneRules {
     if (area.thickness > terrain.max_thickness)
       fail(area.thickness, show(area.thickness) + " m of snow; at most " +
                                show(terrain.max_thickness) +
-                               " m are believed: is it in centimetres? Else raise " +
+                               " m are accepted; is it in centimetres? If not, raise " +
                                path_of(scene_, terrain.max_thickness));
   }
 

@@ -43,7 +43,7 @@ class SlideRun : public TemporaryFolder {
 TEST_F(SlideRun, ACheckpointWithTheMarkOfAnotherTerrainIsRefused) {
   EXPECT_EQ(refusal_with_mark_of(0), "incline.asc: has changed since the checkpoint " +
                                          path("forged").string() +
-                                         " was made; bring back the file, or start anew");
+                                         " was made; restore the file, or start a new run");
 }
 
 TEST_F(SlideRun, ACheckpointWithTheMarkOfAFileThatItsSceneDoesNotNameIsRefused) {

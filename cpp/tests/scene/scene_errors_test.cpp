@@ -243,9 +243,9 @@ TEST(SceneErrorsText, WholeDocument) {
   expect_error("null", "/", "null is not an object");
   expect_error("{}", "/snowshed", "missing: the version 2 is required");
   expect_error(R"({"snowshed": 3})", "/snowshed",
-               "3 is no version that this program reads (1 to 2)");
+               "3 is not a version that this program reads (1 to 2)");
   expect_error(R"({"snowshed": "2"})", "/snowshed",
-               "\"2\" is no version that this program reads (1 to 2)");
+               "\"2\" is not a version that this program reads (1 to 2)");
 }
 
 std::string where_of(const std::string& text) {

@@ -271,7 +271,7 @@ TEST(SceneJson, SlipOfVersion1IsSeparate) {
   EXPECT_EQ(
       notes[0],
       "/panel/condition: \"slip\" of version 1 is read as \"separate\", its name since version "
-      "2; there \"slip\" lets no snow leave the surface but over its edge");
+      "2; there \"slip\" holds snow on the surface except at its edge");
   EXPECT_EQ(notes[2].rfind("/obstacles/1/condition: ", 0), 0u);
   EXPECT_NE(write_scene(old).find("\"snowshed\": 2"), std::string::npos);
 

@@ -102,10 +102,10 @@ TEST(ReadVdb, RefusesWhatIsNoUniformScalarGrid) {
   refused(grid, "class 'unknown'; allowed: level set, fog volume");
   grid = sphere();
   grid->transform().postRotate(0.1);
-  refused(grid, "no cubes along the axes");
+  refused(grid, "not cubes along the axes");
   grid = sphere();
   grid->transform().postScale(openvdb::Vec3d(1, 1, 2));
-  refused(grid, "no cubes along the axes");
+  refused(grid, "not cubes along the axes");
   grid = sphere();
   grid->transform().postScale(100.0);  // distances and positions in different units
   refused(grid, "background");

@@ -122,8 +122,8 @@ class Panel(Record):
     thickness : float
         Thickness, below the sliding face [m]. 0 <= value <= 1e+06; default 0.
     condition : {"sticky", "slip", "separate"}
-        What snow that touches it may do: stay (sticky), slide in the surface (slip), slide and
-        leave (separate). Default "separate".
+        Motion of touching snow: stay (sticky), slide in the surface (slip), slide and leave
+        (separate). Default "separate".
     friction : float
         Coulomb coefficient; unused when sticky. 0 <= value <= 100; default 0.3.
     """
@@ -151,7 +151,7 @@ class Layer(Record):
     thickness : float
         Thickness, normal to the panel [m]. 0 < value <= 1e+06; required.
     snow : Snow
-        Snow of its own; what it leaves out is as in the scene's snow.
+        Snow of its own; values that are left out are those of the scene's snow.
     event : int
         Event at whose start it is laid, 1 the first; 0: at the start of every event. 0 <= value <=
         1000; default 0.
@@ -193,8 +193,8 @@ class Ground(Record):
     tilt : float
         Tilt; positive falls in the slide direction [degrees]. -60 < value < 60; default 0.
     condition : {"sticky", "slip", "separate"}
-        What snow that touches it may do: stay (sticky), slide in the surface (slip), slide and
-        leave (separate). Default "sticky".
+        Motion of touching snow: stay (sticky), slide in the surface (slip), slide and leave
+        (separate). Default "sticky".
     friction : float
         Coulomb coefficient; unused when sticky. 0 <= value <= 100; default 0.3.
     """
@@ -267,7 +267,7 @@ class Terrain(Record):
     file : str or path
         Elevations, m: an ESRI ASCII grid; relative to the scene file. Required.
     crs : str
-        Coordinate system of the raster and the areas, handed on to the results.
+        Coordinate system of the raster and the areas, passed on to the results.
     single_precision : bool
         Whether the mode "compatible" rounds elevations to single precision, as AvaFrame reads
         text. Default True.
@@ -281,13 +281,13 @@ class Terrain(Record):
         Steepest ground between neighbouring nodes under a release, where they differ by more than
         10 m in height [deg]. 0 < value <= 90; default 70.
     notes : str
-        What was assumed of the files, a line each, handed on to the results.
+        Assumptions about the files, one a line, passed on to the results.
     release : list of Area
-        Where snow is released. Required.
+        Areas of release. Required.
     entrainment : list of Area
-        Where the slide takes up snow.
+        Areas where the slide takes up snow.
     resistance : list of ResistanceArea
-        Where forest or the like holds it back.
+        Areas where forest or the like holds the slide back.
     """
 
     file: Optional[PathLike] = None
@@ -340,8 +340,8 @@ class Obstacle(Record):
     shape : Shape
         The solid. Required.
     condition : {"sticky", "slip", "separate"}
-        What snow that touches it may do: stay (sticky), slide in the surface (slip), slide and
-        leave (separate). Default "separate".
+        Motion of touching snow: stay (sticky), slide in the surface (slip), slide and leave
+        (separate). Default "separate".
     friction : float
         Coulomb coefficient; unused when sticky. 0 <= value <= 100; default 0.3.
     motion : Motion
@@ -369,7 +369,7 @@ class Body(Record):
         Event at whose start it appears, 1 the first; 0: at the start of every event. 0 <= value <=
         1000; default 1.
     snow : Snow
-        Snow of its own; what it leaves out is as in the scene's snow.
+        Snow of its own; values that are left out are those of the scene's snow.
     """
 
     shape: Optional[Shape] = None
@@ -404,7 +404,7 @@ class Seeding(Record):
         Particles per voxel of edge dx, at least 4 in 2D and 6 in 3D; 0: 6 in 2D, 8 in 3D. 0 <=
         value <= 1000; default 0.
     pattern : {"regular", "jittered", "poisson"}
-        How particles are placed. Default "poisson".
+        Arrangement of the particles. Default "poisson".
     seed : int
         Seed of the random numbers. 0 <= value; default 1.
     allow_sparse : bool
@@ -432,7 +432,7 @@ class Events(Record):
     rest_speed : float
         Speed below which the snow counts as resting [m/s]. 0 < value <= 10000; default 0.02.
     rest_time : float
-        How long it must rest to end the event [s]. 0 <= value <= 1e+09; default 0.05.
+        Duration of rest that ends the event [s]. 0 <= value <= 1e+09; default 0.05.
     """
 
     count: Optional[int] = None

@@ -26,8 +26,8 @@ class Sample(Record):
     voxel_size : float
         Edge of a voxel [m]. 1e-09 <= value <= 1; required.
     split_labels : bool
-        Whether each piece of a label that lies in several places is a grain; else all of them are
-        one rigid grain. Default False.
+        Whether each connected piece of a label is a grain; else all pieces of a label are one
+        rigid grain. Default False.
     """
 
     file: Optional[PathLike] = None
@@ -42,13 +42,14 @@ class LoadingStage(Record):
     Attributes
     ----------
     kind : {"compress", "unload", "stretch", "shear", "isotropic", "penetrate", "hold"}
-        What moves: the top plate down (compress), up until the stress has fallen (unload), up
+        Motion: the top plate down (compress), up until the stress has fallen (unload), up
         (stretch) or along x (shear); all sides inward (isotropic); a cone down (penetrate);
         nothing, until the snow rests (hold). Default "compress".
     speed : float
-        Speed of what moves [m/s]. 0 < value <= 1000; default 0.02.
+        Speed of the plates or of the cone [m/s]. 0 < value <= 1000; default 0.02.
     strain : float
-        Way over the sample's initial height at which the stage ends. 0 < value <= 10; default 0.3.
+        Displacement over the sample's initial height at which the stage ends. 0 < value <= 10;
+        default 0.3.
     stress : float
         Stress that ends the stage (compress, isotropic; 0: none; unload), or is kept on the top
         plate (shear; 0: constant height) [Pa]. 0 <= value <= 1e+12; default 0.
@@ -67,9 +68,9 @@ class Cone(Record):
     Attributes
     ----------
     radius : float
-        Of the cone's base and the shaft [m]. 1e-09 <= value <= 1; default 0.0025.
+        Radius of the cone's base and of the shaft [m]. 1e-09 <= value <= 1; default 0.0025.
     half_angle : float
-        Between the axis and the cone's side [degrees]. 0 < value <= 90; default 30.
+        Angle between the axis and the cone's side [degrees]. 0 < value <= 90; default 30.
     """
 
     radius: Optional[float] = None

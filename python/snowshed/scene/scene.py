@@ -63,16 +63,16 @@ class Scene(Record):
     Attributes
     ----------
     snowshed : int
-        Version of this form. Required.
+        Version of the scene format. Required.
     dimension : int
         2: the plane (x, z); 3: space. 2 <= value <= 3; default 3.
     title : str
-        What this scene is.
+        Title of the scene.
     gravity : float
         Gravity, along -z [m/s2]. 0 <= value <= 1000; default 9.81.
     misplaced_snow : {"refuse", "allow"}
-        What becomes of a scene that seeds more than 1 % of a body of snow inside an obstacle,
-        below the ground, outside the domain, or within other snow. Default "refuse".
+        Treatment of a scene that seeds more than 1 % of a body of snow inside an obstacle, below
+        the ground, outside the domain, or within other snow. Default "refuse".
     snow : Snow
         The material.
     panel : Panel
@@ -82,13 +82,13 @@ class Scene(Record):
     ground : Ground
         An inclined plane through the origin.
     terrain : Terrain
-        Ground from a raster of elevations, and where snow lies on it.
+        Ground from a raster of elevations, with the areas of its snow.
     sample : Sample
-        Segmented snow to be loaded.
+        Segmented snow for a loading test.
     loading : list of LoadingStage
-        How the sample is loaded, stage by stage.
+        Stages of the loading test.
     cone : Cone
-        The tip that stages "penetrate" push in.
+        Cone that the stages "penetrate" push in.
     obstacles : list of Obstacle
         Further solids that snow collides with.
     bodies : list of Body
@@ -96,15 +96,15 @@ class Scene(Record):
     domain : Domain
         A box with sticky sides; unbounded without it.
     seeding : Seeding
-        How snow is filled with particles.
+        Seeding of the snow with particles.
     method : {"mpm", "slide", "grains", "mps"}
         The numerical method. Default "mpm".
     numerics : MpmSettings
         The method's settings.
     events : Events
-        How many events, and when one ends.
+        Number of events, and their end.
     output : Output
-        What is written during a run.
+        Output during a run.
 
     Examples
     --------

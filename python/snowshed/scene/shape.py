@@ -66,7 +66,7 @@ class Shape(Record):
     grid_ : str
         Name of the grid; empty: the only one of floats (vdb).
     threshold : float
-        Of a fog volume: the solid is where its value is above this (vdb).
+        Threshold of a fog volume: the solid is where its value is larger (vdb).
     shapes : list of Shape
         The parts (union); The body, then what is cut away (difference); The shape (transform).
     axis : sequence of float

@@ -10,7 +10,7 @@ void describe(SettingsVisitor& v, Settings& n) {
   v.alias("courant_factor", "step_factor");  // its name up to version 0.1
   v.number("dx", n.dx, "m", allowed::size, "Size of grid cells and voxels");
   v.choice("precision", n.precision, "Floating-point type of the particles and the grid");
-  v.choice("transfer", n.transfer, "How velocities move between particles and grid");
+  v.choice("transfer", n.transfer, "Transfer of velocities between particles and grid");
   v.number(
       "flip_ratio", n.flip_ratio, "", fraction,
       "Share of FLIP in FLIP/PIC in each step, so that shorter steps damp more; 0 is pure PIC");
@@ -24,7 +24,7 @@ void describe(SettingsVisitor& v, Settings& n) {
   v.number("sleep_speed", n.sleep_speed, "m/s", non_negative.up_to(1e4),
            "Snow slower than this drops out of the steps until something moves it; 0: never");
   v.number("sleep_time", n.sleep_time, "s", allowed::time,
-           "How long it must have been slower, and not have grown faster");
+           "Duration for which it must have been slower without speeding up");
   v.integer("threads", n.threads, non_negative.up_to(4096), "Threads; 0: all");
 }
 

@@ -11,11 +11,10 @@ void describe(SettingsVisitor& v, Settings& s) {
   v.number("radius", s.radius, "", between(1.5, 4.5), "Radius of the weight function over l0");
   v.number("max_time_step", s.max_time_step, "s", positive.up_to(1.0), "Longest step");
   v.number("courant_factor", s.courant_factor, "", positive.up_to(0.4),
-           "Longest way of a particle in a step, over l0");
-  v.number("density", s.density, "kg/m3", positive.up_to(1e4), "Density, which stays");
+           "Longest displacement of a particle in a step, over l0");
+  v.number("density", s.density, "kg/m3", positive.up_to(1e4), "Density, which is constant");
   v.choice("rheology", s.rheology, "Law of the shear stress");
-  v.choice("regularisation", s.regularisation,
-           "How the yield stress is approached at small shear rates");
+  v.choice("regularisation", s.regularisation, "Approach of the yield stress at small shear rates");
   v.number("viscosity", s.viscosity, "Pa s", non_negative.up_to(1e6), "Plastic viscosity");
   v.number("cohesion", s.cohesion, "Pa", non_negative.up_to(1e6),
            "Yield stress without pressure (adhesive force)");
@@ -25,32 +24,33 @@ void describe(SettingsVisitor& v, Settings& s) {
            "Coefficient m with which the yield stress is approached");
   v.number("dilatant_rate", s.dilatant_rate, "1/s", positive.up_to(1e9),
            "Shear rate above which the stress grows as a power of it");
-  v.number("dilatant_exponent", s.dilatant_exponent, "", between(1.0, 5.0), "That power");
+  v.number("dilatant_exponent", s.dilatant_exponent, "", between(1.0, 5.0),
+           "Exponent of that power");
   v.integer("yield_iterations", s.yield_iterations, between(1, 1000),
-            "Most iterations of a step in which the apparent viscosity is found");
+            "Largest number of iterations for the apparent viscosity in a step");
   v.flag("erosion", s.erosion, "Whether snow is eroded and deposited");
   v.number("erodible_thickness", s.erodible_thickness, "m", allowed::size_or_zero,
-           "Snow nearer to obstacles than this is erodible at first");
+           "Snow nearer to obstacles than this is erodible at the start");
   v.number("erosion_pressure", s.erosion_pressure, "Pa", non_negative.up_to(1e9),
            "Pressure above which erodible snow begins to move");
   v.number("erosion_speed", s.erosion_speed, "m/s", non_negative.up_to(1e4),
-           "Speed that a neighbour of it must have");
+           "Speed that a neighbour of eroded snow must have");
   v.number("deposition_pressure", s.deposition_pressure, "Pa", non_negative.up_to(1e9),
            "Pressure below which moving snow is deposited");
   v.number("deposition_speed", s.deposition_speed, "m/s", non_negative.up_to(1e4),
-           "Speed below which it is");
-  v.choice("walls", s.walls, "What walls are made of: images of the snow, or particles");
+           "Speed below which moving snow is deposited");
+  v.choice("walls", s.walls, "Walls: mirror images of the snow, or particles");
   v.choice("source", s.source, "Right-hand side of the pressure equation");
   v.number("compensation", s.compensation, "", fraction,
            "Share of the density's error that a step takes away");
   v.choice("gradient", s.gradient, "Gradient of the pressure");
   v.choice("splitting", s.splitting, "Whether viscosity acts before the pressure or after it");
-  v.choice("coupling", s.coupling, "When pressure and viscosity of a step are found together");
-  v.choice("surface", s.surface, "Where the pressure is zero at the free surface");
+  v.choice("coupling", s.coupling, "Steps in which pressure and viscosity are solved together");
+  v.choice("surface", s.surface, "Position of zero pressure at the free surface");
   v.number("surface_ratio", s.surface_ratio, "", between(0.5, 1.0),
            "Number density over that of a lattice, below which a particle is at the surface");
-  v.choice("order", s.order, "When particles move");
-  v.choice("spacing_law", s.spacing_law, "What keeps particles apart besides the pressure");
+  v.choice("order", s.order, "Order of the stages of a step: particles move as published, or once");
+  v.choice("spacing_law", s.spacing_law, "Law that keeps particles apart besides the pressure");
   v.choice("preconditioner", s.preconditioner, "Preconditioner of the pressure equation");
   v.number("pressure_tolerance", s.pressure_tolerance, "", positive.up_to(0.1),
            "Residual of the pressure equation over its right-hand side");

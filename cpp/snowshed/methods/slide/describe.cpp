@@ -7,7 +7,8 @@ namespace snowshed::slide {
 void describe(SettingsVisitor& v, Settings& s) {
   v.accuracy({"cell", "time_step", "layer_thickness"});
   v.choice("mode", s.mode,
-           "Without the known faults of com5SnowSlide, or step by step as AvaFrame 2.1 does it");
+           "Improved, without the known faults of com5SnowSlide, or compatible with AvaFrame 2.1 "
+           "step by step");
   v.number("cell", s.cell, "m", allowed::size_or_zero,
            "Cells of the computing grid; 0: those of the terrain's raster");
   v.number("time_step", s.time_step, "s", positive.up_to(1.0), "Length of a step");
@@ -22,7 +23,7 @@ void describe(SettingsVisitor& v, Settings& s) {
   v.number("resistance", s.resistance, "", non_negative.up_to(1e9),
            "Coefficient within the areas of resistance");
   v.number("artificial_viscosity", s.artificial_viscosity, "", non_negative.up_to(1e6),
-           "How strongly particles are drawn to the velocity of the snow around");
+           "Strength with which particles are drawn to the mean velocity around them");
   v.flag("bonds", s.bonds, "Cohesive bonds; without them a plain depth-averaged avalanche");
   v.number("max_strain", s.max_strain, "", positive.up_to(10.0), "Strain at which a bond breaks");
   v.number("bond_modulus", s.bond_modulus, "Pa", non_negative.up_to(1e12),

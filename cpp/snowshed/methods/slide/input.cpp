@@ -39,7 +39,7 @@ std::vector<Area> areas_of(const std::vector<AreaSpec>& specs, const HeightField
 void check_cliff(const std::string& where, const std::string& cliff, double max_slope) {
   if (cliff.empty()) return;
   throw InputError(where, "elevations of " + cliff + "; are some missing? At most " +
-                              show(max_slope) + " degrees are believed (terrain.max_slope)");
+                              show(max_slope) + " degrees are accepted (terrain.max_slope)");
 }
 
 HeightField read_terrain(const TerrainSpec& terrain, const Settings& settings,

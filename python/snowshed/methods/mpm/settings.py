@@ -25,7 +25,7 @@ class MpmSettings(MethodSettings):
     precision : {"float", "double"}
         Floating-point type of the particles and the grid. Default "float".
     transfer : {"flip", "apic"}
-        How velocities move between particles and grid. Default "flip".
+        Transfer of velocities between particles and grid. Default "flip".
     flip_ratio : float
         Share of FLIP in FLIP/PIC in each step, so that shorter steps damp more; 0 is pure PIC. 0
         <= value <= 1; default 0.99.
@@ -43,7 +43,7 @@ class MpmSettings(MethodSettings):
         Snow slower than this drops out of the steps until something moves it; 0: never [m/s]. 0 <=
         value <= 10000; default 0.02.
     sleep_time : float
-        How long it must have been slower, and not have grown faster [s]. 0 <= value <= 1e+09;
+        Duration for which it must have been slower without speeding up [s]. 0 <= value <= 1e+09;
         default 0.04.
     threads : int
         Threads; 0: all. 0 <= value <= 4096; default 0.

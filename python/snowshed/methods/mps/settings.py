@@ -33,13 +33,13 @@ class MpsSettings(MethodSettings):
     max_time_step : float
         Longest step [s]. 0 < value <= 1; default 0.01.
     courant_factor : float
-        Longest way of a particle in a step, over l0. 0 < value <= 0.4; default 0.2.
+        Longest displacement of a particle in a step, over l0. 0 < value <= 0.4; default 0.2.
     density : float
-        Density, which stays [kg/m3]. 0 < value <= 10000; default 200.
+        Density, which is constant [kg/m3]. 0 < value <= 10000; default 200.
     rheology : {"newtonian", "bingham", "bingham_dilatant"}
         Law of the shear stress. Default "bingham_dilatant".
     regularisation : {"papanastasiou", "bi_viscous"}
-        How the yield stress is approached at small shear rates. Default "papanastasiou".
+        Approach of the yield stress at small shear rates. Default "papanastasiou".
     viscosity : float
         Plastic viscosity [Pa s]. 0 <= value <= 1e+06; default 0.012.
     cohesion : float
@@ -54,25 +54,25 @@ class MpsSettings(MethodSettings):
         Shear rate above which the stress grows as a power of it [1/s]. 0 < value <= 1e+09; default
         100.
     dilatant_exponent : float
-        That power. 1 <= value <= 5; default 1.5.
+        Exponent of that power. 1 <= value <= 5; default 1.5.
     yield_iterations : int
-        Most iterations of a step in which the apparent viscosity is found. 1 <= value <= 1000;
+        Largest number of iterations for the apparent viscosity in a step. 1 <= value <= 1000;
         default 50.
     erosion : bool
         Whether snow is eroded and deposited. Default False.
     erodible_thickness : float
-        Snow nearer to obstacles than this is erodible at first [m]. 0 <= value <= 1e+06; default
-        0.
+        Snow nearer to obstacles than this is erodible at the start [m]. 0 <= value <= 1e+06;
+        default 0.
     erosion_pressure : float
         Pressure above which erodible snow begins to move [Pa]. 0 <= value <= 1e+09; default 50.
     erosion_speed : float
-        Speed that a neighbour of it must have [m/s]. 0 <= value <= 10000; default 0.1.
+        Speed that a neighbour of eroded snow must have [m/s]. 0 <= value <= 10000; default 0.1.
     deposition_pressure : float
         Pressure below which moving snow is deposited [Pa]. 0 <= value <= 1e+09; default 25.
     deposition_speed : float
-        Speed below which it is [m/s]. 0 <= value <= 10000; default 0.05.
+        Speed below which moving snow is deposited [m/s]. 0 <= value <= 10000; default 0.05.
     walls : {"mirrors", "particles"}
-        What walls are made of: images of the snow, or particles. Default "mirrors".
+        Walls: mirror images of the snow, or particles. Default "mirrors".
     source : {"published", "compensated"}
         Right-hand side of the pressure equation. Default "compensated".
     compensation : float
@@ -82,16 +82,16 @@ class MpsSettings(MethodSettings):
     splitting : {"viscosity_first", "pressure_first"}
         Whether viscosity acts before the pressure or after it. Default "pressure_first".
     coupling : {"none", "stiff", "always"}
-        When pressure and viscosity of a step are found together. Default "stiff".
+        Steps in which pressure and viscosity are solved together. Default "stiff".
     surface : {"published", "mirrored"}
-        Where the pressure is zero at the free surface. Default "mirrored".
+        Position of zero pressure at the free surface. Default "mirrored".
     surface_ratio : float
         Number density over that of a lattice, below which a particle is at the surface. 0.5 <=
         value <= 1; default 0.97.
     order : {"published", "single_move"}
-        When particles move. Default "single_move".
+        Order of the stages of a step: particles move as published, or once. Default "single_move".
     spacing_law : {"none", "collision", "shifting"}
-        What keeps particles apart besides the pressure. Default "shifting".
+        Law that keeps particles apart besides the pressure. Default "shifting".
     preconditioner : {"jacobi", "incomplete_cholesky", "multigrid"}
         Preconditioner of the pressure equation. Default "multigrid".
     pressure_tolerance : float

@@ -18,8 +18,8 @@ class SlideSettings(MethodSettings):
     Attributes
     ----------
     mode : {"improved", "compatible"}
-        Without the known faults of com5SnowSlide, or step by step as AvaFrame 2.1 does it. Default
-        "improved".
+        Improved, without the known faults of com5SnowSlide, or compatible with AvaFrame 2.1 step
+        by step. Default "improved".
     cell : float
         Cells of the computing grid; 0: those of the terrain's raster [m]. 0 <= value <= 1e+06;
         default 0.
@@ -41,8 +41,8 @@ class SlideSettings(MethodSettings):
     resistance : float
         Coefficient within the areas of resistance. 0 <= value <= 1e+09; default 30000.
     artificial_viscosity : float
-        How strongly particles are drawn to the velocity of the snow around. 0 <= value <= 1e+06;
-        default 100.
+        Strength with which particles are drawn to the mean velocity around them. 0 <= value <=
+        1e+06; default 100.
     bonds : bool
         Cohesive bonds; without them a plain depth-averaged avalanche. Default True.
     max_strain : float

@@ -20,7 +20,7 @@ from snowshed.io.raster.raster import Raster, read_raster
 LOWEST, HIGHEST = -430.0, 8850.0  # m, of the Earth's land
 SMALLEST_CELL, LARGEST_CELL = 0.05, 100.0  # m, of terrain that a slide can be seen on
 STEEPEST = 65.0  # degrees, the median of terrain that is in metres
-MAX_SLOPE = 70.0  # degrees, of cliffs that are believed under a release and beside elevations of 0
+MAX_SLOPE = 70.0  # degrees, of cliffs that are accepted under a release and beside elevations of 0
 FOOT = 0.3048  # m
 METRE_CELLS = (0.5, 1.0, 2.0, 3.0, 5.0, 10.0, 20.0, 25.0, 30.0)  # m, of usual rasters
 SAMPLE = 1_000_000  # cells for the median slope
