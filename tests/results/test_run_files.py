@@ -273,7 +273,8 @@ def test_a_finished_run_of_the_version_before_can_be_resumed_and_read(folder):
     for new in ("film", "files", "tables", "scene_checksum", "checksum"):
         del record[new]
     (folder / "run.json").write_text(json.dumps(record, indent=2))
-    rows = [line.rpartition(",")[0] for line in (folder / "events.csv").read_text().splitlines()]
+    lines = (folder / "events.csv").read_text().splitlines()
+    rows = [line.rsplit(",", 3)[0] for line in lines]
     (folder / "events.csv").write_text("\n".join(rows) + "\n")
     assert "joined" not in Results(folder).events
     table = run_events(folder / "scene.json", folder, resume=True, pictures=False)

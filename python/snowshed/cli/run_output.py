@@ -21,6 +21,8 @@ EVENT_TABLE = {
     "length\nm": ("length_m", "{:.3f}"),
     "head\nm": ("head_m", "{:.3f}"),
     "tail\nm": ("tail_m", "{:.3f}"),
+    "centre\nheight": ("centre_height_m", "{:.3f}"),
+    "spread\nalong x": ("spread_m", "{:.3f}"),
     "body\nheight": ("body_height_m", "{:.3f}"),
     "body\nlength": ("body_length_m", "{:.3f}"),
     "density\nkg/m3": ("density_kg_m3", "{:.0f}"),

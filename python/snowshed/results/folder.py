@@ -96,6 +96,8 @@ EVENT_COLUMNS = (
     *(MEASURES[name].column(quantity) for name in TRIMMINGS for quantity in QUANTITIES),
     "on_structures_kg",
     "joined",
+    "centre_height_m",
+    "spread_m",
 )
 #: Checksums of tables, by name: of the rows through an event, by its number.
 Checksums = Mapping[str, Mapping[str, str]]
@@ -130,6 +132,8 @@ def measured_columns(stack: StackMeasure) -> dict[str, Union[float, str]]:
         },
         "on_structures_kg": stack.on_structures_mass,
         "joined": int(stack.joined),
+        "centre_height_m": stack.centre_height,
+        "spread_m": stack.spread,
     }
 
 

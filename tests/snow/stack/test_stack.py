@@ -44,6 +44,31 @@ def test_cone():
     assert stack.crest == pytest.approx(0.0, abs=0.03)
 
 
+@pytest.mark.parametrize("psi", [0.0, 12.0])
+def test_centre_of_mass_and_spread_of_a_triangle(psi):
+    """A third of the height, and the base over the root of 24."""
+    stack = measure(tilt(triangle(1.0, 0.3, count=40_000), psi), ground_tilt_deg=psi)
+    assert stack.centre_height == pytest.approx(0.1, rel=0.01)
+    assert stack.spread == pytest.approx(1 / np.sqrt(24), rel=0.01)
+
+
+def test_centre_of_mass_and_spread_count_masses():
+    x, masses = np.array([[0.0, 0, 0.1], [2.0, 0, 0.5]]), np.array([3.0, 1.0])
+    stack = measure_stack(x, masses, np.full(2, 200.0), dimension=2, dx=5.0)
+    assert stack.centre_height == pytest.approx(0.2)
+    assert stack.spread == pytest.approx(2 * np.sqrt(3) / 4)
+
+
+@pytest.mark.parametrize("gap, bodies", [(0.005, 1), (0.025, 2)])
+def test_what_is_one_body_does_not_depend_on_the_grid(gap, bodies):
+    x, z = np.meshgrid(np.arange(0, 0.1, 0.001), np.arange(0, 0.02, 0.001))
+    slab = np.column_stack([x.ravel(), 0 * x.ravel(), z.ravel()])
+    both = np.vstack([slab, slab + [x.max() + gap, 0, 0]])
+    for dx in (0.01, 0.005, 0.0025):
+        stack = measure(both, dx=dx)
+        assert stack.detached_mass == pytest.approx((bodies - 1) * stack.mass / bodies)
+
+
 def test_mass_volume_and_density():
     pile = triangle(1.0, 0.3, count=1000)
     densities = np.where(np.arange(1000) < 500, 100.0, 300.0)

@@ -9,7 +9,7 @@ import numpy as np
 from snowshed.base.arrays import Booleans, Floats, Integers
 
 
-def largest_body(positions: Floats, masses: Floats, dx: float) -> Booleans:
+def largest_body(positions: Floats, masses: Floats, voxel: float) -> Booleans:
     """Return which particles make up the connected body with the most mass.
 
     Parameters
@@ -18,8 +18,8 @@ def largest_body(positions: Floats, masses: Floats, dx: float) -> Booleans:
         Positions of the particles, m.
     masses : (n,)
         Masses, kg.
-    dx
-        Voxel size, m; the size of the simulation's grid cells.
+    voxel
+        Edge of the voxels, m.
 
     Examples
     --------
@@ -29,17 +29,17 @@ def largest_body(positions: Floats, masses: Floats, dx: float) -> Booleans:
     """
     if len(positions) == 0:
         return np.zeros(0, dtype=bool)
-    labels = connected_bodies(positions, dx)
+    labels = connected_bodies(positions, voxel)
     member: Booleans = labels == np.argmax(np.bincount(labels, weights=masses))
     return member
 
 
-def connected_bodies(positions: Floats, dx: float) -> Integers:
+def connected_bodies(positions: Floats, voxel: float) -> Integers:
     """Label the connected bodies; particles of one body share a number.
 
-    Space is cut into voxels of edge `dx`. Particles belong together if their voxels are the same
-    or touch by a face, an edge or a corner. Particles closer than `dx` are therefore always
-    linked, and gaps wider than 2 `dx` along an axis always part.
+    Space is cut into voxels of edge `voxel`. Particles belong together if their voxels are the
+    same or touch by a face, an edge or a corner. Particles closer than `voxel` are therefore
+    always linked, and gaps wider than 2 `voxel` along an axis always part.
 
     Returns
     -------
@@ -49,10 +49,10 @@ def connected_bodies(positions: Floats, dx: float) -> Integers:
     from scipy.sparse import coo_matrix  # here: it takes longer to load than all of snowshed
     from scipy.sparse.csgraph import connected_components
 
-    voxel = np.floor((positions - positions.min(axis=0)) / dx).astype(np.int64)
-    extent = voxel.max(axis=0) + 2  # an empty layer, so that rows do not touch each other's ends
+    index = np.floor((positions - positions.min(axis=0)) / voxel).astype(np.int64)
+    extent = index.max(axis=0) + 2  # an empty layer, so that rows do not touch each other's ends
     stride = np.array([extent[1] * extent[2], extent[2], 1])
-    keys, voxel_of = np.unique(voxel @ stride, return_inverse=True)
+    keys, voxel_of = np.unique(index @ stride, return_inverse=True)
     first, second = _touching(keys, stride)
     links = coo_matrix((np.ones(len(first)), (first, second)), (len(keys), len(keys)))
     _, labels = connected_components(links, directed=False)
