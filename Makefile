@@ -108,7 +108,7 @@ enable = cmake -S . -B $(TREE) -D$(1)=ON > build/configure.log \
 
 test: test-cpp test-py
 
-# Two tests run at a time. Those with a solver use all cores, so their threads must not spin.
+# Several tests run at a time. Those with a solver use all cores, so their threads must not spin.
 test-cpp test-py sanitize-address sanitize-thread: export OMP_WAIT_POLICY := passive
 
 test-cpp: build
@@ -118,7 +118,7 @@ test-cpp: build
 	ctest --test-dir $(TREE) -j 2 --output-on-failure
 
 test-py: build $(VENV)/.dev-tools
-	$(BIN)/python -m pytest -n 2 --dist loadfile
+	$(BIN)/python -m pytest -n 3 --dist loadfile
 
 test-slow: build $(VENV)/.dev-tools
 	$(BIN)/python -m pytest -m slow

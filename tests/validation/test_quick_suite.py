@@ -10,8 +10,16 @@ from validation.framework.report import Validation, problems
 from snowshed.analysis.accuracy.measurements import to_table
 
 MODULES = case_modules()
-#: Those that take longest have tests of their own in `test_case_*.py`, which are quicker.
-LONG = {"elastic_vibration", "manufactured", "material_paths"}
+#: Those that take longest. Quicker tests, here in `test_case_*.py` or in C++, cover the same code.
+LONG = {
+    "elastic_vibration",
+    "laboratory_between_events",
+    "manufactured",
+    "material_paths",
+    "mps_channel",
+    "mps_snow",
+    "slide_extremes",
+}
 
 
 def modules():
