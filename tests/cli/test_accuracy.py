@@ -6,7 +6,8 @@ from snowshed import InputError, Scene
 from snowshed.analysis.accuracy import recorded
 from snowshed.analysis.accuracy.measurements import Measured, Measurement
 from snowshed.analysis.accuracy.recorded import load_recorded, record
-from snowshed.cli.accuracy import CASE, QUANTITIES, choose
+from snowshed.analysis.accuracy.recorded_stacks import CASE, QUANTITIES
+from snowshed.cli.accuracy import choose
 from snowshed.cli.main import main
 from snowshed.cli.scene_options import option_name
 from snowshed.scene.accuracy_settings import ACCURACY

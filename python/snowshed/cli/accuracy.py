@@ -2,13 +2,12 @@
 
 Accuracy means the errors of the stack's height and length. They are recorded for runs of the
 laboratory experiment on several grids and with several schemes. The size of cells counts relative
-to the thickness of the slab, because the number of cells across the slab decides how well it bends
-and breaks, and every layer adds a gap of about a cell to the height.
+to the thickness of the slab.
 """
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from math import nan
 from typing import TYPE_CHECKING, Any, Optional
@@ -18,19 +17,14 @@ import click
 from snowshed._core import InputError
 from snowshed.base.formatting import percent
 from snowshed.cli.scene_options import option_name
-from snowshed.methods.mpm.settings import MpmSettings
 from snowshed.methods.registry import resolution_path
 from snowshed.scene.accuracy_settings import ACCURACY
 from snowshed.scene.scene import Scene
 from snowshed.scene.schema import current_path
 
 if TYPE_CHECKING:
-    from snowshed.analysis.accuracy.measurements import Measurement, Settings, Value
-
-CASE = "stack_convergence"
-QUANTITIES = ("height", "length")
-PRESET = "lab-50"  # whose slab the case's stacks are made of
-ORDER_IN = MpmSettings.RESOLUTION  # the case is one of the material point method
+    from snowshed.analysis.accuracy.measurements import Measurement, Value
+    from snowshed.analysis.accuracy.recorded_stacks import RecordedStack
 
 
 def part(text: str) -> float:
@@ -93,7 +87,7 @@ def choose(
     scene
         The scene that the settings are for; it needs a slab.
     measurements
-        Measurements of the case `CASE`; by default those of the package.
+        Measurements of the case "stack_convergence"; by default those of the package.
 
     Raises
     ------
@@ -107,12 +101,24 @@ def choose(
     True
     """
     from snowshed.analysis.accuracy.recorded import load_recorded
+    from snowshed.analysis.accuracy.recorded_stacks import (
+        CASE,
+        circumstances,
+        nearest,
+        recorded_stacks,
+        recorded_thickness,
+        slab_thickness,
+    )
     from snowshed.analysis.accuracy.solutions import quickest
 
     data = scene.resolve().data
-    thickness = _slab_thickness(data)
+    thickness = slab_thickness(data)
+    if thickness is None:
+        raise InputError(
+            "--accuracy: the scene has no slab, whose thickness determines dx; give --dx"
+        )
     listed = load_recorded() if measurements is None else measurements
-    stacks = _nearest(recorded_stacks(listed), data)
+    stacks = nearest(recorded_stacks(listed), circumstances(data))
     if not stacks:
         raise InputError(
             "--accuracy: nothing is recorded to choose from; in the source of snowshed, "
@@ -122,7 +128,7 @@ def choose(
     stack = stacks[quickest(costs, errors, wanted)]
     path = resolution_path(data)
     name = path.rpartition(".")[2]
-    share = float(stack.settings[name]) / _slab_thickness(Scene.preset(PRESET).resolve().data)
+    share = float(stack.settings[name]) / recorded_thickness()
     # A recorded run used the defaults of unnamed settings, so they must be defaults here, too.
     values = {where: stack.settings.get(key) for key, where in ACCURACY.items()}
     size = float(f"{share * thickness:.3g}")
@@ -154,101 +160,9 @@ def check_alone(options: Mapping[str, Any]) -> None:
             )
 
 
-@dataclass(frozen=True)
-class RecordedStack:
-    """Recorded errors of stacks made with the same settings.
-
-    Attributes
-    ----------
-    errors
-        Relative error of each of `QUANTITIES`, assured by all finer runs.
-    spreads
-        Standard deviation of each over random seedings, relative to the mean; empty if unknown.
-    wall_s
-        Time of the solution, s.
-    """
-
-    settings: Settings
-    errors: Sequence[float]
-    spreads: Sequence[float]
-    wall_s: float
-
-    @property
-    def error(self) -> float:
-        """The largest."""
-        return max(self.errors)
-
-
-def recorded_stacks(measurements: Iterable[Measurement]) -> list[RecordedStack]:
-    """Return the recorded stacks."""
-    from snowshed.analysis.accuracy.measurements import to_table
-    from snowshed.analysis.accuracy.solutions import assured_errors, key_of, rows_of, solutions
-
-    table = to_table(
-        measurement
-        for measurement in measurements
-        if measurement.case == CASE and not measurement.failure
-    )
-
-    def by_settings(quantity: str, order_in: Optional[str]) -> dict[Hashable, float]:
-        recorded = solutions(rows_of(table, CASE, quantity))
-        return {key_of(o.settings): e for o, e in zip(recorded, assured_errors(recorded, order_in))}
-
-    errors = [by_settings(name, ORDER_IN) for name in QUANTITIES]
-    spreads = [by_settings(f"{name}_spread", None) for name in QUANTITIES]
-    return [
-        RecordedStack(
-            settings=solution.settings,
-            errors=[of_each[key] for of_each in errors],
-            spreads=[of_each[key] for of_each in spreads if key in of_each],
-            wall_s=solution.wall_s,
-        )
-        for solution in solutions(rows_of(table, CASE, QUANTITIES[0]))
-        if all((key := key_of(solution.settings)) in of_each for of_each in errors)
-    ]
-
-
-def _slab_thickness(data: Mapping[str, Any]) -> float:
-    if data.get("slab") is None:
-        raise InputError(
-            "--accuracy: the scene has no slab, whose thickness determines dx; give --dx"
-        )
-    slab = data["slab"]
-    events = {layer["event"] for layer in slab["layers"]}
-    of_each = [
-        sum(layer["thickness"] for layer in slab["layers"] if layer["event"] in (0, event))
-        for event in (events - {0} or {1})
-    ]
-    return float(slab["thickness"] or min(of_each))
-
-
-def _nearest(stacks: list[RecordedStack], data: Mapping[str, Any]) -> list[RecordedStack]:
-    """Return the stacks whose circumstances are nearest to those of the scene."""
-    for name, mine in _circumstances(data).items():
-        held = {stack.settings[name] for stack in stacks if name in stack.settings}
-        if held:
-            nearest = min(held, key=lambda value: (_distance(value, mine), value))
-            stacks = [stack for stack in stacks if stack.settings.get(name) == nearest]
-    return stacks
-
-
-def _circumstances(data: Mapping[str, Any]) -> dict[str, Value]:
-    events = data["events"]
-    return {
-        "dimension": data["dimension"],
-        "between": events["between"],
-        "events": events["count"],
-    }
-
-
-def _distance(value: Value, mine: Value) -> float:
-    if isinstance(value, str) or isinstance(mine, str):
-        return float(value != mine)
-    return abs(value - mine)
-
-
 def _reasons(stack: RecordedStack, wanted: float, data: Mapping[str, Any], name: str) -> list[str]:
     """Return the end of the first sentence, after the setting `name`, and the further sentences."""
+    from snowshed.analysis.accuracy.recorded_stacks import PRESET, QUANTITIES, circumstances
     from snowshed.analysis.accuracy.setting_labels import settings
 
     scheme = {k: v for k, v in stack.settings.items() if k in ACCURACY and k != name}
@@ -262,7 +176,7 @@ def _reasons(stack: RecordedStack, wanted: float, data: Mapping[str, Any], name:
     if len(stack.spreads) == len(QUANTITIES):
         height, length = (percent(spread, 2) for spread in stack.spreads)
         reasons.append(f"Random seedings alone made them differ by {height} and {length}.")
-    mine = _circumstances(data)
+    mine = circumstances(data)
     other = {k: v for k, v in stack.settings.items() if k in mine and v != mine[k]}
     if other:
         reasons.append(f"Unlike this scene, those runs were made with {settings(other)}.")

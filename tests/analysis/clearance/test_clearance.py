@@ -270,7 +270,8 @@ def test_the_answer_says_from_how_many_winters_it_is(tmp_path, capsys):
     known = ["--range", "friction=0.4", "--range", "adhesion=500", "--range", "sliding=0.2"]
     assert main([*asked, *known, "--heights", "0.5,2", "-o", str(out)]) == 0
     shown = " ".join(capsys.readouterr().out.split())
-    assert "from 1 of 3 winters and the uncertain snow parameters" in shown
+    assert "1 of 3 winters and the uncertain snow parameters, without the error of the" in shown
+    assert "the intervals leave out the error of the grid: stacks of lab-50 were" in shown
     assert "left out are the winters" in shown and "2001/02 to 2002/03 (0 %)" in shown
     assert "Where the snow comes from" in shown and "new snow" in shown
     summary = json.loads((out / "clearance.json").read_text())

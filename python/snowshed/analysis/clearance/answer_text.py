@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from snowshed.analysis.accuracy.stack_error import recorded_bias
 from snowshed.analysis.clearance.answer import Answer
 from snowshed.analysis.clearance.design import MEANING, Ranges
 from snowshed.base.formatting import plural
 from snowshed.season.record import percent
 
 FIRST_PROBABILITY = 0.9  # of the answer's first sentence
+TYPICAL_SLIDE_OFFS = 5  # in a winter, for the recorded error
 CHANCE = "chance: positions of particles, and interactions of causes"
 
 
@@ -23,7 +25,7 @@ def sentence(answers: Sequence[Answer]) -> str:
         f"To stay clear of shed snow in 9 of 10 winters, the lower edge"
         f"{panel if len(answers) > 1 else ''} must be at least {level.height:.1f} m above ground "
         f"(90 % interval {level.low:.1f} to {level.high:.1f} m, from {answer.winters_text} and "
-        "the uncertain snow parameters)."
+        "the uncertain snow parameters, without the error of the grid)."
     )
 
 
@@ -52,7 +54,7 @@ def advice(answer: Answer) -> str:
 
 def warnings(answers: Sequence[Answer]) -> list[str]:
     """Return where the answer is extrapolated or incomplete."""
-    notes = _excluded_winters(answers[0])
+    notes = [*_excluded_winters(answers[0]), *_grid_error()]
     for answer in answers:
         name = f"{answer.design.slope_length:g} m at {answer.design.tilt:g}°"
         for level in answer.levels:
@@ -84,6 +86,12 @@ def _excluded_winters(answer: Answer) -> list[str]:
         f"the answer uses {record.counted_text}; the snow of {number} was observed on less than "
         f"{percent(record.coverage)} of the days {record.season.text}: {record.excluded_text}"
     ]
+
+
+def _grid_error() -> list[str]:
+    """Return what recorded runs say of the grid's error, which no interval contains."""
+    bias = recorded_bias(2, TYPICAL_SLIDE_OFFS)
+    return [] if bias is None else [f"the intervals leave out the error of the grid: {bias}"]
 
 
 def assumptions(answer: Answer) -> list[str]:

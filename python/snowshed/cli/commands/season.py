@@ -273,6 +273,7 @@ def _print_cost(
 
 def print_season(result: SeasonResult, folder: Path) -> None:
     """Print the table, the event that buries the panel, and notes on the limits of the results."""
+    from snowshed.analysis.accuracy.stack_error import recorded_bias
     from snowshed.season.driver import verdict
 
     console = wide_console(120)
@@ -291,6 +292,9 @@ def print_season(result: SeasonResult, folder: Path) -> None:
     for line in (verdict(result), *(f"note: {note}" for note in result.notes)):
         console.print(line)
     console.print(f"season.csv and season.png in {folder}")
+    bias = recorded_bias(2, max(len(rows), 1)) if result.simulated else None
+    if bias is not None:
+        console.print(f"error of the grid: {bias}")
     if result.simulated:
         console.print(f"the snow in motion: snowshed view {folder}")
 

@@ -1,0 +1,130 @@
+"""Recorded stacks: the errors of the laboratory's stacks on several grids and with several schemes.
+
+The size of cells counts relative to the thickness of the slab, because the number of cells across
+the slab decides how well it bends and breaks.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Optional
+
+from snowshed.analysis.accuracy.measurements import Measurement, Settings, Value, to_table
+from snowshed.analysis.accuracy.solutions import assured_errors, key_of, rows_of, solutions
+from snowshed.methods.mpm.settings import MpmSettings
+from snowshed.scene.scene import Scene
+
+CASE = "stack_convergence"
+QUANTITIES = ("height", "length")
+PRESET = "lab-50"  # whose slab the case's stacks are made of
+ORDER_IN = MpmSettings.RESOLUTION  # the case is one of the material point method
+
+
+@dataclass(frozen=True)
+class RecordedStack:
+    """Recorded errors of stacks made with the same settings.
+
+    Attributes
+    ----------
+    errors
+        Relative error of a single stack in each of `QUANTITIES`, assured by all finer runs.
+    biases
+        Relative deviation of the mean stack from the reference in each; positive: too large.
+    spreads
+        Standard deviation of each over random seedings, relative to the mean; empty if unknown.
+    wall_s
+        Time of the solution, s.
+    """
+
+    settings: Settings
+    errors: Sequence[float]
+    biases: Sequence[float]
+    spreads: Sequence[float]
+    wall_s: float
+
+    @property
+    def error(self) -> float:
+        """The largest."""
+        return max(self.errors)
+
+
+def recorded_stacks(measurements: Iterable[Measurement]) -> list[RecordedStack]:
+    """Return the recorded stacks."""
+    mine = [m for m in measurements if m.case == CASE and not m.failure]
+    table = to_table(mine)
+
+    def by_settings(quantity: str, order_in: Optional[str]) -> dict[Hashable, float]:
+        recorded = solutions(rows_of(table, CASE, quantity))
+        return {key_of(o.settings): e for o, e in zip(recorded, assured_errors(recorded, order_in))}
+
+    errors = [by_settings(name, ORDER_IN) for name in QUANTITIES]
+    spreads = [by_settings(f"{name}_spread", None) for name in QUANTITIES]
+    biases = _biases(mine)
+    return [
+        RecordedStack(
+            settings=solution.settings,
+            errors=[of_each[key] for of_each in errors],
+            biases=[biases[key][name] for name in QUANTITIES],
+            spreads=[of_each[key] for of_each in spreads if key in of_each],
+            wall_s=solution.wall_s,
+        )
+        for solution in solutions(rows_of(table, CASE, QUANTITIES[0]))
+        if all((key := key_of(solution.settings)) in of_each for of_each in errors)
+    ]
+
+
+def _biases(measurements: Iterable[Measurement]) -> dict[Hashable, dict[str, float]]:
+    return {
+        key_of(measurement.settings, without=("seed", "seedings")): {
+            m.quantity: m.value / m.exact - 1 for m in measurement.measured if m.exact
+        }
+        for measurement in measurements
+    }
+
+
+def recorded_thickness() -> float:
+    """Return the thickness of the slab in the recorded runs, m."""
+    thickness = slab_thickness(Scene.preset(PRESET).resolve().data)
+    assert thickness is not None
+    return thickness
+
+
+def slab_thickness(data: Mapping[str, Any]) -> Optional[float]:
+    """Return the thickness of the thinnest slab of a resolved scene, m; None without a slab."""
+    if data.get("slab") is None:
+        return None
+    slab = data["slab"]
+    events = {layer["event"] for layer in slab["layers"]}
+    of_each = [
+        sum(layer["thickness"] for layer in slab["layers"] if layer["event"] in (0, event))
+        for event in (events - {0} or {1})
+    ]
+    return float(slab["thickness"] or min(of_each))
+
+
+def nearest(stacks: Sequence[RecordedStack], wanted: Mapping[str, Value]) -> list[RecordedStack]:
+    """Return the stacks whose settings are nearest to the wanted ones; the first counts most."""
+    chosen = list(stacks)
+    for name, value in wanted.items():
+        recorded = {stack.settings[name] for stack in chosen if name in stack.settings}
+        if recorded:
+            best = min(recorded, key=lambda other: (_distance(other, value), other))
+            chosen = [stack for stack in chosen if stack.settings.get(name) == best]
+    return chosen
+
+
+def circumstances(data: Mapping[str, Any]) -> dict[str, Value]:
+    """Return what recorded runs are chosen by: dimension, and the number and kind of events."""
+    events = data["events"]
+    return {
+        "dimension": data["dimension"],
+        "between": events["between"],
+        "events": events["count"],
+    }
+
+
+def _distance(value: Value, other: Value) -> float:
+    if isinstance(value, str) or isinstance(other, str):
+        return float(value != other)
+    return abs(value - other)

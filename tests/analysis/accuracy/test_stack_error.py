@@ -1,0 +1,73 @@
+import pytest
+
+from snowshed import Scene
+from snowshed.analysis.accuracy.measurements import Measured, Measurement
+from snowshed.analysis.accuracy.recorded import load_recorded
+from snowshed.analysis.accuracy.recorded_stacks import CASE
+from snowshed.analysis.accuracy.stack_error import recorded_bias, stack_error
+
+
+def stack(dx, height, length, **settings):
+    """Runs whose means are off by these shares of 0.1 m and 0.4 m."""
+    measured = [
+        Measured("height", 0.1 * (1 + height), 0.1, 0.9),
+        Measured("length", 0.4 * (1 + length), 0.4, 0.9),
+        Measured("height_spread", 0.04, 0.0, 0.04),
+        Measured("length_spread", 0.06, 0.0, 0.06),
+    ]
+    settings = {"dimension": 2, "events": 5, "dx": dx, "transfer": "flip", **settings}
+    return Measurement(CASE, settings, measured)
+
+
+RECORDED = [
+    stack(0.02, 0.8, -0.2),
+    stack(0.01, 0.3, -0.1),
+    stack(0.005, 0.1, 0.05),
+    stack(0.01, 0.5, 0.0, events=1),
+    stack(0.01, -0.2, 0.2, dimension=3),
+    stack(0.01, 7.0, 7.0, basis="cubic"),
+    stack(0.01, 9.0, 9.0, transfer="apic"),
+]
+
+
+def scene(**values):
+    return Scene.preset("lab-50").with_({"dimension": 2, **values})
+
+
+@pytest.mark.parametrize(
+    "values, height, length",
+    [
+        ({}, 0.3, -0.1),
+        ({"numerics.dx": 0.02}, 0.8, -0.2),
+        ({"events.count": 2}, 0.5, 0.0),
+        ({"dimension": 3}, -0.2, 0.2),
+        ({"slab.thickness": 0.5, "numerics.dx": 0.125}, 0.1, 0.05),  # four cells, as at 0.005 m
+        ({"numerics.transfer": "apic"}, 9.0, 9.0),
+    ],
+)
+def test_the_error_is_that_of_the_nearest_recorded_runs(values, height, length):
+    error = stack_error(scene(**values), RECORDED)
+    assert error.bias == {"height": pytest.approx(height), "length": pytest.approx(length)}
+    assert error.scatter == {"height": 0.04, "length": 0.06}
+
+
+def test_the_sentence_names_the_recorded_scene_and_the_sign_of_the_error():
+    text = stack_error(scene(**{"slab.thickness": 0.015}), RECORDED).sentence
+    assert text.startswith("error of the stack in recorded runs (lab-50 in 2D, event 5, 2 cells")
+    assert "this scene has 1.5" in text
+    assert "height 30 % too large, length 10 % too small, against the finest recorded grid" in text
+    assert text.endswith("single runs scatter by 4 % and 6 %")
+
+
+def test_scenes_without_a_stack_on_a_grid_have_none():
+    assert stack_error({"method": "mps", "numerics": {"spacing": 0.01}}, RECORDED) is None
+    assert stack_error(scene(), []) is None
+
+
+def test_the_bias_of_all_resolved_grids():
+    packaged = [m for m in load_recorded() if m.case == CASE]
+    assert packaged
+    assert recorded_bias(2, 5).endswith(
+        "% too high with 2 to 4 cells in the slab, against the finest recorded grid"
+    )
+    assert recorded_bias(2, 5, transfer="none") is None
