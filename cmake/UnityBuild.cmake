@@ -1,6 +1,7 @@
-# Most of the build time goes into templates that each source instantiates again. The compiler
-# therefore gets several sources at a time. Sanitized builds compile each source alone, which shows
-# that every source includes what it needs.
+# Most of the build time goes into headers of libraries and into templates that each source
+# instantiates again. The compiler therefore gets several sources at a time, and the libraries'
+# headers precompiled. Sanitized builds compile each source alone, which shows that every source
+# includes what it needs.
 if(SNOWSHED_SANITIZE)
   set(snowshed_default_batches OFF)
 else()
@@ -8,7 +9,11 @@ else()
 endif()
 option(SNOWSHED_UNITY_BUILD "Compile several sources at a time" ${snowshed_default_batches})
 
+# The arguments behind the target are headers of libraries that most of its sources include.
 function(snowshed_in_batches target)
   set_target_properties(${target} PROPERTIES
     UNITY_BUILD ${SNOWSHED_UNITY_BUILD} UNITY_BUILD_BATCH_SIZE 6)
+  if(SNOWSHED_UNITY_BUILD)
+    target_precompile_headers(${target} PRIVATE ${ARGN})
+  endif()
 endfunction()
