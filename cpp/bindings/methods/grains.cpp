@@ -61,17 +61,17 @@ LabelImage image_of(const LabelArray& labels) {
 }
 
 std::string checked_label_note(const LabelArray& labels, bool split) {
-  const LabelPieces found = count_pieces(image_of(labels));
-  check_labels(found);
-  return label_note(found, split);
+  const LabelPieces pieces = count_pieces(image_of(labels));
+  check_labels(pieces);
+  return label_note(pieces, split);
 }
 
 py::array_t<std::int32_t> split_labels(const LabelArray& labels) {
   LabelImage image = image_of(labels);
   split_pieces(image);
-  py::array_t<std::int32_t> found({labels.shape(0), labels.shape(1), labels.shape(2)});
-  std::copy(image.labels.begin(), image.labels.end(), found.mutable_data());
-  return found;
+  py::array_t<std::int32_t> pieces({labels.shape(0), labels.shape(1), labels.shape(2)});
+  std::copy(image.labels.begin(), image.labels.end(), pieces.mutable_data());
+  return pieces;
 }
 
 void bind_labels(py::module_& m) {

@@ -19,7 +19,7 @@ constexpr double parallel = 0.77;
 
 /// Lengths below are parts of the half thickness that is asked for.
 constexpr double on_surface = 1e-6, shortest_step = 2e-3, thick = 0.999;
-/// So far the middle of a bent part may leave it on the way along its tangent.
+/// So far the middle of a bent part may leave it along its tangent.
 constexpr double slack = 0.1;
 
 class ThinPartSearch {
@@ -153,25 +153,26 @@ class ThinPartSearch {
     return x;
   }
 
-  /// The way from x to the outside of the solid, at most twice the half thickness.
+  /// The distance from x to the outside of the solid, at most twice the half thickness.
   double way_out(const Vec3& x, const Vec3& direction) const {
     const double longest = 2 * half_, shortest = shortest_step * half_;
-    double way = 0;
-    for (double d = 0; way < longest; d = depth(x + way * direction)) {
-      if (d < -on_surface * half_) return std::max(0.0, way + d);  // back to the surface
-      way += std::max(d, shortest);
+    double distance = 0;
+    for (double d = 0; distance < longest; d = depth(x + distance * direction)) {
+      if (d < -on_surface * half_) return std::max(0.0, distance + d);  // back to the surface
+      distance += std::max(d, shortest);
     }
     return longest;
   }
 
-  /// The way along the middle of a part to its edge, less half of the thickness.
-  double way_to_edge(const Vec3& middle, const Vec3& direction, double half, double longest) const {
+  /// The distance along the middle of a part to its edge, less half of the thickness.
+  double distance_to_edge(const Vec3& middle, const Vec3& direction, double half,
+                          double longest) const {
     const double allowed = slack * half_, end = longest + half + allowed;
-    double way = 0;
-    while (way < end) {
-      const double d = depth(middle + way * direction) + allowed;
-      if (d < 0) return std::clamp(way - allowed - half, 0.0, longest);
-      way += std::max(d, shortest_step * half_);
+    double distance = 0;
+    while (distance < end) {
+      const double d = depth(middle + distance * direction) + allowed;
+      if (d < 0) return std::clamp(distance - allowed - half, 0.0, longest);
+      distance += std::max(d, shortest_step * half_);
     }
     return longest;
   }
@@ -181,7 +182,7 @@ class ThinPartSearch {
     const auto [along, across] = tangents(n);
     const double cover = reach(), least = 1e-4 * half_;
     const auto ends = [&](const Vec3& direction) {
-      return std::max(least, way_to_edge(middle, direction, half, cover));
+      return std::max(least, distance_to_edge(middle, direction, half, cover));
     };
     const double a0 = ends(-along), a1 = ends(along);
     const double b0 = dimension_ == 2 ? cover : ends(-across),
@@ -192,9 +193,10 @@ class ThinPartSearch {
     part.corners[3] = middle - a0 * along + b1 * across;
     if (dimension_ == 3)
       for (Vec3& corner : part.corners) {  // which an edge that runs aslant cuts off
-        const double way = (corner - middle).norm();
-        const Vec3 direction = (corner - middle) / way;
-        corner = middle + std::max(least, way_to_edge(middle, direction, half, way)) * direction;
+        const double distance = (corner - middle).norm();
+        const Vec3 direction = (corner - middle) / distance;
+        corner = middle +
+                 std::max(least, distance_to_edge(middle, direction, half, distance)) * direction;
       }
     return part;
   }

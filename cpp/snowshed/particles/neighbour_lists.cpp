@@ -52,9 +52,10 @@ void NeighbourLists<D>::keep(const SearchedPoints<D>& points, const CellOrder<D>
   for (int d = 0; d < D; ++d)
     for (std::uint32_t i = first; i < last; ++i)
       for (std::uint32_t e = first_[i]; e < first_[i + 1]; ++e) {
-        double way = coordinate_[d][index_[e]] - coordinate_[d][i];
-        if (d == 0 && points.period > 0) way -= points.period * std::nearbyint(way / points.period);
-        offset_[d][e] = float(way);
+        double difference = coordinate_[d][index_[e]] - coordinate_[d][i];
+        if (d == 0 && points.period > 0)
+          difference -= points.period * std::nearbyint(difference / points.period);
+        offset_[d][e] = float(difference);
       }
 }
 

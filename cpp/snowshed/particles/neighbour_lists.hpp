@@ -10,8 +10,8 @@
 
 namespace snowshed {
 
-/// Lists of neighbours in one array (compressed rows), each pair in both of its lists, with the way
-/// to the neighbour. Single precision suffices for ways, which are short.
+/// Lists of neighbours in one array (compressed rows), each pair in both of its lists, with the
+/// separation to the neighbour. Single precision suffices for ways, which are short.
 template <int D>
 class NeighbourLists {
  public:
@@ -38,8 +38,8 @@ class NeighbourLists {
   /// From the point to its neighbour, one array for each axis, m.
   const float* offset(int axis) const { return offset_[std::size_t(axis)].data(); }
 
-  /// The way to the neighbour of an entry, m.
-  VecD<D> way(std::size_t entry) const {
+  /// The separation from the neighbour of an entry, m.
+  VecD<D> separation(std::size_t entry) const {
     VecD<D> r;
     for (int d = 0; d < D; ++d) r[d] = double(offset_[std::size_t(d)][entry]);
     return r;

@@ -8,7 +8,7 @@
 namespace snowshed {
 
 /// Points by axes, in the order of their cells, m. Kernels read and write some values at a time:
-/// behind the last point, and behind what is found, there is room for `spare` more.
+/// behind the last point, and behind the neighbours, there is room for `spare` more.
 template <int D>
 struct SearchedPoints {
   static constexpr std::size_t spare = 16;
@@ -21,6 +21,6 @@ struct SearchedPoints {
 template <int D>
 using NeighbourSearch = std::size_t (*)(const SearchedPoints<D>&, std::uint32_t i,
                                         std::uint32_t begin, std::uint32_t end,
-                                        std::uint32_t* found);
+                                        std::uint32_t* neighbours);
 
 }  // namespace snowshed

@@ -38,18 +38,18 @@ const FieldInfo* find(const std::vector<FieldInfo>& fields, const std::string& n
 
 /// The chosen particles' values of a field: `convert` of each, all components.
 template <class Convert>
-void each_value(const FieldView& view, const std::vector<std::uint32_t>& places, Convert convert) {
+void each_value(const FieldView& view, const std::vector<std::uint32_t>& indices, Convert convert) {
   with_field_type(view.info.type, [&](auto zero) {
     using T = decltype(zero);
-    for (std::size_t i = 0; i < places.size(); ++i) convert(i, view.at<T>(places[i]));
+    for (std::size_t i = 0; i < indices.size(); ++i) convert(i, view.at<T>(indices[i]));
   });
 }
 
 template <class T>
 std::vector<T> whole_values(const Method& solver, const std::string& name,
-                            const std::vector<std::uint32_t>& places) {
-  std::vector<T> values(places.size());
-  each_value(solver.field(name), places, [&](std::size_t i, const auto* v) { values[i] = T(*v); });
+                            const std::vector<std::uint32_t>& indices) {
+  std::vector<T> values(indices.size());
+  each_value(solver.field(name), indices, [&](std::size_t i, const auto* v) { values[i] = T(*v); });
   return values;
 }
 
@@ -58,24 +58,24 @@ std::int32_t in_quanta(double metres, double quantum) {
 }
 
 /// Where the recorded particles are stored, ordered by id; `ids` are theirs.
-std::vector<std::uint32_t> recorded_places(const Method& solver, const FilmHeader& header,
-                                           std::vector<std::uint32_t>& ids) {
+std::vector<std::uint32_t> recorded_indices(const Method& solver, const FilmHeader& header,
+                                            std::vector<std::uint32_t>& ids) {
   const std::vector<std::uint32_t>& order = solver.order_by_id();
   const auto all = whole_values<std::uint32_t>(solver, "id", order);
-  std::vector<std::uint32_t> places;
+  std::vector<std::uint32_t> indices;
   for (std::size_t k = 0; k < order.size(); ++k)
     if (header.records(all[k])) {
-      places.push_back(order[k]);
+      indices.push_back(order[k]);
       ids.push_back(all[k]);
     }
-  return places;
+  return indices;
 }
 
 std::vector<std::int32_t> codes(const Method& solver, const FilmQuantity& quantity,
-                                const std::vector<std::uint32_t>& places) {
-  std::vector<std::int32_t> values(places.size());
+                                const std::vector<std::uint32_t>& indices) {
+  std::vector<std::int32_t> values(indices.size());
   const bool speed = quantity.name == "speed";
-  each_value(solver.field(speed ? "velocity" : quantity.name), places,
+  each_value(solver.field(speed ? "velocity" : quantity.name), indices,
              [&](std::size_t i, const auto* v) {
                values[i] = quantity.code(speed ? std::hypot(v[0], v[1], v[2]) : double(*v));
              });
@@ -86,26 +86,26 @@ FilmFrame frame_of(const Method& solver, const FilmHeader& header, int event) {
   FilmFrame frame;
   frame.time = solver.time();
   frame.event = std::uint32_t(event);
-  const auto places = recorded_places(solver, header, frame.ids);
+  const auto indices = recorded_indices(solver, header, frame.ids);
   const std::vector<FieldInfo> fields = solver.fields();
-  frame.events = whole_values<std::uint16_t>(solver, "event", places);
+  frame.events = whole_values<std::uint16_t>(solver, "event", indices);
   frame.materials = find(fields, "material_id")
-                        ? whole_values<std::uint8_t>(solver, "material_id", places)
-                        : std::vector<std::uint8_t>(places.size());
+                        ? whole_values<std::uint8_t>(solver, "material_id", indices)
+                        : std::vector<std::uint8_t>(indices.size());
   if (header.has_radius) {
-    frame.radii.resize(places.size());
-    each_value(solver.field("equivalent_radius"), places, [&](std::size_t i, const auto* r) {
+    frame.radii.resize(indices.size());
+    each_value(solver.field("equivalent_radius"), indices, [&](std::size_t i, const auto* r) {
       frame.radii[i] = in_quanta(double(*r), header.quantum);
     });
   }
-  frame.positions.assign(std::size_t(header.axes), std::vector<std::int32_t>(places.size()));
-  each_value(solver.field("position"), places, [&](std::size_t i, const auto* x) {
+  frame.positions.assign(std::size_t(header.axes), std::vector<std::int32_t>(indices.size()));
+  each_value(solver.field("position"), indices, [&](std::size_t i, const auto* x) {
     for (int axis = 0; axis < header.axes; ++axis)
       frame.positions[std::size_t(axis)][i] =
           in_quanta(double(x[header.axes == 2 ? 2 * axis : axis]), header.quantum);
   });
   for (const FilmQuantity& quantity : header.quantities)
-    frame.values.push_back(codes(solver, quantity, places));
+    frame.values.push_back(codes(solver, quantity, indices));
   return frame;
 }
 

@@ -31,10 +31,10 @@ PairGeometry pair_geometry(const Model& model, const Boundary& boundary, const P
   apart.y() += g.shift[1] * boundary.period(1);
   const Vec3 offset_b = triple(list.bx, list.by, list.bz, p);
   const Vec3 from_b = second ? Vec3(second->orientation * offset_b) : offset_b;
-  const Vec3 way = apart + from_b - from_a;
-  const double distance = std::max(way.norm(), 1e-30);
-  const Vec3 arm = from_a + 0.5 * way;
-  return {distance - 2 * model.radius, way / distance, arm, arm - apart};
+  const Vec3 separation = apart + from_b - from_a;
+  const double distance = std::max(separation.norm(), 1e-30);
+  const Vec3 arm = from_a + 0.5 * separation;
+  return {distance - 2 * model.radius, separation / distance, arm, arm - apart};
 }
 
 }  // namespace snowshed::grains

@@ -60,39 +60,39 @@ VoxelSets find_pieces(const LabelImage& image) {
 LabelPieces count_pieces(const LabelImage& image) {
   VoxelSets pieces = find_pieces(image);
   std::unordered_map<std::int32_t, std::size_t> pieces_of;
-  LabelPieces found;
+  LabelPieces counts;
   for (std::size_t v = 0; v < image.labels.size(); ++v) {
     if (image.labels[v] == 0) continue;
-    ++found.voxels;
+    ++counts.voxels;
     if (pieces.find(std::uint32_t(v)) != v) continue;
-    ++found.pieces;
-    if (++pieces_of[image.labels[v]] == 2) ++found.scattered;
+    ++counts.pieces;
+    if (++pieces_of[image.labels[v]] == 2) ++counts.scattered;
   }
-  found.labels = pieces_of.size();
-  return found;
+  counts.labels = pieces_of.size();
+  return counts;
 }
 
-void check_labels(const LabelPieces& found) {
+void check_labels(const LabelPieces& counts) {
   constexpr std::size_t smallest_piece = 8, pieces_per_label = 10;  // voxels; of grey values
-  if (found.pieces <= pieces_per_label * found.labels ||
-      found.voxels >= smallest_piece * found.pieces)
+  if (counts.pieces <= pieces_per_label * counts.labels ||
+      counts.voxels >= smallest_piece * counts.pieces)
     return;
-  throw InputError("", "no labels: its " + std::to_string(found.labels) + " numbers lie in " +
-                           std::to_string(found.pieces) +
+  throw InputError("", "no labels: its " + std::to_string(counts.labels) + " numbers lie in " +
+                           std::to_string(counts.pieces) +
                            " pieces of few voxels each, as grey values do; find the grains of an "
                            "image with `snowshed grains segment`");
 }
 
-std::string label_note(const LabelPieces& found, bool split) {
-  if (found.scattered > 0) {
-    const std::string lie = std::to_string(found.scattered) + " of " +
-                            std::to_string(found.labels) + " labels lie in several places, " +
-                            std::to_string(found.pieces) + " pieces in all: ";
+std::string label_note(const LabelPieces& counts, bool split) {
+  if (counts.scattered > 0) {
+    const std::string lie = std::to_string(counts.scattered) + " of " +
+                            std::to_string(counts.labels) + " labels lie in several places, " +
+                            std::to_string(counts.pieces) + " pieces in all: ";
     return lie + (split ? "each piece is a grain"
                         : "each label is one rigid grain, however far apart its pieces lie. "
                           "--split-labels (sample.split_labels) makes each piece a grain");
   }
-  if (found.labels == 1)
+  if (counts.labels == 1)
     return "all ice has the same label, so it is one rigid grain; `snowshed grains segment` finds "
            "the grains of an image";
   return "";

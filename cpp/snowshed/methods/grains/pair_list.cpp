@@ -62,14 +62,14 @@ class ListWriter {
 
 /// Calls visit(key, history or null) for all that is listed, in order.
 template <class Visit>
-void for_each_listed(const std::vector<PairKey>& found, const std::vector<PairHistory>& past,
+void for_each_listed(const std::vector<PairKey>& pairs, const std::vector<PairHistory>& past,
                      const Visit& visit) {
   std::size_t h = 0;
   const auto skip_until = [&](const PairKey* key) {
     for (; h < past.size() && (!key || past[h].key < *key); ++h)
       if (past[h].kept) visit(past[h].key, &past[h]);
   };
-  for (const PairKey& key : found) {
+  for (const PairKey& key : pairs) {
     skip_until(&key);
     const bool known = h < past.size() && past[h].key == key;
     visit(key, known ? &past[h] : nullptr);
@@ -113,11 +113,11 @@ std::size_t PairList::bytes() const {
          (a.capacity() + b.capacity()) * sizeof(std::uint32_t);
 }
 
-PairList make_list(const PairSearch& search, const std::vector<PairKey>& found,
+PairList make_list(const PairSearch& search, const std::vector<PairKey>& pairs,
                    const std::vector<PairHistory>& past) {
   std::size_t entries = 0, groups = 0;
   const PairKey* last = nullptr;
-  for_each_listed(found, past, [&](const PairKey& key, const PairHistory*) {
+  for_each_listed(pairs, past, [&](const PairKey& key, const PairHistory*) {
     const bool opens = !last || last->first != key.first || last->second != key.second ||
                        last->shift[0] != key.shift[0] || last->shift[1] != key.shift[1];
     if (opens) {
@@ -137,7 +137,7 @@ PairList make_list(const PairSearch& search, const std::vector<PairKey>& found,
   list.a.reserve(entries);
   list.b.reserve(entries);
   ListWriter writer(search, list);
-  for_each_listed(found, past, [&](const PairKey& key, const PairHistory* known) {
+  for_each_listed(pairs, past, [&](const PairKey& key, const PairHistory* known) {
     writer.add(key, known ? known->shear : Vec3(Vec3::Zero()), known && known->bonded);
   });
   writer.close_group();

@@ -20,21 +20,22 @@ std::uint32_t plate_number(int i, int j) {
 /// cells of its border, or to those of its image where the box is periodic.
 class SphereCells {
  public:
-  SphereCells(const PairSearch& s, const std::vector<Vec3>& places, const Boundary& b, double reach)
+  SphereCells(const PairSearch& s, const std::vector<Vec3>& centres, const Boundary& b,
+              double reach)
       : periodic_(s.periodic), boundary_(b) {
     const double bottom = std::min(b.plate[0].z(), b.plate[1].z());
     low_ = Vec3(b.side[0], b.side[2], bottom);
     Vec3 extent(b.period(0), b.period(1), std::abs(b.plate[1].z() - b.plate[0].z()));
     extent = extent.cwiseMax(reach);
     // No more cells than a few for each sphere.
-    const double volume = extent.prod() / (4.0 * double(places.size()) + 64);
+    const double volume = extent.prod() / (4.0 * double(centres.size()) + 64);
     const double width = std::max(reach, std::cbrt(volume));
     for (int k = 0; k < 3; ++k) {
       count_[k] = std::max(1, int(std::min(extent[k] / width, 1e6)));
       per_width_[k] = count_[k] / extent[k];
     }
     if (periodic_ && (count_[0] < 3 || count_[1] < 3)) shorten(extent, reach);
-    fill(places);
+    fill(centres);
   }
 
   int count(int axis) const { return count_[axis]; }
@@ -66,17 +67,17 @@ class SphereCells {
         x[axis] - low_[axis] - (axis < 2 ? wrap(x, axis) * boundary_.period(axis) : 0.0);
     return int(std::clamp(from_low * per_width_[axis], 0.0, count_[axis] - 0.5));
   }
-  void fill(const std::vector<Vec3>& places) {
+  void fill(const std::vector<Vec3>& centres) {
     begin_.assign(number(0, 0, count_[2]) + 1, 0);
-    std::vector<std::uint32_t> cell(places.size());
-    for (std::size_t s = 0; s < places.size(); ++s) {
+    std::vector<std::uint32_t> cell(centres.size());
+    for (std::size_t s = 0; s < centres.size(); ++s) {
       cell[s] =
-          std::uint32_t(number(place(places[s], 0), place(places[s], 1), place(places[s], 2)));
+          std::uint32_t(number(place(centres[s], 0), place(centres[s], 1), place(centres[s], 2)));
       ++begin_[cell[s] + 1];
     }
     for (std::size_t c = 1; c < begin_.size(); ++c) begin_[c] += begin_[c - 1];
-    spheres_.resize(places.size());
-    for (std::size_t s = 0; s < places.size(); ++s) spheres_[begin_[cell[s]]++] = std::uint32_t(s);
+    spheres_.resize(centres.size());
+    for (std::size_t s = 0; s < centres.size(); ++s) spheres_[begin_[cell[s]]++] = std::uint32_t(s);
     for (std::size_t c = begin_.size() - 1; c > 0; --c) begin_[c] = begin_[c - 1];
     begin_[0] = 0;
   }
@@ -93,12 +94,12 @@ std::vector<Vec3> places_of(const PairSearch& s, const std::vector<GrainPose>& p
   std::vector<Mat3> rotations;
   rotations.reserve(poses.size());
   for (const GrainPose& pose : poses) rotations.push_back(pose.orientation.toRotationMatrix());
-  std::vector<Vec3> places(s.spheres.offsets.size());
-  parallel_for_each(std::ptrdiff_t(places.size()), s.threads, [&](std::ptrdiff_t i) {
+  std::vector<Vec3> centres(s.spheres.offsets.size());
+  parallel_for_each(std::ptrdiff_t(centres.size()), s.threads, [&](std::ptrdiff_t i) {
     const std::uint32_t g = s.spheres.grain[std::size_t(i)];
-    places[std::size_t(i)] = poses[g].position + rotations[g] * s.spheres.offsets[std::size_t(i)];
+    centres[std::size_t(i)] = poses[g].position + rotations[g] * s.spheres.offsets[std::size_t(i)];
   });
-  return places;
+  return centres;
 }
 
 /// Sees the spheres in the order of their cells.
@@ -132,7 +133,7 @@ class Finder {
   }
 
  private:
-  /// Layer by layer: what is found is sorted afterwards, whoever found it.
+  /// Layer by layer: pairs are sorted afterwards, whichever thread finds them.
   void find_grains() {
     std::vector<std::vector<PairKey>> layers(std::size_t(cells_.count(2)));
     parallel_for(cells_.count(2), s_.threads, 1, [&](std::ptrdiff_t k) {
@@ -150,20 +151,20 @@ class Finder {
 
   /// A row of cells along x, whose spheres stand one after another, with itself and with the four
   /// rows beside it that come after it.
-  void find_along(int j, int k, std::vector<PairKey>& found) const {
+  void find_along(int j, int k, std::vector<PairKey>& pairs) const {
     const int ahead[4][2] = {{1, 0}, {-1, 1}, {0, 1}, {1, 1}};
-    find_between(j, k, j, 0, true, found);
+    find_between(j, k, j, 0, true, pairs);
     for (const auto& [dj, dk] : ahead) {
       if (k + dk >= cells_.count(2)) continue;
       const int n = cells_.count(1), to = j + dj;
       const int periods = to < 0 ? -1 : to >= n ? 1 : 0;
       if (periods != 0 && !s_.periodic) continue;
-      find_between(j, k, to - periods * n, periods, false, found, k + dk);
+      find_between(j, k, to - periods * n, periods, false, pairs, k + dk);
     }
   }
 
   /// Row (j, k) with row (to_j, to_k), `periods` away along y.
-  void find_between(int j, int k, int to_j, int periods, bool same, std::vector<PairKey>& found,
+  void find_between(int j, int k, int to_j, int periods, bool same, std::vector<PairKey>& pairs,
                     int to_k = -1) const {
     const int n = cells_.count(0), l = same ? k : to_k;
     for (int i = 0; i < n; ++i) {
@@ -173,21 +174,21 @@ class Finder {
       const std::uint32_t from = cells_.begin(cells_.number(std::max(i - 1, 0), to_j, l));
       const std::uint32_t until = cells_.end(cells_.number(std::min(i + 1, n - 1), to_j, l));
       for (std::uint32_t e = begin; e < end; ++e)
-        for (std::uint32_t f = same ? e + 1 : from; f < until; ++f) meet(e, f, 0, periods, found);
+        for (std::uint32_t f = same ? e + 1 : from; f < until; ++f) meet(e, f, 0, periods, pairs);
       if (!s_.periodic) continue;
-      if (i == n - 1) meet_cells(cell, cells_.number(0, to_j, l), 1, periods, found);
-      if (i == 0 && !same) meet_cells(cell, cells_.number(n - 1, to_j, l), -1, periods, found);
+      if (i == n - 1) meet_cells(cell, cells_.number(0, to_j, l), 1, periods, pairs);
+      if (i == 0 && !same) meet_cells(cell, cells_.number(n - 1, to_j, l), -1, periods, pairs);
     }
   }
 
   void meet_cells(std::size_t cell, std::size_t other, int px, int py,
-                  std::vector<PairKey>& found) const {
+                  std::vector<PairKey>& pairs) const {
     for (std::uint32_t e = cells_.begin(cell); e < cells_.end(cell); ++e)
       for (std::uint32_t f = cells_.begin(other); f < cells_.end(other); ++f)
-        meet(e, f, px, py, found);
+        meet(e, f, px, py, pairs);
   }
 
-  void meet(std::uint32_t e, std::uint32_t f, int px, int py, std::vector<PairKey>& found) const {
+  void meet(std::uint32_t e, std::uint32_t f, int px, int py, std::vector<PairKey>& pairs) const {
     const std::uint32_t of_e = grain_[e], of_f = grain_[f];
     if (of_e == of_f && !s_.periodic) return;
     int shift[2] = {0, 0};
@@ -200,12 +201,12 @@ class Finder {
     }
     if (way.squaredNorm() >= reach_ * reach_) return;
     const bool forward = of_e != of_f ? of_e < of_f : shift[0] != 0 ? shift[0] > 0 : shift[1] > 0;
-    check_number(found.size());
+    check_number(pairs.size());
     const std::uint32_t a = cells_.sphere(e), b = cells_.sphere(f);
     if (forward)
-      found.push_back({of_e, of_f, {shift[0], shift[1]}, a, b});
+      pairs.push_back({of_e, of_f, {shift[0], shift[1]}, a, b});
     else
-      found.push_back({of_f, of_e, {-shift[0], -shift[1]}, b, a});
+      pairs.push_back({of_f, of_e, {-shift[0], -shift[1]}, b, a});
   }
 
   std::uint32_t partner(Partner p) const { return s_.grains + std::uint32_t(p); }

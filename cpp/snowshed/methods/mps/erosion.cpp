@@ -19,7 +19,7 @@ struct NearSnow {
     for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) {
       const std::size_t j = near.lists.neighbour(e);
       fastest2 = std::max(fastest2, particles.velocity[j].squaredNorm());
-      carried = carried || (!particles.moves(j) && near.way(e).norm() < limit);
+      carried = carried || (!particles.moves(j) && near.separation(e).norm() < limit);
     }
     for (const WallContact<D>* c = near.contacts.begin(i); c < near.contacts.end(i); ++c)
       carried = carried || (c->distance < limit && c->velocity.isZero());

@@ -68,7 +68,7 @@ void sum_beside_wall_particles(const Model<D>& model, const Particles<D>& partic
       const bool dummy = particles.kind[j] == Kind::dummy_wall;
       if (dummy && !conservative) continue;
       const double other = dummy ? particles.pressure[i] : particles.pressure[j];
-      sum += (other + work.base_pressure[i]) * double(near.slope[e]) * near.way(e);
+      sum += (other + work.base_pressure[i]) * double(near.slope[e]) * near.separation(e);
     }
   });
 }
@@ -99,21 +99,21 @@ VecD<D> gradient_at_walls(const Model<D>& model, const Particles<D>& particles,
   for (const WallImage<D>* m = near.images.begin(i); m < near.images.end(i); ++m) {
     const double level = particles.pressure[m->of];
     double pressure = level;
-    VecD<D> across = VecD<D>::Zero();  // the part of the way along the normals
+    VecD<D> across = VecD<D>::Zero();  // the part of the separation along the normals
     for (const int k : {0, 1}) {
       if (m->rise[k] == 0) continue;
       const WallContact<D>& wall = near.wall(*m, k);
       pressure -=
           m->rise[k] * per_velocity * (particles.velocity[i] - wall.velocity).dot(wall.normal);
-      across += m->way.dot(wall.normal) * wall.normal;
+      across += m->separation.dot(wall.normal) * wall.normal;
     }
     pressure = std::max(0.0, pressure);
     if (corrected) {
-      sum += double(m->slope) * (pressure + base) * m->way;
+      sum += double(m->slope) * (pressure + base) * m->separation;
       continue;
     }
     // Along the wall the forces between a particle and an image are equal and opposite.
-    sum += double(m->slope) * ((level + base) * m->way + (pressure - level) * across);
+    sum += double(m->slope) * ((level + base) * m->separation + (pressure - level) * across);
   }
   return sum;
 }

@@ -33,8 +33,8 @@ struct Kernels {
                 float* slope, float* sum, float* filling, std::ptrdiff_t begin, std::ptrdiff_t end);
   void (*sum_moments)(const PairRows&, const float* const* offset, const float* weight,
                       const float* slope, RowMoments<D>*, std::ptrdiff_t begin, std::ptrdiff_t end);
-  /// The weight times e.B e of each pair, 0.5 to 2; e is the direction of the way and B the mean of
-  /// both particles' `spread`, upper halves by rows.
+  /// The weight times e.B e of each pair, 0.5 to 2; e is the direction of the separation and B the
+  /// mean of both particles' `spread`, upper halves by rows.
   void (*even_weights)(const PairRows&, const float* const* offset, const float* weight,
                        const float* spread, float* even, std::ptrdiff_t begin, std::ptrdiff_t end);
   /// q = diagonal p - sum of weight p; a row whose diagonal is zero is left out.
@@ -61,7 +61,8 @@ struct Kernels {
                          const double* share, double limit, double* sum, std::ptrdiff_t begin,
                          std::ptrdiff_t end);
   /// The shear rate midway of each pair whose neighbour comes after the particle, 1/s: that of the
-  /// mean of both gradients but for its part along the way, which is the difference of velocities.
+  /// mean of both gradients but for its part along the separation, which is the difference of
+  /// velocities.
   void (*pair_rates)(const PairRows&, const float* const* offset, const double* velocity,
                      const double* gradient, float* rate, std::ptrdiff_t begin, std::ptrdiff_t end);
 };

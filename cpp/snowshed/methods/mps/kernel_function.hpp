@@ -46,7 +46,7 @@ inline KernelConstants kernel_constants(int dimension, double radius) {
 }
 
 /// Calls visit(w, z) for what the second layer of a lattice would see beyond the layer next to it,
-/// where z is the way across in l0: behind a wall, or above a surface.
+/// where z is the distance across in l0: behind a wall, or above a surface.
 template <class Visit>
 void visit_beyond_second_layer(int dimension, const KernelConstants& k, const Visit& visit) {
   const int reach = int(std::ceil(k.radius)), across = dimension == 3 ? reach : 0;
@@ -57,7 +57,7 @@ void visit_beyond_second_layer(int dimension, const KernelConstants& k, const Vi
 }
 
 /// 2 d/(lambda n0) sum of w z over what is behind a wall, for the second layer of a lattice above
-/// it, where z is the way along the normal in l0; for all layers it is one.
+/// it, where z is the distance along the normal in l0; for all layers it is one.
 inline double second_layer_share(int dimension, const KernelConstants& k) {
   double sum = 0;
   visit_beyond_second_layer(dimension, k, [&](double w, int z) { sum += w * z; });

@@ -84,9 +84,9 @@ void find_surface(const Model<D>& model, const Particles<D>& particles, Neighbou
     if (surface && !published && n >= sparse * n0) {
       VecD<D> side = VecD<D>::Zero();
       for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e)
-        side += double(near.weight[e]) * near.way(e).stableNormalized();
+        side += double(near.weight[e]) * near.separation(e).stableNormalized();
       for (const WallImage<D>* m = near.images.begin(i); m < near.images.end(i); ++m)
-        side += double(m->weight) * m->way.stableNormalized();
+        side += double(m->weight) * m->separation.stableNormalized();
       surface = side.norm() > (particles.is_wall(i) ? least_wall_asymmetry : least_asymmetry) * n0;
     }
     near.surface[i] = surface;
@@ -132,9 +132,9 @@ void find_corrections(const Model<D>& model, const Particles<D>& particles, Neig
     VecD<D> side;
     for (int d = 0; d < D; ++d) side[d] = double(near.moments[i].side[d]);
     for (const WallImage<D>* m = near.images.begin(i); m < near.images.end(i); ++m) {
-      moment += double(m->slope) * m->way * m->way.transpose();
-      second += double(m->weight) * m->way * m->way.transpose();
-      side += double(m->weight) * m->way;
+      moment += double(m->slope) * m->separation * m->separation.transpose();
+      second += double(m->weight) * m->separation * m->separation.transpose();
+      side += double(m->weight) * m->separation;
     }
     if (!near.below_surface[i]) {
       const Matrix missing = Matrix::Identity() - 0.5 * model.laplacian() * second;
@@ -185,7 +185,8 @@ void guess_wall_pressures(const Model<D>& model, Particles<D>& particles,
       const std::size_t j = near.lists.neighbour(e);
       if (particles.is_wall(j)) continue;
       sum += double(near.weight[e]) *
-             (particles.pressure[j] - model.settings().density * model.gravity.dot(near.way(e)));
+             (particles.pressure[j] -
+              model.settings().density * model.gravity.dot(near.separation(e)));
       weight += double(near.weight[e]);
     }
     particles.pressure[i] = weight > 0 ? std::max(0.0, sum / weight) : 0.0;

@@ -37,13 +37,13 @@ double slip_divergence(const Model<D>& model, const Particles<D>& particles,
   double sum = 0, flow = 0;
   for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) {
     const std::size_t j = near.lists.neighbour(e);
-    const VecD<D> way = near.way(e);
+    const VecD<D> separation = near.separation(e);
     if (particles.kind[j] == Kind::dummy_wall) {
       const VecD<D>& normal = particles.push[j];
-      flow -= double(near.weight[e]) * way.dot(normal) *
+      flow -= double(near.weight[e]) * separation.dot(normal) *
               (near.slip[i] - particles.velocity[j]).dot(normal);
     } else {
-      sum += double(near.slope[e]) * (correction * way).dot(near.slip[j] - near.slip[i]);
+      sum += double(near.slope[e]) * (correction * separation).dot(near.slip[j] - near.slip[i]);
     }
   }
   return model.gradient() * sum + model.laplacian() * flow;
@@ -66,7 +66,7 @@ double image_divergence(const Model<D>& model, const Particles<D>& particles,
       along -= along.dot(wall.normal) * wall.normal;
       flow += double(m->weight) * m->rise[k] * (own - wall.velocity).dot(wall.normal);
     }
-    sum += double(m->slope) * (correction * m->way).dot(along);
+    sum += double(m->slope) * (correction * m->separation).dot(along);
   }
   return model.gradient() * sum + model.laplacian() * flow;
 }

@@ -14,14 +14,14 @@ constexpr double nearest_no_slip = 0.25;
 /// The difference of velocities between a particle and one behind a wall's surface over that
 /// between the particle and the surface.
 template <int D>
-double no_slip_factor(const WallContact<D>& c, const VecD<D>& way, double spacing) {
-  return std::max(1.0, -way.dot(c.normal) / std::max(c.distance, nearest_no_slip * spacing));
+double no_slip_factor(const WallContact<D>& c, const VecD<D>& separation, double spacing) {
+  return std::max(1.0, -separation.dot(c.normal) / std::max(c.distance, nearest_no_slip * spacing));
 }
 
-/// Calls visit(way, slope, change of velocity) for each wall particle and image that a velocity
-/// gradient sees. Snow does not slide on sticky walls: images behind them have the opposite
-/// velocity, and wall particles one that makes the velocity at the surface that of the wall (Morris
-/// and others 1997, doi:10.1006/jcph.1997.5776).
+/// Calls visit(separation, slope, change of velocity) for each wall particle and image that a
+/// velocity gradient sees. Snow does not slide on sticky walls: images behind them have the
+/// opposite velocity, and wall particles one that makes the velocity at the surface that of the
+/// wall (Morris and others 1997, doi:10.1006/jcph.1997.5776).
 template <int D, class Visit>
 void visit_walls(const Model<D>& model, const Particles<D>& particles, const Neighbourhood<D>& near,
                  std::size_t i, const Visit& visit) {
@@ -31,7 +31,7 @@ void visit_walls(const Model<D>& model, const Particles<D>& particles, const Nei
       if (!particles.is_wall(j)) continue;
       const WallContact<D>* c = near.contact_with(i, particles.event[j]);
       if (!c || !model.is_sticky(*c)) continue;
-      const VecD<D> r = near.way(e);
+      const VecD<D> r = near.separation(e);
       visit(r, double(near.slope[e]),
             VecD<D>(no_slip_factor(*c, r, model.settings().spacing) *
                     (particles.velocity[j] - particles.velocity[i])));
@@ -40,7 +40,7 @@ void visit_walls(const Model<D>& model, const Particles<D>& particles, const Nei
     const bool two = m->rise[1] != 0;
     const WallContact<D>& wall = near.wall(*m, 0);
     if (two || !model.is_sticky(wall)) continue;
-    visit(m->way, double(m->slope),
+    visit(m->separation, double(m->slope),
           VecD<D>(2 * wall.velocity - particles.velocity[m->of] - particles.velocity[i]));
   }
 }
@@ -52,9 +52,10 @@ Eigen::Matrix<double, D, D> rate_correction(const Model<D>& model, const Particl
                                             const Neighbourhood<D>& near, std::size_t i) {
   using Matrix = Eigen::Matrix<double, D, D>;
   Matrix moment = symmetric<D>(near.moments[i].slope);
-  visit_walls(model, particles, near, i, [&](const VecD<D>& way, double slope, const VecD<D>&) {
-    moment += slope * way * way.transpose();
-  });
+  visit_walls(model, particles, near, i,
+              [&](const VecD<D>& separation, double slope, const VecD<D>&) {
+                moment += slope * separation * separation.transpose();
+              });
   moment *= model.gradient();
   constexpr double least_determinant = 0.05;  // 1 on a lattice
   if (!(moment.determinant() > least_determinant)) return model.gradient() * Matrix::Identity();
@@ -143,8 +144,8 @@ void find_rates(const Model<D>& model, Particles<D>& particles, Work<D>& work) {
       gradient.setZero();
     } else {
       visit_walls(model, particles, near, i,
-                  [&](const VecD<D>& way, double slope, const VecD<D>& change) {
-                    gradient += change * (slope * way).transpose();
+                  [&](const VecD<D>& separation, double slope, const VecD<D>& change) {
+                    gradient += change * (slope * separation).transpose();
                   });
       gradient = Matrix(gradient * work.rate_correction[i]);
     }

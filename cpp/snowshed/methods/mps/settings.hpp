@@ -35,7 +35,7 @@ struct Settings {
   double spacing = 0.01;        // m, l0, of particles
   double radius = 2.1;          // r_e over l0
   double max_time_step = 0.01;  // s
-  double courant_factor = 0.2;  // longest way of a particle in a step, over l0
+  double courant_factor = 0.2;  // longest displacement of a particle in a step, over l0
   double density = 200;         // kg/m3
 
   ShearLaw rheology = ShearLaw::bingham_dilatant;

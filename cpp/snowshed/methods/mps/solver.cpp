@@ -13,7 +13,7 @@ namespace {
 
 /// A particle that would move farther than this in a step, in l0, has it repeated with half its
 /// length: it could pass through a wall. So often it is halved.
-constexpr double longest_way = 0.5;
+constexpr double longest_distance = 0.5;
 constexpr int most_halvings = 20;
 
 /// With conservative gradients pairs repel each other with the sum of their pressures, as springs
@@ -49,8 +49,8 @@ void require_converged(const SolveReport& report, const char* what, int most) {
 }
 
 /// The last of several solves, with the iterations of all.
-void add_solve(const SolveReport& one, SolveReport& all) {
-  all = {all.iterations + one.iterations, one.residual, one.converged};
+void add_solve(const SolveReport& solve, SolveReport& all) {
+  all = {all.iterations + solve.iterations, solve.residual, solve.converged};
 }
 
 }  // namespace
@@ -104,10 +104,10 @@ template <int D>
 double SolverImpl<D>::choose_step(const Particles<D>& particles) const {
   const Settings& s = model_.settings();
   const double speed = std::max(largest_speed(particles), largest_wall_speed(work_.near.contacts));
-  const double g = model_.gravity.norm(), way = s.courant_factor * s.spacing;
-  const double root = std::sqrt(speed * speed + 4 * g * way);
+  const double g = model_.gravity.norm(), distance = s.courant_factor * s.spacing;
+  const double root = std::sqrt(speed * speed + 4 * g * distance);
   double dt = std::min(s.max_time_step, pressure_step(particles));
-  if (speed + root > 0) dt = std::min(dt, 2 * way / (speed + root));
+  if (speed + root > 0) dt = std::min(dt, 2 * distance / (speed + root));
   if (!(dt > 1e-9 * s.max_time_step))
     throw SimulationError("the time step has fallen to " + show_rounded(dt) +
                           " s: a particle moves at " + show_rounded(speed) + " m/s");
@@ -256,11 +256,11 @@ void SolverImpl<D>::step() {
   const Settings& s = model_.settings();
   for (int halvings = 0;; ++halvings) {
     attempt(dt, next);
-    const double way = largest_speed(next.particles) * dt;
-    if (way <= longest_way * s.spacing && dt <= 2 * pressure_step(next.particles)) break;
-    if (halvings == most_halvings || !std::isfinite(way))
-      throw SimulationError("a particle would move " + show_rounded(way) + " m within a step of " +
-                            show_rounded(dt) + " s");
+    const double distance = largest_speed(next.particles) * dt;
+    if (distance <= longest_distance * s.spacing && dt <= 2 * pressure_step(next.particles)) break;
+    if (halvings == most_halvings || !std::isfinite(distance))
+      throw SimulationError("a particle would move " + show_rounded(distance) +
+                            " m within a step of " + show_rounded(dt) + " s");
     dt *= 0.5;
     next = start;
     ++next.counters.rejected;

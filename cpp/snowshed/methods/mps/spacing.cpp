@@ -54,7 +54,7 @@ void find_concentration_gradients(const Model<D>& model, std::size_t n, Work<D>&
   for_each_particle(n, model.threads_for(n), [&](std::size_t i) {
     VecD<D>& gradient = work.concentration[i];
     for (const WallImage<D>* m = near.images.begin(i); m < near.images.end(i); ++m)
-      gradient += double(m->slope) * m->way;
+      gradient += double(m->slope) * m->separation;
     gradient *= model.gradient();
   });
 }
@@ -92,10 +92,10 @@ void shift(const Model<D>& model, double dt, Particles<D>& particles, Work<D>& w
       gradient -= (near.surface[i] ? outwards : std::max(outwards, 0.0)) * normal;
     }
     const double travelled = (particles.velocity[i].norm() + fall) * dt / l0;
-    VecD<D> way = -shift_factor * std::min(1.0, 10 * travelled) * l0 * l0 * gradient;
+    VecD<D> shift = -shift_factor * std::min(1.0, 10 * travelled) * l0 * l0 * gradient;
     const double most = 0.05 * l0;
-    if (way.norm() > most) way *= most / way.norm();
-    work.change[i] = way;
+    if (shift.norm() > most) shift *= most / shift.norm();
+    work.change[i] = shift;
   });
   for_each_particle(particles.size(), threads,
                     [&](std::size_t i) { particles.position[i] += work.change[i]; });

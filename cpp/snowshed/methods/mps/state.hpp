@@ -112,7 +112,7 @@ struct Neighbourhood {
       if (c->obstacle == obstacle) return c;
     return nullptr;
   }
-  VecD<D> way(std::size_t entry) const { return lists.way(entry); }
+  VecD<D> separation(std::size_t entry) const { return lists.separation(entry); }
   PairRows rows() const { return {lists.first(), lists.index()}; }
   std::array<const float*, D> offsets() const {
     std::array<const float*, D> axes;

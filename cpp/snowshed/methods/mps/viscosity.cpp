@@ -40,7 +40,7 @@ double hold_of_all(const Model<D>& model, const Particles<D>& particles,
     const std::size_t i = near.lists.neighbour(e);
     const WallContact<D>* c =
         particles.is_wall(i) ? nullptr : near.contact_with(i, particles.event[wall]);
-    if (c) sum += hold(model, near.weight[e], VecD<D>(-near.way(e)), *c);
+    if (c) sum += hold(model, near.weight[e], VecD<D>(-near.separation(e)), *c);
   }
   constexpr double touched = 0.8;
   const double whole = (1 - model.second_layer) / (model.laplacian() * model.settings().spacing);
@@ -70,7 +70,7 @@ void find_shares(const Model<D>& model, const Particles<D>& particles, Work<D>& 
       for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) {
         const std::size_t j = near.lists.neighbour(e);
         if (particles.is_wall(j) && particles.event[j] == c->obstacle)
-          sum += hold(model, near.weight[e], near.way(e), *c) / work.hold[j];
+          sum += hold(model, near.weight[e], near.separation(e), *c) / work.hold[j];
       }
       work.share[near.contacts.place(c)] = sum;
     }

@@ -30,13 +30,13 @@ struct ImageMaker {
 
   double height(const WallContact<D>& c) const { return std::max(c.distance, least); }
 
-  float make(std::size_t k, const VecD<D>& way, double r2, const WallContact<D>* a,
+  float make(std::size_t k, const VecD<D>& separation, double r2, const WallContact<D>* a,
              const WallContact<D>* b, double rise_a, double rise_b) {
     if (r2 >= reach * reach) return 0;
     const float weight = float(reach / std::sqrt(r2) - 1);
     const std::uint32_t first = std::uint32_t(contacts.place(a));
     const std::uint32_t second = b ? std::uint32_t(contacts.place(b)) : first;
-    VecD<D> to = way - rise_a * a->normal;
+    VecD<D> to = separation - rise_a * a->normal;
     if (b) to -= rise_b * b->normal;
     list.push_back(
         {std::uint32_t(k), weight, float(weight / r2), to, {first, second}, {rise_a, rise_b}});
@@ -44,18 +44,18 @@ struct ImageMaker {
   }
 
   /// All images of k; returns the sum of their weights.
-  float make_all(std::size_t i, std::size_t k, const VecD<D>& way) {
+  float make_all(std::size_t i, std::size_t k, const VecD<D>& separation) {
     float sum = 0;
-    const double r2 = way.squaredNorm();
+    const double r2 = separation.squaredNorm();
     for (const WallContact<D>* a = contacts.begin(i); a < contacts.end(i); ++a) {
       const WallContact<D>* ka = contact_with(contacts, k, a->obstacle);
       if (!ka || ka->distance > ka->thickness) continue;
       const double with_a = r2 + 4 * height(*a) * height(*ka);
-      sum += make(k, way, with_a, a, nullptr, 2 * height(*ka), 0);
+      sum += make(k, separation, with_a, a, nullptr, 2 * height(*ka), 0);
       for (const WallContact<D>* b = a + 1; b < contacts.end(i); ++b) {
         const WallContact<D>* kb = contact_with(contacts, k, b->obstacle);
         if (!kb || std::abs(a->normal.dot(b->normal)) > corner) continue;
-        sum += make(k, way, with_a + 4 * height(*b) * height(*kb), a, b, 2 * height(*ka),
+        sum += make(k, separation, with_a + 4 * height(*b) * height(*kb), a, b, 2 * height(*ka),
                     2 * height(*kb));
       }
     }
@@ -80,7 +80,8 @@ void WallImages<D>::update(const NeighbourLists<D>& lists, const RowLists<WallCo
                      if (near) maker.make_all(i, i, VecD<D>::Zero());
                      for (std::uint32_t e = lists.begin(i); e < lists.end(i); ++e) {
                        weight[e] = direct[e];
-                       if (near) weight[e] += maker.make_all(i, lists.neighbour(e), lists.way(e));
+                       if (near)
+                         weight[e] += maker.make_all(i, lists.neighbour(e), lists.separation(e));
                      }
                      first[i + 1] = std::uint32_t(list.size() - before);
                    }

@@ -125,24 +125,24 @@ template <int D>
 void WallParticles<D>::push_apart(const LevelSet& shape, std::vector<VecD<D>>& points,
                                   const std::vector<double>& depth) const {
   const double limit = closest * spacing_;
-  std::vector<VecD<D>> way(points.size());
+  std::vector<VecD<D>> shift(points.size());
   for (int push = 0; push < pushes; ++push) {
     bool any = false;
-    std::fill(way.begin(), way.end(), VecD<D>(VecD<D>::Zero()));
+    std::fill(shift.begin(), shift.end(), VecD<D>(VecD<D>::Zero()));
     for (std::size_t i = 0; i < points.size(); ++i)
       for (std::size_t j = i + 1; j < points.size(); ++j) {
         const VecD<D> r = points[j] - points[i];
         const double distance = r.norm();
         if (!(distance < limit) || distance == 0) continue;
         const VecD<D> half = 0.5 * (limit - distance) / distance * r;
-        way[i] -= half;
-        way[j] += half;
+        shift[i] -= half;
+        shift[j] += half;
         any = true;
       }
     if (!any) return;
     for (std::size_t i = 0; i < points.size(); ++i) {
-      if (way[i].isZero()) continue;
-      const Vec3 moved = embed(VecD<D>(points[i] + way[i]));
+      if (shift[i].isZero()) continue;
+      const Vec3 moved = embed(VecD<D>(points[i] + shift[i]));
       points[i] =
           section<D>(Vec3(moved - (shape.distance(moved) + depth[i]) * shape.normal(moved)));
     }

@@ -92,10 +92,10 @@ void store_energy(const Model& model, const State& state, const Work& work, Ener
   const Bonds& bonds = state.bonds;
   for (std::size_t b = 0; b < bonds.size(); ++b) {
     const std::uint32_t k = bonds.first[b], l = bonds.second[b];
-    const Vec3 way{p.x[l] - p.x[k], p.y[l] - p.y[k], p.z[l] - p.z[k]};
+    const Vec3 separation{p.x[l] - p.x[k], p.y[l] - p.y[k], p.z[l] - p.z[k]};
     const double thickness = 0.5 * (work.thickness[k] + work.thickness[l]);
-    e.bonds +=
-        bond_energy(model.settings.bond_modulus, thickness, way.norm(), bonds.rest_length[b]);
+    e.bonds += bond_energy(model.settings.bond_modulus, thickness, separation.norm(),
+                           bonds.rest_length[b]);
   }
 }
 

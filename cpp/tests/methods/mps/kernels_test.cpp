@@ -51,7 +51,7 @@ struct Cloud {
                               sum.data(), filling.data(), 0, std::ptrdiff_t(count));
   }
   std::ptrdiff_t size() const { return std::ptrdiff_t(position.size()); }
-  VecD<D> way(std::size_t i, std::size_t j) const {
+  VecD<D> separation(std::size_t i, std::size_t j) const {
     VecD<D> r = position[j] - position[i];
     if (period > 0) r[0] -= period * std::round(r[0] / period);
     return r;
@@ -76,11 +76,11 @@ TYPED_TEST(KernelsOf, FindTheNeighboursThatAllPairsHave) {
     for (std::size_t i = 0; i < 150; ++i) {
       std::set<std::size_t> near, found;
       for (std::size_t j = 0; j < 150; ++j)
-        if (j != i && cloud.way(i, j).norm() < cloud.radius) near.insert(j);
+        if (j != i && cloud.separation(i, j).norm() < cloud.radius) near.insert(j);
       for (std::uint32_t e = cloud.lists.begin(i); e < cloud.lists.end(i); ++e) {
         const std::size_t j = cloud.lists.neighbour(e);
         EXPECT_TRUE(found.insert(j).second);
-        EXPECT_LT((cloud.lists.way(e) - cloud.way(i, j)).norm(), 1e-6);
+        EXPECT_LT((cloud.lists.separation(e) - cloud.separation(i, j)).norm(), 1e-6);
       }
       EXPECT_EQ(found, near);
     }
@@ -100,9 +100,9 @@ TYPED_TEST(KernelsOf, WeighPairsByTheirDirection) {
                                    spread.data()->data(), even.data(), 0, cloud.size());
   std::array<int, 3> within{};  // factors at the lower limit, between, at the upper one
   cloud.for_each_pair([&](std::size_t i, std::size_t j, std::size_t e) {
-    const VecD<D> way = cloud.way(i, j).normalized();
+    const VecD<D> separation = cloud.separation(i, j).normalized();
     const double factor =
-        0.5 * way.dot((symmetric<D>(spread[i].data()) + symmetric<D>(spread[j].data())) * way);
+        0.5 * separation.dot((symmetric<D>(spread[i].data()) + symmetric<D>(spread[j].data())) * separation);
     ++within[factor < 0.5 ? 0 : factor < 2 ? 1 : 2];
     EXPECT_NEAR(even[e], double(cloud.weight[e]) * std::clamp(factor, 0.5, 2.0),
                 1e-4 * (1 + double(cloud.weight[e])));
@@ -192,7 +192,7 @@ TYPED_TEST(KernelsOf, SumWaysAndApproaches) {
   AlignedVector<double> sizes(150, 0.0);
   int apart = 0, receding = 0;
   cloud.for_each_pair([&](std::size_t i, std::size_t j, std::size_t e) {
-    const VecD<D> r = cloud.way(i, j), change = cloud.velocity[j] - cloud.velocity[i];
+    const VecD<D> r = cloud.separation(i, j), change = cloud.velocity[j] - cloud.velocity[i];
     expected[i] += double(cloud.slope[e]) * r;
     expected_weighted[i] += double(cloud.slope[e]) * (value[j] + base[i]) * r;
     sizes[i] += double(cloud.slope[e]) * r.norm();

@@ -10,8 +10,8 @@ namespace {
 template <int D>
 struct Rows {
   static std::size_t search(const SearchedPoints<D>& points, std::uint32_t i, std::uint32_t begin,
-                            std::uint32_t end, std::uint32_t* found) {
-    return find_near<D>(points, i, begin, end, found);
+                            std::uint32_t end, std::uint32_t* neighbours) {
+    return find_near<D>(points, i, begin, end, neighbours);
   }
   static void weigh(const PairRows& rows, const float* const* offset, float reach, float* weight,
                     float* slope, float* sum, float* filling, std::ptrdiff_t begin,

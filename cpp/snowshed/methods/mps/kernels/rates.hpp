@@ -10,7 +10,7 @@ template <int D>
 struct PairMotion {
   using V = SimdPack<double>;
   IndexPack<V> index;
-  V way[D], change[D];
+  V separation[D], change[D];
 
   SNOWSHED_INLINE PairMotion(const PairRows& rows, const float* const* offset,
                              const double* velocity, std::size_t row, const RowPack<V>& pack)
@@ -18,7 +18,7 @@ struct PairMotion {
     const IndexPack<V> at = index * D;
     SNOWSHED_UNROLL
     for (int d = 0; d < D; ++d) {
-      way[d] = pack.load(offset[d]);
+      separation[d] = pack.load(offset[d]);
       change[d] = gather<V>(velocity + d, at) - velocity[row * D + d];
     }
   }
@@ -35,7 +35,7 @@ SNOWSHED_INLINE void sum_row_gradients(const PairRows& rows, const float* const*
     const V s = pack.load(slope);
     SNOWSHED_UNROLL
     for (int b = 0; b < D; ++b) {
-      const V weighted = s * pair.way[b];
+      const V weighted = s * pair.separation[b];
       SNOWSHED_UNROLL
       for (int a = 0; a < D; ++a) sum[b * D + a] += pair.change[a] * weighted;
     }
@@ -71,14 +71,14 @@ SNOWSHED_INLINE void sum_row_approaches(const PairRows& rows, const float* const
     V square{}, along{};
     SNOWSHED_UNROLL
     for (int d = 0; d < D; ++d) {
-      square += pair.way[d] * pair.way[d];
-      along -= pair.change[d] * pair.way[d];
+      square += pair.separation[d] * pair.separation[d];
+      along -= pair.change[d] * pair.separation[d];
     }
-    // Lanes beyond the row have no way, and approach no one.
+    // Lanes beyond the row have no separation, and approach no one.
     const V none{}, approaching = select(square < limit * limit, max(along, none), none);
     const V factor = gather<V>(share, pair.index) * approaching / max(square, broadcast<V>(1e-30));
     SNOWSHED_UNROLL
-    for (int d = 0; d < D; ++d) total[d] += factor * pair.way[d];
+    for (int d = 0; d < D; ++d) total[d] += factor * pair.separation[d];
   });
   SNOWSHED_UNROLL
   for (int d = 0; d < D; ++d) sum[row * D + std::size_t(d)] = sum_lanes(total[d]);
@@ -106,8 +106,8 @@ SNOWSHED_INLINE void find_pair_rates(const PairRows& rows, const float* const* o
     for (int a = 0; a < D; ++a) {
       along[a] = pair.change[a];
       SNOWSHED_UNROLL
-      for (int b = 0; b < D; ++b) along[a] -= mean[b * D + a] * pair.way[b];
-      square += pair.way[a] * pair.way[a];
+      for (int b = 0; b < D; ++b) along[a] -= mean[b * D + a] * pair.separation[b];
+      square += pair.separation[a] * pair.separation[a];
     }
     const V inverse = 1.0 / max(square, broadcast<V>(1e-30));
     SNOWSHED_UNROLL
@@ -115,12 +115,12 @@ SNOWSHED_INLINE void find_pair_rates(const PairRows& rows, const float* const* o
     V sum{};  // half of the square of the gradient and its transpose
     SNOWSHED_UNROLL
     for (int a = 0; a < D; ++a) {
-      const V diagonal = mean[a * D + a] + along[a] * pair.way[a];
+      const V diagonal = mean[a * D + a] + along[a] * pair.separation[a];
       sum += 2 * diagonal * diagonal;
       SNOWSHED_UNROLL
       for (int b = 0; b < a; ++b) {
-        const V shear =
-            mean[a * D + b] + mean[b * D + a] + along[a] * pair.way[b] + along[b] * pair.way[a];
+        const V shear = mean[a * D + b] + mean[b * D + a] + along[a] * pair.separation[b] +
+                        along[b] * pair.separation[a];
         sum += shear * shear;
       }
     }

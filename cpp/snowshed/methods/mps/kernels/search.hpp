@@ -38,7 +38,7 @@ SNOWSHED_INLINE std::size_t write_places(unsigned bits, std::uint32_t from, std:
 template <int D>
 SNOWSHED_INLINE std::size_t find_near(const SearchedPoints<D>& points, std::uint32_t i,
                                       std::uint32_t begin, std::uint32_t end,
-                                      std::uint32_t* found) {
+                                      std::uint32_t* neighbours) {
   using V = SimdPack<double>;
   constexpr std::uint32_t lanes = simd_width<double>;
   static_assert(lanes <= SearchedPoints<D>::spare);
@@ -48,16 +48,16 @@ SNOWSHED_INLINE std::size_t find_near(const SearchedPoints<D>& points, std::uint
     V square{};
     SNOWSHED_UNROLL
     for (int d = 0; d < D; ++d) {
-      V way;
-      std::memcpy(&way, points.coordinate[d] + j, sizeof way);
-      way -= points.coordinate[d][i];
-      if (d == 0 && period > 0) way = min(abs(way), V(period - abs(way)));
-      square += way * way;
+      V difference;
+      std::memcpy(&difference, points.coordinate[d] + j, sizeof difference);
+      difference -= points.coordinate[d][i];
+      if (d == 0 && period > 0) difference = min(abs(difference), V(period - abs(difference)));
+      square += difference * difference;
     }
     unsigned bits = lane_bits(square < radius2);
     if (end - j < lanes) bits &= (1u << (end - j)) - 1;
     if (i - j < lanes) bits &= ~(1u << (i - j));
-    n += write_places(bits, j, found + n);
+    n += write_places(bits, j, neighbours + n);
   }
   return n;
 }

@@ -34,12 +34,12 @@ struct Neighbours {
         y(load_beyond<V>(s.sorted_y + e)),
         z(load_beyond<V>(s.sorted_z + e)) {}
 };
-/// The way to them from a particle.
+/// Separation of the neighbours from a particle.
 template <class V>
-struct Way {
+struct Separation {
   V x, y, z;
 
-  SNOWSHED_INLINE Way(const View& s, std::uint32_t from, const Neighbours<V>& to)
+  SNOWSHED_INLINE Separation(const View& s, std::uint32_t from, const Neighbours<V>& to)
       : x(to.x - s.sorted_x[from]), y(to.y - s.sorted_y[from]), z(to.z - s.sorted_z[from]) {}
   SNOWSHED_INLINE V square() const { return x * x + y * y + z * z; }
 };

@@ -32,7 +32,7 @@ SNOWSHED_INLINE void count_neighbours_of(const View& s, std::uint32_t first,
     const Neighbours<V> there(s, e);
     const V mass = within(load_beyond<V>(s.sorted_mass + e), e, end);
     for (int k = 0; k < count; ++k) {
-      const V square = max(Way<V>(s, first + k, there).square(), broadcast<V>(least_square));
+      const V square = max(Separation<V>(s, first + k, there).square(), broadcast<V>(least_square));
       const V inside = max(V{}, V(s.cell - square * inverse_sqrt(square)));
       sum[k] += mass * inside * inside * inside;
     }
@@ -71,12 +71,12 @@ SNOWSHED_INLINE void surface_pressure_on(const View& s, double factor, std::uint
     const V mass = within(load_beyond<V>(s.sorted_mass + e), e, end);
     const V theirs = mass * load_beyond<V>(s.sorted_pressing + e);
     for (int k = 0; k < count; ++k) {
-      const Way<V> way(s, first + k, there);
+      const Separation<V> separation(s, first + k, there);
       const V pressing = theirs + mass * s.sorted_pressing[first + k];
-      const V w = spiky_gradient(pressing, way.square(), s.cell);
-      sx[k] += w * way.x;
-      sy[k] += w * way.y;
-      sz[k] += w * way.z;
+      const V w = spiky_gradient(pressing, separation.square(), s.cell);
+      sx[k] += w * separation.x;
+      sy[k] += w * separation.y;
+      sz[k] += w * separation.z;
     }
   });
   for (int k = 0; k < count; ++k) {
