@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from snowshed.plot.figure_style import COLOURS, FIRST, LAST, STYLE, blank, headline
+from snowshed.plot.figure_style import COLOURS, FIRST, LAST, STYLE, blank_figure, headline
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -42,7 +42,7 @@ def growth_figure(rows: pd.DataFrame) -> Figure:
     keys = ["dimension", "tilt", "friction"]
     styles = {group: _line_style(group, rows) for group in rows.groupby(keys).groups}
     with matplotlib.rc_context(STYLE):
-        figure = blank(8.4, 6.4)
+        figure = blank_figure(8.4, 6.4)
         headline(figure, "The laboratory's stacks, simulated")
         for axes, (column, label) in zip(figure.subplots(2, 2, sharex=True).flat, GROWN.items()):
             for group, runs in rows.groupby(keys):
@@ -87,7 +87,7 @@ def geometry_figure(table: pd.DataFrame) -> Figure:
     events = sorted(table["event"].unique())
     shades = matplotlib.colormaps["viridis"](np.linspace(FIRST, LAST, len(events)))
     with matplotlib.rc_context(STYLE):
-        figure = blank(9.2, 7.4)
+        figure = blank_figure(9.2, 7.4)
         headline(
             figure, f"Stacks while one input of the panel varies; the others: {_words(reference)}"
         )

@@ -20,7 +20,7 @@ from snowshed.study.table import value_at
 if TYPE_CHECKING:
     import pandas as pd
 
-#: Resolution of the figures that stages save, see `snowshed.plot.figure_style.save`.
+#: Resolution of the figures that stages save, see `snowshed.plot.figure_style.save_figure`.
 SAVED_DPI = 160
 #: For sections whose panel has one friction.
 PANEL_FRICTION = (

@@ -13,7 +13,7 @@ from reproductions.hagenmuller2015.printed import YADE
 from reproductions.hagenmuller2015.stages import GrainsComputation
 from reproductions.hagenmuller2015.studies import MAKERS
 from snowshed.analysis.grains.ratios import STRESSES, compare_variants
-from snowshed.analysis.grains.sensitivity import FIGURE, evaluate_sensitivity
+from snowshed.analysis.grains.sensitivity import FIGURE, evaluate_variants
 from snowshed.analysis.grains.variants import BASE
 from snowshed.base.formatting import NOTHING
 from snowshed.plot.html_page import Grid, Picture
@@ -48,7 +48,7 @@ def engine(work: GrainsComputation) -> Content:
 def sensitivity(work: GrainsComputation) -> Content:
     """Return what the strength depends on."""
     folder = work.folder.of_stage("sensitivity")
-    evaluate_sensitivity(work.comparisons["brittle"], work.folder.runs, folder)
+    evaluate_variants(work.comparisons["brittle"], work.folder.runs, folder)
     caption = "As of `snowshed grains sensitivity`; the numbers are in sensitivity/sensitivity.csv."
     return Content(pictures=[Picture.read(folder / FIGURE, "Sensitivity", caption, dpi=160)])
 

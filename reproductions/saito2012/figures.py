@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from reproductions.saito2012.measures import MOVING, Course
-from snowshed.plot.figure_style import blank
+from snowshed.plot.figure_style import blank_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -39,7 +39,7 @@ def _views(
     across: str,
     up: str,
 ) -> Figure:
-    figure = blank(3.4 * len(courses), 0.6 + 1.5 * len(times))
+    figure = blank_figure(3.4 * len(courses), 0.6 + 1.5 * len(times))
     one_path = len({tuple(one.case.path.corners) for one in courses}) == 1
     share: Literal["all", "col"] = "all" if one_path else "col"
     axes = figure.subplots(len(times), len(courses), sharex=share, sharey=share, squeeze=False)
@@ -70,7 +70,7 @@ def _views(
 
 def fronts(courses: Sequence[Course]) -> Figure:
     """Return the position of the front over time."""
-    figure = blank(5.5, 3.6)
+    figure = blank_figure(5.5, 3.6)
     axis = figure.subplots()
     for course in courses:
         axis.plot(course.times, course.fronts(), label=course.case.name)

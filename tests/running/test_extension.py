@@ -11,8 +11,7 @@ from interrupted_runs import compare_tables, interrupt_at
 
 from snowshed import InputError, Interrupted, Results, Simulation, Snow, _core, run_events
 from snowshed.cli.main import main
-from snowshed.running import sequence
-from snowshed.running.ageing import Ageing, Interval
+from snowshed.running import Ageing, Interval, sequence
 from snowshed.running.extension import extend_run, extended_scene
 from snowshed.scene.scene import resolve_scene
 

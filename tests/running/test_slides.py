@@ -16,8 +16,7 @@ from snowshed.io.raster.raster import Raster, read_raster, write_ascii_grid
 from snowshed.plot import slide_page
 from snowshed.running.run import run
 from snowshed.running.slide_states import particles_at
-from snowshed.scene import Area, Events, Scene, Terrain
-from snowshed.scene.builders import example_slide
+from snowshed.scene import Area, Events, Scene, Terrain, example_slide
 
 OUTLINE = [(20.3, 18.3), (44.3, 18.3), (44.3, 42.3), (20.3, 42.3)]
 

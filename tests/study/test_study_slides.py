@@ -10,7 +10,7 @@ from snowshed.analysis.hazard.maps import hazard_maps, wilson_interval
 from snowshed.io.raster.raster import read_raster
 from snowshed.methods.slide.maps import PeakMaps
 from snowshed.running.run import run
-from snowshed.scene.builders import example_slide
+from snowshed.scene import example_slide
 from snowshed.study import Study, read_table
 from snowshed.study.store import Store
 

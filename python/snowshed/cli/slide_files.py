@@ -18,7 +18,7 @@ INPUTS = "give --terrain and --release, or --avaframe, or --example"
 class SlideFiles:
     """Files of a slide, their bands, and the thickness of its release, m, if given.
 
-    `layers` are those of `snowshed.scene.builders.slide_scene`.
+    `layers` are those of `snowshed.scene.slide_scene`.
     """
 
     terrain: Optional[Path]

@@ -10,7 +10,7 @@ from matplotlib import rc_context
 from matplotlib.figure import Figure
 
 from snowshed.plot.caption import scene_caption
-from snowshed.plot.figure_style import COLOURS, FAINT, INK, STYLE, blank, describe
+from snowshed.plot.figure_style import COLOURS, FAINT, INK, STYLE, blank_figure, describe
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -55,7 +55,7 @@ def energy_figure(table: pd.DataFrame, scene: Mapping[str, Any]) -> Figure:
     height = sum(table[name] for name in energies if name in OF_HEIGHT)
     released = (table["added_j"] - height).rename("released")
     with rc_context(STYLE):
-        figure = blank(WIDTH, HEIGHT)
+        figure = blank_figure(WIDTH, HEIGHT)
         above, below = figure.subplots(2, 1, sharex=True, height_ratios=(2, 3))
         per_width = " per m of width" if scene.get("dimension") == 2 else ""
         _draw(above, table, {name: table[name] for name in held}, per_width)

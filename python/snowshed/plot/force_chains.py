@@ -9,7 +9,7 @@ import numpy as np
 
 from snowshed.base.arrays import Booleans, Floats
 from snowshed.methods.grains.contacts import GrainContacts
-from snowshed.plot.figure_style import BODY, FAINT, INK, STACK, STYLE, blank, describe
+from snowshed.plot.figure_style import BODY, FAINT, INK, STACK, STYLE, blank_figure, describe
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -42,7 +42,7 @@ def force_figure(contacts: GrainContacts, voxel_size: float, title: str = "") ->
 
     with rc_context(STYLE):
         width, _, height = np.ptp(contacts.spheres, axis=0) + voxel_size
-        figure = blank(6.4, 1.2 + 5.6 * min(height / width, 2.0))
+        figure = blank_figure(6.4, 1.2 + 5.6 * min(height / width, 2.0))
         if title:
             describe(figure, fill(title, TITLE_WIDTH))
         axes = figure.subplots()

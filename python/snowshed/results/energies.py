@@ -46,9 +46,9 @@ def draw_energies(folder: Union[PathLike, Results]) -> Path:
     'energy.png'
     """
     from snowshed.plot.energy_figure import energy_figure
-    from snowshed.plot.figure_style import save
+    from snowshed.plot.figure_style import save_figure
 
     results = folder if isinstance(folder, Results) else Results(folder)
     picture = results.folder / PICTURE
-    save(energy_figure(results.energy_history, results.scene.data), picture)
+    save_figure(energy_figure(results.energy_history, results.scene.data), picture)
     return picture

@@ -16,7 +16,7 @@ from snowshed.io.folders import check_empty
 from snowshed.io.json_file import read_object
 from snowshed.methods.registry import method_of
 from snowshed.results.folder import RunFolder
-from snowshed.running.ageing import Ageing
+from snowshed.running.ageing.ageing import Ageing
 from snowshed.running.run import run_events
 from snowshed.scene.components import Snow
 from snowshed.scene.scene import PathLike, ResolvedScene

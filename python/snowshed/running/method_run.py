@@ -16,7 +16,7 @@ from snowshed.running.sequence import seal_files
 from snowshed.scene.resolved import ResolvedScene
 
 if TYPE_CHECKING:
-    from snowshed.running.ageing import Ageing
+    from snowshed.running.ageing.ageing import Ageing
 
 Cell = Union[int, float, str, None]
 

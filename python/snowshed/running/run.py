@@ -16,7 +16,7 @@ from snowshed.base.notes import tell
 from snowshed.base.progress import Progress, Reporter
 from snowshed.methods.registry import method_of
 from snowshed.results.reader import Results
-from snowshed.running.ageing import Ageing
+from snowshed.running.ageing.ageing import Ageing
 from snowshed.running.method_run import MethodRun, RunOptions
 from snowshed.running.sequence import open_sequence, run_sequence
 from snowshed.scene.scene import PathLike, SceneLike, resolve_scene

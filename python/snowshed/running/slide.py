@@ -46,7 +46,7 @@ def slide(
     settings
         Settings of the method. [default: `SlideSettings()`]
 
-    Other inputs, such as entrainment, are parameters of `snowshed.scene.builders.slide_scene`,
+    Other inputs, such as entrainment, are parameters of `snowshed.scene.slide_scene`,
     whose scene `snowshed.run` simulates.
 
     Returns

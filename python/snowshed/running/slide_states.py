@@ -58,7 +58,7 @@ def slide_states(scene: SceneLike, times: Sequence[float]) -> list[SlideState]:
     Examples
     --------
     >>> from tempfile import TemporaryDirectory
-    >>> from snowshed.scene.builders import example_slide
+    >>> from snowshed.scene.builders.slides import example_slide
     >>> with TemporaryDirectory() as folder:
     ...     first, later = slide_states(example_slide(folder), [0.0, 0.5])
     >>> len(later.bonds) <= len(first.bonds)
@@ -96,7 +96,7 @@ def particles_at(scene: SceneLike, steps: Sequence[int]) -> dict[int, pd.DataFra
     Examples
     --------
     >>> from tempfile import TemporaryDirectory
-    >>> from snowshed.scene.builders import example_slide
+    >>> from snowshed.scene.builders.slides import example_slide
     >>> with TemporaryDirectory() as folder:
     ...     tables = particles_at(example_slide(folder), [0, 2])
     >>> list(tables)

@@ -135,13 +135,13 @@ class StackRun(MethodRun):
 
     def draw(self) -> None:
         """Draw the stack as it is now, its growth and the energies, and write the solids."""
-        from snowshed.plot.figure_style import save
+        from snowshed.plot.figure_style import save_figure
         from snowshed.plot.stack_figures import growth_figure, stack_figure
 
         write_solids(self.scene, self.simulation.positions(), self.folder)
         stack, data = self.stack or self._measure(), self.scene.data
-        save(stack_figure(self.simulation, stack, data), self.results.stack_picture)
-        save(growth_figure(read_events(self.folder), data), self.results.growth_picture)
+        save_figure(stack_figure(self.simulation, stack, data), self.results.stack_picture)
+        save_figure(growth_figure(read_events(self.folder), data), self.results.growth_picture)
         self.draw_energies()
 
     @classmethod

@@ -17,7 +17,7 @@ import numpy as np
 from snowshed._core import InputError
 from snowshed.base.arrays import Booleans, Floats, Integers
 from snowshed.base.formatting import plural
-from snowshed.io.weather import Station
+from snowshed.io.weather.observation import Station
 from snowshed.season.columns import CONTRADICTION, Choice, Chooser, Column
 from snowshed.season.daily import Days, days_of_station
 from snowshed.season.depth_rises import LEAST_RISE, DepthSnow, Total, snow_of_depth

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from typing import Any, Optional
 
 from snowshed.io.json_file import parse_object
-from snowshed.running.ageing import Ageing
+from snowshed.running.ageing.ageing import Ageing
 
 KEY = "ageing"
 

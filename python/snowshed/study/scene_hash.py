@@ -20,7 +20,7 @@ from typing import Any, Optional
 
 import snowshed._core as _core
 from snowshed.io.input_file import read_regular
-from snowshed.running.ageing import Ageing
+from snowshed.running.ageing.ageing import Ageing
 from snowshed.scene.scene import ResolvedScene
 from snowshed.study.aged_scene import with_ageing
 

@@ -7,7 +7,8 @@ import pandas as pd
 import pytest
 from made_up_rows import few_inputs, made_up_rows, smooth_length, thesis_inputs, write_table
 
-from snowshed.analysis.regression import RegressionInterrupted, geometry_study, pipeline, predict
+from snowshed.analysis import RegressionInterrupted, geometry_study, predict
+from snowshed.analysis.regression import pipeline
 from snowshed.cli.main import main
 from snowshed.study import Study
 

@@ -8,8 +8,7 @@ from snowshed.io.film import Film
 from snowshed.methods.slide.frames import Frame, slide_frames
 from snowshed.methods.slide.maps import slide_maps
 from snowshed.running.run import run
-from snowshed.scene import Scene
-from snowshed.scene.builders import example_slide
+from snowshed.scene import Scene, example_slide
 from snowshed.scene.terrain_grid import slide_terrain
 
 

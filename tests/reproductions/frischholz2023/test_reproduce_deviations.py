@@ -16,7 +16,7 @@ from reproductions.frischholz2023.variant_errors import variant_errors
 
 from snowshed import Scene, Simulation
 from snowshed._core import InputError
-from snowshed.analysis.regression import CrossValidation
+from snowshed.analysis import CrossValidation
 from snowshed.analysis.regression.geometry import DAMPING_RATE
 
 

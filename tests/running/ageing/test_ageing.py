@@ -8,10 +8,10 @@ import pytest
 from conftest import tiny_scene
 
 from snowshed import InputError, Interrupted, Scene, Shape, _core, run_events
-from snowshed.running.ageing import Ageing, Interval
+from snowshed.running import Ageing, Interval
 from snowshed.running.sequence import open_sequence
 from snowshed.season.column import SnowColumn
-from snowshed.snow.relations import SETTLING_LAWS, SINTERING_LAWS
+from snowshed.snow import SETTLING_LAWS, SINTERING_LAWS
 
 DAY = 86400.0
 WEEK = [Interval(2 * DAY, -3.0), Interval(5 * DAY, -8.0)]

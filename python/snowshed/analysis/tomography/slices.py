@@ -9,7 +9,7 @@ import numpy as np
 
 from snowshed.analysis.tomography.microstructure import Microstructure
 from snowshed.base.arrays import Floats, Labels
-from snowshed.plot.figure_style import STYLE, blank, describe
+from snowshed.plot.figure_style import STYLE, blank_figure, describe
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -47,7 +47,7 @@ def slices_figure(
     ]
     with rc_context(STYLE):
         tallest = max(height / width for *_, width, height in cuts)
-        figure = blank(10.0, 1.3 + 2.85 * min(tallest, 2.5))
+        figure = blank_figure(10.0, 1.3 + 2.85 * min(tallest, 2.5))
         describe(figure, _text(numbers, grains))
         for axes, (cut, across, up, width, height) in zip(figure.subplots(1, 3), cuts):
             _draw(axes, cut, numbers.voxel_size_m, (width, height))

@@ -88,14 +88,14 @@ class GrainsRun(MethodRun):
 
     def draw(self) -> None:
         """Draw ``grains.png`` and ``forces.png``."""
-        from snowshed.plot.figure_style import save
+        from snowshed.plot.figure_style import save_figure
         from snowshed.plot.force_chains import force_figure
         from snowshed.plot.loading_figure import loading_figure
 
         title, size = self.scene.data.get("title", ""), self.scene.data["sample"]["voxel_size"]
         kinds = [stage["kind"] for stage in self.stages]
-        save(loading_figure(self.curve, kinds, title), self.folder / "grains.png")
-        save(force_figure(self.contacts, size, title), self.folder / "forces.png")
+        save_figure(loading_figure(self.curve, kinds, title), self.folder / "grains.png")
+        save_figure(force_figure(self.contacts, size, title), self.folder / "forces.png")
 
     @classmethod
     def rows(cls, folder: Path) -> list[dict[str, Cell]]:

@@ -74,7 +74,7 @@ def slide_frames(film: Film, ground: Raster, most: int = MOST_FRAMES) -> list[Fr
     >>> from tempfile import TemporaryDirectory
     >>> import snowshed
     >>> from snowshed.scene.terrain_grid import slide_terrain
-    >>> from snowshed.scene.builders import example_slide
+    >>> from snowshed.scene.builders.slides import example_slide
     >>> with TemporaryDirectory() as folder:
     ...     scene = example_slide(folder).set("events.max_time", 0.5)
     ...     _ = snowshed.run(scene, folder + "/out", pictures=False)

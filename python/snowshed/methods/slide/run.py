@@ -73,13 +73,13 @@ class SlideRun(MethodRun):
 
     def draw(self) -> None:
         """Draw ``slide.png`` and the energies, and write ``slide.html``."""
-        from snowshed.plot.figure_style import save
+        from snowshed.plot.figure_style import save_figure
         from snowshed.plot.slide_figure import slide_figure
         from snowshed.plot.slide_page import write_slide_page
 
         self.draw_energies()
         scene, page = self.scene.data, self.folder / "slide.html"
-        save(slide_figure(self.maps, release_outlines(scene)), self.folder / "slide.png")
+        save_figure(slide_figure(self.maps, release_outlines(scene)), self.folder / "slide.png")
         frames = _frames(self.folder, self.maps)
         write_slide_page(page, self.maps, scene, self.areas, asdict(self.summary), frames)
 
