@@ -1,4 +1,4 @@
-"""The sections of the report: the paper's claims, Yade's numbers, and what matters."""
+"""The sections of the report: the paper's claims, Yade's numbers, and the sensitivity."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ COMPARED = (
 
 
 def paper(work: GrainsComputation) -> Content:
-    """Return the paper's claims, and what the samples are."""
+    """Return the paper's claims, and the samples."""
     samples = [("Samples", sample_grid(work.tests.tables))]
     return Content(tables=samples, claims=judge(PAPER, work.tests))
 
@@ -46,7 +46,7 @@ def engine(work: GrainsComputation) -> Content:
 
 
 def sensitivity(work: GrainsComputation) -> Content:
-    """Return what the strength depends on."""
+    """Return the sensitivity of the strength."""
     folder = work.folder.of_stage("sensitivity")
     evaluate_variants(work.comparisons["brittle"], work.folder.runs, folder)
     caption = "As of `snowshed grains sensitivity`; the numbers are in sensitivity/sensitivity.csv."
@@ -54,10 +54,10 @@ def sensitivity(work: GrainsComputation) -> Content:
 
 
 def sample_grid(tables: Sequence[pd.DataFrame]) -> Grid:
-    """Return what the samples of each variant are."""
+    """Return the samples of each variant."""
     import pandas as pd
 
-    tests = pd.concat([one for one in tables if len(one)])
+    tests = pd.concat([table for table in tables if len(table)])
     rows = []
     for variant, own in tests.drop_duplicates(["variant", "sample"]).groupby("variant", sort=False):
         numbers = [_span(own[name]) for name in ("final_particles", "spheres", "density_kg_m3")]

@@ -19,7 +19,7 @@ DEPOSITED = "0.6"
 
 def side_views(courses: Sequence[Course], times: Sequence[float]) -> Figure:
     """Return the snow from the side, a row for each time, a column for each case."""
-    return _views(courses, times, lambda one, snow: snow[:, [0, 2]], _ground, "x (m)", "z (m)")
+    return _views(courses, times, lambda course, snow: snow[:, [0, 2]], _ground, "x (m)", "z (m)")
 
 
 def top_views(courses: Sequence[Course], times: Sequence[float]) -> Figure:
@@ -40,11 +40,13 @@ def _views(
     up: str,
 ) -> Figure:
     figure = blank_figure(3.4 * len(courses), 0.6 + 1.5 * len(times))
-    one_path = len({tuple(one.case.path.corners) for one in courses}) == 1
+    one_path = len({tuple(course.case.path.corners) for course in courses}) == 1
     share: Literal["all", "col"] = "all" if one_path else "col"
     axes = figure.subplots(len(times), len(courses), sharex=share, sharey=share, squeeze=False)
     fastest = max(
-        float(np.linalg.norm(one.at(t).velocities, axis=1).max()) for one in courses for t in times
+        float(np.linalg.norm(course.at(t).velocities, axis=1).max())
+        for course in courses
+        for t in times
     )
     shown = None
     for column, course in zip(axes.T, courses):
@@ -91,4 +93,4 @@ def _obstacle_line(axis: Axes, course: Course) -> None:
 
 
 def _end(course: Course) -> float:
-    return max(1.0, max(float(one.positions[:, 0].max()) for one in course.snow))
+    return max(1.0, max(float(state.positions[:, 0].max()) for state in course.snow))

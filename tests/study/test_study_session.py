@@ -157,7 +157,7 @@ def test_an_interrupt_keeps_what_ended_meanwhile_and_says_how_to_go_on(scripted,
         if progress.done == 1:  # then two run, of which one ends before the signal is seen
             signal.raise_signal(signal.SIGINT)
 
-    with pytest.raises(StudyInterrupted, match="interrupted; go on with: snowshed study resume"):
+    with pytest.raises(StudyInterrupted, match="interrupted; resume with: snowshed study resume"):
         study.run(tmp_path / "store", progress=interrupt)
     assert scripted.stopped
     assert sum(status == "done" for status, _ in states(tmp_path / "store")) == 3

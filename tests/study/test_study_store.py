@@ -187,7 +187,7 @@ def test_a_full_disk_is_a_clear_error_and_loses_nothing(opened):
     before = contents(opened.folder)
     (pages,) = opened.read("PRAGMA page_count")[0]
     opened.read(f"PRAGMA max_page_count = {pages}")
-    with pytest.raises(StudyError, match=r"disk is full; what is stored is safe.*repeat"):
+    with pytest.raises(StudyError, match=r"disk is full; stored results are safe.*repeat"):
         opened.record(outcome(HASHES[1], events=5000))
     assert contents(opened.folder) == before
     opened.read(f"PRAGMA max_page_count = {pages + 10000}")

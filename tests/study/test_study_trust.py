@@ -114,7 +114,7 @@ def as_before_checksums(folder):
 
 def test_a_store_that_lost_its_checksums_is_damaged(folder):
     change(folder, "DROP TABLE checksum")
-    with pytest.raises(InputError, match="damaged: the table of checksums is not there"):
+    with pytest.raises(InputError, match="damaged: the table of checksums is missing"):
         read_table(folder)
 
 

@@ -270,7 +270,7 @@ def _draw_front(
     lines = []
     for i, letter in zip(worth_naming(front, times, errors), letters):
         _name_point(axes, letter, times[i], errors[i])
-        error = quantity.error_in_words(errors[i])
+        error = quantity.error_text(errors[i])
         cost = f"{formatting.duration(times[i])}, {error}"
         lines.append(KeyLine(letter, cost, setting_labels.settings(found[i].settings, names)))
     return lines

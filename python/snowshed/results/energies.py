@@ -14,7 +14,7 @@ PICTURE = "energy.png"
 
 
 def write_energy_history(simulation: _core.Simulation, folder: PathLike) -> None:
-    """Write the energies over time into a results folder, as far as the run has come."""
+    """Write the energies over time so far into a results folder."""
     import pandas as pd
 
     table = pd.DataFrame(simulation.energy_history()).astype({"event": int})
@@ -27,12 +27,12 @@ def draw_energies(folder: Union[PathLike, Results]) -> Path:
     Parameters
     ----------
     folder
-        The folder, or what reads it.
+        The folder, or its `Results`.
 
     Raises
     ------
     InputError
-        If there are none, or the table is damaged.
+        If the energies are missing, or the table is damaged.
 
     Examples
     --------

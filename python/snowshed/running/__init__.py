@@ -1,4 +1,4 @@
-"""Running scenes: events, results, what happens between events, seasons."""
+"""Running scenes: events, changes of the stack between events, simulations in memory."""
 
 import lazy_loader as _lazy
 

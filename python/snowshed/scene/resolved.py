@@ -39,7 +39,7 @@ class ResolvedScene:
     def parse(cls, text: str, base_dir: PathLike = ".") -> ResolvedScene:
         """Validate JSON text; raises InputError."""
         folder = os.fspath(base_dir)
-        return cls._of(ParsedScene.parse(text, folder), folder)
+        return cls._from_core(ParsedScene.parse(text, folder), folder)
 
     @classmethod
     def from_data(cls, data: Mapping[str, JsonValue], base_dir: PathLike = ".") -> ResolvedScene:
@@ -49,10 +49,10 @@ class ResolvedScene:
     @classmethod
     def load(cls, path: PathLike) -> ResolvedScene:
         """Read and validate a scene file; raises InputError."""
-        return cls._of(ParsedScene.load(os.fspath(path)), os.fspath(Path(path).parent))
+        return cls._from_core(ParsedScene.load(os.fspath(path)), os.fspath(Path(path).parent))
 
     @classmethod
-    def _of(cls, parsed: ParsedScene, folder: str) -> ResolvedScene:
+    def _from_core(cls, parsed: ParsedScene, folder: str) -> ResolvedScene:
         scene = cls(parsed.json, folder)
         vars(scene)["core"] = parsed
         return scene

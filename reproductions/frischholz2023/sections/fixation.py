@@ -55,11 +55,11 @@ def build(work: ThesisComputation) -> Content:
     pictures = [
         Picture.read(
             folder / f"fixation-{group}.png",
-            f"Fixation of the {words} parameters",
+            f"Fixation of the {names} parameters",
             f"As Figures {figures}. Envelope: one standard deviation over the other parameters.",
             dpi=SAVED_DPI,
         )
-        for group, (figures, words) in TITLES.items()
+        for group, (figures, names) in TITLES.items()
         if (folder / f"fixation-{group}.png").is_file()
     ]
     scenes = work.study_stages["fixation"].scenes(FIXATION)

@@ -57,7 +57,7 @@ def build(work: ThesisComputation) -> Content:
 
 
 def _settings(scenes: list[str]) -> Grid:
-    """Return Table 3.2.1 with what Table 3.3.1 has in its place."""
+    """Return Table 3.2.1 with the values of Table 3.3.1 where they replace its own."""
     grid = settings_grid(printed.SENSITIVITY, scenes)
     pairs = {row.title: row for row in printed.SENSITIVITY if row.path in PAIRS}
     rows = [list(row) for row in grid.rows]

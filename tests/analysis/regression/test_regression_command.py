@@ -119,7 +119,7 @@ def test_height_and_length_are_predicted_beside_the_ratio(regressed):
     assert table[2, "ratio"] == pytest.approx(table[2, "height"] / table[2, "length"], rel=0.05)
 
 
-def test_predict_answers_in_words_and_as_json(regressed, capsys):
+def test_predict_answers_text_and_as_json(regressed, capsys):
     question = ["predict", "--height", 2, "--length", 4, "--tilt", 50, "--events", 3]
     question += ["--model", regressed / "out" / "model.npz"]
     assert run(*question) == 0

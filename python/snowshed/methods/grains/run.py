@@ -1,4 +1,4 @@
-"""Loading tests of grains: the results folder with its curve, and what it comes to.
+"""Loading tests of grains: the results folder with its curve and its figures.
 
 Beside what every run writes (``snowshed.results.folder``), the folder holds
 
@@ -35,13 +35,13 @@ WRITE_INTERVAL = 5.0  # s of wall time between two versions of curve.csv
 
 
 class GrainsRun(MethodRun):
-    """Writes the curve of a loading test while it runs, and what the test came to."""
+    """Writes the curve of a loading test while it runs, and its figures at the end."""
 
     UNIT: ClassVar[str] = "loading tests"
     COLUMNS: ClassVar[Mapping[str, type]] = {"steps": int, **GrainsSummary.columns()}
 
     def begin(self) -> None:
-        """Say what should be known of the sample."""
+        """Give the notes on the sample."""
         self.stages = self.scene.data["loading"]
         self.sample_notes = [note] if (note := self.simulation.label_note()) else []
         for note in self.sample_notes:
@@ -114,7 +114,7 @@ class GrainsRun(MethodRun):
 
 
 def _reading(kind: str, row: Mapping[str, float]) -> str:
-    """Return what a stage builds up, with units."""
+    """Return the strain and stress of a stage, or its force, with units."""
     if kind == "penetrate":
         return f"{row['cone_force_n']:.3g} N"
     if kind == "shear":
@@ -123,7 +123,7 @@ def _reading(kind: str, row: Mapping[str, float]) -> str:
 
 
 def _synthetic(scene: Mapping[str, Any]) -> str:
-    """Return how the sample was made, if its folder or the scene's title says it is synthetic."""
+    """Return the origin of the sample, if its folder or the scene's title says it is synthetic."""
     title = str(scene.get("title", ""))
     known = find_sample(scene["sample"]["file"], LABELS).source
     return known or (title if title.startswith(SYNTHETIC) else "")
