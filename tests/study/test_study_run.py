@@ -215,7 +215,7 @@ def test_without_shared_files_a_run_works_in_a_temporary_folder(tmp_path):
 
 def test_workers_that_cannot_start_are_no_fault_of_the_runs(tmp_path, monkeypatch):
     monkeypatch.setattr(sys, "executable", "/bin/false")
-    with pytest.raises(StudyError, match="no worker starts: it ended with code 1"):
+    with pytest.raises(StudyError, match="no worker can start: it ended with code 1"):
         tiny_study().run(tmp_path / "store", **ALONE)
 
 

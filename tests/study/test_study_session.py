@@ -244,7 +244,7 @@ def test_unfinished_runs_of_another_version_are_not_mixed_in(scripted, tmp_path,
     [
         ({"jobs": 0}, "jobs: 0 is not positive"),
         ({"threads": -1}, "threads: -1 is not positive"),
-        ({"jobs": 2, "scheduler": "tcp://127.0.0.1:1"}, "jobs: not with a scheduler"),
+        ({"jobs": 2, "scheduler": "tcp://127.0.0.1:1"}, "jobs: not allowed with a scheduler"),
     ],
 )
 def test_wrong_resources_leave_nothing_behind(tmp_path, options, message):

@@ -86,7 +86,7 @@ def test_a_study_that_kept_no_maps_says_so(study, tmp_path):
 def test_damaged_maps_are_told(computed):
     with Store.open(computed) as store:
         (data,) = store.particles(store.runs("slides")[0].hash).values()
-    with pytest.raises(InputError, match="not maps that snowshed kept"):
+    with pytest.raises(InputError, match="not maps that snowshed stored"):
         PeakMaps.unpacked(data[:-40])
 
 

@@ -217,7 +217,7 @@ def test_folders_that_do_not_serve(tmp_path):
     (tmp_path / "full" / "thesis.txt").touch()
     with pytest.raises(InputError, match="file: not a folder"):
         Store.create(tmp_path / "file")
-    with pytest.raises(InputError, match="not empty, and holds no study"):
+    with pytest.raises(InputError, match="not empty, but holds no study"):
         Store.create(tmp_path / "full")
     with pytest.raises(InputError, match="holds no study"):
         Store.open(tmp_path / "none")
@@ -260,7 +260,7 @@ def test_a_store_that_cannot_be_written_can_be_read(tmp_path, monkeypatch):
         opened.register("tiny", ["panel.friction"], RUNS)
         opened.record(outcome(HASHES[0]))
         monkeypatch.setattr(os, "access", lambda *where: False)
-        with pytest.raises(InputError, match=r"left amid a change; copy it to where it can be"):
+        with pytest.raises(InputError, match=r"left in the middle of a change; copy it to a writable folder"):
             Store.open(tmp_path / "store")
     before = {file: file.stat().st_mtime_ns for file in (tmp_path / "store").iterdir()}
     with Store.open(tmp_path / "store") as read_only:

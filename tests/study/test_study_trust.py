@@ -123,7 +123,7 @@ def test_an_earlier_version_that_computes_is_told_from_damage(folder):
     as_before_checksums(folder)
     owner = "node-1-0123abcd"
     change(folder, f"UPDATE run SET owner = '{owner}' WHERE rowid = 1")
-    there = pytest.raises(InputError, match="an earlier version of snowshed computes in it")
+    there = pytest.raises(InputError, match="an earlier version of snowshed is computing in it")
     with holding(folder / "running" / f"{owner}.lock", Path.touch), there:
         read_table(folder)
     assert len(read_table(folder)) > 0

@@ -15,7 +15,7 @@ NAMES = ("path", "file", "source", "where", "raster", "mesh")
 
 
 def memory_message(error: MemoryError) -> str:
-    """Return what to say of an error, by where it was raised.
+    """Return the message for an error, by the code that raised it.
 
     Examples
     --------

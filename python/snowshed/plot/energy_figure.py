@@ -110,5 +110,5 @@ def _named(name: str) -> str:
 
 
 def _scale(largest: float) -> tuple[float, str]:
-    """Return the unit in which an energy is between 1 and 1000, as far as there is one."""
+    """Return the unit in which an energy is between 1 and 1000, if there is one."""
     return next((scale for scale in SCALES if largest >= scale[0]), SCALES[-1])

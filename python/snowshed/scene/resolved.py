@@ -59,7 +59,7 @@ class ResolvedScene:
 
     @cached_property
     def core(self) -> ParsedScene:
-        """The scene as the core takes it, without parsing it again."""
+        """The scene in the core's form, without parsing it again."""
         return ParsedScene.parse(self.json, self.base_dir)
 
     @cached_property
@@ -73,7 +73,7 @@ class ResolvedScene:
         return copy.deepcopy(dict(self.data))
 
     def __getstate__(self) -> dict[str, str]:
-        """Return what is pickled: the text, not what was made of it."""
+        """Return the pickled state: the text without its parsed forms."""
         return {"json": self.json, "base_dir": self.base_dir}
 
     def save(self, path: PathLike) -> None:

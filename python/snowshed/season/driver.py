@@ -283,7 +283,7 @@ def drawn(result: SeasonResult, outlines: pd.DataFrame, scene: Mapping[str, Any]
 
 
 def verdict(result: SeasonResult) -> str:
-    """Return in a few words whether, when and how anything first touches the panel."""
+    """Return a phrase on the first contact with the panel: cause, date and event, or none."""
     contact = result.contact
     if contact is not None:
         after = "before any slide-off" if contact.event is None else f"event {contact.event}"

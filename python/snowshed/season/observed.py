@@ -2,7 +2,7 @@
 
 `Source` names the origin of a day's new snow, for every format. Each day uses the first of the
 winter's columns (`columns`) with a value; days without a value are filled by a stated rule, or are
-missing. Missing is not zero: such a day says so.
+missing. A missing value is not zero, and is marked.
 """
 
 from __future__ import annotations

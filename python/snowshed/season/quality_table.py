@@ -39,7 +39,7 @@ def shortened(rows: list[tuple[str, ...]]) -> tuple[list[tuple[str, ...]], int]:
 
 
 def caption(winters: WinterList) -> str:
-    """Return how well the snow of a season is known, in a line.
+    """Return a line on the quality of the snow data of a season.
 
     Examples
     --------

@@ -238,7 +238,7 @@ def _check(reached: float, pressures: Sequence[float], percentiles: Sequence[int
 
 
 def hazard_facts(maps: HazardMaps) -> dict[str, Any]:
-    """Return the numbers of the maps as JSON data: areas by probability, and how sure they are."""
+    """Return the numbers of the maps as JSON data: areas by probability, and their uncertainty."""
     return {
         "runs": maps.runs,
         "failed": maps.failed,

@@ -33,7 +33,7 @@ def load_lua(
     echo
         Called with every line that the scripts print, also if they fail after that.
     limits
-        Limits of the scripts. [default: `Limits()`]
+        Limits of the scripts. [default: `LuaLimits()`]
 
     Returns
     -------

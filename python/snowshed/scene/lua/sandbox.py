@@ -69,7 +69,7 @@ def run_sandboxed(
     shapes
         Functions that make shapes from tables, and the types of these shapes.
     limits
-        Limits of the scripts. [default: `Limits()`]
+        Limits of the scripts. [default: `LuaLimits()`]
     echo
         Called with every line that the scripts print, also if they fail after that.
 

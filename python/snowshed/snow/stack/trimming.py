@@ -26,7 +26,7 @@ from snowshed.base.arrays import Booleans, Floats, Integers
 
 DROPPED_FRACTION = 0.03
 DIVISIONS = 30  # of radius and angle, as of the grid of the surface (A.4.3)
-#: The reading that stacks are measured by unless another one of `TRIMMINGS` is asked for.
+#: Default trimming rule.
 DEFAULT_TRIMMING = "outermost_first"
 
 
