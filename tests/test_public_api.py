@@ -106,6 +106,7 @@ SHOWN = [
     ROOT / "README.md",
     *(path for ending in ("md", "ipynb") for path in sorted((ROOT / "docs").rglob(f"*.{ending}"))),
     *sorted((ROOT / "examples").glob("*.py")),
+    ROOT / "tests" / "test_first_snippets.py",
 ]
 #: The page on adding a method shows the inside.
 DEEP = re.compile(r"(?:from|import) snowshed(?:\.\w+){2,}|`snowshed(?:\.\w+){3,}")
@@ -128,6 +129,12 @@ def test_a_name_is_exported_once_in_a_room():
     """Packages inside a room export nothing; a room's stub does."""
     inside = [f"{package}.{name}" for package, name in EXPORTED if package.count(".") > 1]
     assert [name for name in inside if not name.startswith(INTERNAL)] == []
+
+
+def test_no_exported_name_is_that_of_a_module_beside_it():
+    """The import of the module would take the name's place in the package."""
+    names = {f"{package}.{name}" for package, name in EXPORTED}
+    assert names & WRITTEN == {"snowshed.pv"}  # a module itself
 
 
 def test_any_is_found_within_other_types():

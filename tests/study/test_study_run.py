@@ -204,7 +204,7 @@ def test_a_file_that_changed_after_registration_stops_the_study(tmp_path):
     changed = Task("0" * 32, task.scene, task.folder, 1)
     outcome = compute(changed)
     assert outcome.status == "unable"
-    assert "is not what was registered" in outcome.error
+    assert "differs from the registered one" in outcome.error
 
 
 def test_without_shared_files_a_run_works_in_a_temporary_folder(tmp_path):

@@ -98,5 +98,5 @@ def test_what_the_winter_decides_cannot_vary(tmp_path):
     for path, value in (("slab.thickness", 0.1), ("events.count", 2)):
         with pytest.raises(InputError, match="cannot be varied; the weather of the season sets it"):
             Study.product(tiny_scene(), {path: [value]}, season=part)
-    with pytest.raises(InputError, match="its weather is in no file"):
+    with pytest.raises(InputError, match="its weather is not in a file"):
         tilts(part).to_toml()

@@ -260,7 +260,7 @@ def test_a_store_that_cannot_be_written_can_be_read(tmp_path, monkeypatch):
         opened.register("tiny", ["panel.friction"], RUNS)
         opened.record(outcome(HASHES[0]))
         monkeypatch.setattr(os, "access", lambda *where: False)
-        with pytest.raises(InputError, match=r"left in the middle of a change; copy it to a writable folder"):
+        with pytest.raises(InputError, match=r"left in the middle of a change"):
             Store.open(tmp_path / "store")
     before = {file: file.stat().st_mtime_ns for file in (tmp_path / "store").iterdir()}
     with Store.open(tmp_path / "store") as read_only:

@@ -24,7 +24,7 @@ RecordType = TypeVar("RecordType", bound="Record")
 
 
 class UnknownFieldError(InputError, AttributeError, TypeError):
-    """A name that is no field of a record, as an attribute, a keyword or a key."""
+    """A name that is not a field of a record, as an attribute, a keyword or a key."""
 
 
 class Alias:

@@ -146,7 +146,7 @@ def _write_outputs(
     scene: ResolvedScene,
     steps: Sequence[int],
 ) -> None:
-    """Write the outputs of AvaFrame beside the results; errors are no fault of the input."""
+    """Write the outputs of AvaFrame beside the results; errors are not the input's fault."""
     from snowshed.results.avaframe import write_avaframe_outputs
     from snowshed.scene.builders.avaframe_files import copy_inputs
 
@@ -164,7 +164,7 @@ def _write_outputs(
 def write_particles(scene: ResolvedScene, folder: Path, steps: Sequence[int]) -> None:
     """Write tables of the particles after given steps into a results folder."""
     from snowshed.io.csv_table import write_csv
-    from snowshed.running.slide_states import particles_at
+    from snowshed.running.slide_history import particles_at
 
     for step, table in particles_at(scene, steps).items():
         name = "particles_initial" if step == 0 else f"particles_step{step:05d}"

@@ -1,6 +1,7 @@
 from .film import Film as Film
 from .film import FilmFrame as FilmFrame
 from .film import FilmQuantity as FilmQuantity
+from .raster.output import write_raster as write_raster
 from .raster.raster import Raster as Raster
 from .raster.raster import read_raster as read_raster
 from .vdb.program import vdb_available as vdb_available

@@ -45,7 +45,7 @@ class Table:
     Raises
     ------
     InputError
-        If the file is no such table.
+        If the file is not such a table.
 
     Examples
     --------

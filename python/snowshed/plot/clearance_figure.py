@@ -86,7 +86,7 @@ def design_figure(
 
 
 def causes_figure(shares: Mapping[str, float]) -> Figure:
-    """Draw how much of the variance of the required height goes with each cause.
+    """Draw the share of each cause in the variance of the required height.
 
     Parameters
     ----------

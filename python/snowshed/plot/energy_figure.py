@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 #: Energies that the snow holds, and those of height, whose zero is arbitrary.
 HELD, OF_HEIGHT = ("kinetic_j", "elastic_j", "bonds_j"), ("gravitational_j", "potential_j")
-#: The other columns that are no loss.
+#: The other columns that are not losses.
 SUMS = ("added_j", "residual_j")
 SMALL = 1e-3  # smaller shares of the largest energy are not drawn
 SCALES = ((1e9, "GJ"), (1e6, "MJ"), (1e3, "kJ"), (1.0, "J"), (1e-3, "mJ"), (1e-6, "µJ"))

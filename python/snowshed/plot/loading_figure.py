@@ -84,7 +84,7 @@ def loading_figure(curve: LoadingCurve, kinds: Sequence[str], title: str = "") -
 
 
 def _abscissa(curve: LoadingCurve, kinds: Sequence[str]) -> tuple[np.ndarray, str]:
-    """Return what to draw a test against: a strain, if it is one of all stages, else the time."""
+    """Return the abscissa of a test: a strain, if all stages have it, else the time."""
     if set(kinds) <= {"compress", "isotropic", "unload", "hold"}:
         return 100.0 * curve["axial_strain"], "axial strain, %"
     if set(kinds) <= {"stretch", "hold"}:

@@ -69,7 +69,7 @@ def scene_figure(scene: SceneLike) -> Figure:
 
 
 def _limits(simulation: Simulation, scene: Mapping[str, Any]) -> Limits:
-    """Return a view of the snow, of what holds it, and of as much ground to either side."""
+    """Return a view of the snow, its supports, and as much ground to either side."""
     snow = simulation.positions()[:, [0, 2]]
     low, high = snow.min(axis=0), snow.max(axis=0)
     floor = min(float(low[1]), 0.0)

@@ -118,7 +118,7 @@ def write_slide_page(
 
 
 def headline(figures: Mapping[str, Any]) -> str:
-    """Return in one sentence how far, how fast and how hard a slide went.
+    """Return a sentence on the distance, speed and pressure of a slide.
 
     Examples
     --------

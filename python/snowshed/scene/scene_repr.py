@@ -11,7 +11,7 @@ from snowshed.scene.schema import properties, resolve, scene_schema, schema_of_m
 
 
 def scene_repr(scene: Record, always: Collection[str]) -> str:
-    """Return what differs from the defaults, a line for each part of the scene.
+    """Return the differences from the defaults, a line for each part of the scene.
 
     Parameters
     ----------

@@ -79,7 +79,7 @@ def some_days(dates: Sequence[date], numbers: Sequence[int] | Integers) -> str:
 
 
 def _distance(days: Floats, measured_days: Floats) -> Floats:
-    """Return how far each day is from the nearest known one."""
+    """Return the distance of each day from the nearest known day."""
     near = np.searchsorted(measured_days, days)
     before, after = (
         measured_days[np.maximum(near - 1, 0)],

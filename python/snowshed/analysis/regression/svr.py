@@ -125,7 +125,7 @@ class EpsilonSVR(RegressorMixin, BaseEstimator):
                 yield across @ fit.coefficients + fit.intercept
 
     def path_fits(self, grid: Mapping[str, Sequence[float]]) -> int:
-        """Return how many models `path_predictions` yields the predictions of."""
+        """Return the number of models behind `path_predictions`."""
         return len(grid["epsilon"]) * len(grid["C"])
 
     def _check(self) -> None:

@@ -49,7 +49,7 @@ def inliers(
     Raises
     ------
     InputError
-        If there is no such reading.
+        If there is no such rule.
 
     Examples
     --------
@@ -106,7 +106,7 @@ TRIMMINGS: Mapping[str, Callable[[Floats, Floats], Integers]] = {
 
 
 def check_trimming(name: str) -> None:
-    """Raise InputError unless there is a reading of that name."""
+    """Raise InputError unless there is a trimming rule of that name."""
     if name not in TRIMMINGS:
         raise InputError(f"trimming: {name!r} is unknown; allowed: {', '.join(TRIMMINGS)}")
 
