@@ -29,7 +29,7 @@ from benchmarks.keeping import keep_cases  # noqa: E402
 
 from snowshed import GrainsSettings, LoadingStage  # noqa: E402
 from snowshed.running.simulation import Simulation  # noqa: E402
-from snowshed.scene.builders import grains_scene  # noqa: E402
+from snowshed.scene import grains_scene  # noqa: E402
 
 VOXEL = 5e-5  # m
 GRAIN = 8  # voxels

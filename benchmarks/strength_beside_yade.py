@@ -29,7 +29,7 @@ from benchmarks.keeping import keep_cases  # noqa: E402
 
 from snowshed import GrainsSettings, LoadingStage  # noqa: E402
 from snowshed.running.run import run  # noqa: E402
-from snowshed.scene.builders import grains_scene  # noqa: E402
+from snowshed.scene import grains_scene  # noqa: E402
 
 VOXEL = 1e-4  # m
 SPEED = 0.02 * 10**0.5  # m/s, with ice of its own density

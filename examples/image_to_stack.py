@@ -8,6 +8,7 @@ m. Half a minute on two free cores. Draws ``image_to_stack.png`` into the folder
 """
 
 import json
+import subprocess
 import sys
 from pathlib import Path
 
@@ -15,8 +16,7 @@ import matplotlib.image
 from matplotlib import rc_context
 
 from snowshed import read_events
-from snowshed.cli.main import main as snowshed
-from snowshed.plot.figure_style import STYLE, blank, save
+from snowshed.plot import STYLE, blank_figure, save_figure
 
 PICTURES = {
     "sample/slices.png": "The image, and the grains that were found in it",
@@ -46,8 +46,8 @@ def stages() -> list[str]:
 def command(line: str, *more: object) -> None:
     """Run a command of snowshed; end with its exit code if it fails."""
     arguments = [*line.split(), *map(str, more)]
-    print("snowshed", *arguments)
-    code = snowshed([*arguments, "-q"])
+    print("snowshed", *arguments, flush=True)
+    code = subprocess.call([sys.executable, "-m", "snowshed", *arguments, "-q"])
     if code:
         sys.exit(code)
 
@@ -60,14 +60,14 @@ def draw(folder: Path, material: Path, snow: Path) -> None:
     width = 10.0  # inches
     heights = [width * picture.shape[0] / picture.shape[1] for picture in pictures]
     with rc_context(STYLE):
-        figure = blank(width, sum(heights) + 0.3 * len(heights))
+        figure = blank_figure(width, sum(heights) + 0.3 * len(heights))
         for axes, picture, title in zip(
             figure.subplots(len(pictures), 1, height_ratios=heights), pictures, PICTURES.values()
         ):
             axes.imshow(picture, interpolation="antialiased")
             axes.set_title(title)
             axes.axis("off")
-    save(figure, folder / "image_to_stack.png")
+    save_figure(figure, folder / "image_to_stack.png")
 
 
 def tell(snow: Path, stack: Path) -> None:

@@ -13,12 +13,19 @@ import numpy as np
 from matplotlib import rc_context
 from matplotlib.collections import LineCollection
 
-from snowshed.io.raster.raster import Raster
-from snowshed.plot.figure_style import INK, STACK, STYLE, blank, save
-from snowshed.plot.terrain_map import draw_outlines, draw_terrain, focus
-from snowshed.running.slide_states import slide_states
-from snowshed.scene.builders import example_slide
-from snowshed.scene.terrain_grid import slide_terrain
+from snowshed.io import Raster
+from snowshed.plot import (
+    INK,
+    STACK,
+    STYLE,
+    blank_figure,
+    draw_outlines,
+    draw_terrain,
+    focus,
+    save_figure,
+)
+from snowshed.running import slide_states
+from snowshed.scene import example_slide, slide_terrain
 
 STRAINS = {"strong bonds": 0.2, "weak bonds": 0.03}  # at which a bond breaks
 SHARES = (0.15, 0.4, 1.0)  # of the time that is shown
@@ -48,7 +55,7 @@ def draw(ground: Raster, outlines: list, slabs: dict, file: Path) -> None:
     part = focus(ground, np.zeros(ground.heights.shape, dtype=bool), [*outlines, *snow])
     with rc_context(STYLE):
         ratio = (part[3] - part[2]) / (part[1] - part[0])
-        figure = blank(11.0, 11.0 / len(SHARES) * ratio * len(slabs) + 0.9)
+        figure = blank_figure(11.0, 11.0 / len(SHARES) * ratio * len(slabs) + 0.9)
         panels = figure.subplots(len(slabs), len(SHARES), squeeze=False)
         for row, (name, states) in zip(panels, slabs.items()):
             for axes, state in zip(row, states):
@@ -60,7 +67,7 @@ def draw(ground: Raster, outlines: list, slabs: dict, file: Path) -> None:
                 draw_outlines(axes, outlines)
                 axes.set(xticks=[], yticks=[])
                 axes.set_title(f"{name}, {state.time:.0f} s: {len(state.bonds):,} bonds")
-    save(figure, file)
+    save_figure(figure, file)
 
 
 if __name__ == "__main__":

@@ -10,11 +10,10 @@ from typing import Optional
 import pytest
 
 from snowshed import Scene, run_events
-from snowshed.io.vdb import available
-from snowshed.io.weather import read_station
+from snowshed.io import read_station, vdb_available
 
 # What writes and reads OpenVDB files, where snowshed was built without it.
-collect_ignore = [] if available() else ["io/vdb/test_vdb_files.py"]
+collect_ignore = [] if vdb_available() else ["io/vdb/test_vdb_files.py"]
 
 # A shell in the background has them ignored, which the commands under test would keep.
 for _signal in (signal.SIGINT, signal.SIGHUP):

@@ -11,8 +11,8 @@ from slide_files import plane, write_polygons
 
 import snowshed
 from snowshed import InputError, Panel, Results, Scene, Simulation, Slab, Study
-from snowshed.analysis.clearance import Ranges
-from snowshed.io.raster.output import write_raster
+from snowshed.analysis import Ranges
+from snowshed.io import write_raster
 
 TINY = {"dimension": 2, "numerics.dx": 0.02, "events.count": 1, "events.max_time": 0.1}
 

@@ -13,7 +13,8 @@ from snowshed.cli.main import cli
 
 PACKAGE = ROOT / "python" / "snowshed"
 #: Rooms whose names and texts follow the rules; others join when they do.
-CLEAN = ("base", "io", "scene", "snow", "plot", "season", "analysis", "cli")
+CLEAN = ("base", "io", "methods", "scene", "snow", "plot", "results", "running", "season", "study")
+CLEAN += ("analysis", "cli", "reproductions")
 #: Names that say nothing about their values.
 EMPTY_NAMES = {"found", "one", "way", "kept", "places"}
 
@@ -59,11 +60,16 @@ SECTION = re.compile(r"^(Parameters|Attributes|Returns|Yields|Raises|Examples|No
 
 
 def sources(rooms=CLEAN):
-    return [path for room in rooms for path in sorted((PACKAGE / room).rglob("*.py"))]
+    folders = [ROOT if room == "reproductions" else PACKAGE for room in rooms]
+    return [
+        path
+        for folder, room in zip(folders, rooms)
+        for path in sorted((folder / room).rglob("*.py"))
+    ]
 
 
 def name_of(path):
-    return path.relative_to(PACKAGE).as_posix()
+    return path.relative_to(PACKAGE if path.is_relative_to(PACKAGE) else ROOT).as_posix()
 
 
 def bound_names(tree):

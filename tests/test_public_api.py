@@ -30,6 +30,8 @@ EXPORTED = [
     for package in PACKAGES
     for name in getattr(importlib.import_module(package), "__all__", ())
 ]
+#: Packages for the package itself.
+INTERNAL = ("snowshed.cli.self_test",)
 PUBLIC = sorted({*DOCUMENTED, *EXPORTED})
 
 
@@ -97,6 +99,42 @@ def test_the_page_documents_what_the_package_exports():
     documented = {name for _, name in DOCUMENTED}
     whole = {"__version__", "pv"}  # a text, and a module whose functions are documented each
     assert [name for name in snowshed.__all__ if name not in {*documented, *whole}] == []
+
+
+#: Where a reader sees imports: pages, tutorials and examples.
+SHOWN = [
+    ROOT / "README.md",
+    *(path for ending in ("md", "ipynb") for path in sorted((ROOT / "docs").rglob(f"*.{ending}"))),
+    *sorted((ROOT / "examples").glob("*.py")),
+    ROOT / "tests" / "test_first_snippets.py",
+]
+#: The page on adding a method shows the inside.
+DEEP = re.compile(r"(?:from|import) snowshed(?:\.\w+){2,}|`snowshed(?:\.\w+){3,}")
+
+
+@pytest.mark.parametrize(
+    "file", [file for file in SHOWN if file.stem != "add-a-method"], ids=lambda file: file.stem
+)
+def test_readers_import_from_the_package_or_a_room(file):
+    assert DEEP.findall(file.read_text(encoding="utf-8")) == []
+
+
+def test_what_the_page_documents_stands_in_the_package_or_a_room():
+    assert [f"{module}.{name}" for module, name in DOCUMENTED if module.count(".") > 1] == []
+    assert len(DOCUMENTED) > 100
+    assert DEEP.search("from snowshed.season.record import Record")
+
+
+def test_a_name_is_exported_once_in_a_room():
+    """Packages inside a room export nothing; a room's stub does."""
+    inside = [f"{package}.{name}" for package, name in EXPORTED if package.count(".") > 1]
+    assert [name for name in inside if not name.startswith(INTERNAL)] == []
+
+
+def test_no_exported_name_is_that_of_a_module_beside_it():
+    """The import of the module would take the name's place in the package."""
+    names = {f"{package}.{name}" for package, name in EXPORTED}
+    assert names & WRITTEN == {"snowshed.pv"}  # a module itself
 
 
 def test_any_is_found_within_other_types():

@@ -3,7 +3,8 @@
 The core describes every field of a scene once (cpp/snowshed/scene/describe.hpp), with its type,
 unit, range, default and meaning. This program brings the dataclasses in python/snowshed to that
 description: it adds and removes fields, orders them, and writes the section "Attributes" of each
-docstring. Methods, other sections and the first line of a docstring are written by hand.
+docstring. Methods, other sections and the first line of a docstring are written by hand. The
+package exports the settings of every method in the registry; this program writes those lines, too.
 
     python -m tools.components            # after a change of the description and `make build`
     python -m tools.components --check    # say which files differ; exit code 1
@@ -20,11 +21,13 @@ from pathlib import Path
 
 from tools.component_docs import attributes_section
 
+import snowshed
 from snowshed import Scene
 from snowshed.base.record import Record
 from snowshed.methods.registry import METHODS
 from snowshed.scene.schema import properties, resolve, scene_schema, schema_of_method
 
+EXPORTS = Path(snowshed.__file__).with_suffix(".pyi")
 SECTION = "    Attributes\n    ----------\n"
 TYPES = {"number": "float", "integer": "int", "boolean": "bool", "string": "str"}
 
@@ -109,6 +112,20 @@ def _annotation(key: str, child: Mapping) -> str:
     raise SystemExit(f"{key}: write this field by hand; it holds {full.get('type')}")
 
 
+def exporting(stub: str) -> str:
+    """Return a stub that exports the settings of the methods in the registry, and of no others."""
+    begin = "from .methods."
+    others = [
+        line
+        for line in stub.split("\n")
+        if not (line.startswith(begin) and ".settings import" in line)
+    ]
+    names = [(name, method.settings.__name__) for name, method in METHODS.items()]
+    own = [f"{begin}{name}.settings import {kind} as {kind}" for name, kind in sorted(names)]
+    after = [line.startswith("from .") and line > begin for line in others].index(True)
+    return "\n".join([*others[:after], *own, *others[after:]])
+
+
 def main() -> int:
     """Write all modules, or say which differ from the description."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
@@ -121,9 +138,9 @@ def main() -> int:
         file = Path(inspect.getsourcefile(record) or "")
         modules.setdefault(file, {})[record.__name__] = (record, node)
     different = []
-    for file, classes in modules.items():
+    for file in [*modules, EXPORTS]:
         source = file.read_text(encoding="utf-8")
-        new = written(source, classes)
+        new = exporting(source) if file == EXPORTS else written(source, modules[file])
         if new != source:
             different.append(file)
             if not check:

@@ -23,15 +23,18 @@ COLUMNS = ("source", "claim", "confirmed_if", "verdict", "finding")
 
 
 def claims_grid(claims: Sequence[Judged], author: str) -> Grid:
-    """Return claims and findings, contradictions first; `author` heads what the claims say."""
-    ordered = sorted(claims, key=lambda one: VERDICTS.index(one.finding.verdict))
-    rows = [[one.finding.verdict, one.source, one.text, one.finding.sentence] for one in ordered]
+    """Return claims and findings, contradictions first; `author` is the heading of the claims."""
+    ordered = sorted(claims, key=lambda claim: VERDICTS.index(claim.finding.verdict))
+    rows = [
+        [claim.finding.verdict, claim.source, claim.text, claim.finding.sentence]
+        for claim in ordered
+    ]
     return Grid(["verdict", "section", author, "here"], rows, "llll")
 
 
 def rules_grid(claims: Sequence[Claim[Any]]) -> Grid:
-    """Return when each claim counts as confirmed."""
-    rows = [[one.source, one.text, one.rule] for one in claims]
+    """Return the rule of each claim."""
+    rows = [[claim.source, claim.text, claim.rule] for claim in claims]
     return Grid(["section", "claim", "confirmed if"], rows, "lll")
 
 
@@ -40,8 +43,8 @@ def claims_csv(claims: Sequence[Judged]) -> str:
     import pandas as pd
 
     rows = [
-        (one.source, one.text, one.rule, one.finding.verdict, one.finding.sentence)
-        for one in claims
+        (claim.source, claim.text, claim.rule, claim.finding.verdict, claim.finding.sentence)
+        for claim in claims
     ]
     return csv_text(pd.DataFrame(rows, columns=list(COLUMNS)))
 
@@ -56,7 +59,7 @@ def read_claims(path: Path) -> list[Judged]:
     """
     table = read_csv(path, as_text=True)
     if tuple(table.columns) != COLUMNS or not table["verdict"].isin(VERDICTS).all():
-        raise InputError(f"{path}: no table of claims; its columns are {', '.join(COLUMNS)}")
+        raise InputError(f"{path}: not a table of claims; the columns must be {', '.join(COLUMNS)}")
     return [
         Judged(source, claim, rule, Finding(verdict, finding))
         for source, claim, rule, verdict, finding in table.itertuples(index=False)

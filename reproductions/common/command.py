@@ -76,21 +76,21 @@ def _options(declared: Reproduction[Any]) -> list[click.Parameter]:
 
 
 def _compute(stages: Sequence[Stage], folder: Path, jobs: Optional[int], *, quiet: bool) -> None:
-    """Compute what is left of some stages; end as commands do after Ctrl-C or a full disk."""
+    """Compute the rest of some stages; end like other commands after Ctrl-C or a full disk."""
     try:
         with progress_bar(quiet=quiet) as progress:
             compute(stages, jobs=jobs, progress=progress)
     except StudyError as error:
         raise Failed(str(error)) from None
     except KeyboardInterrupt:
-        message = f"interrupted; the same command goes on with what {folder} holds"
+        message = f"interrupted; the same command resumes from {folder}"
         raise Stopped(message) from None
 
 
 def _check_failures(stages: Sequence[Stage]) -> None:
     """End the command if something has failed."""
-    failures = {stage.name: words for stage in stages if (words := stage.failure())}
+    failures = {stage.name: failure for stage in stages if (failure := stage.failure())}
     if failures:
-        stores = {one.runs for one in stages if isinstance(one, StudyStage)}
+        stores = {stage.runs for stage in stages if isinstance(stage, StudyStage)}
         advice = "".join(f"; see `snowshed study status {store}`" for store in stores)
         raise Failed(f"simulations failed: {', '.join(failures.values())}{advice}")

@@ -18,7 +18,7 @@ STYLES = {CONTRADICTED: "bold red", UNDECIDED: "dim"}
 
 
 def progress_bar(*, quiet: bool) -> AbstractContextManager[Optional[Reporter]]:
-    """Say how long all should take, and show one bar over all stages, on stderr."""
+    """Print the expected time, and show one bar over all stages, on stderr."""
     return bar.progress_bar(
         quiet=quiet, announce=_announcement, speed_period_s=bar.LONG_PERIOD_S, width=24
     )
@@ -30,15 +30,15 @@ def _announcement(progress: Progress) -> str:
 
 
 def print_claims(claims: Sequence[Judged], author: str) -> None:
-    """Print the verdicts on what an author claims, and how many there are of each."""
+    """Print the verdicts on an author's claims, and their numbers."""
     table = plain_table(f"Claims of {author}")
     for title in ("", "section", "claim", "finding"):
         table.add_column(title, no_wrap=not title)
-    for one in claims:
-        finding = one.finding
+    for claim in claims:
+        finding = claim.finding
         style = STYLES.get(finding.verdict, "none")
-        table.add_row(finding.verdict, one.source, one.text, finding.sentence, style=style)
+        table.add_row(finding.verdict, claim.source, claim.text, finding.sentence, style=style)
     console = wide_console(WIDTH)
     console.print(table)
-    counts = Counter(one.finding.verdict for one in claims)
+    counts = Counter(claim.finding.verdict for claim in claims)
     console.print(", ".join(f"{count} {verdict}" for verdict, count in counts.items()))

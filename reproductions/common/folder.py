@@ -1,7 +1,7 @@
-"""The folder of a reproduction, which says what it is for, so that no other writes into it.
+"""The folder of a reproduction, which names its publication, so that no other writes into it.
 
 ==================== ========================================================================
-reproduction.json    the publication, the size and the options that the folder is for
+reproduction.json    the publication, the size and the options of the folder
 claims.csv           one row per claim: source, claim, rule, verdict, finding
 runs/                the store of all simulations, where the stages are studies
 ==================== ========================================================================
@@ -49,9 +49,9 @@ class ReproductionFolder:
         Parameters
         ----------
         identity
-            Names and values of the options that decide what is in it.
+            Names and values of the options that decide its content.
         former
-            Values of those that older folders do not name.
+            Values of options that older folders do not name.
 
         Raises
         ------
@@ -76,7 +76,7 @@ class ReproductionFolder:
 
 
 def option(name: str, value: str) -> str:
-    """Return an option as it is given; sizes and publications are words of their own.
+    """Return the spelling of an option; sizes and publications have no value.
 
     Examples
     --------

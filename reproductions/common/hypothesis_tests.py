@@ -1,4 +1,4 @@
-"""Tests of claims: a number, its noise, and what the claim says of the number."""
+"""Tests of claims: a number, its noise, and the claim about the number."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Generic, TypeVar
 from snowshed.base.formatting import NOTHING, number, percent
 
 CONFIRMED, CONTRADICTED, UNDECIDED = "confirmed", "contradicted", "undecided"
-#: A difference counts if it is more than so many standard deviations of its noise.
+#: Number of standard deviations of its noise from which a difference counts.
 SIGMAS = 2.0
 
 Data = TypeVar("Data")
@@ -18,7 +18,7 @@ Data = TypeVar("Data")
 
 @dataclass(frozen=True)
 class Estimate:
-    """A number with the standard deviation that noise gives it; NaN: the noise is not known.
+    """A number with the standard deviation of its noise; NaN: the noise is unknown.
 
     Examples
     --------
@@ -33,15 +33,15 @@ class Estimate:
         return Estimate(self.value - other.value, math.hypot(self.noise, other.noise))
 
     def scaled(self, factor: float) -> Estimate:
-        """Return the number in another unit, or as a part of a number that is known well."""
+        """Return the number in another unit, or relative to an exact number."""
         return Estimate(self.value * factor, self.noise * abs(factor))
 
-    def in_words(self, unit: str = "") -> str:
+    def text(self, unit: str = "") -> str:
         """Return number and noise; unit "%" for parts.
 
         Examples
         --------
-        >>> Estimate(0.0123, 0.0004).in_words("m"), Estimate(0.5, 0.01).in_words("%")
+        >>> Estimate(0.0123, 0.0004).text("m"), Estimate(0.5, 0.01).text("%")
         ('0.0123 ± 0.0004 m', '50 % ± 1 %')
         """
         if unit == "%":
@@ -51,9 +51,9 @@ class Estimate:
 
 
 def widening(freedom: float) -> float:
-    """Return by how much Student's t widens a noise that was estimated from few numbers.
+    """Return the factor of Student's t on a noise that was estimated from few numbers.
 
-    `SIGMAS` of it then hold as much as they do where the noise is known well: 95 %.
+    `SIGMAS` of it then hold 95 %, as they do for an exact noise.
 
     Examples
     --------
@@ -69,8 +69,8 @@ def widening(freedom: float) -> float:
 
 def mean_of(estimates: Sequence[Estimate]) -> Estimate:
     """Return the mean of numbers whose noises are independent."""
-    mean = math.fsum(one.value for one in estimates) / len(estimates)
-    return Estimate(mean, math.hypot(*(one.noise for one in estimates)) / len(estimates))
+    mean = math.fsum(estimate.value for estimate in estimates) / len(estimates)
+    return Estimate(mean, math.hypot(*(estimate.noise for estimate in estimates)) / len(estimates))
 
 
 @dataclass(frozen=True)
@@ -82,7 +82,7 @@ class Finding:
     verdict
         "confirmed", "contradicted" or "undecided".
     sentence
-        The number that says so, with its noise.
+        The deciding number, with its noise.
     """
 
     verdict: str
@@ -96,14 +96,14 @@ class Claim(Generic[Data]):
     Attributes
     ----------
     source
-        Where it says so.
+        Section, table or figure of the claim.
     text
-        What it says.
+        The claim.
     rule
-        When it is taken as confirmed; the opposite contradicts it, and anything closer than
-        `SIGMAS` deviations of noise leaves it open.
+        Condition for "confirmed"; the opposite contradicts the claim, and a number closer than
+        `SIGMAS` deviations of noise leaves it undecided.
     judge
-        From the data to the finding.
+        Function from the data to the finding.
     """
 
     source: str
@@ -124,14 +124,14 @@ class Judged:
 
 def judge(claims: Sequence[Claim[Data]], data: Data) -> list[Judged]:
     """Test claims against the same data; missing data leave a claim undecided."""
-    return [Judged(one.source, one.text, one.rule, _finding(one, data)) for one in claims]
+    return [Judged(claim.source, claim.text, claim.rule, _finding(claim, data)) for claim in claims]
 
 
 def _finding(claim: Claim[Data], data: Data) -> Finding:
     try:
         return claim.judge(data)
     except LookupError as missing:
-        return Finding(UNDECIDED, f"the data do not hold what it needs: {missing}")
+        return Finding(UNDECIDED, f"the data lack {missing}")
 
 
 def positive(estimate: Estimate, what: str, unit: str = "") -> Finding:
@@ -153,7 +153,7 @@ def negative(estimate: Estimate, what: str, unit: str = "") -> Finding:
 
 
 def small(estimate: Estimate, bound: float, what: str, unit: str = "") -> Finding:
-    """Test the claim that a number is hardly anything: not above a bound, whatever its sign.
+    """Test the claim that a number is small: not above a bound, with either sign.
 
     Examples
     --------
@@ -165,7 +165,7 @@ def small(estimate: Estimate, bound: float, what: str, unit: str = "") -> Findin
 
 
 def near(estimate: Estimate, aim: float, bound: float, what: str, unit: str = "") -> Finding:
-    """Test the claim that a number is about another one: not farther from it than a bound."""
+    """Test the claim that a number is close to another: their difference is within a bound."""
     away = Estimate(estimate.value - aim, estimate.noise)
     return Finding(small(away, bound, "").verdict, _sentence(what, estimate, unit))
 
@@ -174,7 +174,7 @@ def all_of(findings: Sequence[Finding]) -> Finding:
     """Return the finding on a claim with several parts: it holds if every part does."""
     verdicts = {finding.verdict for finding in findings}
     ranked = (CONTRADICTED, UNDECIDED, CONFIRMED)
-    verdict = next((one for one in ranked if one in verdicts), UNDECIDED)
+    verdict = next((worst for worst in ranked if worst in verdicts), UNDECIDED)
     return Finding(verdict, "; ".join(finding.sentence for finding in findings))
 
 
@@ -185,4 +185,4 @@ def _sign(value: float, noise: float) -> str:
 
 
 def _sentence(what: str, estimate: Estimate, unit: str) -> str:
-    return f"{what}: {estimate.in_words(unit)}"
+    return f"{what}: {estimate.text(unit)}"

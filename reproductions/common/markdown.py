@@ -15,6 +15,6 @@ def markdown_table(grid: Grid) -> str:
     | --- | ---: |
     | a | 1 |
     """
-    marks = ["---:" if one == "r" else "---" for one in grid.align]
+    marks = ["---:" if letter == "r" else "---" for letter in grid.align]
     lines = [grid.head, marks, *([cell.replace("|", "\\|") for cell in row] for row in grid.rows)]
     return "\n".join(f"| {' | '.join(line)} |" for line in lines)

@@ -29,7 +29,7 @@ def write_report(
     declared
         The reproduction.
     size, folder
-        How much is computed, and where.
+        The size, and the results folder.
     work
         Its stages, computed or not.
     """
@@ -43,14 +43,14 @@ def write_report(
         "version": _core.version,
         "machine": cpu_name(),
         "date": datetime.now(timezone.utc).date().isoformat(),
-        "stages": "; ".join(f"{name} {state.in_words()}" for name, state in states.items()),
+        "stages": "; ".join(f"{name} {state.text()}" for name, state in states.items()),
     }
     page = template(PACKAGE, TEMPLATE).render(
         publication=declared,
         caution=size.caution,
         facts=facts,
         sigmas=SIGMAS,
-        counts=Counter(one.finding.verdict for one in judged),
+        counts=Counter(claim.finding.verdict for claim in judged),
         claims=claims_grid(judged, declared.author),
         rules=rules_grid(declared.claims),
         missing=list(missing),

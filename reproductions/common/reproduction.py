@@ -36,10 +36,10 @@ class Reproduction(Generic[Work]):
     name, alias
         The package and its command; a short name, after which the report is named too.
     author
-        Names the publication in text, such as "the paper".
+        Name of the publication in texts, such as "the paper".
     title, about, noise
-        Of the report: its title, the publication and how it is reproduced, and where the noise of
-        the numbers comes from. The last two may hold HTML.
+        Title of the report, description of the publication and its reproduction, and origin of the
+        noise of the numbers. The last two may hold HTML.
     help, stage_help
         Help texts of the command and of its option ``--stage``.
     sizes
@@ -50,14 +50,14 @@ class Reproduction(Generic[Work]):
     claims
         Every claim of the publication that a section may judge, in order.
     sections
-        Of the report, in order.
+        Sections of the report, in order.
     jobs_help
         Help text of ``--jobs``; None: the command has no such option.
     options
         Further options of the command.
     identity, former
-        The options that decide what a folder holds, besides the size; and the values of folders
-        that do not name them.
+        The options that decide the content of a folder, besides the size, and their values in
+        folders that do not name them.
     """
 
     name: str

@@ -1,4 +1,4 @@
-"""Sections of a report: what they need, and what they hold."""
+"""Sections of a report: their stages, and their content."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ class Content:
     Attributes
     ----------
     paragraphs
-        What was computed and how, and what to know when reading.
+        Texts on the computation, with notes for readers.
     tables
-        With their titles.
+        Tables with their titles.
     pictures, claims
         Figures, and findings on the publication's claims.
     missing
-        What is not there yet, a line each.
+        Missing parts, a line each.
     """
 
     paragraphs: Sequence[str] = ()
@@ -44,11 +44,11 @@ class Section(Generic[Work]):
     Attributes
     ----------
     name, title
-        For links, and as its heading.
+        Anchor of links, and heading.
     build
-        From the computation to the content; raises InputError if too little is computed.
+        Function from the computation to the content; raises InputError if too little is computed.
     stages
-        Names of the stages that it is of.
+        Names of its stages.
     judged
         When its claims are judged: on "any" part of the stages, when they have "ended" with or
         without failures, or when all of them is "done". Before that, claims stay open: means over
@@ -62,7 +62,7 @@ class Section(Generic[Work]):
     judged: Literal["any", "ended", "done"] = "any"
 
     def content(self, work: Work, states: Mapping[str, State]) -> Content:
-        """Return the content; where something is missing it says what.
+        """Return the content, with a line for each missing part.
 
         Parameters
         ----------
@@ -73,7 +73,7 @@ class Section(Generic[Work]):
         """
         own = {name: states[name] for name in self.stages if name in states}
         parts = {name: state for name, state in own.items() if not state.complete}
-        lines = [f"stage {name}: {state.in_words()}" for name, state in parts.items()]
+        lines = [f"stage {name}: {state.text()}" for name, state in parts.items()]
         try:
             content = self.build(work)
         except InputError as error:
@@ -85,5 +85,5 @@ class Section(Generic[Work]):
 
 
 def _left_open(content: Content, state: State) -> Content:
-    finding = Finding(UNDECIDED, f"the stage is not complete, {state.in_words()}")
-    return replace(content, claims=[replace(one, finding=finding) for one in content.claims])
+    finding = Finding(UNDECIDED, f"the stage is not complete, {state.text()}")
+    return replace(content, claims=[replace(claim, finding=finding) for claim in content.claims])

@@ -1,4 +1,4 @@
-"""Sizes of a reproduction: how much of a publication is computed, and how finely."""
+"""Sizes of a reproduction: its extent and its resolution."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class Size(Generic[Settings]):
     help
         Help text of the option.
     settings
-        What the publication's own modules compute at this size.
+        Settings of the publication's modules at this size.
     caution
         Limits of results of this size, for the report; may hold HTML, may be empty.
     """

@@ -14,7 +14,7 @@ from snowshed.study import Study, cost_estimate
 from snowshed.study.session import Resources, resume
 from snowshed.study.store import Store, StoredRun
 
-#: Takes the part of a stage's work that is done, 0 to 1, and what is being done.
+#: Function that receives the finished part of a stage, 0 to 1, and its current step.
 StageReporter = Callable[[float, str], None]
 
 
@@ -27,9 +27,9 @@ class State:
     done, failed, count
         Units of work: simulations, or outer folds.
     unit
-        What they are called.
+        Name of the units.
     reason
-        Why some failed, if that is one reason.
+        Reason of the failures, if they have the same one.
     """
 
     done: int
@@ -48,12 +48,12 @@ class State:
         """True if all is computed, and nothing failed."""
         return self.done == self.count
 
-    def in_words(self) -> str:
+    def text(self) -> str:
         """Return the state for people.
 
         Examples
         --------
-        >>> State(3, 1, 9).in_words()
+        >>> State(3, 1, 9).text()
         '3 of 9 simulations done, 1 failed'
         """
         failed = f", {self.failed} failed" if self.failed else ""
@@ -62,23 +62,23 @@ class State:
 
 
 class Stage(Protocol):
-    """A part of the work that can be asked for by its name."""
+    """A part of the work, which `--stage` selects by its name."""
 
     @property
     def name(self) -> str:
-        """The name by which ``--stage`` asks for it."""
+        """The name for ``--stage``."""
 
     def state(self) -> State:
-        """Return how far it is."""
+        """Return its progress."""
 
     def expected_s(self, jobs: Optional[int]) -> float:
-        """Return how long what is left is expected to take, s."""
+        """Return the expected remaining time, s."""
 
     def compute(self, jobs: Optional[int], report: StageReporter) -> None:
-        """Compute what is left."""
+        """Compute the rest."""
 
     def failure(self) -> str:
-        """Return what failed, in words; empty if nothing did."""
+        """Return a text on the failures; empty without one."""
 
 
 class StudyStage:
@@ -99,12 +99,12 @@ class StudyStage:
         self._names: Optional[list[str]] = None
 
     def state(self) -> State:
-        """Return how far it is."""
+        """Return its progress."""
         counts = Counter(run.status for run in self._stored())
         return State(counts["done"], counts["failed"], sum(counts.values()))
 
     def expected_s(self, jobs: Optional[int]) -> float:
-        """Return how long what is left is expected to take, s; measures the machine's speed."""
+        """Return the expected remaining time, s; measures the machine's speed."""
         pending = [run.scene for run in self._stored() if run.status == "pending"]
         if not pending:
             return 0.0
@@ -114,22 +114,22 @@ class StudyStage:
         finally:
             workers.close()
         return cost_estimate.expected(
-            pending, [cost_estimate.work(one) for one in pending], at_once, threads
+            pending, [cost_estimate.work(scene) for scene in pending], at_once, threads
         )
 
     def compute(self, jobs: Optional[int], report: StageReporter) -> None:
-        """Compute what is left; raises StudyInterrupted after Ctrl-C."""
+        """Compute the rest; raises StudyInterrupted after Ctrl-C."""
         names = self._registered()
         for number, name in enumerate(names):
 
             def tell(progress: Progress, name: str = name, number: int = number) -> None:
-                words = f"{name}: {progress.done}/{progress.count} simulations"
-                report((number + progress.fraction) / len(names), words)
+                text = f"{name}: {progress.done}/{progress.count} simulations"
+                report((number + progress.fraction) / len(names), text)
 
             resume(self.runs, name, jobs=jobs, progress=tell)
 
     def failure(self) -> str:
-        """Return how many simulations failed, and where their errors are told."""
+        """Return the number of failed simulations, and the place of their errors."""
         failed = self.state().failed
         return f"{failed} of {self.name}" if failed else ""
 
@@ -159,7 +159,7 @@ class StudyStage:
 
 
 def choose(stages: Sequence[Stage], names: Sequence[str]) -> list[Stage]:
-    """Return the stages with some names, in their order; all if there are none.
+    """Return the stages with some names, in their order; without names, all.
 
     Raises
     ------
@@ -176,7 +176,7 @@ def choose(stages: Sequence[Stage], names: Sequence[str]) -> list[Stage]:
 def compute(
     stages: Sequence[Stage], *, jobs: Optional[int] = None, progress: Optional[Reporter] = None
 ) -> None:
-    """Compute what is left of some stages.
+    """Compute the rest of some stages.
 
     Parameters
     ----------

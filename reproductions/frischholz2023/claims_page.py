@@ -1,8 +1,8 @@
 """The page ``docs/trust/thesis-claims.md``: every claim of the thesis with our verdict.
 
-Its numbers come from the folder ``data``, which holds the claims of the last ``--middle``;
-``python -m reproductions.frischholz2023.claims_page`` writes it anew. What likely makes a claim
-fail stands in `reproductions.frischholz2023.claims.causes`.
+Its numbers come from the folder ``data``, which holds the claims of the last ``--middle``; ``python
+-m reproductions.frischholz2023.claims_page`` writes it anew. Likely causes of contradictions are in
+`reproductions.frischholz2023.claims.causes`.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ DOCS = Path(__file__).parents[2] / "docs" / "trust"
 PAGE, REPORT = DOCS / "thesis-claims.md", DOCS / "reports" / "thesis-middle.html"
 REPORT_FILE = "thesis.html"  # of `--middle`
 CLAIMS_FILE, COMPUTED_FILE = "claims.csv", "claims-computed.json"
-#: A store may hold runs of sizes that are not computed any more.
+#: Condition on runs; a store may also hold runs of earlier sizes.
 OF_A_STUDY = "hash IN (SELECT hash FROM study_run)"
 
 
@@ -46,22 +46,22 @@ def page(data: Path = DATA) -> str:
     """
     claims = read_claims(data / CLAIMS_FILE)
     computed = json.loads((data / COMPUTED_FILE).read_text(encoding="utf-8"))
-    counts = Counter(one.finding.verdict for one in claims)
+    counts = Counter(claim.finding.verdict for claim in claims)
     verdicts = ", ".join(f"{counts[verdict]} {verdict}" for verdict in VERDICTS)
     parts = [
         "# The thesis's claims",
-        "This page is written by `python -m reproductions.frischholz2023.claims_page` from the "
-        "results in `reproductions/frischholz2023/data`; change those, not this. It holds what "
-        "`snowshed reproduce frischholz2023 --middle` says of the thesis's "
-        f"{len(claims)} claims: {verdicts}. "
-        "[The report](reports/thesis-middle.html) has its figures and tables, and when "
-        "a claim counts as confirmed.",
-        f"Of its {computed['runs']} simulations the last ended on {computed['date']}, on "
-        f"{computed['cpu']}. [Reproducing the thesis](reproduce.md) says what `--middle` "
-        "computes and how claims are judged; [the gap](thesis-gap.md), how far the stacks of "
-        "chapter 5 are from the thesis's. A number after ± is the standard deviation of its noise.",
-        "## Contradicted claims, and what likely makes them so",
-        "\n".join(_contradiction(one) for one in _contradicted(claims)),
+        "This page lists our verdicts on the thesis's "
+        f"{len(claims)} claims: {verdicts}. They come from "
+        "`snowshed reproduce frischholz2023 --middle`. [The report](reports/thesis-middle.html) "
+        "has the figures, the tables and the rule for each claim.",
+        f"The {computed['runs']} simulations were finished on {computed['date']}, on "
+        f"{computed['cpu']}. [Reproducing the thesis](reproduce.md) explains the simulations and "
+        "the verdicts, [the gap](thesis-gap.md) the differences between our stacks of chapter 5 "
+        "and those of the thesis. A number after ± is the standard deviation of the noise.",
+        "`python -m reproductions.frischholz2023.claims_page` writes this page from the results "
+        "in `reproductions/frischholz2023/data`. Do not edit it by hand.",
+        "## Contradicted claims, and their likely causes",
+        "\n".join(_contradiction(claim) for claim in _contradicted(claims)),
         "## All claims",
         markdown_table(claims_grid(claims, "the thesis")),
     ]
@@ -69,7 +69,7 @@ def page(data: Path = DATA) -> str:
 
 
 def _contradicted(claims: Sequence[Judged]) -> list[Judged]:
-    return [one for one in claims if one.finding.verdict == CONTRADICTED]
+    return [claim for claim in claims if claim.finding.verdict == CONTRADICTED]
 
 
 def _contradiction(claim: Judged) -> str:
@@ -79,16 +79,16 @@ def _contradiction(claim: Judged) -> str:
 
 
 def keep(folder: Path, data: Path = DATA, report: Path = REPORT) -> None:
-    """Take the claims and the report of a reproduction's folder.
+    """Copy the claims and the report from a reproduction's folder.
 
     Raises
     ------
     InputError
         If the folder holds no finished reproduction.
     """
-    found = ReproductionFolder(folder)
-    claims = read_claims(found.claims)
-    with Store.open(found.runs) as store:
+    reproduction = ReproductionFolder(folder)
+    claims = read_claims(reproduction.claims)
+    with Store.open(reproduction.runs) as store:
         ((left,),) = store.read(
             f"SELECT count(*) FROM run WHERE status = 'pending' AND {OF_A_STUDY}"
         )

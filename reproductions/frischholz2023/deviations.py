@@ -1,8 +1,9 @@
 """Deviations of the default settings from the thesis, each with its reason.
 
-All deviations undone are the preset ``thesis``; each can be undone alone. What the thesis leaves
-open, as the panel's friction, is none: the docs say what is taken there. The settings are those of
-`snowshed.analysis.regression.deviations`, which `snowshed geometry --deviation` offers.
+The preset ``thesis`` undoes all deviations; each can be undone alone. A choice where the thesis
+leaves a value open, such as the panel's friction, is not a deviation; the docs state these choices.
+The settings are those of `snowshed.analysis.regression.deviations`, which `snowshed geometry
+--deviation` offers.
 """
 
 from __future__ import annotations
@@ -31,9 +32,9 @@ class Deviation:
     name
         Name of the deviation in options.
     thesis, here, reason
-        What the thesis does, what is done here unless asked otherwise, and why; sentences.
+        Choice of the thesis, our default, and its reason; sentences.
     trimming
-        The trimming rule (A.4.2) for measuring stacks, if it is about that.
+        The trimming rule (A.4.2) for measuring stacks, if the deviation changes it.
     """
 
     name: str
@@ -100,7 +101,7 @@ DEVIATIONS: Mapping[str, Deviation] = {
 
 
 def deviating_settings(chapter: int, names: Sequence[str] = (ALL,)) -> dict[str, object]:
-    """Return what deviations set in a scene: by default the preset ``thesis``.
+    """Return the settings of deviations in a scene, by default those of the preset ``thesis``.
 
     Parameters
     ----------
@@ -133,6 +134,6 @@ def deviating_settings(chapter: int, names: Sequence[str] = (ALL,)) -> dict[str,
 
 
 def deviating_trimming(names: Sequence[str] = (ALL,)) -> str:
-    """Return the reading of A.4.2 by which stacks are measured with some deviations."""
+    """Return the trimming rule of A.4.2 by which stacks are measured with some deviations."""
     named = (DEVIATIONS[name].trimming for name in deviations_named(names))
     return next((trimming for trimming in named if trimming), DEFAULT_TRIMMING)

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from snowshed.plot.figure_style import COLOURS, FIRST, LAST, STYLE, blank, headline
+from snowshed.plot.figure_style import COLOURS, FIRST, LAST, STYLE, blank_figure, headline
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -42,7 +42,7 @@ def growth_figure(rows: pd.DataFrame) -> Figure:
     keys = ["dimension", "tilt", "friction"]
     styles = {group: _line_style(group, rows) for group in rows.groupby(keys).groups}
     with matplotlib.rc_context(STYLE):
-        figure = blank(8.4, 6.4)
+        figure = blank_figure(8.4, 6.4)
         headline(figure, "The laboratory's stacks, simulated")
         for axes, (column, label) in zip(figure.subplots(2, 2, sharex=True).flat, GROWN.items()):
             for group, runs in rows.groupby(keys):
@@ -63,14 +63,14 @@ def _line_style(group: Any, rows: pd.DataFrame) -> dict[str, Any]:
     """Return colour by tilt, line by dimension, marker by friction, and the words for them."""
     dimension, tilt, friction = group
     tilts, frictions = sorted(rows["tilt"].unique()), sorted(rows["friction"].unique())
-    words = f"{dimension:g}D, {tilt:g}°"
-    words += f", friction {friction:g}" if len(frictions) > 1 else ""
+    text = f"{dimension:g}D, {tilt:g}°"
+    text += f", friction {friction:g}" if len(frictions) > 1 else ""
     return {
         "color": COLOURS[tilts.index(tilt)],
         "linestyle": "-" if dimension == 3 else "--",
         "marker": "os^vD"[frictions.index(friction) % 5],
         "markerfacecolor": COLOURS[tilts.index(tilt)] if dimension == 3 else "white",
-        "label": words,
+        "label": text,
     }
 
 
@@ -87,9 +87,10 @@ def geometry_figure(table: pd.DataFrame) -> Figure:
     events = sorted(table["event"].unique())
     shades = matplotlib.colormaps["viridis"](np.linspace(FIRST, LAST, len(events)))
     with matplotlib.rc_context(STYLE):
-        figure = blank(9.2, 7.4)
+        figure = blank_figure(9.2, 7.4)
         headline(
-            figure, f"Stacks while one input of the panel varies; the others: {_words(reference)}"
+            figure,
+            f"Stacks while one input of the panel varies; the others: {_size_text(reference)}",
         )
         grid = figure.subplots(3, 3, sharex="row", squeeze=False)
         for row, (varied, label) in zip(grid, VARIED.items()):
@@ -109,8 +110,8 @@ def _draw(
     axes: Axes, rows: pd.DataFrame, varied: str, target: str, events: list[Any], shades: Any
 ) -> None:
     for event, shade in zip(events, shades):
-        one = rows[rows["event"] == event].groupby(varied)[target].mean()
-        axes.plot(one.index, one, "o-", color=shade, markersize=3.5, linewidth=1.2)
+        means = rows[rows["event"] == event].groupby(varied)[target].mean()
+        axes.plot(means.index, means, "o-", color=shade, markersize=3.5, linewidth=1.2)
 
 
 def _reference(table: pd.DataFrame) -> dict[str, float]:
@@ -122,7 +123,7 @@ def _reference(table: pd.DataFrame) -> dict[str, float]:
     return {name: float(nearest[name]) for name in wanted}
 
 
-def _words(reference: dict[str, float]) -> str:
+def _size_text(reference: dict[str, float]) -> str:
     length, height, tilt = (reference[name] for name in VARIED)
     return f"length {length:g} m, height {height:g} m, tilt {tilt:g}°"
 

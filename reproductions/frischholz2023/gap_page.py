@@ -1,4 +1,4 @@
-"""The page ``docs/trust/thesis-gap.md``: how far our stacks are from the thesis's, and why.
+"""The page ``docs/trust/thesis-gap.md``: how our stacks differ from the thesis's, and why.
 
 Every number on it comes from the files in the folder ``data``, which hold results of longer runs;
 ``python -m reproductions.frischholz2023.gap_page`` writes it anew.
@@ -26,7 +26,7 @@ from reproductions.frischholz2023.sections.regression import (
     quartiles_grid,
     read_regressed,
     rows_grid,
-    rows_in_words,
+    rows_label,
 )
 from reproductions.frischholz2023.studies import PANEL, THESIS
 from reproductions.frischholz2023.variant_errors import FILE, SCHEME, read_variant_errors
@@ -54,7 +54,7 @@ if TYPE_CHECKING:
 DATA = Path(__file__).with_name("data")
 PAGE = Path(__file__).parents[2] / "docs" / "trust" / "thesis-gap.md"
 DEVIATIONS_FILE, SCATTER_FILE, ERRORS_FILE = "deviations.csv", "scatter.csv", FILE.name
-#: What is kept of the folders of regressions, as `snowshed regress` writes them.
+#: Files that are stored from the folders of regressions, as `snowshed regress` writes them.
 KEPT = ("scores.csv", "ratio/errors.csv", "ratio/quartiles.csv")
 
 
@@ -63,10 +63,11 @@ def page(data: Path = DATA) -> str:
     stacks = read_variants_file(data / DEVIATIONS_FILE)
     parts = [
         "# The gap to the thesis",
-        "This page is written by `python -m reproductions.frischholz2023.gap_page` from the "
-        "results in `reproductions/frischholz2023/data`; change those, not this. It says how far "
-        "our stacks below panels are from those of the thesis's chapter 5, and what makes them so. "
-        "[Reproducing the thesis](reproduce.md) has the rest.",
+        "This page compares our stacks below panels with those of the thesis's chapter 5, and "
+        "gives the causes of the differences. [Reproducing the thesis](reproduce.md) describes "
+        "the reproduction as a whole.",
+        "`python -m reproductions.frischholz2023.gap_page` writes this page from the results in "
+        "`reproductions/frischholz2023/data`. Do not edit it by hand.",
         *_scatter_part(read_scatter(data / SCATTER_FILE)),
         *_causes_part(stacks, read_variant_errors(data / ERRORS_FILE)),
         *_regression_part(data),
@@ -82,24 +83,24 @@ def _scatter_part(stacks: pd.DataFrame) -> list[str]:
         [
             name,
             *(percent(scatter(stacks, name, quantity), 2) for quantity in names),
-            *(f"{one:.3f}" for one in quartiles(stacks, name)),
+            *(f"{quartile:.3f}" for quartile in quartiles(stacks, name)),
         ]
         for name in TRIMMINGS
     ]
-    grid = Grid(["reading", *names.values(), *QUARTILES], rows, "l" + "r" * 7)
+    grid = Grid(["trimming rule", *names.values(), *QUARTILES], rows, "l" + "r" * 7)
     other = next(name for name in TRIMMINGS if name != DEFAULT_TRIMMING)
     ours, theirs = (scatter(stacks, name, "length") for name in (DEFAULT_TRIMMING, other))
     return [
-        "## The two readings of A.4.2",
-        "[Two readings](../methods/stack.md#two-readings-of-a42) of the same stacks: "
-        f"{panels} panels up to "
+        "## The two trimming rules of A.4.2",
+        "The table measures the same stacks by [two trimming rules]"
+        f"(../methods/stack.md#two-readings-of-a42): {panels} panels up to "
         f"{stacks['panel.length'].max():g} m long, {seeds} seedings each, cells of {cells}. The "
-        "columns are the deviation between seedings as a part of the mean (root mean square over "
+        "columns are the deviation between seedings relative to the mean (root mean square over "
         "panels and events), and the quartiles of H/L of the rows.",
         markdown_table(grid),
         f"The length by `{DEFAULT_TRIMMING}` scatters by {percent(ours, 2)}, by `{other}` by "
-        f"{percent(theirs, 2)}. The steadier one is the default, whatever it says of the thesis's "
-        "numbers.",
+        f"{percent(theirs, 2)}. The steadier rule is the default, whether or not it agrees with "
+        "the thesis's numbers.",
     ]
 
 
@@ -115,7 +116,7 @@ def _causes_part(stacks: pd.DataFrame, errors: pd.DataFrame) -> list[str]:
         markdown_table(deviations_section.quartiles_grid(stacks)),
         *_left_over(stacks),
         "### Regressions with each deviation undone",
-        f"ε-SVR of H/L of the same rows ({errors['rows'].max():.0f} for each), by "
+        f"The table has ε-SVR of H/L of the same rows ({errors['rows'].max():.0f} for each), by "
         f"{SCHEME.rounds} round{'s' if SCHEME.rounds > 1 else ''} of {SCHEME.folds} outer and "
         f"{SCHEME.inner_folds} inner folds. The "
         "quartiles are those of the predictions. A sample has a tenth of the rows of the data set, "
@@ -128,103 +129,111 @@ def _variations_part(stacks: pd.DataFrame) -> list[str]:
     return [
         "### Settings of our own, varied on the same sample",
         "Damping is a rate in our settings, so that it does not depend on the length of the "
-        "steps. A share in each step does.",
+        "steps. With a share in each step, it does.",
         markdown_table(deviations_section.variations_grid(stacks)),
     ]
 
 
 def _cause(stacks: pd.DataFrame, name: str) -> str:
-    """Return what a deviation does to H/L, in words."""
-    one, found = DEVIATIONS[name], change(stacks, name, "ratio")
+    """Return the text on a deviation and its effect on H/L."""
+    deviation, ratio_change = DEVIATIONS[name], change(stacks, name, "ratio")
     if is_unswitched(stacks, name):
-        size = "not switched in these runs, whose scenes are our own; what it changes is not known"
-    elif found.value == 0:
+        size = "not switched in these runs, whose scenes are our own; its effect is unknown"
+    elif ratio_change.value == 0:
         size = "it changes no stack of the sample"
     else:
-        size = f"H/L changes by {deviations_section.change_in_words(found)}"
-        if not abs(found.value) > SIGMAS * found.noise:
+        size = f"H/L changes by {deviations_section.change_text(ratio_change)}"
+        if not abs(ratio_change.value) > SIGMAS * ratio_change.noise:
             size += ", which may be chance"
-    return f"**`{name}`**: {size}. The thesis: {one.thesis} Here: {one.here} {one.reason}"
+    texts = f"The thesis: {deviation.thesis} Here: {deviation.here} {deviation.reason}"
+    return f"**`{name}`**: {size}. {texts}"
 
 
 def _left_over(stacks: pd.DataFrame) -> list[str]:
-    """Return in words what is left between Table 5.3.1 and the preset ``thesis``."""
+    """Return the differences that remain between Table 5.3.1 and the preset ``thesis``."""
     of_all = stacks[stacks["variant"] == THESIS]
     if of_all.empty:
         return []
-    words = [f"by `{name}` {_gaps(quartiles(of_all, name))}" for name in TRIMMINGS]
+    gaps = [f"by `{name}` {_gaps(quartiles(of_all, name))}" for name in TRIMMINGS]
     return [
-        "With all undone the quartiles Q1 to Q4 of this sample's rows differ from the thesis's "
-        f"predictions for all panels {'; '.join(words)}. The panel's friction, which the thesis "
-        "does not print, is the same in all of them."
+        "With all deviations undone, the quartiles Q1 to Q4 of this sample's rows differ from the "
+        f"thesis's predictions for all panels {'; '.join(gaps)}. The panel's friction, which the "
+        "thesis does not print, is the same in all of them."
     ]
 
 
 def _gaps(ours: list[float]) -> str:
-    parts = (one / printed - 1 for one, printed in zip(ours, THESIS_QUARTILES["rbf"]))
+    parts = (quartile / printed - 1 for quartile, printed in zip(ours, THESIS_QUARTILES["rbf"]))
     return "by " + ", ".join(f"{100 * part:+.0f}" for part in parts) + " %"
 
 
 def regressed_rows() -> dict[str, StackRows]:
-    """Return the rows that the regressions in ``data`` are of, by the name of their folder.
+    """Return the rows of the regressions in ``data``, by the name of their folder.
 
-    For each reading of A.4.2 that the data set has: the rows of one seed, and the means if a row
+    For each trimming rule of the data set these are the rows of one seed, and the means if a row
     has several.
     """
-    found = {}
+    rows_by_name = {}
     for name in TRIMMINGS:
         try:
             rows = read_rows(geometry_table(), name)
-        except InputError:  # not measured by this reading
+        except InputError:  # not measured by this rule
             continue
-        found[f"regression-{name}"] = rows.of_one_seed()
+        rows_by_name[f"regression-{name}"] = rows.of_one_seed()
         if rows.most_seeds > 1:
-            found[f"regression-{name}-means"] = rows
-    return found
+            rows_by_name[f"regression-{name}-means"] = rows
+    return rows_by_name
 
 
 def _regression_part(data: Path) -> list[str]:
     parts = regressed_rows()
-    found: Mapping[str, Regressed] = {
-        f"{rows.settings['trimming']}, {rows_in_words(rows)}": read_regressed(
+    regressions: Mapping[str, Regressed] = {
+        f"{rows.settings['trimming']}, {rows_label(rows)}": read_regressed(
             data / folder, len(rows), rows.panel_count
         )
         for folder, rows in parts.items()
     }
-    one = next(iter(found.values()))
-    rounds, folds = one.scores["round"].nunique(), one.scores["fold"].nunique()
+    regressed = next(iter(regressions.values()))
+    rounds, folds = regressed.scores["round"].nunique(), regressed.scores["fold"].nunique()
     times = f"{rounds} round{'s' if rounds > 1 else ''} of {folds} outer folds"
     of_one_seed = {
         str(rows.settings["trimming"]): regression
-        for rows, regression in zip(parts.values(), found.values())
+        for rows, regression in zip(parts.values(), regressions.values())
         if rows.most_seeds == 1
     }
-    gaps = [f"by `{name}` {_gaps(_predicted_quartiles(one))}" for name, one in of_one_seed.items()]
-    shares = [f"{percent(_share(one), 2)} by `{name}`" for name, one in of_one_seed.items()]
+    gaps = [
+        f"by `{name}` {_gaps(_predicted_quartiles(regressed))}"
+        for name, regressed in of_one_seed.items()
+    ]
+    shares = [
+        f"{percent(_share(regressed), 2)} by `{name}`" for name, regressed in of_one_seed.items()
+    ]
     return [
         "## Tables 5.3.1 and 5.3.2",
         "The rows that come with snowshed "
         "([their settings](prediction-record.md#the-rows-that-come-with-snowshed)), "
-        f"by both readings of A.4.2, regressed in {times}. The thesis's table "
-        "holds quartiles of predictions, and its rows are single stacks: our predictions from rows "
-        "of one seed are their like.",
-        markdown_table(quartiles_grid(found)),
+        f"by both trimming rules, were regressed in {times}. The thesis's table has quartiles of "
+        "predictions, and its rows are single stacks: compare them with our predictions from rows "
+        "of one seed.",
+        markdown_table(quartiles_grid(regressions)),
         f"The RBF kernel's predictions from rows of one seed differ {'; '.join(gaps)}.",
         markdown_table(rows_grid(geometry_table())),
-        markdown_table(errors_grid(found)),
+        markdown_table(errors_grid(regressions)),
         f"The RBF kernel's error is {' and '.join(shares)} of its median prediction; the thesis's "
         f"is {percent(published().relative_error('rbf'), 2)}. Means of several seeds have "
-        "smaller errors because they scatter less, which says nothing of the model.",
+        "smaller errors because they scatter less, not because the model is better.",
     ]
 
 
-def _predicted_quartiles(found: Regressed) -> list[float]:
-    return [float(value) for value in found.quartiles.loc["rbf", list(QUARTILES)].to_numpy()]
+def _predicted_quartiles(regressed: Regressed) -> list[float]:
+    return [float(value) for value in regressed.quartiles.loc["rbf", list(QUARTILES)].to_numpy()]
 
 
-def _share(found: Regressed) -> float:
+def _share(regressed: Regressed) -> float:
     """Return the RBF kernel's error over its median prediction."""
-    return float(found.errors["mean_absolute_error"]["rbf"]) / _predicted_quartiles(found)[1]
+    return (
+        float(regressed.errors["mean_absolute_error"]["rbf"]) / _predicted_quartiles(regressed)[1]
+    )
 
 
 def keep(
@@ -233,12 +242,12 @@ def keep(
     seeds: Optional[Path],
     regressions: Optional[Path],
 ) -> None:
-    """Take new results into the folder that the page is written from; None: the old ones stay.
+    """Copy new results into the folder of the page's data; None: the old ones stay.
 
     Raises
     ------
     InputError
-        If a file is not what it should be.
+        If a file is invalid.
     """
     data.mkdir(exist_ok=True)
     if deviations is not None:

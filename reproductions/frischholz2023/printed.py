@@ -17,13 +17,13 @@ class Printed:
     Attributes
     ----------
     path
-        Of the parameter in a scene.
+        Path of the parameter in a scene.
     text
-        The values as the thesis prints them; what it does not print says so.
+        The values as the thesis prints them, or "not printed".
     name
-        As it is shown, where that differs from its `label`.
+        Displayed name, where that differs from its `label`.
     zero
-        What stands for zero, if it means something else.
+        Text in place of zero, if zero has a special meaning.
     """
 
     path: str
@@ -65,7 +65,7 @@ def _snow(slope: str, pressure: str, cohesion: str, hardening: str, modulus: str
 
 
 def _scene(height: str, tilt: str, frames: str, events: str, width: str = "0.213") -> list[Printed]:
-    """Return what the tables of the small panel have in common."""
+    """Return the common rows of the tables of the small panel."""
     return [
         Printed("dimension", "3D"),
         Printed("panel.height", height),
@@ -104,7 +104,7 @@ CALIBRATION: Sequence[Printed] = [
     *_snow("0.4, 0.5, 0.6, 0.7", "4, 5, 6, 7", "0.05, 0.1, 0.2", "0.1", "1"),
     *_NUMERICS,
 ]
-#: Table 5.1.1: what does not vary.
+#: Table 5.1.1: constant parameters.
 PANELS_SCENE: Sequence[Printed] = [
     Printed("dimension", "2D"),
     _GROUND,

@@ -35,8 +35,8 @@ ABOUT = (
 )
 QUICK_CAUTION = (
     "<strong>A quick reproduction.</strong> Coarse cells, 2D instead of 3D in chapters 3 and 4, "
-    "few seedings and few values: it shows the way. Its verdicts are those of these settings, not "
-    "of the thesis's; for these use <code>--full</code>."
+    "few seedings and few values: it shows the procedure. Its verdicts hold for these settings, "
+    "not for the thesis's; for those use <code>--full</code>."
 )
 NOISE = (
     "Its noise is that of the seeding: another placement of the particles gives another stack. "
@@ -50,7 +50,7 @@ NOISE = (
 
 HELP = """Reproduce chapters 3 to 5 of the thesis and its lab experiment, and judge its claims.
 
-Writes thesis.html. After an interruption the same command goes on.
+Writes thesis.html. After an interruption, the same command resumes.
 
 \b
 Example:

@@ -1,4 +1,4 @@
-"""The stage of section 5.3: where its rows come from, and the regression of them."""
+"""The stage of section 5.3: its rows, and their regression."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class GeometryRows:
         return self._folder.path / GEOMETRY_ROWS if self.table is None else self.table
 
     def count(self) -> int:
-        """Return how many rows there are, or will be."""
+        """Return the number of rows, computed or not."""
         if self._panels is None:
             return len(self.read())
         return self._panels.state().count * 5
@@ -60,7 +60,7 @@ class GeometryRows:
         assert self._panels is not None
         state = self._panels.state()
         if not state.finished:
-            raise InputError(f"stage geometry: {state.in_words()}")
+            raise InputError(f"stage geometry: {state.text()}")
         from snowshed.study.formats import export
 
         export(self._folder.runs, self.file, study=PANELS)
@@ -74,7 +74,7 @@ class Part:
     Attributes
     ----------
     rows, folder, scheme
-        What is regressed, where its results are, and by which folds.
+        The rows, the folder of the results, and the folds.
     """
 
     rows: StackRows
@@ -83,12 +83,12 @@ class Part:
 
     @property
     def count(self) -> int:
-        """How many outer folds it has."""
+        """Number of its outer folds."""
         return self.scheme.rounds * self.scheme.folds * len(KINDS)
 
     @property
     def done(self) -> int:
-        """How many of them are computed; all only when the tables are written."""
+        """Number of computed folds; all only when the tables are written."""
         done = len(list(self.folder.glob("folds/*/*/*.npz")))
         written = (self.folder / TARGET / "errors.csv").is_file()
         return done if written else min(done, self.count - 1)
@@ -109,7 +109,7 @@ class RegressionStage:
         self._rows = rows
 
     def parts(self) -> list[Part]:
-        """Return what is regressed: the rows of one seed, and then the means if there are any.
+        """Return the regressions: of the rows of one seed, and of the means if there are any.
 
         Raises
         ------
@@ -123,16 +123,18 @@ class RegressionStage:
         return [self._part(rows.of_one_seed(), fewer), self._part(rows, scheme)]
 
     def state(self) -> State:
-        """Return how far it is."""
+        """Return its progress."""
         try:
             parts = self.parts()
         except InputError:
             scheme = self._settings.folds
             return State(0, 0, scheme.rounds * scheme.folds * len(KINDS), "folds")
-        return State(sum(one.done for one in parts), 0, sum(one.count for one in parts), "folds")
+        return State(
+            sum(part.done for part in parts), 0, sum(part.count for part in parts), "folds"
+        )
 
     def expected_s(self, jobs: Optional[int]) -> float:
-        """Return how long what is left is expected to take, s."""
+        """Return the expected remaining time, s."""
         from snowshed.analysis.regression.kinds import kinds_named
 
         state = self.state()
@@ -144,7 +146,7 @@ class RegressionStage:
         return (state.count - state.done) * per_fold * scale / (jobs or available_cores())
 
     def compute(self, jobs: Optional[int], report: StageReporter) -> None:
-        """Regress what is left; raises RegressionInterrupted after Ctrl-C.
+        """Compute the remaining folds; raises RegressionInterrupted after Ctrl-C.
 
         Raises
         ------
@@ -154,11 +156,11 @@ class RegressionStage:
         from snowshed.analysis.regression.pipeline import regress
 
         parts = self.parts()
-        whole = sum(one.count for one in parts)
+        whole = sum(part.count for part in parts)
         for number, part in enumerate(parts):
             if part.done == part.count:
                 continue
-            before = sum(one.count for one in parts[:number])
+            before = sum(part.count for part in parts[:number])
             regress(
                 part.rows,
                 part.folder,

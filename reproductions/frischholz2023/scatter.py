@@ -1,4 +1,4 @@
-"""How much stacks scatter from seeding to seeding, by each reading of A.4.2."""
+"""Scatter of stacks from seeding to seeding, by each trimming rule of A.4.2."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ COLUMNS = (*PANEL, "event", "seed", *SETTINGS, *MEASURED)
 
 
 def read_scatter(file: Path) -> pd.DataFrame:
-    """Return stacks of several seeds below the same panels; raises InputError if they are none."""
+    """Return stacks of several seeds below the same panels; raises InputError if they are not."""
     table = read_csv(file)
     missing = set(COLUMNS) - set(table)
     if missing:
         raise InputError(f"{file}: no column {', '.join(sorted(missing))}")
     if table["seed"].nunique() < 2:
-        raise InputError(f"{file}: one seed; scatter needs several")
+        raise InputError(f"{file}: a single seed; scatter needs several")
     return table[list(COLUMNS)]
 
 
@@ -37,7 +37,7 @@ def scatter(stacks: pd.DataFrame, trimming: str, quantity: str) -> float:
     stacks
         From `read_scatter`.
     trimming
-        A reading of A.4.2.
+        Trimming rule of A.4.2.
     quantity
         "height", "length" or "ratio".
 

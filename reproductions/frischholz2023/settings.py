@@ -15,37 +15,38 @@ MEASURED_FRICTION = 0.6
 
 @dataclass(frozen=True)
 class Settings:
-    """How much is computed, and how finely.
+    """The extent and the resolution of a reproduction.
 
     Attributes
     ----------
     dimension, dx
-        Of the snow's simulations in chapters 3 and 4, and the grid size (m) of the laboratory too.
+        Dimension of the simulations of snow in chapters 3 and 4, and their grid size (m), also for
+        the laboratory.
     frictions, release_frictions
-        Of the panel: in the laboratory, and at 30 degrees.
+        Friction of the panel in the laboratory, and at 30 degrees.
     lab_seeds, index_seeds, fixation_seeds, grid_seeds
         Seedings of each point of the stages.
     grid_events
         Events of the calibration.
     slopes, pressures, cohesions
-        Its triplets: M, p0 (Pa), beta.
+        Triplets of the calibration: M, p0 (Pa), beta.
     steps
-        Of the posterior's Markov chains.
+        Steps of the posterior's Markov chains.
     simulates_panels
-        Whether the panels of chapter 5 are simulated, the thesis's 122 and those with more tilts
-        besides; else the rows are those that come with snowshed.
+        Whether the panels of chapter 5 are simulated (the thesis's 122, and those with more tilts);
+        else the rows are those of the data set in snowshed.
     deviation_dx
         Size of the grid cells (m) where deviations from the thesis are undone one by one: ours, and
-        that which stands for the thesis's. They have the ratio of 1.5 cm to 1 cm.
+        the size in place of the thesis's. Their ratio is that of 1.5 cm to 1 cm.
     deviation_panels, deviation_longest, deviation_seeds
-        Of the data set's panels up to some length, m, every n-th is simulated for it, so often. (n
-        has no factor in common with the numbers of lengths, or the same ones would come again.)
+        Every n-th panel of the data set is simulated, up to a length, m, with a number of seeds. (n
+        has no factor in common with the numbers of lengths, because lengths would repeat.)
     folds
-        Of the nested cross-validation.
+        Folds of the nested cross-validation.
     one_seed_rounds
-        Of its rounds for the rows of one seed, where there are several.
+        Rounds of the folds for the rows of one seed, where there are several.
     condition
-        Of the panel: "separate", which is snowshed's default, or "slip", which is the thesis's.
+        Contact condition of the panel: "separate" (our default) or "slip" (the thesis's).
     """
 
     dimension: int

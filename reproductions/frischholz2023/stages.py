@@ -16,7 +16,7 @@ from snowshed.analysis.regression.dataset import geometry_table
 from snowshed.analysis.regression.rows import read_rows
 from snowshed.scene.components import Condition
 
-#: Stages of panels, whose measure is in doubt: their particles are kept.
+#: Stages of panels, whose measure is in doubt: their particles are stored.
 KEPT = ("deviations", "variations", "geometry")
 MAKERS = {
     "lab": studies.lab,
@@ -35,7 +35,7 @@ class ThesisComputation:
     Parameters
     ----------
     path, settings
-        The folder, and how much is computed.
+        The folder, and the settings.
     table
         Rows of panels to use for chapter 5 instead of simulating them. Without it, a quick
         reproduction takes the table that comes with snowshed.

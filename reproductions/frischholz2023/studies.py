@@ -33,7 +33,7 @@ PANELS, TILTS = "geometry", "geometry-tilts"
 DEFAULTS, THESIS = "defaults", "thesis"
 VARIANTS: Mapping[str, Sequence[str]] = {
     DEFAULTS: (),
-    **{one.name: (one.name,) for one in DEVIATIONS.values()},
+    **{deviation.name: (deviation.name,) for deviation in DEVIATIONS.values()},
     THESIS: (ALL,),
 }
 #: Settings of ours that are varied on the same sample, beside the defaults; of cells by their size
@@ -172,12 +172,12 @@ def study_of(variant: str) -> str:
 
 
 def sampled_panels(settings: Settings) -> dict[str, list[Any]]:
-    """Return the panels for the deviations: of the data set's, in their order, every n-th.
+    """Return the panels for the deviations: every n-th of the data set, in its order.
 
-    Which they are is a matter of their geometry alone.
+    The choice depends on their geometry alone.
     """
     panels = sorted(panel for grid in GRIDS for panel in product(*grid))
-    few = [one for one in panels if one[2] <= settings.deviation_longest]
+    few = [panel for panel in panels if panel[2] <= settings.deviation_longest]
     chosen = few[min(settings.deviation_panels, len(few)) // 2 :: settings.deviation_panels]
     return {path: list(values) for path, values in zip(PANEL, zip(*chosen))}
 
@@ -187,7 +187,7 @@ def _variant(settings: Settings, name: str, names: Sequence[str]) -> Study:
     ours, thesis = settings.deviation_dx
     finer = "grid" in names or ALL in names
     scene = study.scene.set("numerics.dx", thesis if finer else ours)
-    common = [one for one in study.parts[0] if not {*PANEL, SEED} & set(one.columns)]
+    common = [factor for factor in study.parts[0] if not {*PANEL, SEED} & set(factor.columns)]
     seeds = list(range(1, settings.deviation_seeds + 1))
     panels = Factor(sampled_panels(settings))
     return Study(scene, [[*common, panels]], f"deviations-{name}", seeds)

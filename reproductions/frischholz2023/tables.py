@@ -20,7 +20,7 @@ from snowshed.study.table import value_at
 if TYPE_CHECKING:
     import pandas as pd
 
-#: Resolution of the figures that stages save, see `snowshed.plot.figure_style.save`.
+#: Resolution of the figures that stages save, see `snowshed.plot.figure_style.save_figure`.
 SAVED_DPI = 160
 #: For sections whose panel has one friction.
 PANEL_FRICTION = (
@@ -30,7 +30,7 @@ PANEL_FRICTION = (
 
 
 def settings_grid(printed: Sequence[Printed], scenes: Sequence[str]) -> Grid:
-    """Return a table of parameters: what the thesis prints, and what the scenes have.
+    """Return a table of parameters: printed values of the thesis, and values of the scenes.
 
     Parameters
     ----------
@@ -49,20 +49,20 @@ def settings_grid(printed: Sequence[Printed], scenes: Sequence[str]) -> Grid:
     rows = []
     for row in printed:
         values = {value_at(scene, row.path) for scene in data} - {None}
-        ours = ", ".join(_text(value, row) for value in sorted(values)) or NOTHING
+        ours = ", ".join(_printed_value(value, row) for value in sorted(values)) or NOTHING
         ours += "D" if row.path == "dimension" else ""
         rows.append([row.title, row.text, ours, label(row.path).unit])
     return Grid(["parameter", "thesis", "here", "unit"], rows, "llll")
 
 
-def _text(value: Any, row: Printed) -> str:
+def _printed_value(value: Any, row: Printed) -> str:
     if isinstance(value, str):
         return value.upper()
     return label(row.path).value(value) if value else row.zero
 
 
 def widenings(table: pd.DataFrame, noise: pd.DataFrame) -> Floats:
-    """Return by how much the noise of each row is widened, since its seedings are few.
+    """Return the factor that widens the noise of each row, because its seedings are few.
 
     Parameters
     ----------

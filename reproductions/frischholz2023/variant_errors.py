@@ -43,7 +43,7 @@ SCHEME = CrossValidation(rounds=1, folds=7, inner_folds=4)
 def variant_errors(
     stacks: pd.DataFrame, scheme: CrossValidation = SCHEME, *, jobs: Optional[int] = None
 ) -> pd.DataFrame:
-    """Return the regressions of H/L of each variant, by each reading of A.4.2.
+    """Return the regressions of H/L of each variant, by each trimming rule of A.4.2.
 
     Parameters
     ----------
@@ -75,16 +75,18 @@ def _of_one(
     stacks: pd.DataFrame, trimming: str, scheme: CrossValidation, jobs: Optional[int]
 ) -> pd.DataFrame:
     height, length = (
-        measured_as(stacks, trimming, one).to_numpy(float) for one in ("height", "length")
+        measured_as(stacks, trimming, quantity).to_numpy(float) for quantity in ("height", "length")
     )
     rows = rows_of(stacks[list(INPUTS)].to_numpy(float), height, length).of_one_seed()
     with tempfile.TemporaryDirectory() as folder:
         regress(
             rows, folder, targets=[TARGET], models=KINDS, scheme=scheme, jobs=jobs, figures=False
         )
-        found = read_regressed(Path(folder), len(rows), len(stacks[list(PANEL)].drop_duplicates()))
-    table = found.quartiles.loc[list(KINDS), list(QUARTILES)]
-    return table.join(found.errors[list(ERRORS)]).assign(rows=len(rows)).reset_index()
+        regressed = read_regressed(
+            Path(folder), len(rows), len(stacks[list(PANEL)].drop_duplicates())
+        )
+    table = regressed.quartiles.loc[list(KINDS), list(QUARTILES)]
+    return table.join(regressed.errors[list(ERRORS)]).assign(rows=len(rows)).reset_index()
 
 
 def read_variant_errors(file: Path = FILE) -> pd.DataFrame:

@@ -1,4 +1,4 @@
-"""Stacks with each deviation from the thesis undone, or a setting varied, and what that changes."""
+"""Stacks with each deviation from the thesis undone, or a setting varied, and the changes."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def read_variants(store: Path) -> pd.DataFrame:
     Returns
     -------
     pandas.DataFrame
-        ``variant``, the panel, ``event``, ``seed``, ``dx``, the measures by both readings of A.4.2,
+        ``variant``, the panel, ``event``, ``seed``, ``dx``, the measures by both trimming rules,
         and ``same_runs``: whether all its runs are those of the defaults.
     """
     import pandas as pd
@@ -57,8 +57,8 @@ def read_variants(store: Path) -> pd.DataFrame:
         tables.append(table[columns].assign(variant=name, same_runs=same))
     if not tables or tables[0].empty:
         raise InputError("no panel of the sample is computed yet")
-    found = pd.concat(tables, ignore_index=True)
-    return found[["variant", "same_runs", *(name for name in found if name in columns)]]
+    stacks = pd.concat(tables, ignore_index=True)
+    return stacks[["variant", "same_runs", *(name for name in stacks if name in columns)]]
 
 
 def read_variants_file(file: Path) -> pd.DataFrame:
@@ -71,21 +71,21 @@ def read_variants_file(file: Path) -> pd.DataFrame:
 
 
 def ratios(stacks: pd.DataFrame, trimming: str) -> pd.Series:
-    """Return H/L of stacks by a reading of A.4.2."""
+    """Return H/L of stacks by a trimming rule of A.4.2."""
     measure = MEASURES[trimming]
     return stacks[measure.column("height")] / stacks[measure.column("length")]
 
 
 def measured_as(stacks: pd.DataFrame, trimming: str, quantity: str) -> pd.Series:
-    """Return "height", "length" or "ratio" of stacks by a reading of A.4.2."""
+    """Return "height", "length" or "ratio" of stacks by a trimming rule of A.4.2."""
     if quantity == "ratio":
         return ratios(stacks, trimming)
     return stacks[MEASURES[trimming].column(quantity)]
 
 
 def quartiles(stacks: pd.DataFrame, trimming: str) -> list[float]:
-    """Return the quartiles of H/L, the last one the largest, by a reading of A.4.2."""
-    return [float(one) for one in np.quantile(ratios(stacks, trimming), QUANTILES)]
+    """Return the quartiles of H/L, the last one the largest, by a trimming rule of A.4.2."""
+    return [float(quartile) for quartile in np.quantile(ratios(stacks, trimming), QUANTILES)]
 
 
 def with_runs_of_its_own(stacks: pd.DataFrame) -> Iterator[tuple[str, pd.DataFrame]]:
@@ -96,14 +96,14 @@ def with_runs_of_its_own(stacks: pd.DataFrame) -> Iterator[tuple[str, pd.DataFra
 
 
 def trimming_of(variant: str) -> str:
-    """Return the reading of A.4.2 that a variant or a variation measures by."""
+    """Return the trimming rule of a variant or a variation."""
     return deviating_trimming(VARIANTS.get(variant, ()))
 
 
 def change(
     stacks: pd.DataFrame, variant: str, quantity: str, trimming: Optional[str] = None
 ) -> Estimate:
-    """Return by which part of itself a deviation changes a stack.
+    """Return the relative change of a stack by a deviation.
 
     Each stack is compared with that of the defaults below the same panel after the same event with
     the same seed. The change is the mean over panels of the logarithm of their ratio; its noise is
@@ -118,7 +118,7 @@ def change(
     quantity
         "height", "length" or "ratio".
     trimming
-        The reading of A.4.2 of the variant's stacks; None: its own.
+        The trimming rule for the variant's stacks; None: its own.
 
     Raises
     ------

@@ -1,8 +1,7 @@
-"""What is claimed of snow in compression, and the rules by which it is judged.
+"""The paper's claims on snow in compression, and the rules by which they are judged.
 
-The rules were set before anything was computed. Numbers are logarithms of ratios of stresses, each
-the mean over samples, with the standard error that the scatter between samples gives it, widened
-by Student's t.
+The rules were set before the computations. Numbers are logarithms of ratios of stresses, each the
+mean over samples, with the standard error from the scatter between samples, widened by Student's t.
 """
 
 from __future__ import annotations
@@ -50,11 +49,11 @@ if TYPE_CHECKING:
 PEAK, EARLY, MIDDLE, DENSE = STRESSES
 SCALED = "density of ice x 100"
 HALF_EDGE = "volume / 8"
-#: Factor up to which a stress hardly differs; that from which it differs much.
+#: Largest factor between stresses that hardly differ, and smallest between clearly different ones.
 HARDLY, MUCH = math.log(1.3), math.log(2.0)
-#: Factor from which two of Yade's numbers differ by more than one sample's scatter.
+#: Factor from which two of Yade's numbers differ by more than a sample's scatter.
 CLEAR = math.log(1.5)
-#: Of the peak strain: what may remain of a reversible strain. R2 of what is linear.
+#: Largest remaining part of a reversible strain, relative to the peak strain; least R2 of a line.
 REMAINS, LINEAR = 0.05, 0.95
 
 
@@ -65,8 +64,8 @@ class LoadingTests:
     Attributes
     ----------
     tables
-        One per comparison, with one row per variant and sample. Those that load further stand
-        before others.
+        A table per comparison, with a row per variant and sample. Comparisons that load further
+        come first.
     """
 
     tables: Sequence[pd.DataFrame]
@@ -93,22 +92,22 @@ class LoadingTests:
         raise LookupError(" beside ".join(variants))
 
 
-def _estimate(found: LogMean) -> Estimate:
-    if not found.count:
+def _estimate(mean: LogMean) -> Estimate:
+    if not mean.count:
         raise LookupError("a stress that is positive")
-    return Estimate(found.mean, found.error * widening(found.count - 1))
+    return Estimate(mean.mean, mean.error * widening(mean.count - 1))
 
 
-def factor(found: Estimate, what: str) -> str:
-    """Return a ratio with its noise in words.
+def factor(ratio: Estimate, what: str) -> str:
+    """Return the text of a ratio with its noise.
 
     Examples
     --------
     >>> factor(Estimate(math.log(2.0), math.log(1.1)), "strength")
     'strength: x 2 (noise: factor 1.1)'
     """
-    noise = "not known" if math.isnan(found.noise) else f"factor {math.exp(found.noise):.2g}"
-    return f"{what}: x {math.exp(found.value):.3g} (noise: {noise})"
+    noise = "not known" if math.isnan(ratio.noise) else f"factor {math.exp(ratio.noise):.2g}"
+    return f"{what}: x {math.exp(ratio.value):.3g} (noise: {noise})"
 
 
 def reversible(tests: LoadingTests) -> Finding:
@@ -138,19 +137,22 @@ def hardens(tests: LoadingTests) -> Finding:
     rows = tests.of(BASE)
     growth = (rows[DENSE].astype(float) / rows[MIDDLE].astype(float)).tolist()
     rise = _estimate(LogMean.of(growth))
-    found = _factors(positive(rise - Estimate(MUCH, 0.0), ""), rise, "25 to 30 % over 10 to 15 %")
+    finding = _factors(positive(rise - Estimate(MUCH, 0.0), ""), rise, "25 to 30 % over 10 to 15 %")
     onset = rows["hardening_onset_strain"].astype(float)
     seen = int(onset.notna().sum())
     begins = f"exponential from {percent(onset.mean(), 2)} in {seen} of {len(rows)}"
-    whole = seen == len(rows) or found.verdict != CONFIRMED
-    return Finding(found.verdict if whole else UNDECIDED, f"{found.sentence}; {begins}")
+    whole = seen == len(rows) or finding.verdict != CONFIRMED
+    return Finding(finding.verdict if whole else UNDECIDED, f"{finding.sentence}; {begins}")
 
 
 def rises(variant: str, base: str, stresses: Sequence[str], tests: LoadingTests) -> Finding:
     """Test whether stresses of a variant are larger than those of another."""
     changes = [tests.change(variant, stress, base) for stress in stresses]
     return all_of(
-        [_factors(positive(one, ""), one, STRESSES[name]) for one, name in zip(changes, stresses)]
+        [
+            _factors(positive(change, ""), change, STRESSES[name])
+            for change, name in zip(changes, stresses)
+        ]
     )
 
 
@@ -175,10 +177,10 @@ def as_much_as_yade(stress: str, tests: LoadingTests) -> Finding:
     """Test whether a stress of the base is that of Yade within 30 %."""
     value = YADE[BASE][list(STRESSES).index(stress)]
     assert value is not None
-    found = tests.log(BASE, stress)
-    verdict = near(found, math.log(1e3 * value), HARDLY, "").verdict
-    words = f"{STRESSES[stress]} {math.exp(found.value) / 1e3:.3g} kPa, Yade {value:g} kPa"
-    return Finding(verdict, factor(found - Estimate(math.log(1e3 * value), 0.0), words))
+    logarithm = tests.log(BASE, stress)
+    verdict = near(logarithm, math.log(1e3 * value), HARDLY, "").verdict
+    text = f"{STRESSES[stress]} {math.exp(logarithm.value) / 1e3:.3g} kPa, Yade {value:g} kPa"
+    return Finding(verdict, factor(logarithm - Estimate(math.log(1e3 * value), 0.0), text))
 
 
 def same_signs(variant: str, tests: LoadingTests) -> Finding:
@@ -189,8 +191,8 @@ def same_signs(variant: str, tests: LoadingTests) -> Finding:
             continue
         change = tests.change(variant, stress)
         test = positive if printed > base else negative
-        words = f"{STRESSES[stress]} (Yade x {printed / base:.3g})"
-        findings.append(_factors(test(change, ""), change, words))
+        text = f"{STRESSES[stress]} (Yade x {printed / base:.3g})"
+        findings.append(_factors(test(change, ""), change, text))
     return all_of(findings)
 
 
@@ -198,24 +200,26 @@ def same_order(stress: str, tests: LoadingTests) -> Finding:
     """Test whether two variants are in Yade's order, for all pairs that are clearly apart."""
     place = list(STRESSES).index(stress)
     pairs = []
-    for one, other in combinations(YADE, 2):
-        high, low = YADE[one][place], YADE[other][place]
+    for first, second in combinations(YADE, 2):
+        high, low = YADE[first][place], YADE[second][place]
         if high is None or low is None or abs(math.log(high / low)) < CLEAR:
             continue
-        above, below = (one, other) if high > low else (other, one)
+        above, below = (first, second) if high > low else (second, first)
         pairs.append((positive(tests.change(above, stress, below), "").verdict, above, below))
     verdict = all_of([Finding(verdict, "") for verdict, _, _ in pairs]).verdict
     right = sum(verdict == CONFIRMED for verdict, _, _ in pairs)
-    wrong = [f"{above} not above {below}" for found, above, below in pairs if found == CONTRADICTED]
-    words = f"{right} of {len(pairs)} pairs in this order beyond noise"
-    return Finding(verdict, "; ".join([words, *wrong]))
+    wrong = [
+        f"{above} not above {below}" for verdict, above, below in pairs if verdict == CONTRADICTED
+    ]
+    text = f"{right} of {len(pairs)} pairs in this order beyond noise"
+    return Finding(verdict, "; ".join([text, *wrong]))
 
 
-def _factors(found: Finding, change: Estimate, what: str) -> Finding:
-    return Finding(found.verdict, factor(change, what))
+def _factors(finding: Finding, change: Estimate, what: str) -> Finding:
+    return Finding(finding.verdict, factor(change, what))
 
 
-def _words(variant: str) -> str:
+def _direction_text(variant: str) -> str:
     return f"{variant}: stresses change in the direction in which they change in Yade"
 
 
@@ -325,7 +329,7 @@ ENGINE: list[Claim[LoadingTests]] = [
     *(
         Claim(
             "line",
-            _words(variant),
+            _direction_text(variant),
             "for every stress that changes by more than a factor of 1.5 in Yade",
             partial(same_signs, variant),
         )

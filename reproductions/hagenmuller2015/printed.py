@@ -1,7 +1,8 @@
 """Numbers to compare with: one sample, compressed with Yade.
 
-The paper's own tables are not at hand. These stresses were measured with Yade 2023.02a on one
-synthetic sample of 87 grains (318 kg/m3, a cube of 2.4 mm, 4153 spheres), by the same contact law.
+The paper's own tables are not available to us. These stresses were measured with Yade 2023.02a on
+one synthetic sample of 87 grains (318 kg/m3, a cube of 2.4 mm, 4153 spheres), by the same contact
+law.
 """
 
 from __future__ import annotations

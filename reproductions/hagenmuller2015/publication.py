@@ -13,9 +13,9 @@ from reproductions.hagenmuller2015.studies import MAKERS
 
 ABOUT = (
     "Hagenmuller, Chambon and Naaim, <em>Microstructure-based modeling of snow mechanics: a "
-    "discrete element approach</em> (The Cryosphere 9, 1969-1982, 2015): what it says of snow in "
-    "confined compression, tested with snowshed. Its images and tables are not at hand: the snow "
-    "is synthetic, and the numbers that stand beside ours were measured with Yade on one synthetic "
+    "discrete element approach</em> (The Cryosphere 9, 1969-1982, 2015): its claims on snow in "
+    "confined compression, tested with snowshed. Its images and tables are not available to us: "
+    "the snow is synthetic, and the numbers beside ours were measured with Yade on a synthetic "
     "sample, by the same contact law."
 )
 QUICK_CAUTION = (
@@ -28,9 +28,9 @@ NOISE = (
     "standard error by the scatter between samples, widened by Student's t, as samples are few. "
     "Hardly means by less than a factor of 1.3."
 )
-HELP = """Judge what Hagenmuller, Chambon and Naaim (2015) say of snow in compression.
+HELP = """Judge the claims of Hagenmuller, Chambon and Naaim (2015) on snow in compression.
 
-Writes hagenmuller.html. The snow is synthetic. After an interruption the same command goes on.
+Writes hagenmuller.html. The snow is synthetic. After an interruption, the same command resumes.
 
 \b
 Example:

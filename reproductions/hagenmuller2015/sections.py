@@ -1,4 +1,4 @@
-"""The sections of the report: the paper's claims, Yade's numbers, and what matters."""
+"""The sections of the report: the paper's claims, Yade's numbers, and the sensitivity."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from reproductions.hagenmuller2015.printed import YADE
 from reproductions.hagenmuller2015.stages import GrainsComputation
 from reproductions.hagenmuller2015.studies import MAKERS
 from snowshed.analysis.grains.ratios import STRESSES, compare_variants
-from snowshed.analysis.grains.sensitivity import FIGURE, evaluate_sensitivity
+from snowshed.analysis.grains.sensitivity import FIGURE, evaluate_variants
 from snowshed.analysis.grains.variants import BASE
 from snowshed.base.formatting import NOTHING
 from snowshed.plot.html_page import Grid, Picture
@@ -30,7 +30,7 @@ COMPARED = (
 
 
 def paper(work: GrainsComputation) -> Content:
-    """Return the paper's claims, and what the samples are."""
+    """Return the paper's claims, and the samples."""
     samples = [("Samples", sample_grid(work.tests.tables))]
     return Content(tables=samples, claims=judge(PAPER, work.tests))
 
@@ -46,18 +46,18 @@ def engine(work: GrainsComputation) -> Content:
 
 
 def sensitivity(work: GrainsComputation) -> Content:
-    """Return what the strength depends on."""
+    """Return the sensitivity of the strength."""
     folder = work.folder.of_stage("sensitivity")
-    evaluate_sensitivity(work.comparisons["brittle"], work.folder.runs, folder)
+    evaluate_variants(work.comparisons["brittle"], work.folder.runs, folder)
     caption = "As of `snowshed grains sensitivity`; the numbers are in sensitivity/sensitivity.csv."
     return Content(pictures=[Picture.read(folder / FIGURE, "Sensitivity", caption, dpi=160)])
 
 
 def sample_grid(tables: Sequence[pd.DataFrame]) -> Grid:
-    """Return what the samples of each variant are."""
+    """Return the samples of each variant."""
     import pandas as pd
 
-    tests = pd.concat([one for one in tables if len(one)])
+    tests = pd.concat([table for table in tables if len(table)])
     rows = []
     for variant, own in tests.drop_duplicates(["variant", "sample"]).groupby("variant", sort=False):
         numbers = [_span(own[name]) for name in ("final_particles", "spheres", "density_kg_m3")]

@@ -1,4 +1,4 @@
-"""The synthetic snow that stands for the paper's tomography images, which are not at hand.
+"""The synthetic snow that replaces the paper's tomography images, which are not available to us.
 
 A Gaussian random field of 500 um wavelength on voxels of 50 um at 318 kg/m3, downscaled twice,
 makes some 90 grains of about 4200 spheres in 2.4 mm.
@@ -22,7 +22,7 @@ DENSITY, LIGHT, HEAVY = 318.0, 192.0, 427.0  # kg/m3
 #: Sphere packs of equal density: their density, diameter, and radius of the necks.
 PACK_DENSITY, PACK_DIAMETER, THIN, WIDE = 250.0, 4.5e-4, 0.3, 0.6
 MOST_FIELDS = 20  # that are tried
-#: A neck counts from this depth on: fewer grains than by default (0.75 voxels).
+#: Least depth of a neck, which gives fewer grains than the default (0.75 voxels).
 FEWER_GRAINS = SegmentationSettings(depth=1.25)
 
 
@@ -53,7 +53,7 @@ def field_snow(
 ) -> LabelledSample:
     """Return a cut Gaussian random field with its grains.
 
-    A field of which too little would be connected at this density is passed over for another.
+    A field with too little connected ice at this density is replaced by the next one.
     """
     image = _field(edge, seed, density)
     name = f"field-{density:.0f}-{seed}" + ("" if settings is None else "-fewer-grains")

@@ -5,7 +5,7 @@ hagenmuller.html     the report
 claims.csv           one row per claim: source, claim, rule, verdict, finding
 samples/             the labels of the synthetic snow
 runs/                the store of all loading tests
-sensitivity/         tests, table and figure of what matters in the brittle phase
+sensitivity/         tests, table and figure of the sensitivity in the brittle phase
 ==================== ========================================================================
 """
 
@@ -44,7 +44,7 @@ class GrainsComputation:
 
     @cached_property
     def tests(self) -> LoadingTests:
-        """The computed tests of each stage; to be asked for when everything is computed.
+        """The computed tests of each stage; read it when everything is computed.
 
         Raises
         ------

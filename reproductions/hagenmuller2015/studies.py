@@ -1,4 +1,4 @@
-"""The loading tests of the reproduction: a stage for each part of what the paper says."""
+"""The loading tests of the reproduction: a stage for each group of the paper's claims."""
 
 from __future__ import annotations
 
@@ -29,9 +29,10 @@ from snowshed.scene.builders.grains import grains_scene
 from snowshed.scene.loading import LoadingStage
 from snowshed.scene.scene import Scene
 
-#: 20 mm/s up to 30 %, with ice ten times as dense: inertia up to which stresses were seen to stay.
+#: 20 mm/s up to 30 %, with ice ten times as dense: the largest inertia that did not change
+#: stresses.
 STAGE = LoadingStage(kind="compress", speed=0.02, strain=0.3)
-#: What is said of the brittle phase alone needs a sixth of it.
+#: Claims about the brittle phase alone need a sixth of it.
 BRITTLE_STAGE = LoadingStage(kind="compress", speed=0.02, strain=0.05)
 #: Steps are three times the default: peaks of four samples stayed within 5 %, and energies balanced
 #: within 2e-4 of the work.
@@ -81,18 +82,18 @@ class Comparisons:
         return self.samples(lambda seed: field_snow(self.edge, seed, DENSITY))
 
     def samples(self, snow: Snow) -> list[LabelledSample]:
-        """Return as many samples as there are to be."""
+        """Return the samples of each snow."""
         return [snow(seed) for seed in range(1, self._count + 1)]
 
     def variant(self, name: str, varied: str, snow: Snow) -> Variant:
         """Return a variant that is another snow."""
-        coarse = [one.coarser(COARSER) for one in self.samples(snow)]
-        files = [one.write(self.folder) for one in coarse]
+        coarse = [sample.coarser(COARSER) for sample in self.samples(snow)]
+        files = [sample.write(self.folder) for sample in coarse]
         return Variant(name, varied, files, coarse[0].voxel_size)
 
 
 def dense(made: Comparisons) -> Comparison:
-    """Return what is compressed to 30 %: other settings, densities and necks."""
+    """Return the tests up to 30 %: other settings, densities and necks."""
     edge = made.edge
     base = made.variant(BASE, BASE, lambda seed: field_snow(edge, seed, DENSITY))
     settings = [
@@ -115,20 +116,20 @@ def dense(made: Comparisons) -> Comparison:
 
 
 def brittle(made: Comparisons) -> Comparison:
-    """Return what `snowshed grains sensitivity` varies, fewer grains, and the trap of inertia.
+    """Return the variants of `snowshed grains sensitivity`, fewer grains, and the trap of inertia.
 
     With spheres half as large, which take ten times as long.
     """
-    found = sensitivity_variants(
+    comparison = sensitivity_variants(
         made.base_snow(), made.folder, BRITTLE_STAGE, SETTINGS, coarser=COARSER, finer=True
     )
-    edge, base = made.edge, found.variants[0]
+    edge, base = made.edge, comparison.variants[0]
     fewer = made.variant(
         FEWER, "segmentation", lambda seed: field_snow(edge, seed, DENSITY, FEWER_GRAINS)
     )
     scaling = {"numerics.density_scaling": TOO_DENSE}
     trap = Variant(TRAP, "density of ice", base.samples, base.voxel_size, scaling)
-    return Comparison(found.scene, [*found.variants, fewer, trap], "hagenmuller-brittle")
+    return Comparison(comparison.scene, [*comparison.variants, fewer, trap], "hagenmuller-brittle")
 
 
 def elastic(made: Comparisons) -> Comparison:

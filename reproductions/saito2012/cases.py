@@ -1,9 +1,9 @@
 """The scenes: two slopes with an erodible layer, and a wooden slope with and without obstacles.
 
 The paper prints density, adhesive force, friction angle, viscosity, spacing and the thickness of
-the erodible layer. All shapes are ours, for its drawings are lost: tilts, lengths of slopes 1 and
-2, the amount of snow, stakes and board; so are the limits of the dilatant branch, of erosion and of
-deposition.
+the erodible layer. All shapes are ours, because its drawings are lost: tilts, lengths of slopes 1
+and 2, the amount of snow, stakes and board; so are the limits of the dilatant branch, of erosion
+and of deposition.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ OBSTACLES = (NONE, NARROW, WIDE, BOARD)
 
 @dataclass(frozen=True)
 class Resolution:
-    """How finely the cases are resolved.
+    """The resolution of the cases.
 
     Attributes
     ----------
@@ -105,7 +105,7 @@ class Path:
         return cls(corners)
 
     def along(self, positions: Floats) -> Floats:
-        """Return how far down the ground points lie, m; 0 where the level ground begins."""
+        """Return the distance of points along the ground, m; 0 where the level ground begins."""
         xs = [x for x, _ in self.corners]
         distances = [0.0]
         for (x, z), (next_x, next_z) in zip(self.corners[-2::-1], self.corners[:0:-1]):
@@ -171,15 +171,15 @@ class Case:
     Attributes
     ----------
     name
-        For people; files are named after it.
+        Name for people; files are named after it.
     path
         Its ground.
     scene
-        What is simulated.
+        Its scene.
     end, every
-        When it ends, and how often the snow is kept, s.
+        End of the case, and interval of the stored states, s.
     obstacle
-        Where its obstacle stands, m along the path, or where one would stand.
+        Position of its obstacle, m along the path, or of the missing obstacle.
     """
 
     name: str
@@ -196,7 +196,7 @@ class Case:
 
     @property
     def times(self) -> list[float]:
-        """When the snow is kept, s."""
+        """Times of the stored states, s."""
         return [self.every * k for k in range(round(self.end / self.every) + 1)]
 
 
@@ -295,8 +295,8 @@ def _scene(
     end: float,
 ) -> Scene:
     if dimension == 2:
-        obstacles = [replace(one, shape=_flat(one.shape)) for one in obstacles]
-        bodies = [replace(one, shape=_flat(one.shape)) for one in bodies]
+        obstacles = [replace(obstacle, shape=_flat(obstacle.shape)) for obstacle in obstacles]
+        bodies = [replace(body, shape=_flat(body.shape)) for body in bodies]
     events = Events(count=1, max_time=end + 1, between="carry")
     return Scene(
         title=title, dimension=dimension, method="mps", numerics=settings, obstacles=obstacles,
@@ -308,7 +308,7 @@ def _flat(shape: Optional[Shape]) -> Optional[Shape]:
     """Return the section of a shape by the plane y = 0."""
     if shape is None:
         return None
-    parts = shape.shapes and [one for part in shape.shapes if (one := _flat(part))]
+    parts = shape.shapes and [flat for part in shape.shapes if (flat := _flat(part))]
     return replace(
         shape, axis=None, center=_section(shape.center), size=_section(shape.size),
         normal=_section(shape.normal), translate=_section(shape.translate), shapes=parts,

@@ -1,4 +1,4 @@
-"""What the paper says, and the rules by which it is judged.
+"""The paper's claims, and the rules by which they are judged.
 
 A case is one simulation: nothing in it is random, so numbers have no noise. A claim is confirmed or
 contradicted where the number is clearly on one side of its bounds, and undecided between them.
@@ -20,7 +20,7 @@ from reproductions.common.hypothesis_tests import (
 from reproductions.saito2012.cases import BINGHAM, BOARD, BOARD_GAP, COMBINED, NARROW, NONE, WIDE
 from reproductions.saito2012.measures import REST, Course
 
-#: Shares of the snow: held back from the first on, hardly any below the second.
+#: Shares of the snow: above the first it is held back, below the second it hardly is.
 MUCH, HARDLY = 0.10, 0.03
 
 
@@ -46,7 +46,7 @@ class Courses:
         return self.of(f"slope {number}, {model}")
 
 
-def between(value: float, low: float, high: float, words: str) -> Finding:
+def between(value: float, low: float, high: float, text: str) -> Finding:
     """Return confirmed above `high`, contradicted below `low`, undecided between them.
 
     Examples
@@ -55,7 +55,7 @@ def between(value: float, low: float, high: float, words: str) -> Finding:
     ['contradicted', 'undecided', 'confirmed']
     """
     verdict = CONFIRMED if value > high else CONTRADICTED if value < low else UNDECIDED
-    return Finding(verdict, words)
+    return Finding(verdict, text)
 
 
 def reaches_the_foot(data: Courses) -> Finding:
@@ -63,12 +63,12 @@ def reaches_the_foot(data: Courses) -> Finding:
     course = data.wooden(NONE)
     fronts = ", ".join(f"{course.front(course.at(t)):.2f}" for t in (1, 2, 3, 4))
     share = course.passed(course.at(4))
-    words = f"front at {fronts} m after 1, 2, 3, 4 s; {100 * share:.0f} % below 0.3 m at 4 s"
-    return between(share, 0.5, 0.8, words)
+    text = f"front at {fronts} m after 1, 2, 3, 4 s; {100 * share:.0f} % below 0.3 m at 4 s"
+    return between(share, 0.5, 0.8, text)
 
 
 def held_share(obstacle: str, data: Courses) -> tuple[float, str]:
-    """Return which share of the snow lies above an obstacle that would not without it, in words."""
+    """Return the share of the snow that only the obstacle holds above it, with a text."""
     course, without = data.wooden(obstacle), data.wooden(NONE)
     held, free = course.held(course.at(4)), without.held(without.at(4))
     return held - free, f"{100 * held:.1f} % lie above it at 4 s, {100 * free:.1f} % without it"
@@ -76,22 +76,22 @@ def held_share(obstacle: str, data: Courses) -> tuple[float, str]:
 
 def holds(obstacle: str, data: Courses) -> Finding:
     """Test whether an obstacle holds snow back that would pass without it."""
-    share, words = held_share(obstacle, data)
-    return between(share, HARDLY, MUCH, words)
+    share, text = held_share(obstacle, data)
+    return between(share, HARDLY, MUCH, text)
 
 
 def leaks(obstacle: str, data: Courses) -> Finding:
     """Test whether snow passes an obstacle more and more, but not all at once."""
     course = data.wooden(obstacle)
     early, late = course.passed(course.at(3)), course.passed(course.at(4))
-    words = f"{100 * early:.1f} % have passed at 3 s, {100 * late:.1f} % at 4 s"
-    return between(late - early, 0.001, 0.005, words)
+    text = f"{100 * early:.1f} % have passed at 3 s, {100 * late:.1f} % at 4 s"
+    return between(late - early, 0.001, 0.005, text)
 
 
 def keeps_none(obstacle: str, data: Courses) -> Finding:
     """Test whether an obstacle holds back hardly any snow."""
-    share, words = held_share(obstacle, data)
-    return between(-share, -MUCH, -HARDLY, words)
+    share, text = held_share(obstacle, data)
+    return between(-share, -MUCH, -HARDLY, text)
 
 
 def leaks_at_edges(data: Courses) -> Finding:
@@ -111,17 +111,17 @@ def stops(data: Courses) -> Finding:
     """Test whether the combined model's snow rests at the end."""
     findings = [_moves(data.slope(number, COMBINED)) for number in (1, 2)]
     opposite = {CONFIRMED: CONTRADICTED, CONTRADICTED: CONFIRMED, UNDECIDED: UNDECIDED}
-    return all_of([Finding(opposite[one.verdict], one.sentence) for one in findings])
+    return all_of([Finding(opposite[finding.verdict], finding.sentence) for finding in findings])
 
 
 def _moves(course: Course) -> Finding:
     end = course.snow[-1]
     speed, front = course.speed(end), course.front(end) - course.front(course.snow[-6])
-    words = (
+    text = (
         f"{course.case.name}: {speed:.3g} m/s on average after {end.time:.0f} s, its front "
         f"{front:+.2f} m in the last five"
     )
-    return between(speed, REST, 5 * REST, words)
+    return between(speed, REST, 5 * REST, text)
 
 
 def spreads_wider(data: Courses) -> Finding:
@@ -132,13 +132,13 @@ def spreads_wider(data: Courses) -> Finding:
         widths.append(course.width(course.snow[-1]))
     if widths[0] == 0:
         raise LookupError("slope 1 in space: here it is a section")
-    words = f"{widths[0]:.1f} m, combined model {widths[1]:.1f} m"
-    return between(widths[0] / widths[1], 1.0, 1.05, words)
+    text = f"{widths[0]:.1f} m, combined model {widths[1]:.1f} m"
+    return between(widths[0] / widths[1], 1.0, 1.05, text)
 
 
 def lost(what: str) -> Finding:
     """Return an undecided finding: the reference data are unavailable."""
-    return Finding(UNDECIDED, f"{what} are not at hand")
+    return Finding(UNDECIDED, f"{what} are not available")
 
 
 WOODEN_CLAIMS: list[Claim[Courses]] = [

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from reproductions.saito2012.measures import MOVING, Course
-from snowshed.plot.figure_style import blank
+from snowshed.plot.figure_style import blank_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -19,7 +19,7 @@ DEPOSITED = "0.6"
 
 def side_views(courses: Sequence[Course], times: Sequence[float]) -> Figure:
     """Return the snow from the side, a row for each time, a column for each case."""
-    return _views(courses, times, lambda one, snow: snow[:, [0, 2]], _ground, "x (m)", "z (m)")
+    return _views(courses, times, lambda course, snow: snow[:, [0, 2]], _ground, "x (m)", "z (m)")
 
 
 def top_views(courses: Sequence[Course], times: Sequence[float]) -> Figure:
@@ -39,12 +39,14 @@ def _views(
     across: str,
     up: str,
 ) -> Figure:
-    figure = blank(3.4 * len(courses), 0.6 + 1.5 * len(times))
-    one_path = len({tuple(one.case.path.corners) for one in courses}) == 1
+    figure = blank_figure(3.4 * len(courses), 0.6 + 1.5 * len(times))
+    one_path = len({tuple(course.case.path.corners) for course in courses}) == 1
     share: Literal["all", "col"] = "all" if one_path else "col"
     axes = figure.subplots(len(times), len(courses), sharex=share, sharey=share, squeeze=False)
     fastest = max(
-        float(np.linalg.norm(one.at(t).velocities, axis=1).max()) for one in courses for t in times
+        float(np.linalg.norm(course.at(t).velocities, axis=1).max())
+        for course in courses
+        for t in times
     )
     shown = None
     for column, course in zip(axes.T, courses):
@@ -70,7 +72,7 @@ def _views(
 
 def fronts(courses: Sequence[Course]) -> Figure:
     """Return the position of the front over time."""
-    figure = blank(5.5, 3.6)
+    figure = blank_figure(5.5, 3.6)
     axis = figure.subplots()
     for course in courses:
         axis.plot(course.times, course.fronts(), label=course.case.name)
@@ -91,4 +93,4 @@ def _obstacle_line(axis: Axes, course: Course) -> None:
 
 
 def _end(course: Course) -> float:
-    return max(1.0, max(float(one.positions[:, 0].max()) for one in course.snow))
+    return max(1.0, max(float(state.positions[:, 0].max()) for state in course.snow))

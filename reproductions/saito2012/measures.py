@@ -1,4 +1,4 @@
-"""What is measured of the snow: its front, its deposit, and the share that passes an obstacle."""
+"""Measures of the snow: its front, its deposit, and the share that passes an obstacle."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from reproductions.saito2012.runs import Snow
 from snowshed.base.arrays import Floats
 
 MOVING = 0
-#: The front is where so much of the moving snow has passed; single grains run ahead of it.
+#: Share of the moving snow behind the front; single grains run ahead of it.
 FRONT_QUANTILE = 0.99
-#: Snow so far above an obstacle, m, and slower than this, m/s, is held by it.
+#: Largest distance above an obstacle, m, and largest speed, m/s, of snow that it holds.
 HELD_LENGTH, HELD_SPEED = 0.8, 0.3
-#: Snow has come to rest if all of it moves so slowly on average, m/s.
+#: Largest mean speed of snow at rest, m/s.
 REST = 0.02
 
 
@@ -27,9 +27,9 @@ class Course:
     Attributes
     ----------
     case, snow
-        What it is of; the snow at each time.
+        The case; the snow at each time.
     released
-        Which particles are of the avalanche, not of the erodible layer.
+        Mask of the particles of the avalanche, without the erodible layer.
     """
 
     case: Case
@@ -38,23 +38,23 @@ class Course:
 
     @classmethod
     def of(cls, case: Case, snow: Sequence[Snow]) -> Course:
-        """Return the course of what is kept of a case; it must hold the first time."""
+        """Return the course of the stored states of a case, which must include the first."""
         return cls(case, snow, snow[0].kinds == MOVING)
 
     @property
     def times(self) -> Floats:
         """Times in s."""
-        return np.array([one.time for one in self.snow])
+        return np.array([state.time for state in self.snow])
 
     def at(self, time: float) -> Snow:
-        """Return the snow at a time; raises LookupError if it is not kept."""
-        for one in self.snow:
-            if abs(one.time - time) < 0.5 * self.case.every:
-                return one
+        """Return the snow at a time; raises LookupError if it is not stored."""
+        for state in self.snow:
+            if abs(state.time - time) < 0.5 * self.case.every:
+                return state
         raise LookupError(f"{self.case.name} at {time:g} s")
 
     def distances(self, snow: Snow) -> Floats:
-        """Return how far down its path the released snow is, m."""
+        """Return the distances of the released snow along its path, m."""
         return self.case.path.along(snow.positions[self.released].astype(float))
 
     def front(self, snow: Snow) -> float:
@@ -63,7 +63,7 @@ class Course:
 
     def fronts(self) -> Floats:
         """Return the position of the front at all times, m."""
-        return np.array([self.front(one) for one in self.snow])
+        return np.array([self.front(state) for state in self.snow])
 
     def speed(self, snow: Snow) -> float:
         """Return the mean speed of the released snow, m/s."""
@@ -88,7 +88,7 @@ class Course:
         return float((self.distances(snow) > self.case.obstacle).mean())
 
     def passed_at_edges(self, first: Snow, second: Snow, half_width: float) -> float:
-        """Return of what passes the obstacle from one time to another, the share at its edges."""
+        """Return the share at the edges of the snow that passes the obstacle between two times."""
         assert self.case.obstacle is not None
         before, after = self.distances(first), self.distances(second)
         through = (before <= self.case.obstacle) & (after > self.case.obstacle)

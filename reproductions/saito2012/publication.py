@@ -12,9 +12,9 @@ from reproductions.saito2012.stages import AvalancheComputation
 
 ABOUT = (
     "Saito, Kato, Otsuki, Kimura, Shimizu and Isenko, <em>Refinement of MPS method for practical "
-    "application to snow avalanches</em> (Annals of Glaciology 53, 2012): what it says of its "
-    "simulations, tested with snowshed. Its equations, drawings and photographs are lost in the "
-    "copy at hand. Density, adhesive force, friction angle, viscosity, spacing and the thickness "
+    "application to snow avalanches</em> (Annals of Glaciology 53, 2012): its claims on its "
+    "simulations, tested with snowshed. The equations, drawings and photographs are missing in our "
+    "copy. Density, adhesive force, friction angle, viscosity, spacing and the thickness "
     "of the erodible layer are printed; the shapes of slopes and obstacles, the amount of snow, "
     "and the limits of the dilatant branch, of erosion and of deposition are ours."
 )
@@ -27,9 +27,9 @@ NOISE = (
     "Here each case is one simulation in which nothing is random: numbers have no noise, and a "
     "claim is left open where its number lies between two bounds."
 )
-HELP = """Judge what Saito and others (2012) say of avalanches as a fluid of particles.
+HELP = """Judge the claims of Saito and others (2012) on avalanches as a fluid of particles.
 
-Writes saito.html. After an interruption the same command goes on.
+Writes saito.html. After an interruption, the same command resumes.
 
 \b
 Example:

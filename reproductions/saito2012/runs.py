@@ -1,6 +1,6 @@
-"""Computing a case: what is kept of the snow, and where.
+"""Computing a case, and storing its snow.
 
-A case has a folder with one file for each time, and a checkpoint from which it goes on.
+A case has a folder with a file for each time, and a checkpoint from which it resumes.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ from snowshed.running.simulation import Simulation
 from snowshed.scene.scene import SceneLike
 
 CHECKPOINT, FAILURE = "checkpoint.bin", "failed.txt"
-#: Particle steps a second, and the usual speed of snow over that of a fall, by which times are
-#: guessed.
+#: Particle steps per second, and the usual speed of snow over that of a fall, for estimates of
+#: times.
 SPEED, USUAL = 1e5, 0.3
 TIMES = 64  # parts of the time to the next kept one, between which progress is told
 
@@ -44,7 +44,7 @@ class CaseStage:
     Parameters
     ----------
     case, folder
-        What is computed, and the folder of all cases.
+        The case, and the folder of all cases.
     """
 
     def __init__(self, case: Case, folder: Path) -> None:
@@ -53,24 +53,24 @@ class CaseStage:
 
     @property
     def name(self) -> str:
-        """The name by which ``--stage`` asks for it."""
+        """The name for ``--stage``."""
         return self.case.file
 
     def state(self) -> State:
-        """Return how far it is."""
+        """Return its progress."""
         reason = self._reason()
-        done, count = len(self._kept()), len(self.case.times)
+        done, count = len(self._stored_files()), len(self.case.times)
         return State(done, count - done if reason else 0, count, "times", reason)
 
     def failure(self) -> str:
-        """Return why it failed, or nothing."""
+        """Return the reason of its failure; empty if it did not fail."""
         reason = self._reason()
         return f"{self.case.name}: {reason}" if reason else ""
 
     def expected_s(self, jobs: Optional[int]) -> float:
-        """Return about how long what is left takes, s."""
+        """Return the estimated remaining time, s."""
         del jobs  # a case is one run
-        left = len(self.case.times) - len(self._kept())
+        left = len(self.case.times) - len(self._stored_files())
         if self.failure() or not left:
             return 0.0
         simulation = self._simulation(0)
@@ -80,9 +80,9 @@ class CaseStage:
         return steps * simulation.particle_count / SPEED
 
     def snow(self) -> list[Snow]:
-        """Return the snow at all times that are kept."""
+        """Return the snow at all stored times."""
         snow = []
-        for file in self._kept():
+        for file in self._stored_files():
             with np.load(file, allow_pickle=False) as data:
                 snow.append(
                     Snow(float(data["time"]), data["positions"], data["velocities"], data["kinds"])
@@ -90,7 +90,7 @@ class CaseStage:
         return snow
 
     def compute(self, jobs: Optional[int], report: StageReporter) -> None:
-        """Compute what is left; a case that fails says why in its folder."""
+        """Compute the rest; a case that fails records the reason in its folder."""
         del jobs
         state = self.state()
         if state.finished:
@@ -108,8 +108,8 @@ class CaseStage:
             start = simulation.time
             for part in range(1, TIMES + 1):
                 simulation.run(until=start + (times[number] - start) * part / TIMES)
-                words = f"{self.case.name}: {simulation.time:.2f} of {times[-1]:g} s"
-                report(min(1.0, simulation.time / times[-1]), words)
+                text = f"{self.case.name}: {simulation.time:.2f} of {times[-1]:g} s"
+                report(min(1.0, simulation.time / times[-1]), text)
             self._keep(simulation, number)
 
     def _simulation(self, done: int) -> Simulation:
@@ -139,5 +139,5 @@ class CaseStage:
         file = self.folder / FAILURE
         return file.read_text(encoding="utf-8").strip() if file.is_file() else ""
 
-    def _kept(self) -> list[Path]:
+    def _stored_files(self) -> list[Path]:
         return sorted(self.folder.glob("[0-9][0-9][0-9].npz"))

@@ -55,10 +55,10 @@ def _pictures(courses: Sequence[Course], times: Sequence[float], name: str) -> l
         ),
         Picture.drawn(
             figures.fronts(courses), f"{name}-fronts", "Fronts",
-            "The distance along the ground that 99 % of the snow have not passed; 0 at the foot.",
+            "Distance along the ground that 99 % of the snow have not passed; 0 at the foot.",
         ),
     ]  # fmt: skip
-    if all(one.width(one.snow[-1]) > 0 for one in courses):
+    if all(course.width(course.snow[-1]) > 0 for course in courses):
         plan = Picture.drawn(
             figures.top_views(courses, times), f"{name}-plan", "From above",
             "Over the distance along the ground; the line is where the obstacle stands.",

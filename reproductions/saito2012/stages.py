@@ -24,7 +24,7 @@ class AvalancheComputation:
     Parameters
     ----------
     folder, resolution
-        The folder, and how finely the cases are resolved.
+        The folder, and the resolution of the cases.
     """
 
     def __init__(self, folder: Path, resolution: Resolution) -> None:
@@ -32,7 +32,7 @@ class AvalancheComputation:
 
     @cached_property
     def courses(self) -> Courses:
-        """The cases that are complete; to be asked for when everything is computed."""
+        """The complete cases; read it when everything is computed."""
         return Courses(
             {
                 stage.case.name: Course.of(stage.case, stage.snow())

@@ -64,7 +64,7 @@ def test_a_sample_that_cannot_be_drawn_is_refused_before_anything_is_written(tmp
 
 def test_the_page_of_a_slide_needs_no_other_file_and_says_what_to_know(tmp_path, capsys):
     assert snowshed("slide", "--example", "--max-time", 1.0, "-o", tmp_path / "out") == 0
-    said = "had not come to rest at the time limit"
+    said = "was still moving at the time limit"
     assert said in capsys.readouterr().out
     assert said in json.loads((tmp_path / "out/slide.json").read_text())["notes"][-1]
     html = (tmp_path / "out/slide.html").read_text()

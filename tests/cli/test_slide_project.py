@@ -139,7 +139,8 @@ def test_notes_of_readers_are_quiet_where_asked(tmp_path, capsys):
     assert slide(project, tmp_path / "out", "-q") == 0
     assert not capsys.readouterr().err
     assert slide(project, tmp_path / "again") == 0
-    assert "note: " in capsys.readouterr().err
+    printed = capsys.readouterr()
+    assert "note: " in printed.out + printed.err
 
 
 @pytest.mark.usefixtures("undrawn")

@@ -36,12 +36,28 @@ def test_a_note_is_on_the_terminal_in_the_json_on_the_page_and_in_the_scene(tmp_
     write_geotiff(tmp_path / "dem.tif", STEEP / 0.3048, change=in_unit("ft"), **FORM)
     assert slide(tmp_path) == 0
     note = "dem.tif: its values were turned into metres; one unit is 0.3048 m"
-    assert f"note: {note}" in capsys.readouterr().err
+    printed = capsys.readouterr()
+    assert printed.out.count(note) == 1 and note not in printed.err
     assert note in json.loads((tmp_path / "out/slide.json").read_text())["notes"]
     page = (tmp_path / "out/slide.html").read_text()
     assert page.count(note) == 1
     assert page.index("Of the files:") < page.index(note)
     assert json.loads((tmp_path / "out/scene.json").read_text())["terrain"]["notes"] == note
+
+
+def test_notes_are_told_where_no_summary_has_them(tmp_path, capsys, monkeypatch):
+    write_geotiff(tmp_path / "dem.tif", STEEP / 0.3048, change=in_unit("ft"), **FORM)
+    note = "dem.tif: its values were turned into metres; one unit is 0.3048 m"
+    assert slide(tmp_path, "--dry-run") == 0
+    assert capsys.readouterr().err.count(note) == 1
+
+    def full(*_):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("snowshed.methods.slide.run.SlideRun.finish", full)
+    assert slide(tmp_path) == 3
+    printed = capsys.readouterr()
+    assert printed.err.count(note) == 1 and note not in printed.out
 
 
 def test_the_same_mass_in_metres_feet_decimetres_and_another_band(tmp_path):

@@ -12,7 +12,7 @@ from snowshed.cli.commands.structure import STRUCTURES
 from snowshed.cli.main import main
 from snowshed.io.raster.output import write_raster
 from snowshed.io.raster.raster import Raster
-from snowshed.scene.builders import gable_roof, on_terrain, single_panel, tracker
+from snowshed.scene import gable_roof, on_terrain, single_panel, tracker
 
 TETRAHEDRON = "v 0 0 1\nv 2 0 1\nv 0 2 1\nv 0 0 2\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
 

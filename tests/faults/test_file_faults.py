@@ -17,7 +17,7 @@ from faults.forks import Forks
 
 from snowshed.analysis.tomography.example import example_grains
 from snowshed.io.atomic import LEFTOVER
-from snowshed.scene.builders import example_slide
+from snowshed.scene import example_slide
 from snowshed.study.table import read_table
 
 SCRIPTS = Path(sysconfig.get_path("scripts"))

@@ -6,7 +6,7 @@ import sys
 import pytest
 
 from snowshed import InputError
-from snowshed.analysis.regression import load_model
+from snowshed.analysis import load_model
 from snowshed.io.film import Film
 from snowshed.io.vtk.vtp import read_particles
 from snowshed.study import Study

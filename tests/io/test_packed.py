@@ -13,10 +13,10 @@ import pytest
 
 from snowshed import InputError
 from snowshed.base.limits import LINE, MB, MEMBERS, TEXT
+from snowshed.io import read_station
 from snowshed.io.csv_table import read_csv, read_text_table
 from snowshed.io.input_file import read_input
 from snowshed.io.packed import unpacked
-from snowshed.io.weather import read_station
 
 TABLE = b"date,snowfall_m,temperature_c\n2024-01-01,0.1,-3\n"
 

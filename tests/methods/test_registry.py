@@ -19,7 +19,7 @@ from snowshed.methods.registry import FOLDERS, METHODS
 from snowshed.methods.slide.maps import slide_maps
 from snowshed.plot.stack_figures import stack_figure
 from snowshed.running.method_run import MethodRun
-from snowshed.scene.builders import example_slide
+from snowshed.scene import example_slide
 from snowshed.scene.builders.grains import grains_scene
 from snowshed.scene.loading import LoadingStage
 
@@ -29,8 +29,6 @@ PRESSED = LoadingStage(kind="compress", strain=2e-3, speed=0.05)
 
 #: Modules and folders that name a method, and why; each module names one, unless it names all.
 NAME_METHODS = {
-    "__init__.py": "exports the settings of all methods",
-    "scene/__init__.py": "exports the settings of all methods",
     "methods/registry.py": "the registry",
     "methods/summary.py": "the number of grains was a figure called `grains`",
     "cli/main.py": "commands have names, and two are called as their method is",
@@ -44,7 +42,7 @@ NAME_METHODS = {
     "results/avaframe.py": "writes the files of another program for slides",
     "analysis/": "an analysis may ask about the results of one method",
 }
-NAME_ALL = {"__init__.py", "scene/__init__.py", "methods/registry.py", "cli/main.py"}
+NAME_ALL = {"methods/registry.py", "cli/main.py"}
 #: Beneath folders that may name methods, what serves all of them.
 SERVE_ALL = {"cli/run_scene.py", "cli/run_output.py"}
 
@@ -174,7 +172,7 @@ def test_functions_of_a_method_take_the_simulation_that_users_have(tmp_path):
 
 
 def test_snow_that_cannot_age_is_refused_before_anything_is_written(tmp_path):
-    ageing = imported("snowshed.running.ageing:Ageing")(settling="vionnet-2012")
+    ageing = imported("snowshed.running:Ageing")(settling="vionnet-2012")
     for name in set(METHODS) - {"mpm"}:
         assert not METHODS[name].ages
     with pytest.raises(InputError, match='the method "mps" does not age'):

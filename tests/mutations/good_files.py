@@ -184,7 +184,7 @@ def packed(folder: Path) -> Path:
 
 
 def model(folder: Path) -> Path:
-    from snowshed.analysis.regression import save_model
+    from snowshed.analysis import save_model
     from snowshed.analysis.regression.ensemble import Ensemble
     from snowshed.analysis.regression.model_file import Member, StackModel
     from snowshed.analysis.regression.scaling import Scaling

@@ -121,7 +121,7 @@ def _as_record(file: Path) -> str:
 
 
 def _as_lua(file: Path) -> None:
-    from snowshed.scene.lua import load_lua
+    from snowshed.scene import load_lua
 
     load_lua(file)
 
@@ -152,7 +152,7 @@ def _as_study(file: Path) -> None:
 
 
 def _as_model(file: Path) -> Any:
-    from snowshed.analysis.regression import load_model
+    from snowshed.analysis import load_model
 
     model = load_model(file)
     return _digest([model.title, model.measure, model.inputs.tobytes(), repr(model.members)])

@@ -17,7 +17,7 @@ from snowshed import (
     read_events,
 )
 from snowshed.plot.caption import scene_caption
-from snowshed.plot.figure_style import save
+from snowshed.plot.figure_style import save_figure
 from snowshed.plot.stack_figures import growth_figure, stack_figure
 
 SCENE = Scene.preset("lab-50").set("dimension", 2).resolve().data
@@ -66,7 +66,7 @@ def test_stack_picture_shows_panel_and_stack_to_scale(tmp_path, panel, tilt):
     ones = np.ones(len(pile))
     stack = measure_stack(pile, ones, ones, dimension=2, dx=0.05)
     figure = stack_figure(Snow(pile, tilt, panel), stack, SCENE)
-    save(figure, tmp_path / "stack.png")
+    save_figure(figure, tmp_path / "stack.png")
     overview, enlarged = figure.axes
     assert overview.get_aspect() == enlarged.get_aspect() == 1
     low, high = overview.get_xlim()
@@ -83,7 +83,7 @@ def test_stack_picture_shows_panel_and_stack_to_scale(tmp_path, panel, tilt):
 
 
 def test_pictures_without_snow(tmp_path):
-    save(stack_figure(Snow(np.zeros((0, 3))), StackMeasure(), SCENE), tmp_path / "stack.png")
+    save_figure(stack_figure(Snow(np.zeros((0, 3))), StackMeasure(), SCENE), tmp_path / "stack.png")
     assert (tmp_path / "stack.png").exists()
 
 

@@ -199,7 +199,7 @@ def test_no_film_no_page(tmp_path, finished):
     with pytest.raises(InputError, match="no results"):
         write_view(tmp_path)
     (tmp_path / "scene.json").write_bytes((finished / "scene.json").read_bytes())
-    with pytest.raises(InputError, match=r"film\.bin: not there"):
+    with pytest.raises(InputError, match=r"film\.bin: missing"):
         write_view(tmp_path)
     (tmp_path / "film.bin").write_bytes(film_files.header())
     with pytest.raises(InputError, match="no particles yet"):

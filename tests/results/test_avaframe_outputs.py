@@ -17,7 +17,7 @@ from slide_files import box, plane, write_polygons, write_project
 
 from snowshed.cli.main import main
 from snowshed.io.raster.raster import read_raster
-from snowshed.running.slide_states import particles_at
+from snowshed.running.slide_history import particles_at
 
 pytest.importorskip("pyogrio")
 pytest.importorskip("shapely")

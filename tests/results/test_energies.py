@@ -70,5 +70,5 @@ def test_the_picture_has_units_and_a_legend(finished):
 
 def test_a_run_without_energies_says_what_keeps_them(tmp_path):
     run_events(tiny_scene(**{"events.count": 1, "events.max_time": 0.1}), tmp_path, pictures=False)
-    with pytest.raises(InputError, match=r"energy_history\.csv: not there; a run with output\.en"):
+    with pytest.raises(InputError, match=r"energy_history\.csv: missing; a run with output\.en"):
         draw_energies(tmp_path)

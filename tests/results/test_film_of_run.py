@@ -11,7 +11,7 @@ from snowshed import InputError, Results, run_events
 from snowshed.analysis.tomography.example import example_grains
 from snowshed.io.film import Film
 from snowshed.running.run import run
-from snowshed.scene.builders import example_slide
+from snowshed.scene import example_slide
 
 HALF_MILLIMETRE = 5e-4
 

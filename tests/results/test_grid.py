@@ -108,7 +108,7 @@ def test_the_grid_after_an_event_and_its_file(finished, tmp_path, capsys):
 
 
 def test_without_a_grid_it_says_so(tmp_path, finished, capsys):
-    with pytest.raises(InputError, match="there are none"):
+    with pytest.raises(InputError, match="no particles"):
         particles_to_grid(np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0), dx=0.1, dimension=2)
     far = np.array([[0.0, 0, 0], [1e6, 0, 1e6]])
     with pytest.raises(InputError, match="do not fit into memory"):

@@ -31,7 +31,7 @@ def test_python_goes_on_with_it(folder):
     table = resume(folder)
     assert list(table.event) == [1, 2]
     assert (table.iloc[:1][list(first)] == first).all(axis=None)
-    # Each row names the reading of A.4.2 by which it was measured; the old one's has no name.
+    # Each row names the trimming rule of A.4.2 by which it was measured; the old one's has no name.
     assert table["trimming"].fillna("").tolist() == ["", "outermost_first"]
     assert table.damping_rate_per_s.isna().tolist() == [True, False]  # nobody wrote it then
     facts = json.loads((folder / "run.json").read_text())
@@ -47,6 +47,6 @@ def test_the_executable_goes_on_with_it(folder):
 
 def test_python_says_what_to_do_where_nothing_tells_of_an_event(folder):
     (folder / "events.csv").unlink()
-    with pytest.raises(InputError, match=r"how event 1 went.*go on with: snowshed-run"):
+    with pytest.raises(InputError, match=r"no record of event 1.*resume it with snowshed-run"):
         resume(folder)
     assert json.loads((folder / "run.json").read_text())["status"] == "interrupted"

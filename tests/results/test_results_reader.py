@@ -89,7 +89,7 @@ def test_damage_names_the_file(damaged, name, read):
 @pytest.mark.parametrize("name", ["outline.csv", "energy.csv", "run.json"])
 def test_a_missing_file_says_what_writes_it(damaged, name):
     (damaged.folder / name).unlink()
-    with pytest.raises(InputError, match=rf"{name}: not there; a run "):
+    with pytest.raises(InputError, match=rf"{name}: missing; a run "):
         getattr(damaged, name.partition(".")[0])
 
 

@@ -24,7 +24,7 @@ from snowshed.results.film import film_dataset
 from snowshed.results.video import write_video
 from snowshed.results.view import write_view
 from snowshed.running.run import run
-from snowshed.scene.builders import example_slide
+from snowshed.scene import example_slide
 from snowshed.scene.builders.grains import grains_scene
 from snowshed.scene.loading import LoadingStage
 

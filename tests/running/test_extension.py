@@ -11,8 +11,7 @@ from interrupted_runs import compare_tables, interrupt_at
 
 from snowshed import InputError, Interrupted, Results, Simulation, Snow, _core, run_events
 from snowshed.cli.main import main
-from snowshed.running import sequence
-from snowshed.running.ageing import Ageing, Interval
+from snowshed.running import Ageing, Interval, sequence
 from snowshed.running.extension import extend_run, extended_scene
 from snowshed.scene.scene import resolve_scene
 
@@ -96,7 +95,7 @@ def test_an_aged_stack_goes_on_ageing_as_before(tmp_path):
 def test_what_cannot_be_extended_is_refused_and_nothing_is_written(finished, tmp_path, monkeypatch):
     monkeypatch.setattr(sequence, "REPORT_INTERVAL", 0.0)
     new = tmp_path / "new"
-    with pytest.raises(InputError, match="no results that go on"):
+    with pytest.raises(InputError, match="not a run that can be extended"):
         extend_run(tmp_path, new, 1)
     with pytest.raises(InputError, match="events: 0; a whole number from 1"):
         extend_run(finished, new, 0)
@@ -108,7 +107,7 @@ def test_what_cannot_be_extended_is_refused_and_nothing_is_written(finished, tmp
         extend_run(finished, finished, 1)
     with pytest.raises(Interrupted):
         run_events(tiny_scene(), tmp_path / "a", progress=interrupt_at(1, 0.05), pictures=False)
-    with pytest.raises(InputError, match=r"not finished \(interrupted\); first go on with"):
+    with pytest.raises(InputError, match=r"not finished \(interrupted\); first resume it with"):
         extend_run(tmp_path / "a", new, 1)
     assert not new.exists() and sorted(tmp_path.iterdir()) == [tmp_path / "a"]
 

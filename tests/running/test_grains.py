@@ -16,7 +16,7 @@ from snowshed.io.vtk.vtp import read_particles
 from snowshed.methods.grains.curve import LoadingCurve, carried_stress
 from snowshed.running.run import run
 from snowshed.running.sequence import open_sequence
-from snowshed.scene.builders import grains_scene
+from snowshed.scene import grains_scene
 
 
 @pytest.fixture

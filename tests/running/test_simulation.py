@@ -94,7 +94,7 @@ def test_fields_say_their_type_and_shape(dimension, precision):
         assert field.dtype == whole.get(name, own if field.stored else np.float64), name
         assert field.unit and field.description
     assert ("velocity_y" in simulation.fields) == (dimension == 3)
-    with pytest.raises(KeyError, match="no field 'masss'; there are position, "):
+    with pytest.raises(KeyError, match="no field 'masss'; allowed: position, "):
         simulation.fields["masss"]
 
 

@@ -15,9 +15,8 @@ from snowshed.base.interrupt import Interrupted
 from snowshed.io.raster.raster import Raster, read_raster, write_ascii_grid
 from snowshed.plot import slide_page
 from snowshed.running.run import run
-from snowshed.running.slide_states import particles_at
-from snowshed.scene import Area, Events, Scene, Terrain
-from snowshed.scene.builders import example_slide
+from snowshed.running.slide_history import particles_at
+from snowshed.scene import Area, Events, Scene, Terrain, example_slide
 
 OUTLINE = [(20.3, 18.3), (44.3, 18.3), (44.3, 42.3), (20.3, 42.3)]
 
@@ -130,7 +129,7 @@ def test_snapshots_hold_thickness_speed_and_bonds_as_lines(slope, tmp_path):
     from xml.etree import ElementTree
 
     from snowshed.io.vtk.vtp import APPENDED, read_particles
-    from snowshed.running.slide_states import slide_states
+    from snowshed.running.slide_history import slide_states
 
     slope.update({"numerics.max_strain": 0.02, "output.snapshot_interval": 0.5})
     run(slope, tmp_path / "out", pictures=False)

@@ -9,7 +9,7 @@ from processes import snowshed_run
 
 from snowshed import InputError, Simulation, run_events
 from snowshed.running.run import run
-from snowshed.scene.builders import example_slide
+from snowshed.scene import example_slide
 from snowshed.scene.builders.grains import grains_scene
 from snowshed.scene.loading import LoadingStage
 

@@ -6,7 +6,7 @@ import typing
 
 import pytest
 from paths import ROOT
-from tools.components import components, written
+from tools.components import components, exporting, written
 
 from snowshed.base.field_type import alternatives_of
 from snowshed.methods.registry import METHODS, NAME_KEY
@@ -54,6 +54,15 @@ def test_fields_are_added_removed_and_explained_and_all_else_stays():
     assert "    By hand.\n" in new
     assert new.endswith(SOURCE[SOURCE.index("    lower_edge_height") :])
     assert written(new, {"Panel": (panel, NODES[panel])}) == new
+
+
+def test_the_package_exports_the_settings_of_the_methods_in_the_registry_alone():
+    stub = "from ._core import X as X\nfrom .methods.old.settings import O as O\nfrom .pv import P"
+    first, *settings, last = exporting(stub).split("\n")
+    assert [line.rpartition(" ")[2] for line in settings] == sorted(
+        method.settings.__name__ for method in METHODS.values()
+    )
+    assert [first, last] == ["from ._core import X as X", "from .pv import P"]
 
 
 @pytest.mark.parametrize("record", NODES, ids=lambda record: record.__name__)

@@ -12,7 +12,7 @@ from snowshed.season import SeasonSettings, Weather, accumulate, balance
 from snowshed.season.accumulation import pauses
 from snowshed.season.column import SnowColumn
 from snowshed.season.stack_settling import SettlingStack
-from snowshed.snow.relations import SETTLING_LAWS
+from snowshed.snow import SETTLING_LAWS
 
 DAY = 86400.0
 

@@ -8,7 +8,7 @@ import pytest
 from station_files import days, elements, ghcn, smet, snows, warmth
 
 from snowshed import InputError
-from snowshed.io.weather import Observation, Station
+from snowshed.io import Observation, Station
 from snowshed.season.daily import days_of_station
 from snowshed.season.source import Source
 from snowshed.season.weather import read_record

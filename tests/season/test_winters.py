@@ -6,7 +6,7 @@ import pytest
 from station_files import days, elements, ghcn, warmth
 
 from snowshed import InputError, SnowshedNote
-from snowshed.analysis.clearance import winters_of
+from snowshed.analysis import winters_of
 from snowshed.cli.main import main
 from snowshed.cli.weather_options import Share
 from snowshed.season import SeasonSettings, accumulate, read_season

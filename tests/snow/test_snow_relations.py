@@ -5,12 +5,7 @@ import math
 import pytest
 
 from snowshed import InputError, Snow
-from snowshed.snow.relations import (
-    NEW_SNOW_DENSITY,
-    TENSILE_STRENGTH,
-    YOUNGS_MODULUS,
-    snow_from_density,
-)
+from snowshed.snow import NEW_SNOW_DENSITY, TENSILE_STRENGTH, YOUNGS_MODULUS, snow_from_density
 
 RELATIONS = [*NEW_SNOW_DENSITY.values(), *YOUNGS_MODULUS.values(), *TENSILE_STRENGTH.values()]
 

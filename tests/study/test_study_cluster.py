@@ -63,7 +63,7 @@ def test_a_run_that_kills_every_worker_fails(cluster, tmp_path, monkeypatch):
         while not outcomes and time.monotonic() < end:
             outcomes = workers.collect(1)
     assert [(outcome.status, outcome.error) for outcome in outcomes] == [
-        ("failed", "every worker that computed it died")
+        ("failed", "every worker that computed the run died")
     ]
 
 

@@ -123,7 +123,7 @@ def test_the_scene_of_a_run_can_be_had(tmp_path, capsys):
         (["run", "none.toml", "-o", "out"], "none.toml: No such file"),
         (["run", "bad.toml", "-o", "out"], "bad.toml: panel.tlt: /panel/tlt: unknown key"),
         (["run", "study.toml"], "--output"),
-        (["run", "study.toml", "-o", "full"], "full: not empty, and holds no study"),
+        (["run", "study.toml", "-o", "full"], "full: not empty, but holds no study"),
         (["run", "study.toml", "-o", "out", "--jobs", "0"], "jobs: 0 is not positive"),
         (["run", "study.toml", "-o", "out", "--jobs", "x"], "--jobs"),
         (["resume", "full"], "full: holds no study"),

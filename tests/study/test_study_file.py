@@ -231,7 +231,7 @@ def test_files_are_found_from_the_file_that_names_them(load, tmp_path):
         (SCENE + "[zip]\npanel.tilt = [1]", r"zip: not a list of tables; write \[\[zip\]\]"),
         (
             SCENE + "[[zip]]\npanel.tilt = [1]\npanel.height = [1, 2]",
-            r"zip\[1\]: what varies in step needs equally many values",
+            r"zip\[1\]: parameters that vary together need equally many values",
         ),
         (SCENE + "[[sample]]\ncount = 3", r"sample\[1\]: names no parameter"),
         (SCENE + '[[sample]]\nmethod = "halton"', r"sample\[1\].method: 'halton' is unknown"),

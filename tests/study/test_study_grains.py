@@ -7,7 +7,7 @@ from grain_files import VOXEL, write_labels
 
 from snowshed import GrainsSettings, LoadingStage
 from snowshed.running.run import run
-from snowshed.scene.builders import grains_scene
+from snowshed.scene import grains_scene
 from snowshed.study import Study, read_table
 
 

@@ -204,7 +204,7 @@ def test_a_file_that_changed_after_registration_stops_the_study(tmp_path):
     changed = Task("0" * 32, task.scene, task.folder, 1)
     outcome = compute(changed)
     assert outcome.status == "unable"
-    assert "is not what was registered" in outcome.error
+    assert "differs from the registered one" in outcome.error
 
 
 def test_without_shared_files_a_run_works_in_a_temporary_folder(tmp_path):
@@ -215,7 +215,7 @@ def test_without_shared_files_a_run_works_in_a_temporary_folder(tmp_path):
 
 def test_workers_that_cannot_start_are_no_fault_of_the_runs(tmp_path, monkeypatch):
     monkeypatch.setattr(sys, "executable", "/bin/false")
-    with pytest.raises(StudyError, match="no worker starts: it ended with code 1"):
+    with pytest.raises(StudyError, match="no worker can start: it ended with code 1"):
         tiny_study().run(tmp_path / "store", **ALONE)
 
 
@@ -238,7 +238,7 @@ def test_ctrl_c_says_how_to_go_on_and_the_rest_is_computed(tmp_path):
     command.send_signal(signal.SIGINT)
     out, err = command.communicate(timeout=120)
     assert (command.returncode, out) == (130, "")
-    assert err == f"error: interrupted; go on with: snowshed study resume {folder}\n"
+    assert err == f"error: interrupted; resume with: snowshed study resume {folder}\n"
     statuses = [
         json.loads(path.read_text())["status"] for path in folder.glob("running/*/results/run.json")
     ]
@@ -326,7 +326,7 @@ def test_a_disk_that_takes_no_more(tmp_path, limit_kb, seeding, file, computed):
     )
     assert full.returncode == 3, full.stderr
     assert full.stderr.startswith("error: ") and full.stderr.count("\n") == 1
-    assert file in full.stderr and "what is stored is safe" in full.stderr
+    assert file in full.stderr and "stored results are safe" in full.stderr
     study = Study.load(tmp_path / "study.toml")
     study.run(tmp_path / "full", **ALONE)
     if seeding:

@@ -81,7 +81,7 @@ def test_a_study_file_names_the_winter(tmp_path, capsys):
         ('weather = "winter.csv"\nfriction = "x"', r"season.friction: 'x' is not a number"),
         ('weather = "winter.csv"\nfriction = 11', r"season: release friction: 11 is outside"),
         ('weather = "winter.csv"\nsettling = 3', r"season.settling: 3 is not a name"),
-        ('weather = "winter.csv"\nfriction = 5', r"panel.tilt = 40: no snow is released"),
+        ('weather = "winter.csv"\nfriction = 5', r"panel.tilt = 40: no snow slides off"),
     ],
 )
 def test_bad_winters_are_named(tmp_path, season, message):
@@ -96,7 +96,7 @@ def test_bad_winters_are_named(tmp_path, season, message):
 def test_what_the_winter_decides_cannot_vary(tmp_path):
     part = SeasonPart(WINTER, SETTINGS)
     for path, value in (("slab.thickness", 0.1), ("events.count", 2)):
-        with pytest.raises(InputError, match="cannot be varied; the season decides it"):
+        with pytest.raises(InputError, match="cannot be varied; the weather of the season sets it"):
             Study.product(tiny_scene(), {path: [value]}, season=part)
-    with pytest.raises(InputError, match="its weather is in no file"):
+    with pytest.raises(InputError, match="its weather is not in a file"):
         tilts(part).to_toml()

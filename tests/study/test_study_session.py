@@ -157,7 +157,7 @@ def test_an_interrupt_keeps_what_ended_meanwhile_and_says_how_to_go_on(scripted,
         if progress.done == 1:  # then two run, of which one ends before the signal is seen
             signal.raise_signal(signal.SIGINT)
 
-    with pytest.raises(StudyInterrupted, match="interrupted; go on with: snowshed study resume"):
+    with pytest.raises(StudyInterrupted, match="interrupted; resume with: snowshed study resume"):
         study.run(tmp_path / "store", progress=interrupt)
     assert scripted.stopped
     assert sum(status == "done" for status, _ in states(tmp_path / "store")) == 3
@@ -244,7 +244,7 @@ def test_unfinished_runs_of_another_version_are_not_mixed_in(scripted, tmp_path,
     [
         ({"jobs": 0}, "jobs: 0 is not positive"),
         ({"threads": -1}, "threads: -1 is not positive"),
-        ({"jobs": 2, "scheduler": "tcp://127.0.0.1:1"}, "jobs: not with a scheduler"),
+        ({"jobs": 2, "scheduler": "tcp://127.0.0.1:1"}, "jobs: not allowed with a scheduler"),
     ],
 )
 def test_wrong_resources_leave_nothing_behind(tmp_path, options, message):

@@ -10,7 +10,7 @@ from snowshed.analysis.hazard.maps import hazard_maps, wilson_interval
 from snowshed.io.raster.raster import read_raster
 from snowshed.methods.slide.maps import PeakMaps
 from snowshed.running.run import run
-from snowshed.scene.builders import example_slide
+from snowshed.scene import example_slide
 from snowshed.study import Study, read_table
 from snowshed.study.store import Store
 
@@ -86,7 +86,7 @@ def test_a_study_that_kept_no_maps_says_so(study, tmp_path):
 def test_damaged_maps_are_told(computed):
     with Store.open(computed) as store:
         (data,) = store.particles(store.runs("slides")[0].hash).values()
-    with pytest.raises(InputError, match="not maps that snowshed kept"):
+    with pytest.raises(InputError, match="not maps that snowshed stored"):
         PeakMaps.unpacked(data[:-40])
 
 

@@ -187,7 +187,7 @@ def test_a_full_disk_is_a_clear_error_and_loses_nothing(opened):
     before = contents(opened.folder)
     (pages,) = opened.read("PRAGMA page_count")[0]
     opened.read(f"PRAGMA max_page_count = {pages}")
-    with pytest.raises(StudyError, match=r"disk is full; what is stored is safe.*repeat"):
+    with pytest.raises(StudyError, match=r"disk is full; stored results are safe.*repeat"):
         opened.record(outcome(HASHES[1], events=5000))
     assert contents(opened.folder) == before
     opened.read(f"PRAGMA max_page_count = {pages + 10000}")
@@ -217,7 +217,7 @@ def test_folders_that_do_not_serve(tmp_path):
     (tmp_path / "full" / "thesis.txt").touch()
     with pytest.raises(InputError, match="file: not a folder"):
         Store.create(tmp_path / "file")
-    with pytest.raises(InputError, match="not empty, and holds no study"):
+    with pytest.raises(InputError, match="not empty, but holds no study"):
         Store.create(tmp_path / "full")
     with pytest.raises(InputError, match="holds no study"):
         Store.open(tmp_path / "none")
@@ -260,7 +260,7 @@ def test_a_store_that_cannot_be_written_can_be_read(tmp_path, monkeypatch):
         opened.register("tiny", ["panel.friction"], RUNS)
         opened.record(outcome(HASHES[0]))
         monkeypatch.setattr(os, "access", lambda *where: False)
-        with pytest.raises(InputError, match=r"left amid a change; copy it to where it can be"):
+        with pytest.raises(InputError, match=r"left in the middle of a change"):
             Store.open(tmp_path / "store")
     before = {file: file.stat().st_mtime_ns for file in (tmp_path / "store").iterdir()}
     with Store.open(tmp_path / "store") as read_only:

@@ -114,7 +114,7 @@ def as_before_checksums(folder):
 
 def test_a_store_that_lost_its_checksums_is_damaged(folder):
     change(folder, "DROP TABLE checksum")
-    with pytest.raises(InputError, match="damaged: the table of checksums is not there"):
+    with pytest.raises(InputError, match="damaged: the table of checksums is missing"):
         read_table(folder)
 
 
@@ -123,7 +123,7 @@ def test_an_earlier_version_that_computes_is_told_from_damage(folder):
     as_before_checksums(folder)
     owner = "node-1-0123abcd"
     change(folder, f"UPDATE run SET owner = '{owner}' WHERE rowid = 1")
-    there = pytest.raises(InputError, match="an earlier version of snowshed computes in it")
+    there = pytest.raises(InputError, match="an earlier version of snowshed is computing in it")
     with holding(folder / "running" / f"{owner}.lock", Path.touch), there:
         read_table(folder)
     assert len(read_table(folder)) > 0

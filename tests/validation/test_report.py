@@ -228,5 +228,5 @@ def test_tables_of_texts_are_as_wide_as_their_heads():
     ("value", "text"),
     [(1e-6, "10⁻⁶"), (-0.5, "-0.5"), (1e5, "100,000"), (999.9, "1,000"), (1e-4, "0.0001")],
 )
-def test_numbers_in_words(value, text):
+def test_numbers_text(value, text):
     assert formatting.number(value) == text

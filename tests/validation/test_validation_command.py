@@ -99,7 +99,7 @@ def test_an_interrupted_suite_goes_on(cases, tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(measure, "measure_once", interrupted)
     assert validate(tmp_path / "my out", "--case", "made_up") == 130
     message = capsys.readouterr().err.strip().splitlines()[-1]
-    _, _, resume = message.partition("go on with: python -m validation ")
+    _, _, resume = message.partition("resume with: python -m validation ")
     assert program(*shlex.split(resume)) == 0
     measurements = (tmp_path / "my out" / "measurements.jsonl").read_text().splitlines()
     assert len(measurements) == len(set(measurements)) == 4

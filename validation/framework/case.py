@@ -48,7 +48,7 @@ class Quantity:
     least_order: Optional[float] = None
     relative: bool = True
 
-    def error_in_words(self, error: Optional[float]) -> str:
+    def error_text(self, error: Optional[float]) -> str:
         """Return an error in percent, or in the quantity's unit."""
         return percent(error) if self.relative else number(error)
 

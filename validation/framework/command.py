@@ -76,7 +76,7 @@ def validate(
         stressed = _stress(results, full=not quick, seed=seed, quiet=quiet) if stress else None
     except KeyboardInterrupt:
         command = _resume_command(quick, names, stress, seed, folder)
-        raise Stopped(f"interrupted; go on with: {command}") from None
+        raise Stopped(f"interrupted; resume with: {command}") from None
     validation = Validation(cases, measurements, full=not quick, stress=stressed)
     bars = write_report(validation, folder)
     if not quiet:

@@ -19,7 +19,7 @@ from snowshed.analysis.accuracy import setting_labels
 from snowshed.analysis.accuracy.measurements import Settings, Value
 from snowshed.analysis.accuracy.solutions import Solution, key_of
 from snowshed.base import formatting
-from snowshed.plot.figure_style import BODY, COLOURS, FAINT, INK, STYLE, blank
+from snowshed.plot.figure_style import BODY, COLOURS, FAINT, INK, STYLE, blank_figure
 from validation.framework.case import Quantity
 from validation.framework.cheapest import pareto_front
 from validation.framework.convergence import Convergence
@@ -177,7 +177,7 @@ def _entry(keyword: str, shape: Any, label: str) -> Line2D:
 def _figure(styles: LineStyles, drawn: Sequence[Settings], *, rows: int) -> Iterator[Figure]:
     """Yield a figure for some rows of panels, with a legend of the styles that are drawn."""
     with matplotlib.rc_context(STYLE):
-        figure = blank(8.2, 2.9 * rows + 0.6)
+        figure = blank_figure(8.2, 2.9 * rows + 0.6)
         yield figure
         if key := styles.key(drawn):
             lines = -(-len(key) // 8)
@@ -270,7 +270,7 @@ def _draw_front(
     lines = []
     for i, letter in zip(worth_naming(front, times, errors), letters):
         _name_point(axes, letter, times[i], errors[i])
-        error = quantity.error_in_words(errors[i])
+        error = quantity.error_text(errors[i])
         cost = f"{formatting.duration(times[i])}, {error}"
         lines.append(KeyLine(letter, cost, setting_labels.settings(found[i].settings, names)))
     return lines

@@ -158,12 +158,12 @@ def extremes_grid(case: Case, found: Mapping[str, Sequence[Solution]]) -> Grid:
         middle = float(np.median([abs(one.error) for one in listed]))
         ends = [
             (
-                quantity.error_in_words(abs(one.error)),
+                quantity.error_text(abs(one.error)),
                 setting_labels.settings(one.settings, names),
             )
             for one in (listed[0], listed[-1])
         ]
-        median = quantity.error_in_words(middle)
+        median = quantity.error_text(middle)
         rows.append([quantity.title, *ends[0], median, *ends[1]])
     head = ("quantity", "smallest error", "with", "median", "largest error", "with")
     return Grid(head, rows, "lrlrrl")
@@ -193,7 +193,7 @@ def demanded(bar: Bar) -> str:
     """Return what is demanded, in words."""
     if bar.kind == "order":
         return f"order ≥ {bar.demanded:g} in {bar.quantity.order_in}".replace("_", " ")
-    return f"≤ {bar.quantity.error_in_words(bar.demanded)}"
+    return f"≤ {bar.quantity.error_text(bar.demanded)}"
 
 
 def found(bar: Bar) -> str:
@@ -204,7 +204,7 @@ def found(bar: Bar) -> str:
         return "failed"
     if bar.kind == "order":
         return _order(bar.found)
-    return bar.quantity.error_in_words(bar.found)
+    return bar.quantity.error_text(bar.found)
 
 
 def cheapest_grid(
@@ -251,7 +251,7 @@ class _Columns:
         for measured in one.measured:
             if measured.quantity == self.quantity.name:
                 cells = [formatting.number(measured.value, 4), formatting.number(measured.exact, 4)]
-                error = self.quantity.error_in_words(measured.error)
+                error = self.quantity.error_text(measured.error)
                 return [*cells[: len(self.head) - 1], error]
         return [formatting.NOTHING] * len(self.head)
 

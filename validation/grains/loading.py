@@ -13,7 +13,7 @@ from snowshed.base.arrays import Integers
 from snowshed.methods.grains import phases
 from snowshed.methods.grains.curve import LoadingCurve
 from snowshed.methods.grains.settings import GrainsSettings
-from snowshed.scene.builders import grains_scene
+from snowshed.scene import grains_scene
 from snowshed.scene.loading import Cone, LoadingStage
 from validation.framework.drive import Drive
 

@@ -1,4 +1,4 @@
-"""Beside what engineers use: the pile of a season in the snow loss models of pvlib.
+"""The pile of a season in the snow loss models of pvlib, which engineers use.
 
 pvlib is an extra (``pip install "snowshed[pv]"``); its functions are called with the pile of a
 season. Names and angles are those of pvlib: ``surface_tilt`` in degrees from the horizontal.
@@ -155,7 +155,7 @@ def blocked_days(season: pd.DataFrame, dx: float) -> pd.Series:
 
 
 def monthly_table(season: pd.DataFrame, events: pd.DataFrame, dx: float) -> pd.DataFrame:
-    """Return what engineers ask of a season, month after month.
+    """Return the monthly quantities of a season that engineers need.
 
     Parameters
     ----------

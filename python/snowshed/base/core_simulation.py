@@ -8,7 +8,7 @@ import snowshed._core as _core
 
 
 class HoldsCore(Protocol):
-    """`snowshed.Simulation`, as far as the rooms below it know it."""
+    """The part of `snowshed.Simulation` that the rooms below it need."""
 
     _core: _core.Simulation
 

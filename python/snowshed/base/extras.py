@@ -23,7 +23,7 @@ def require(module: str, extra: str, purpose: str) -> Any:
     Raises
     ------
     InputError
-        If it is not installed, saying what to install.
+        If it is not installed; the message names the package to install.
 
     Examples
     --------

@@ -92,7 +92,7 @@ def duration(seconds: Optional[float]) -> str:
 
 
 def count(value: Optional[float]) -> str:
-    """Return how many there are.
+    """Return a count as text.
 
     Examples
     --------

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import sys
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from types import FrameType
 
@@ -43,12 +43,12 @@ def caller_level() -> int:
     """
     level, frame = 1, sys._getframe(1)
     package = __name__.partition(".")[0]
-    while frame.f_back is not None and _package_of(frame) == package:
+    while frame.f_back is not None and _package(frame) == package:
         level, frame = level + 1, frame.f_back
     return level
 
 
-def _package_of(frame: FrameType) -> str:
+def _package(frame: FrameType) -> str:
     return str(frame.f_globals.get("__name__", "")).partition(".")[0]
 
 
@@ -56,14 +56,61 @@ def _package_of(frame: FrameType) -> str:
 def recorded() -> Iterator[list[str]]:
     """Collect the notes of a block, each once, and issue them after it again."""
     notes: list[str] = []
-    said: list[warnings.WarningMessage] = []
+    log: list[warnings.WarningMessage] = []
     try:
-        with warnings.catch_warnings(record=True) as log:
-            said = log
-            warnings.simplefilter("always")
+        with _log() as log:
             yield notes
     finally:
-        texts = [str(note.message) for note in said if issubclass(note.category, SnowshedNote)]
-        notes += dict.fromkeys(texts)
-        for note in said:
-            warnings.warn_explicit(note.message, note.category, note.filename, note.lineno)
+        notes += _texts(log)
+        _issue(log)
+
+
+@contextmanager
+def held() -> Iterator[list[str]]:
+    """Collect the notes of a block, each once; issue them only if the block fails.
+
+    Examples
+    --------
+    >>> with held() as notes:
+    ...     tell("a summary will have this note")
+    >>> notes
+    ['a summary will have this note']
+    """
+    notes: list[str] = []
+    log: list[warnings.WarningMessage] = []
+    try:
+        with _log() as log:
+            yield notes
+    except BaseException:
+        _issue(log)
+        raise
+    _issue([note for note in log if not issubclass(note.category, SnowshedNote)])
+    notes += _texts(log)
+
+
+@contextmanager
+def told_on_failure(notes: Iterable[str]) -> Iterator[None]:
+    """Tell notes if the block fails, so that no result of it shows them."""
+    try:
+        yield
+    except BaseException:
+        for note in notes:
+            tell(note)
+        raise
+
+
+@contextmanager
+def _log() -> Iterator[list[warnings.WarningMessage]]:
+    with warnings.catch_warnings(record=True) as log:
+        warnings.simplefilter("always")
+        yield log
+
+
+def _texts(log: Iterable[warnings.WarningMessage]) -> list[str]:
+    texts = (str(note.message) for note in log if issubclass(note.category, SnowshedNote))
+    return list(dict.fromkeys(texts))
+
+
+def _issue(log: Iterable[warnings.WarningMessage]) -> None:
+    for note in log:
+        warnings.warn_explicit(note.message, note.category, note.filename, note.lineno)

@@ -1,7 +1,7 @@
 """Records: dataclasses that mirror JSON objects. A field that is None was not given.
 
 A record knows its fields: a name that is none of them, and a value that its field does not take,
-are errors at once, wherever they are used. It keeps copies of the records that it is given.
+are errors at once, wherever they are used. It keeps copies of given records.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ RecordType = TypeVar("RecordType", bound="Record")
 
 
 class UnknownFieldError(InputError, AttributeError, TypeError):
-    """A name that is no field of a record, as an attribute, a keyword or a key."""
+    """A name that is not a field of a record, as an attribute, a keyword or a key."""
 
 
 class Alias:

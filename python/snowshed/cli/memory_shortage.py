@@ -15,7 +15,7 @@ NAMES = ("path", "file", "source", "where", "raster", "mesh")
 
 
 def memory_message(error: MemoryError) -> str:
-    """Return what to say of an error, by where it was raised.
+    """Return the message for an error, by the code that raised it.
 
     Examples
     --------
@@ -29,7 +29,7 @@ def memory_message(error: MemoryError) -> str:
     ]
     for frame in reversed(frames):
         module = str(frame.f_globals["__name__"])
-        if file := _file_of(frame):
+        if file := _read_file(frame):
             return f"out of memory while {file} was read ({module})"
         if module.startswith(OF_PARTICLES):
             return f"out of memory ({module}); give fewer particles or a larger dx"
@@ -37,7 +37,7 @@ def memory_message(error: MemoryError) -> str:
     return f"out of memory ({stage[0]})" if stage else "out of memory"
 
 
-def _file_of(frame: FrameType) -> Optional[str]:
+def _read_file(frame: FrameType) -> Optional[str]:
     """Return the file that a function works on, by the usual names of its arguments."""
     code = frame.f_code
     for name in code.co_varnames[: code.co_argcount + code.co_kwonlyargcount]:

@@ -19,7 +19,7 @@ def parameter_docs(function: Callable[..., Any]) -> dict[str, str]:
 
     Examples
     --------
-    >>> from snowshed.scene.builders import panel_rows
+    >>> from snowshed.scene.builders.panels import panel_rows
     >>> parameter_docs(panel_rows)["height"]
     'Height of the lower edge above the ground, m.'
     """

@@ -34,7 +34,7 @@ def run_scene(ready: ResolvedScene, folder: Path, resume: bool, quiet: bool) -> 
 
 
 def _tell_beforehand(ready: ResolvedScene) -> None:
-    """Say what kernels without AVX2 cost, and what events take that take long."""
+    """Announce slow kernels and long runs."""
     seconds = 0.0
     if "stack" in method_of(ready.data).results:  # what has one event has a time limit, too
         seconds = _core.plan(ready.core, ready.base_dir)["expected_wall_s"]
@@ -49,6 +49,6 @@ def _long_run(ready: ResolvedScene, seconds: float) -> str:
     path = f"{SETTINGS_KEY}.{method.settings.RESOLUTION}"
     size = "--dx" if method.name == DEFAULT else path
     return (
-        f"note: this takes {about(seconds)}; Ctrl-C stops it, --resume goes on. A larger {size} is "
-        "faster: twice the size takes a sixteenth of the time in 3D, an eighth in 2D"
+        f"note: this takes {about(seconds)}; Ctrl-C stops it, --resume resumes it. A larger {size} "
+        "is faster: twice the size takes a sixteenth of the time in 3D, an eighth in 2D"
     )

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Optional
 
 from snowshed._core import InputError
+from snowshed.base.notes import tell
 from snowshed.scene.builders.terrain_copy import terrain_copy
 from snowshed.scene.scene import ResolvedScene, Scene
 
@@ -18,7 +19,7 @@ INPUTS = "give --terrain and --release, or --avaframe, or --example"
 class SlideFiles:
     """Files of a slide, their bands, and the thickness of its release, m, if given.
 
-    `layers` are those of `snowshed.scene.builders.slide_scene`.
+    `layers` are those of `snowshed.scene.slide_scene`.
     """
 
     terrain: Optional[Path]
@@ -91,6 +92,28 @@ class SlideFiles:
             thickness_band=self.thickness_band,
             **limits,
         )
+
+
+def notes_for_summary(notes: Sequence[str], *scenes: Scene) -> list[str]:
+    """Return the notes that summaries of the scenes repeat, and tell the others.
+
+    Parameters
+    ----------
+    notes
+        Notes from the making of the scenes.
+    scenes
+        The scenes, whose terrain holds the notes on its files.
+    """
+    stored = {
+        line
+        for scene in scenes
+        if scene.terrain is not None
+        for line in str(scene.terrain.notes or "").splitlines()
+    }
+    for note in notes:
+        if note not in stored:
+            tell(note)
+    return [note for note in notes if note in stored]
 
 
 def refuse_changed_areas(

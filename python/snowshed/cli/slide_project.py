@@ -10,11 +10,12 @@ from typing import TYPE_CHECKING, Optional
 import snowshed._core as _core
 from snowshed._core import InputError
 from snowshed.base.interrupt import deferred_interrupts
+from snowshed.base.notes import held, told_on_failure
 from snowshed.cli.dry_run import print_cost
 from snowshed.cli.exit_codes import Failed, Stopped
 from snowshed.cli.run_scene import run_scene
 from snowshed.cli.same_command import same_command
-from snowshed.cli.slide_files import refuse_changed_areas
+from snowshed.cli.slide_files import notes_for_summary, refuse_changed_areas
 from snowshed.cli.terminal import say
 from snowshed.scene.builders.terrain_copy import removing_copies, terrain_copy
 from snowshed.scene.scene import ResolvedScene
@@ -49,11 +50,13 @@ def run_project(
     from snowshed.results.avaframe import simulation_name
 
     with removing_copies(folder):
-        simulations = _simulations(project, folder, settings, thickness, max_time)
-        scenes = [_resolved(simulation) for simulation in simulations]
+        with held() as notes:
+            simulations = _simulations(project, folder, settings, thickness, max_time)
+            scenes = [_resolved(simulation) for simulation in simulations]
+        in_summary = notes_for_summary(notes, *(simulation.scene for simulation in simulations))
         if not resume:
             _check_others(simulations[1:], scenes[1:])
-        with _naming_this_command(folder):
+        with _naming_this_command(folder), told_on_failure(in_summary):
             for number, simulation in enumerate(simulations):
                 results = folder if number == 0 else folder / simulation_name(simulation)
                 if len(simulations) > 1 and not quiet:
@@ -143,7 +146,7 @@ def _write_outputs(
     scene: ResolvedScene,
     steps: Sequence[int],
 ) -> None:
-    """Write the outputs of AvaFrame beside the results; errors are no fault of the input."""
+    """Write the outputs of AvaFrame beside the results; errors are not the input's fault."""
     from snowshed.results.avaframe import write_avaframe_outputs
     from snowshed.scene.builders.avaframe_files import copy_inputs
 
@@ -161,7 +164,7 @@ def _write_outputs(
 def write_particles(scene: ResolvedScene, folder: Path, steps: Sequence[int]) -> None:
     """Write tables of the particles after given steps into a results folder."""
     from snowshed.io.csv_table import write_csv
-    from snowshed.running.slide_states import particles_at
+    from snowshed.running.slide_history import particles_at
 
     for step, table in particles_at(scene, steps).items():
         name = "particles_initial" if step == 0 else f"particles_step{step:05d}"

@@ -47,7 +47,7 @@ def write_out(text: str) -> None:
 
 
 def wide_console(width: int = 100) -> PlainConsole:
-    """Return a console for stdout, with `width` columns if it is no terminal."""
+    """Return a console for stdout, with `width` columns if it is not a terminal."""
     console = PlainConsole()
     console.width = console.width if console.is_terminal else width
     return console

@@ -98,7 +98,7 @@ def _remove_abandoned(path: Path) -> None:
     with suppress(OSError):  # of a folder that cannot be read
         for other in path.parent.iterdir():
             leftover = LEFTOVER.match(other.name)
-            if leftover and other.name[leftover.end() :] == _end_of(path.name):
+            if leftover and other.name[leftover.end() :] == _suffix(path.name):
                 _remove_unless_held(other)
 
 
@@ -162,10 +162,10 @@ def _partial(path: Path) -> str:
     The name is random, so that nobody can plant a link there. The core removes such files from
     results folders.
     """
-    return f".partial-{secrets.token_hex(8)}-{_end_of(path.name)}"
+    return f".partial-{secrets.token_hex(8)}-{_suffix(path.name)}"
 
 
-def _end_of(name: str) -> str:
+def _suffix(name: str) -> str:
     """Return the suffix of a name, which tells its kind, shortened to fit into a name."""
     return os.fsdecode(os.fsencode(name)[-100:].lstrip(bytes(range(0x80, 0xC0))))
 

@@ -45,7 +45,7 @@ class Table:
     Raises
     ------
     InputError
-        If the file is no such table.
+        If the file is not such a table.
 
     Examples
     --------
@@ -113,13 +113,13 @@ class Table:
     def checksum(self, event: int) -> str:
         """Return a checksum of the rows through an event, with the names of their columns."""
         rows = [row for row in self.rows if int(row["event"]) <= event]
-        return hashlib.blake2b(self._text(rows).encode(), digest_size=16).hexdigest()
+        return hashlib.blake2b(self._csv_text(rows).encode(), digest_size=16).hexdigest()
 
     def _write(self) -> None:
-        write_text(self.path, self._text(self.rows))
+        write_text(self.path, self._csv_text(self.rows))
         self._written = self.columns
 
-    def _text(self, rows: Iterable[Mapping[str, str]]) -> str:
+    def _csv_text(self, rows: Iterable[Mapping[str, str]]) -> str:
         text = io.StringIO()
         writer = csv.DictWriter(text, self.columns, lineterminator="\n")
         writer.writeheader()
@@ -261,13 +261,13 @@ def frame_as_text(table: pd.DataFrame, name: str, *, index: str) -> TextTable:
         table = table.rename_axis(index).reset_index()
     columns = [str(column) for column in table]
     rows = [
-        Row(name, f"row {number}", number, dict(zip(columns, map(_text, cells))))
+        Row(name, f"row {number}", number, dict(zip(columns, map(_cell_text, cells))))
         for number, cells in enumerate(table.itertuples(index=False, name=None), 1)
     ]
     return TextTable(columns, rows)
 
 
-def _text(value: object) -> str:
+def _cell_text(value: object) -> str:
     """Return a cell of a DataFrame as text; a number is the same when it is read."""
     import pandas as pd
 

@@ -29,7 +29,7 @@ class FilmQuantity(NamedTuple):
     step: float
 
     def values(self, codes: NDArray[np.int32]) -> NDArray[np.float32]:
-        """Return what codes stand for.
+        """Return the values of codes.
 
         Examples
         --------

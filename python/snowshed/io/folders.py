@@ -31,18 +31,18 @@ def check_empty(
 def claim_folder(
     folder: PathLike, file: str, identity: Mapping[str, Any], what: str, others: str
 ) -> None:
-    """Take a folder for some work, or go on in one that the same work took.
+    """Take a folder for some work, or continue in the folder of the same work.
 
     Parameters
     ----------
     folder
         The folder; new or empty, unless it has the file.
     file
-        Name of the file in it that says what the folder was taken for.
+        Name of the file in it that holds the identity of the work.
     identity
-        JSON data that decides what is in the folder.
+        JSON data that decides the content of the folder.
     what, others
-        Name of the work, and how work with another identity differs, for messages.
+        Name of the work, and the difference of work with another identity, for messages.
 
     Raises
     ------

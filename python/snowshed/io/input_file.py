@@ -20,7 +20,7 @@ def read_regular(path: Path) -> bytes:
     Raises
     ------
     InputError
-        If it is no regular file, or is larger than half of the memory.
+        If it is not a regular file, or larger than half of the memory.
     OSError
         If it cannot be read.
 
@@ -58,7 +58,7 @@ def open_regular(path: Path) -> BinaryIO:
     Raises
     ------
     InputError
-        If it is no regular file.
+        If it is not a regular file.
     OSError
         If it cannot be opened.
 

@@ -1,4 +1,4 @@
-"""The entry of a method: all that the rest of the package asks of it."""
+"""The entry of a method: everything that the rest of the package needs."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from snowshed.methods.settings import MethodSettings
 class Method:
     """A method, as its folder declares it in ``METHOD``.
 
-    A scene needs the settings, but what runs a scene and reads its results stands above scenes.
-    These parts are therefore named, as ``package.module:name``, and imported when they are used.
+    A scene needs the settings, but the code that runs a scene and reads its results stands above
+    scenes. Such code is therefore named, as ``package.module:name``, and imported when it is used.
 
     Attributes
     ----------
     name
-        Of the method in a scene.
+        Name of the method in a scene.
     title
         Heading of pages that show its runs.
     settings
@@ -30,8 +30,8 @@ class Method:
     run
         Name of the subclass of `snowshed.running.method_run.MethodRun` that runs its scenes.
     results
-        What its results hold besides those of all methods: the name of an attribute of
-        `snowshed.Results`, and that of the function that reads it from a results folder.
+        Results that other methods do not have: the name of an attribute of `snowshed.Results`, and
+        that of the function that reads it from a results folder.
     ages
         Whether its snow can settle and sinter between events.
     has_grid
@@ -71,7 +71,7 @@ class Method:
 
 
 def imported(name: str) -> Any:
-    """Return what ``package.module:name`` stands for.
+    """Return the object with the name ``package.module:name``.
 
     Examples
     --------

@@ -23,7 +23,7 @@ METHODS: Mapping[str, Method] = {
 }
 DEFAULT = next(iter(METHODS))
 
-#: Where in a scene the name of the method and its settings stand.
+#: Keys of a scene for the name of the method and for its settings.
 NAME_KEY = "method"
 SETTINGS_KEY = "numerics"
 
@@ -85,12 +85,12 @@ def settings_of(scene: Mapping[str, JsonValue]) -> MethodSettings:
 
 
 def resolution_of(scene: Mapping[str, JsonValue]) -> float:
-    """Return the size of the smallest thing that a complete scene resolves, m.
+    """Return the finest size that a complete scene resolves, m.
 
     Raises
     ------
     InputError
-        If the scene does not say it.
+        If the scene does not state it.
 
     Examples
     --------

@@ -12,24 +12,24 @@ from snowshed.base.record import Record
 class MethodSettings(Record):
     """Settings of a method."""
 
-    #: The setting that is the size of the smallest thing the method resolves, m; empty where files
-    #: that the scene names decide it.
+    #: Name of the setting for the finest size that the method resolves, m; empty where files that
+    #: the scene names decide it.
     RESOLUTION: ClassVar[str]
-    #: What notes call things of this size, in the plural.
+    #: Plural noun in notes for things of this size.
     ELEMENTS: ClassVar[str] = "cells"
 
     @property
     def resolution(self) -> Optional[float]:
-        """The size of the smallest thing the method resolves, m."""
+        """Finest size that the method resolves, m."""
         size: Optional[float] = getattr(self, self.RESOLUTION)
         return size
 
     def damping_text(self, rate: Optional[float] = None) -> str:
-        """Return how the method damps, for captions; empty where it does not.
+        """Return a caption on the method's damping; empty where it has none.
 
         Parameters
         ----------
         rate
-            The mean rate of a run, 1/s, where the settings do not give it.
+            Mean damping rate of a run, 1/s, where the settings do not give it.
         """
         return ""

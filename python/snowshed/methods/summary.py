@@ -1,4 +1,4 @@
-"""The summary of a run with one event: its figures, in a JSON file of the results folder."""
+"""The summary of a run with a single event: its figures, in a JSON file of the results folder."""
 
 from __future__ import annotations
 
@@ -27,38 +27,38 @@ class Summary:
 
     #: File in the results folder.
     FILE: ClassVar[str]
-    #: Heading where people read it.
+    #: Heading of the figures on pages and in the terminal.
     TITLE: ClassVar[str]
     #: Other files in the folder that people open.
     OPENED: ClassVar[str]
-    #: Fields that are remarks, and so no columns of a table.
+    #: Fields with remarks, which are not columns of a table.
     REMARKS: ClassVar[tuple[str, ...]] = ("notes",)
 
     @classmethod
     def columns(cls) -> Mapping[str, type]:
-        """Return the figures that a table of many runs holds, each with int, float or str."""
+        """Return the columns in a table of many runs, each with its type: int, float or str."""
         hints = typing.get_type_hints(cls)
-        names = [one.name for one in fields(cls) if one.name not in cls.REMARKS]
+        names = [field.name for field in fields(cls) if field.name not in cls.REMARKS]
         return {name: (typing.get_args(hints[name]) or (hints[name],))[0] for name in names}
 
     @classmethod
     def read(cls: type[Summarised], folder: PathLike) -> Summarised:
-        """Read the summary of a results folder; one of an earlier version, too.
+        """Read the summary of a results folder, also one of an earlier version.
 
         Raises
         ------
         InputError
-            If it is not there, or not the one that the run wrote.
+            If it is missing, or not the one that the run wrote.
         """
         file = Path(folder) / cls.FILE
         if not file.is_file():
-            raise InputError(f"{file}: not there; a run writes it at its end")
+            raise InputError(f"{file}: missing; a run writes it at its end")
         check_run_file(file)
         figures = {FORMER.get(name, name): value for name, value in read_object(file).items()}
         given = {
-            one.name: _in_tuples(figures.get(one.name))
-            for one in fields(cls)
-            if one.name in figures or _may_be_none(cls, one.name)
+            field.name: _in_tuples(figures.get(field.name))
+            for field in fields(cls)
+            if field.name in figures or _may_be_none(cls, field.name)
         }
         try:
             return cls(**given)
@@ -70,7 +70,7 @@ class Summary:
         write_text(folder / self.FILE, json.dumps(asdict(self), indent=2) + "\n")
 
     def lines(self) -> Mapping[str, str]:
-        """Return what people read of it, by name."""
+        """Return the lines that people read, by name."""
         raise NotImplementedError
 
 

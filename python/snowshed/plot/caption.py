@@ -22,7 +22,7 @@ MOST_LAYERS = 4  # whose thicknesses are named one by one
 
 
 def scene_caption(scene: Mapping[str, Any], damping_rate: Optional[float] = None) -> str:
-    """Return what tells one scene from another.
+    """Return the key numbers of a scene.
 
     Parameters
     ----------

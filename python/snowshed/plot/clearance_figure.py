@@ -9,7 +9,7 @@ from matplotlib import rc_context
 from matplotlib.figure import Figure
 
 from snowshed.base.arrays import Floats
-from snowshed.plot.figure_style import BODY, COLOURS, FAINT, INK, NOISE, STACK, STYLE, blank
+from snowshed.plot.figure_style import BODY, COLOURS, FAINT, INK, NOISE, STACK, STYLE, blank_figure
 
 Band = tuple[float, float]
 
@@ -25,7 +25,7 @@ def burial_figure(required: Floats, levels: Sequence[tuple[float, float, float, 
         Probability of staying clear, and the height with its lower and upper bound, m.
     """
     with rc_context(STYLE):
-        figure = blank(6.4, 3.6)
+        figure = blank_figure(6.4, 3.6)
         axes = figure.subplots()
         order = np.sort(required)
         steps = 100.0 * (1.0 - np.arange(1, len(order) + 1) / len(order))
@@ -65,7 +65,7 @@ def design_figure(
         Share of winters in which the edge stays clear.
     """
     with rc_context(STYLE):
-        figure = blank(6.4, 3.6)
+        figure = blank_figure(6.4, 3.6)
         axes = figure.subplots()
         for colour, tilt in zip(COLOURS * 9, sorted({design[1] for design in designs})):
             own = sorted(design for design in designs if design[1] == tilt)
@@ -86,7 +86,7 @@ def design_figure(
 
 
 def causes_figure(shares: Mapping[str, float]) -> Figure:
-    """Draw how much of the variance of the required height goes with each cause.
+    """Draw the share of each cause in the variance of the required height.
 
     Parameters
     ----------
@@ -94,7 +94,7 @@ def causes_figure(shares: Mapping[str, float]) -> Figure:
         Shares from 0 to 1 by the label of the cause.
     """
     with rc_context(STYLE):
-        figure = blank(6.4, 0.9 + 0.34 * len(shares))
+        figure = blank_figure(6.4, 0.9 + 0.34 * len(shares))
         axes = figure.subplots()
         names = list(shares)[::-1]
         parts = [100.0 * shares[name] for name in names]

@@ -10,7 +10,7 @@ from matplotlib import rc_context
 from matplotlib.figure import Figure
 
 from snowshed.plot.caption import scene_caption
-from snowshed.plot.figure_style import COLOURS, FAINT, INK, STYLE, blank, describe
+from snowshed.plot.figure_style import COLOURS, FAINT, INK, STYLE, blank_figure, describe
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 #: Energies that the snow holds, and those of height, whose zero is arbitrary.
 HELD, OF_HEIGHT = ("kinetic_j", "elastic_j", "bonds_j"), ("gravitational_j", "potential_j")
-#: The other columns that are no loss.
+#: The other columns that are not losses.
 SUMS = ("added_j", "residual_j")
 SMALL = 1e-3  # smaller shares of the largest energy are not drawn
 SCALES = ((1e9, "GJ"), (1e6, "MJ"), (1e3, "kJ"), (1.0, "J"), (1e-3, "mJ"), (1e-6, "µJ"))
@@ -55,7 +55,7 @@ def energy_figure(table: pd.DataFrame, scene: Mapping[str, Any]) -> Figure:
     height = sum(table[name] for name in energies if name in OF_HEIGHT)
     released = (table["added_j"] - height).rename("released")
     with rc_context(STYLE):
-        figure = blank(WIDTH, HEIGHT)
+        figure = blank_figure(WIDTH, HEIGHT)
         above, below = figure.subplots(2, 1, sharex=True, height_ratios=(2, 3))
         per_width = " per m of width" if scene.get("dimension") == 2 else ""
         _draw(above, table, {name: table[name] for name in held}, per_width)
@@ -110,5 +110,5 @@ def _named(name: str) -> str:
 
 
 def _scale(largest: float) -> tuple[float, str]:
-    """Return the unit in which an energy is between 1 and 1000, as far as there is one."""
+    """Return the unit in which an energy is between 1 and 1000, if there is one."""
     return next((scale for scale in SCALES if largest >= scale[0]), SCALES[-1])

@@ -45,7 +45,7 @@ STYLE: dict[Any, Any] = {
 }
 
 
-def blank(width: float, height: float) -> Figure:
+def blank_figure(width: float, height: float) -> Figure:
     """Return an empty figure that needs no screen.
 
     Parameters
@@ -55,7 +55,7 @@ def blank(width: float, height: float) -> Figure:
 
     Examples
     --------
-    >>> blank(4, 3).axes
+    >>> blank_figure(4, 3).axes
     []
     """
     figure = Figure(figsize=(width, height), layout="constrained")
@@ -81,7 +81,7 @@ def quiet(axes: Axes) -> None:
     axes.set_axisbelow(True)
 
 
-def save(figure: Figure, path: Path, *, dpi: int = 160) -> None:
+def save_figure(figure: Figure, path: Path, *, dpi: int = 160) -> None:
     """Write a figure to a file, whole or not at all."""
     with replacing(path) as beside:
         figure.savefig(beside, dpi=dpi)

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from snowshed.base.arrays import Floats
 from snowshed.io.film import Film, FilmFrame
-from snowshed.plot.figure_style import blank
+from snowshed.plot.figure_style import blank_figure
 from snowshed.plot.film_summary import Colouring, FilmSummary
 from snowshed.plot.html_page import Picture
 from snowshed.plot.solids import Box, Solid
@@ -83,7 +83,7 @@ class FilmPainter:
         self.view = Projection.of(film, view_lift(solids))
         low, high = self.view.limits(focus)
         height = float(np.clip(width * (high[1] - low[1]) / (high[0] - low[0]), 0.3 * width, width))
-        self.figure = blank(width, height)
+        self.figure = blank_figure(width, height)
         self.figure.set_layout_engine("none")
         self.figure.set_facecolor(SKY)
         self.axes = self.figure.add_axes((0.0, 0.0, 1.0, 1.0))

@@ -9,7 +9,7 @@ import numpy as np
 
 from snowshed.base.arrays import Booleans, Floats
 from snowshed.methods.grains.contacts import GrainContacts
-from snowshed.plot.figure_style import BODY, FAINT, INK, STACK, STYLE, blank, describe
+from snowshed.plot.figure_style import BODY, FAINT, INK, STACK, STYLE, blank_figure, describe
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -42,7 +42,7 @@ def force_figure(contacts: GrainContacts, voxel_size: float, title: str = "") ->
 
     with rc_context(STYLE):
         width, _, height = np.ptp(contacts.spheres, axis=0) + voxel_size
-        figure = blank(6.4, 1.2 + 5.6 * min(height / width, 2.0))
+        figure = blank_figure(6.4, 1.2 + 5.6 * min(height / width, 2.0))
         if title:
             describe(figure, fill(title, TITLE_WIDTH))
         axes = figure.subplots()
@@ -106,14 +106,14 @@ def _draw_forces(axes: Axes, contacts: GrainContacts) -> None:
     where = " in the slice" if many else ""
     axes.set_title(f"Forces between grains{where}", color=INK)
     key = [
-        Line2D([], [], color=BODY, lw=WIDEST, label=f"pressing, {_force_text(largest)}"),
-        Line2D([], [], color=BODY, lw=WIDEST / 4, label=f"pressing, {_force_text(largest / 4)}"),
-        Line2D([], [], color=STACK, lw=WIDEST / 4, label=f"pulling, {_force_text(largest / 4)}"),
+        Line2D([], [], color=BODY, lw=WIDEST, label=f"pressing, {_force_label(largest)}"),
+        Line2D([], [], color=BODY, lw=WIDEST / 4, label=f"pressing, {_force_label(largest / 4)}"),
+        Line2D([], [], color=STACK, lw=WIDEST / 4, label=f"pulling, {_force_label(largest / 4)}"),
     ]
     axes.figure.legend(handles=key, loc="outside lower center", ncols=3, edgecolor=FAINT)
 
 
-def _force_text(newtons: float) -> str:
+def _force_label(newtons: float) -> str:
     for unit, factor in (("N", 1.0), ("mN", 1e3)):
         if newtons * factor >= 1.0:
             return f"{newtons * factor:.3g} {unit}"

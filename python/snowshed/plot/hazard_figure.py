@@ -9,7 +9,7 @@ import numpy as np
 
 from snowshed.base.arrays import Floats
 from snowshed.io.raster.raster import Raster
-from snowshed.plot.figure_style import INK, STYLE, blank
+from snowshed.plot.figure_style import INK, STYLE, blank_figure
 from snowshed.plot.terrain_map import (
     Extent,
     Outline,
@@ -64,7 +64,7 @@ def probability_figure(
 
     width, height = panel_size(part, area)
     with rc_context(STYLE):
-        figure = blank(width + 1.5, height + 0.9)
+        figure = blank_figure(width + 1.5, height + 0.9)
         axes = figure.subplots()
         draw_terrain(axes, ground, part)
         shown = np.where(probability > 0.0, probability, np.nan)
@@ -108,7 +108,7 @@ def percentiles_figure(
     ratio = (part[1] - part[0]) / (part[3] - part[2])
     width = (ACROSS - len(values)) / len(values)  # an inch for each bar of colours
     with rc_context(STYLE):
-        figure = blank(ACROSS, width / ratio + 0.5)
+        figure = blank_figure(ACROSS, width / ratio + 0.5)
         panels = figure.subplots(1, len(values), squeeze=False).ravel()
         for axes, (quantity, raster) in zip(panels, values.items()):
             draw_terrain(axes, ground, part, labels=False)

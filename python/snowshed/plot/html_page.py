@@ -92,7 +92,7 @@ class Picture:
         Raises
         ------
         InputError
-            If it is no PNG file.
+            If it is not a PNG file.
         """
         png = file.read_bytes()
         if not png.startswith(PNG) or len(png) < HEADER:

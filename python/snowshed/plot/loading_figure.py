@@ -9,7 +9,16 @@ import numpy as np
 
 from snowshed.methods.grains.curve import LoadingCurve, stage_strain, stage_stress
 from snowshed.methods.grains.phases import LINEAR, Phases, find_phases
-from snowshed.plot.figure_style import BODY, COLOURS, FAINT, INK, STACK, STYLE, blank, describe
+from snowshed.plot.figure_style import (
+    BODY,
+    COLOURS,
+    FAINT,
+    INK,
+    STACK,
+    STYLE,
+    blank_figure,
+    describe,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -50,7 +59,7 @@ def loading_figure(curve: LoadingCurve, kinds: Sequence[str], title: str = "") -
 
     along, label = _abscissa(curve, kinds)
     with rc_context(STYLE):
-        figure = blank(9.0, 6.6)
+        figure = blank_figure(9.0, 6.6)
         if title:
             describe(figure, title)
         (stress, beginning), (bonds, last) = figure.subplots(2, 2)
@@ -75,7 +84,7 @@ def loading_figure(curve: LoadingCurve, kinds: Sequence[str], title: str = "") -
 
 
 def _abscissa(curve: LoadingCurve, kinds: Sequence[str]) -> tuple[np.ndarray, str]:
-    """Return what to draw a test against: a strain, if it is one of all stages, else the time."""
+    """Return the abscissa of a test: a strain, if all stages have it, else the time."""
     if set(kinds) <= {"compress", "isotropic", "unload", "hold"}:
         return 100.0 * curve["axial_strain"], "axial strain, %"
     if set(kinds) <= {"stretch", "hold"}:

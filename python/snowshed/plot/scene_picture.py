@@ -12,7 +12,7 @@ from snowshed._core import Simulation
 from snowshed.base.arrays import Floats
 from snowshed.methods.registry import resolution_of
 from snowshed.plot.caption import scene_caption
-from snowshed.plot.figure_style import FAINT, INK, STACK, blank, describe, quiet
+from snowshed.plot.figure_style import FAINT, INK, STACK, blank_figure, describe, quiet
 from snowshed.scene.builders.slope import BOARD_CELLS
 from snowshed.scene.scene import SceneLike, resolve_scene
 
@@ -43,7 +43,7 @@ def scene_figure(scene: SceneLike) -> Figure:
     simulation.begin_event()
     data = resolved.data
     left, right, bottom, top = _limits(simulation, data)
-    figure = blank(WIDTH, min(1.2 + (WIDTH - 1) * (top - bottom) / (right - left), 9.0))
+    figure = blank_figure(WIDTH, min(1.2 + (WIDTH - 1) * (top - bottom) / (right - left), 9.0))
     axes = figure.subplots()
     axes.set(xlim=(left, right), ylim=(bottom, top), aspect="equal")
     _draw_obstacles(axes, simulation)
@@ -69,7 +69,7 @@ def scene_figure(scene: SceneLike) -> Figure:
 
 
 def _limits(simulation: Simulation, scene: Mapping[str, Any]) -> Limits:
-    """Return a view of the snow, of what holds it, and of as much ground to either side."""
+    """Return a view of the snow, its supports, and as much ground to either side."""
     snow = simulation.positions()[:, [0, 2]]
     low, high = snow.min(axis=0), snow.max(axis=0)
     floor = min(float(low[1]), 0.0)

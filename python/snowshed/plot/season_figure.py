@@ -21,7 +21,7 @@ from snowshed.plot.figure_style import (
     INK,
     LAST,
     STACK,
-    blank,
+    blank_figure,
     describe,
     quiet,
 )
@@ -75,7 +75,7 @@ def season_figure(
     snow
         A line on the quality of the snow data.
     """
-    figure = blank(*SIZE)
+    figure = blank_figure(*SIZE)
     load, stack, side = figure.subplots(3, 1, height_ratios=(1.0, 1.1, 1.2))
     moments = [datetime.fromisoformat(date) for date in table["date"]]
     dates: Floats = date2num(moments)  # type: ignore[no-untyped-call]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from snowshed.methods.slide.maps import SlideMaps
-from snowshed.plot.figure_style import INK, STYLE, blank
+from snowshed.plot.figure_style import INK, STYLE, blank_figure
 from snowshed.plot.terrain_map import (
     Outline,
     coordinates,
@@ -55,7 +55,7 @@ def slide_figure(
     part = focus(ground, snow, outlines)
     width, height = panel_size(part, area)
     with rc_context(STYLE):
-        figure = blank(width + 1.5, height + 0.9)
+        figure = blank_figure(width + 1.5, height + 0.9)
         axes = figure.subplots()
         draw_terrain(axes, ground, part)
         values = np.where(snow, getattr(maps, quantity), np.nan)

@@ -19,7 +19,7 @@ from snowshed.io.raster.raster import Raster
 from snowshed.methods.slide.frames import Frame
 from snowshed.methods.slide.maps import SlideMaps
 from snowshed.methods.slide.validity import ReleaseArea
-from snowshed.plot.figure_style import STYLE, blank
+from snowshed.plot.figure_style import STYLE, blank_figure
 from snowshed.plot.html_page import Grid, Picture, template
 from snowshed.plot.slide_figure import LEAST_SHOWN, PEAKS, slide_figure
 from snowshed.plot.terrain_map import (
@@ -118,7 +118,7 @@ def write_slide_page(
 
 
 def headline(figures: Mapping[str, Any]) -> str:
-    """Return in one sentence how far, how fast and how hard a slide went.
+    """Return a sentence on the distance, speed and pressure of a slide.
 
     Examples
     --------
@@ -224,7 +224,7 @@ def _film(maps: SlideMaps, outlines: Sequence[Outline], frames: Sequence[Frame])
     rows, columns, part = _window(maps, outlines)
     ground = maps.raster(maps.terrain)
     width, height = panel_size(part, 38.0)
-    figure = blank(width, height)
+    figure = blank_figure(width, height)
     figure.set_layout_engine("none")
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
     draw_terrain(axes, ground, part)
@@ -299,7 +299,7 @@ def multiples_figure(
     width, height = panel_size(part, 9.0 if across == 3 else 14.0)
     norm = Normalize(0.0, _largest(frames))
     with mpl.rc_context(STYLE):
-        figure = blank(width * across, (height + 0.3) * down + 0.5)
+        figure = blank_figure(width * across, (height + 0.3) * down + 0.5)
         panels = figure.subplots(down, across, squeeze=False).ravel()
         for axes, frame in zip(panels, chosen):
             draw_terrain(axes, ground, part, labels=False)

@@ -25,7 +25,7 @@ from snowshed.plot.figure_style import (
     INK,
     LAST,
     STACK,
-    blank,
+    blank_figure,
     describe,
     quiet,
 )
@@ -68,7 +68,7 @@ def stack_figure(
     level_ground = scene.get("ground") is not None
     views = [_filling(x) for x in (_scene_limits(stack, tilt, frame), _stack_limits(stack, tilt))]
     heights = [VIEW_WIDTH * _steepness(view) for view in views]
-    figure = blank(WIDTH, sum(heights) + 1.9)
+    figure = blank_figure(WIDTH, sum(heights) + 1.9)
     overview, enlarged = figure.subplots(2, 1, height_ratios=heights)
     for axes, view in zip((overview, enlarged), views):
         axes.set(xlim=view[:2], ylim=view[2:], aspect="equal", ylabel="z, m")
@@ -113,7 +113,7 @@ def growth_figure(table: pd.DataFrame, scene: Mapping[str, Any]) -> Figure:
     scene
         The data of the complete scene, for the caption.
     """
-    figure = blank(WIDTH, 6.6)
+    figure = blank_figure(WIDTH, 6.6)
     for axes, name in zip(np.ravel(figure.subplots(2, 2, sharex=True)), QUANTITIES):
         stack, body = table[f"{name}_m"], table[f"body_{name}_m"]
         axes.plot(table["event"], stack, "o-", color=STACK, linewidth=2, label="stack (97 %)")

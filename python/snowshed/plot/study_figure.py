@@ -10,7 +10,7 @@ from matplotlib import rc_context
 from matplotlib.figure import Figure
 
 from snowshed.base.formatting import plural
-from snowshed.plot.figure_style import BODY, STACK, STYLE, blank, headline
+from snowshed.plot.figure_style import BODY, STACK, STYLE, blank_figure, headline
 from snowshed.plot.labels import label
 
 if TYPE_CHECKING:
@@ -60,7 +60,7 @@ def study_figure(table: pd.DataFrame, axes: Sequence[str], title: str) -> Figure
     shown = [path for path in axes if path in last][:MOST_PARAMETERS]
     with rc_context(STYLE):
         rows, columns = max(len(measures), 1), max(len(shown), 1)
-        figure = blank(1.2 + COLUMN * columns, 0.9 + ROW * rows)
+        figure = blank_figure(1.2 + COLUMN * columns, 0.9 + ROW * rows)
         count = plural(len(last), "run")
         headline(figure, f"{title}: {count}, each after its last event")
         grid = figure.subplots(rows, columns, squeeze=False, sharey="row")

@@ -1,7 +1,7 @@
-"""Results of a slide as AvaFrame 2.1 lays them out, so that its tools and QGIS find them.
+"""Results of a slide in the layout of AvaFrame 2.1, so that its tools and QGIS read them.
 
 com5SnowSlide runs com1DFA, and puts its results into ``Outputs/com1DFA``; the same files stand in
-``Outputs/com5SnowSlide``, the name that AvaFrame's tools take for this module:
+``Outputs/com5SnowSlide``, the name of this module in AvaFrame's tools:
 
 ============================================= ================================================
 peakFiles/NAME_{ppr,pft,pfv}.asc or .tif      peak maps at the end, in the terrain's format
@@ -57,14 +57,14 @@ NUMERICS: Mapping[str, str] = {
     "thresholdMassSplit": "split_ratio",
     "stopCrit": "stop_ratio",
 }
-#: Columns of times that AvaFrame's tools ask for; there is nothing to say in them.
+#: Columns of times that AvaFrame's tools need; they stay empty.
 TIMINGS = (
     "timeLoop", "timeForce", "timeForceSPH", "timePos", "timeNeigh", "timeField", "nSave",
 )  # fmt: skip
 
 
 def simulation_name(simulation: AvaFrameSimulation) -> str:
-    """Return the name of a simulation, in the form that AvaFrame's ``parseSimName`` takes apart."""
+    """Return the name of a simulation, in the form that AvaFrame's ``parseSimName`` reads."""
     return _name(simulation, simulation.scene.resolve())
 
 
@@ -76,14 +76,14 @@ def write_avaframe_outputs(folder: Path, simulation: AvaFrameSimulation, results
     folder
         The folder that holds ``Outputs``.
     simulation
-        What was simulated.
+        The scene of the simulation, with AvaFrame's settings.
     results
-        Its results folder. Where maps at earlier times are asked for, the steps are run again.
+        Its results folder. For maps at earlier times, the steps are run again.
 
     Raises
     ------
     InputError
-        If a GeoTIFF is to be written and rasterio is missing.
+        If the output is a GeoTIFF and rasterio is missing.
     OSError
         If a file cannot be read or written.
     """
@@ -107,26 +107,26 @@ def write_avaframe_outputs(folder: Path, simulation: AvaFrameSimulation, results
     for each in peaks:
         for kind in kinds:
             write_raster(each / f"{name}_{kind}{ending}", final[kind])
-        write_text(each.parent / f"mass_{name}.txt", _mass_text(summary))
+        write_text(each.parent / f"mass_{name}.txt", _mass_table(summary))
         _write_configuration(each.parent / "configurationFiles", name, configuration, summary, last)
     return name
 
 
 def _final_maps(results: Path, ready: ResolvedScene) -> dict[str, Raster]:
-    """Return the maps at the end by their types, from a results folder."""
-    found = {kind: read_raster(results / f"peaks/{kind}.asc") for kind in ("ppr", "pft", "pfv")}
-    found.update({kind: read_raster(results / f"flow/{kind}.asc") for kind in ("FT", "FV")})
-    found["P"] = replace(found["FV"], heights=_pressure(ready, found["FV"].heights))
+    """Return the maps at the end by type, from a results folder."""
+    maps = {kind: read_raster(results / f"peaks/{kind}.asc") for kind in ("ppr", "pft", "pfv")}
+    maps.update({kind: read_raster(results / f"flow/{kind}.asc") for kind in ("FT", "FV")})
+    maps["P"] = replace(maps["FV"], heights=_pressure(ready, maps["FV"].heights))
     crs = _crs(ready)
-    return {kind: replace(raster, crs=crs) for kind, raster in found.items()}
+    return {kind: replace(raster, crs=crs) for kind, raster in maps.items()}
 
 
 def _earlier_maps(
     simulation: AvaFrameSimulation, ready: ResolvedScene, last: int
 ) -> Iterator[tuple[float, dict[str, Raster]]]:
-    """Return the maps by type at the times that are asked for, but the end; one time after another.
+    """Yield the maps by type at the requested times except the end, time after time.
 
-    They are made as they are asked for: a terrain's maps at thousands of times fit into no memory.
+    They are made one by one, because a terrain's maps at thousands of times do not fit into memory.
     """
     time_step = float(ready.data["numerics"]["time_step"])
     steps = {_step_at(time, time_step): time for time in simulation.project.saved_times}
@@ -137,7 +137,7 @@ def _earlier_maps(
 
 
 def maps_at(ready: ResolvedScene, steps: Sequence[int]) -> Iterator[tuple[int, SlideMaps]]:
-    """Return the maps of a slide after some numbers of steps, one after another."""
+    """Yield the maps of a slide after given numbers of steps, one after another."""
     if not steps:
         return
     simulation = _core.Simulation(ready.core, ready.base_dir)
@@ -181,7 +181,7 @@ def _fields(ready: ResolvedScene, maps: SlideMaps) -> dict[str, Floats]:
 
 
 def _pressure(ready: ResolvedScene, speed: Floats) -> Floats:
-    """Return the dynamic pressure, Pa: AvaFrame has its peak in kPa, but not this."""
+    """Return the dynamic pressure, Pa; AvaFrame has its peak in kPa, but not this one."""
     pressure: Floats = float(ready.data["numerics"]["density"]) * speed**2
     return pressure
 
@@ -263,7 +263,7 @@ def _on_one_line(value: str) -> str:
 
 
 def _add_row(file: Path, row: Mapping[str, str]) -> None:
-    """Add a row to a table, in place of one of the same simulation."""
+    """Add a row to a table; it replaces a row of the same simulation."""
     rows: list[Mapping[str, str]] = []
     if file.is_file():
         with file.open(newline="", encoding="utf-8") as text:
@@ -277,7 +277,7 @@ def _add_row(file: Path, row: Mapping[str, str]) -> None:
     write_text(file, target.getvalue())
 
 
-def _mass_text(summary: SlideSummary) -> str:
+def _mass_table(summary: SlideSummary) -> str:
     lines = ["time, current, entrained, detrained, detrainedTotal, stopped, initialized"]
     on_terrain = summary.released_kg + summary.entrained_kg - summary.left_terrain_kg
     for time, now, entrained, released in (

@@ -43,26 +43,26 @@ def dimension_ratio(df3: pd.DataFrame, df2: pd.DataFrame) -> pd.DataFrame:
     return table
 
 
-def compare_folders(one: PathLike, other: PathLike) -> pd.DataFrame:
-    """Return `dimension_ratio` of two results folders, in whichever order they come.
+def compare_folders(first: PathLike, second: PathLike) -> pd.DataFrame:
+    """Return `dimension_ratio` of two results folders, in either order.
 
     Raises
     ------
     InputError
-        If they are not one 3D and one 2D run, or hold no results.
+        If they are not a 3D and a 2D run, or hold no results.
     """
-    tables = {_dimension(folder): read_events(folder) for folder in (one, other)}
+    tables = {_dimension(folder): read_events(folder) for folder in (first, second)}
     if len(tables) < 2:
-        raise InputError(f"{one}, {other}: both {next(iter(tables))}D; give one 3D and one 2D run")
+        raise InputError(f"{first}, {second}: both {next(iter(tables))}D; give a 3D and a 2D run")
     return dimension_ratio(tables[3], tables[2])
 
 
-def same_dimension(one: PathLike, other: PathLike) -> bool:
+def same_dimension(first: PathLike, second: PathLike) -> bool:
     """Return whether two results folders are both of 2D or both of 3D runs; raises InputError."""
-    return _dimension(one) == _dimension(other)
+    return _dimension(first) == _dimension(second)
 
 
-def height_ratio(one: PathLike, other: PathLike) -> pd.DataFrame:
+def height_ratio(first: PathLike, second: PathLike) -> pd.DataFrame:
     """Return the heights of the stacks of two runs, event by event, and their ratio.
 
     Returns
@@ -75,7 +75,7 @@ def height_ratio(one: PathLike, other: PathLike) -> pd.DataFrame:
     InputError
         If a folder holds no results.
     """
-    heights = [read_events(folder)[["event", "height_m"]] for folder in (one, other)]
+    heights = [read_events(folder)[["event", "height_m"]] for folder in (first, second)]
     table: pd.DataFrame = heights[0].merge(heights[1], on="event", suffixes=("_1", "_2"))
     table = table.rename(columns={"height_m_1": "height_1_m", "height_m_2": "height_2_m"})
     table["ratio"] = table.height_1_m / table.height_2_m

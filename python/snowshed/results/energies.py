@@ -14,7 +14,7 @@ PICTURE = "energy.png"
 
 
 def write_energy_history(simulation: _core.Simulation, folder: PathLike) -> None:
-    """Write the energies over time into a results folder, as far as the run has come."""
+    """Write the energies over time so far into a results folder."""
     import pandas as pd
 
     table = pd.DataFrame(simulation.energy_history()).astype({"event": int})
@@ -27,12 +27,12 @@ def draw_energies(folder: Union[PathLike, Results]) -> Path:
     Parameters
     ----------
     folder
-        The folder, or what reads it.
+        The folder, or its `Results`.
 
     Raises
     ------
     InputError
-        If there are none, or the table is damaged.
+        If the energies are missing, or the table is damaged.
 
     Examples
     --------
@@ -46,9 +46,9 @@ def draw_energies(folder: Union[PathLike, Results]) -> Path:
     'energy.png'
     """
     from snowshed.plot.energy_figure import energy_figure
-    from snowshed.plot.figure_style import save
+    from snowshed.plot.figure_style import save_figure
 
     results = folder if isinstance(folder, Results) else Results(folder)
     picture = results.folder / PICTURE
-    save(energy_figure(results.energy_history, results.scene.data), picture)
+    save_figure(energy_figure(results.energy_history, results.scene.data), picture)
     return picture

@@ -1,7 +1,7 @@
-"""The particles after an event, as far as a stack is measured from them, in few bytes.
+"""The particles after an event in few bytes: the quantities from which a stack is measured.
 
-A results folder holds all quantities of the particles; this is what is kept of them where there
-are thousands of runs, so that a new measure needs no new run.
+A results folder holds all quantities of the particles. A study of thousands of runs stores only
+these, so that a new measure needs no new run.
 """
 
 from __future__ import annotations
@@ -35,15 +35,15 @@ class EventParticles:
     Attributes
     ----------
     positions : (n, 3)
-        m, in single precision as all that follows.
+        Positions, m, in single precision like all other arrays.
     masses, densities : (n,)
-        kg (in 2D per metre of width), and kg/m3.
+        Masses, kg (in 2D per metre of width), and densities, kg/m3.
     on_panel : (n,)
         Booleans: True for snow that lies on the panel.
     dimension, dx, ground_tilt_deg
-        2 or 3; size of the grid cells, m; tilt of the ground, degrees.
+        Dimension, 2 or 3; size of the grid cells, m; tilt of the ground, degrees.
     around
-        The structures that particles touch, and the ground that is not plane.
+        The structures that particles touch, and ground that is not plane.
     """
 
     positions: Singles
@@ -56,7 +56,7 @@ class EventParticles:
     around: Surroundings = field(default_factory=Surroundings)
 
     def measure(self, trimming: str = DEFAULT_TRIMMING) -> StackMeasure:
-        """Measure the stack by a reading of A.4.2; see `snowshed.measure_stack`."""
+        """Measure the stack by a trimming rule of A.4.2; see `snowshed.measure_stack`."""
         return measure_stack(
             self.positions,
             self.masses,
@@ -105,20 +105,20 @@ class EventParticles:
         Raises
         ------
         InputError
-            If it did not, or the bytes are damaged.
+            If the bytes are damaged, or of another origin.
         """
         try:
             with open_archive(data) as archive:
-                return cls._of(archive)
+                return cls._from_archive(archive)
         except (OSError, *DAMAGED) as error:
-            raise InputError(f"not particles that snowshed kept: {error}") from None
+            raise InputError(f"not particles that snowshed stored: {error}") from None
 
     @classmethod
-    def _of(cls, archive: Any) -> EventParticles:
+    def _from_archive(cls, archive: Any) -> EventParticles:
         dimension, dx, tilt = archive["scene"].tolist()
-        places, masses = archive["places"], archive["masses"]
+        coordinates, masses = archive["places"], archive["masses"]
         positions = np.zeros((len(masses), 3), dtype=np.float32)
-        positions[:, [0, 2] if dimension == 2 else [0, 1, 2]] = places.T
+        positions[:, [0, 2] if dimension == 2 else [0, 1, 2]] = coordinates.T
         on_panel, *structures = (
             np.unpackbits(archive[name], count=len(masses)).astype(bool)
             for name in ("on_panel", "structures")
@@ -133,12 +133,12 @@ class EventParticles:
 
 
 def read_event_particles(folder: PathLike) -> Iterator[tuple[int, EventParticles]]:
-    """Yield each event that a results folder tells of, with the particles after it.
+    """Yield each event in a results folder, with the particles after it.
 
     Raises
     ------
     InputError
-        If the folder is damaged, or was written before it told how the events went.
+        If the folder is damaged, or of a version that did not record the events.
     """
     results = RunFolder(folder)
     scene = ResolvedScene.load(results.scene)
@@ -147,14 +147,14 @@ def read_event_particles(folder: PathLike) -> Iterator[tuple[int, EventParticles
         event, laid = facts.get("event"), facts.get("laid_height_m")
         if event is None or laid is None:
             raise InputError(f"{results.run}: damaged: an event without its number or laid height")
-        found = read_particles(results.particles_of(event))
-        positions = found["position"].astype(float)
+        particles = read_particles(results.particles_of(event))
+        positions = particles["position"].astype(float)
         yield (
             event,
             EventParticles(
-                found["position"],
-                found["mass"],
-                found["density"],
+                particles["position"],
+                particles["mass"],
+                particles["density"],
                 simulation.on_panel_at(positions, laid),
                 simulation.dimension,
                 simulation.resolution,

@@ -13,17 +13,17 @@ from snowshed.base.arrays import Numbers
 
 @dataclass(frozen=True)
 class Field:
-    """A quantity of all particles, read each time it is asked for.
+    """A quantity of all particles; each access reads it anew.
 
     Attributes
     ----------
     name, unit, description
-        What it is, in SI units; "1" where it has none.
+        Name, SI unit ("1" where it has none) and meaning.
     dtype
         Type of the elements of `values`.
     stored
-        Whether the particles hold the quantity as it is, so that `values` is a view; otherwise
-        `values` is computed.
+        Whether the particles store this quantity, so that `values` is a view; otherwise `values` is
+        computed.
 
     Examples
     --------
@@ -46,15 +46,15 @@ class Field:
         """The values, in the order of storage; an array that cannot be written to.
 
         Where `stored`, the array shows the particles' memory without a copy. It is valid until the
-        next call that changes the simulation. After that it may show anything, since particles are
-        sorted into other memory from time to time, and must be taken anew; copy what is to stay.
-        The array keeps its memory, which is never freed below it. Between two such calls all
-        fields are in the same order.
+        next call that changes the simulation. Then take a new one, because particles move to other
+        memory when they are sorted, and the old array may show anything; copy values that you need
+        later. The array never points to freed memory. Between two such calls all fields have the
+        same order.
         """
         return self._simulation.field(self.name)
 
     def by_id(self) -> Numbers:
-        """Return a copy ordered by the particles' ids, in double or, of whole numbers, 64 bits."""
+        """Return a copy ordered by the particles' ids, in double precision or 64-bit integers."""
         return self._simulation.field_by_id(self.name)
 
     def __repr__(self) -> str:
@@ -63,7 +63,7 @@ class Field:
 
 
 class Fields(Mapping[str, Field]):
-    """The fields of a simulation by name; a KeyError lists the names there are."""
+    """The fields of a simulation by name; a KeyError lists the names."""
 
     def __init__(self, core: _core.Simulation) -> None:
         self._fields = {info[0]: Field(*info, core) for info in core.fields()}
@@ -72,7 +72,7 @@ class Fields(Mapping[str, Field]):
         try:
             return self._fields[name]
         except KeyError:
-            raise KeyError(f"no field {name!r}; there are {', '.join(self._fields)}") from None
+            raise KeyError(f"no field {name!r}; allowed: {', '.join(self._fields)}") from None
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._fields)

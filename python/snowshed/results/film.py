@@ -1,4 +1,4 @@
-"""The film of a run: it must be the one that run.json knows; and as an xarray Dataset."""
+"""The film of a run: checked against run.json, and as an xarray Dataset."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def run_film(path: Path, record: Mapping[str, Any]) -> Film:
     path
         The file.
     record
-        What run.json says, if it is there; that of the version before does not know the film.
+        Content of run.json, if it exists; that of an older version does not know the film.
 
     Raises
     ------
@@ -62,9 +62,9 @@ def _check_end(film: Film, record: Mapping[str, Any]) -> None:
     """Check by the times of the events that no frame is missing at the end."""
     events = record.get("finished_events")
     facts = [event for event in events or [] if isinstance(event, Mapping)]
-    times = [float(one["sim_time_s"]) for one in facts if is_number(one.get("sim_time_s"))]
+    times = [float(event["sim_time_s"]) for event in facts if is_number(event.get("sim_time_s"))]
     if not film.whole or not film.frames:
-        raise InputError(f"{film.path}: damaged: cut off, though the run is finished")
+        raise InputError(f"{film.path}: damaged: cut off, although the run is finished")
     if times and not math.isclose(film.frames[-1].time, math.fsum(times), rel_tol=1e-9):
         raise InputError(f"{film.path}: damaged: it does not end where the run ended")
 
@@ -77,7 +77,7 @@ def film_dataset(film: Film, every: int = 1) -> xarray.Dataset:
     film
         The film.
     every
-        Take every `every`-th frame.
+        Keep every `every`-th frame.
 
     Returns
     -------
@@ -88,7 +88,7 @@ def film_dataset(film: Film, every: int = 1) -> xarray.Dataset:
     Raises
     ------
     InputError
-        If xarray (extra ``study``) is not installed, the film is damaged, or does not fit into
+        If xarray (extra ``study``) is not installed, or the film is damaged or too large for the
         memory.
     """
     library = require("xarray", "study", "a Dataset of a film")
@@ -97,26 +97,30 @@ def film_dataset(film: Film, every: int = 1) -> xarray.Dataset:
     for note in film.notes:
         tell(f"{film.path}: {note}")
     frames = _chosen(film, every)
-    ids, first = np.unique(np.concatenate([one.ids for one in frames]), return_index=True)
+    ids, first = np.unique(np.concatenate([frame.ids for frame in frames]), return_index=True)
     kinds = {
-        name: np.concatenate([getattr(one, name) for one in frames])[first]
+        name: np.concatenate([getattr(frame, name) for frame in frames])[first]
         for name in ("events", "materials")
     }
     shape = (len(frames), len(ids))
     position = np.full((*shape, len(AXES)), np.nan, dtype=np.float32)
     values = [np.full(shape, np.nan, dtype=np.float32) for _ in film.quantities]
-    for number, one in enumerate(frames):
-        places = np.searchsorted(ids, one.ids)
-        position[number, places] = one.positions
+    for number, frame in enumerate(frames):
+        columns = np.searchsorted(ids, frame.ids)
+        position[number, columns] = frame.positions
         for which, quantity in enumerate(film.quantities):
-            values[which][number, places] = quantity.values(one.codes[:, which])
+            values[which][number, columns] = quantity.values(frame.codes[:, which])
     dimensions = ("frame", "particle")
     dataset: xarray.Dataset = library.Dataset(
         {
             "position": ((*dimensions, "component"), position, _facts("position")),
             **{
-                one.name: (dimensions, found, {"units": one.unit, "long_name": one.meaning})
-                for one, found in zip(film.quantities, values)
+                quantity.name: (
+                    dimensions,
+                    array,
+                    {"units": quantity.unit, "long_name": quantity.meaning},
+                )
+                for quantity, array in zip(film.quantities, values)
             },
         },
         coords={
@@ -126,10 +130,10 @@ def film_dataset(film: Film, every: int = 1) -> xarray.Dataset:
             "material_id": ("particle", kinds["materials"]),
             "time": (
                 "frame",
-                [one.time for one in frames],
+                [frame.time for frame in frames],
                 {"units": "s", "long_name": "Time, through all events"},
             ),
-            "event_number": ("frame", [one.event for one in frames]),
+            "event_number": ("frame", [frame.event for frame in frames]),
         },
         attrs={"share_of_particles": film.share, "quantum_m": film.quantum},
     )
@@ -137,21 +141,21 @@ def film_dataset(film: Film, every: int = 1) -> xarray.Dataset:
 
 
 def _facts(name: str) -> dict[str, str]:
-    unit, meaning = {one: (unit, text) for one, unit, text in _core.quantities()}[name]
+    unit, meaning = {known: (unit, text) for known, unit, text in _core.quantities()}[name]
     return {"units": unit, "long_name": meaning}
 
 
 def _chosen(film: Film, every: int) -> list[FilmFrame]:
     if not film.frames:
-        raise InputError(f"{film.path}: holds no frame yet")
+        raise InputError(f"{film.path}: has no frame yet")
     facts = film.frames[::every]
-    # A frame as it is decoded, and its row in the Dataset.
+    # A decoded frame, and its row in the Dataset.
     each = 8 * (2 * len(AXES) + 4 + len(film.quantities))
-    needed = each * (sum(one.particles for one in facts) + len(facts) * facts[-1].particles)
+    needed = each * (sum(frame.particles for frame in facts) + len(facts) * facts[-1].particles)
     available = _core.available_memory_bytes()
     if needed > available:
         raise InputError(
-            f"{film.path}: {len(facts)} frames need {needed / 1e9:.1f} GB of memory, and "
+            f"{film.path}: {len(facts)} frames need {needed / 1e9:.1f} GB of memory, but "
             f"{available / 1e9:.1f} GB can be had; take fewer with every=2 or more"
         )
-    return [one for number, one in enumerate(film) if number % every == 0]
+    return [frame for number, frame in enumerate(film) if number % every == 0]

@@ -1,16 +1,16 @@
-"""The results folder of a run: what is in it, and how it is opened.
+"""The results folder of a run: its files, and their checks.
 
 ================== ==========================================================================
 scene.json         the complete scene that made the results
 events.csv         one row per event: `EVENT_COLUMNS`
 outline.csv        profile of the stack after each event: event, x, z
-conversions.csv    how far reseeding moved the stack (only with between = "reseed")
-ageing.csv         what time did to the stack between events (only if it aged), and how long it
-                   had: ageing.json
+conversions.csv    changes of the stack by reseeding (only with between = "reseed")
+ageing.csv         changes of the stack by ageing between events (only if it aged); its settings
+                   and times are in ageing.json
 energy.csv         energy balance at the end of each event (only with output.energy)
 energy_history.csv the same over time, with energy.png, a picture of it
-run.json           version, machine, size and speed of the run, how each event went, and its status
-checkpoint.bin     the state from which the run goes on
+run.json           version, machine, size, speed and status of the run, and a record of each event
+checkpoint.bin     the state from which the run resumes
 particles/         the particles after each event (.vtp); ``particles.pvd`` opens them as a series
 film.bin           the particles over time, for `snowshed view` (unless output.film = false)
 solids.vtp         panel, ground and obstacles as triangles
@@ -19,10 +19,10 @@ stack.png          side view of the last stack
 growth.png         height, length, head and tail against the event
 ================== ==========================================================================
 
-``snowshed-run`` writes the same folder without tables and pictures, which resuming it with
-``snowshed run --resume`` adds. What is then measured comes from the stored particles, in single
-precision: its last digits may differ from what is measured while a run goes on. conversions.csv
-has no rows of events that ``snowshed-run`` began.
+``snowshed-run`` writes the same folder without tables and pictures; ``snowshed run --resume`` adds
+them. Such measures come from the stored particles, in single precision: their last digits may
+differ from measures during a run. conversions.csv has no rows of events that ``snowshed-run``
+began.
 """
 
 from __future__ import annotations
@@ -102,7 +102,7 @@ EVENT_COLUMNS = (
 #: Checksums of tables, by name: of the rows through an event, by its number.
 Checksums = Mapping[str, Mapping[str, str]]
 EVENTS, ENERGY = "events.csv", "energy.csv"
-#: Columns that hold words.
+#: Columns that hold texts.
 WORDS = ("ended", "trimming")
 
 
@@ -159,25 +159,27 @@ class RunFolder:
         self.energies = Table(self.folder / ENERGY)
 
     def write_ageing(self, ageing: Mapping[str, Any]) -> None:
-        """Write down what time does to the stack between the events."""
+        """Record the ageing of the stack between the events."""
         write_text(self.ageing, json.dumps(ageing, indent=2) + "\n")
 
     def check(self, ageing: Optional[Mapping[str, Any]]) -> None:
-        """Raise InputError if the tables are damaged, or the stack aged in another way."""
+        """Raise InputError if the tables are damaged, or the ageing settings differ."""
         if (read_object(self.ageing) if self.ageing.is_file() else None) != ageing:
-            raise InputError(f"{self.ageing}: between its events the stack aged in another way")
+            raise InputError(
+                f"{self.ageing}: ageing settings differ from those of the run being resumed"
+            )
         if self.events.rows:
             parse_events(self.events.path)
 
     def missing_events(self, done: int) -> range:
-        """Return those of the events that are done which the table does not hold yet."""
+        """Return the events that are done but not yet in the table."""
         listed = len(self.events.rows)
         if [int(row["event"]) for row in self.events.rows] != list(range(1, listed + 1)):
             raise InputError(f"{self.events.path}: damaged: its events are not 1, 2, ...")
         return range(listed + 1, done + 1)
 
     def keep_through(self, event: int, *, running: bool) -> None:
-        """Drop what belongs to events after `event`, or to `event` itself if it still runs."""
+        """Drop the rows of events after `event`, and of `event` itself if it still runs."""
         self.events.keep_through(event - 1 if running else event)
         for table in (self.outlines, self.energies):  # an event's own row is written last
             table.keep_through(len(self.events.rows))
@@ -187,24 +189,26 @@ class RunFolder:
     def checksums(
         self, known: Checksums, event: int, *, running: bool
     ) -> dict[str, dict[str, str]]:
-        """Return `known` checksums with those of the rows that a checkpoint of `event` keeps."""
+        """Return `known` checksums with those of the rows that a checkpoint of `event` includes."""
         done = event - 1 if running else event
-        found = {name: dict(sums) for name, sums in known.items()}
+        sums_by_table = {name: dict(sums) for name, sums in known.items()}
         for table in self._tables():
             through = done if table in self._of_ended() else event
-            of_table = found.get(table.path.name, {})
+            of_table = sums_by_table.get(table.path.name, {})
             for later in [at for at in of_table if at.isdecimal() and int(at) > through]:
                 del of_table[later]  # of events that are run again
             table.fill_columns()
             if through > 0:
-                found.setdefault(table.path.name, {})[str(through)] = table.checksum(through)
-        return found
+                sums_by_table.setdefault(table.path.name, {})[str(through)] = table.checksum(
+                    through
+                )
+        return sums_by_table
 
     def check_rows(self, known: Checksums, event: int) -> None:
-        """Raise InputError if a table lacks rows that a run wrote, or has others.
+        """Raise InputError if a table lacks rows of the run, or has other rows.
 
-        Rows of ended events that are in no checksum are dropped, to be measured again. Of a run of
-        the version before there are no checksums.
+        Rows of ended events that are in no checksum are dropped and measured again. A run of the
+        previous version has no checksums.
         """
         if not known:
             return
@@ -243,7 +247,7 @@ class RunFolder:
 
 
 def _last_known(sums: Mapping[str, str], event: int) -> int:
-    """Return the last event up to `event` of which there is a checksum; 0 if there is none."""
+    """Return the last event up to `event` that has a checksum; 0 if none has."""
     return max((int(at) for at in sums if at.isdecimal() and int(at) <= event), default=0)
 
 
@@ -253,7 +257,7 @@ def read_events(folder: PathLike) -> pd.DataFrame:
     Raises
     ------
     InputError
-        If the folder holds no events.csv, it is no table of events, or not the one that the run
+        If the folder holds no events.csv, or the file is not the table of events that the run
         wrote.
     """
     path = Path(folder) / EVENTS
@@ -264,12 +268,12 @@ def read_events(folder: PathLike) -> pd.DataFrame:
 
 
 def parse_events(path: Path) -> pd.DataFrame:
-    """Read a table of events while its run goes on, when no checksum of it is known yet.
+    """Read a table of events during its run, before it has a checksum.
 
     Raises
     ------
     InputError
-        If it is no table of events.
+        If it is not a table of events.
     """
     table = read_csv(path)
     for name in ("event", "height_m"):

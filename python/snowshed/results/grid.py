@@ -1,7 +1,9 @@
 """The grid of a run at a moment: computed from the particles, as a Dataset and for ParaView.
 
-The solver keeps no grid between steps that others could read. This is the same transfer from
-particles to grid, by the same B-splines at the same nodes (docs/theory.md), outside of the steps.
+The solver stores no grid between steps. This is the same transfer from particles to grid, by the
+same B-splines at the same nodes (docs/methods/mpm-step.md), outside of the steps. It is written
+in NumPy, because the solver's transfer takes sorted tiles of particles in packs; tests compare the
+two, which are thus witnesses of each other.
 """
 
 from __future__ import annotations
@@ -44,7 +46,7 @@ def scene_grid(
     masses: Floats,
     affine: Optional[Floats] = None,
 ) -> GridFields:
-    """Return what the particles of a run give to the nodes of its grid.
+    """Return mass, velocity and density of a run's particles at the nodes of its grid.
 
     Parameters
     ----------
@@ -56,7 +58,7 @@ def scene_grid(
     Raises
     ------
     InputError
-        If the scene's method has no grid, there are no particles, or memory does not suffice.
+        If the scene's method has no grid, there are no particles, or the memory is too small.
     """
     method = method_of(scene)
     if not method.has_grid:
@@ -111,11 +113,11 @@ def grid_dataset(grid: GridFields, event: int, time: float) -> xarray.Dataset:
 def stored_grid(scene: Mapping[str, Any], file: Path) -> GridFields:
     """Return the grid of the particles that a run stored in a file.
 
-    The file holds positions and velocities in single precision, and not the affine velocities of
-    APIC, of whose momentum a node's share is then missing.
+    The file holds positions and velocities in single precision. It does not hold the affine
+    velocities of APIC, so that their share of a node's momentum is missing.
     """
-    found = {name: values.astype(float) for name, values in read_particles(file).items()}
-    return scene_grid(scene, found["position"], found["velocity"], found["mass"])
+    fields = {name: values.astype(float) for name, values in read_particles(file).items()}
+    return scene_grid(scene, fields["position"], fields["velocity"], fields["mass"])
 
 
 def write_grid(grid: GridFields, file: PathLike) -> None:
@@ -144,8 +146,8 @@ class GridFields:
     velocity : (nx, ny, nz, d) or (nx, nz, d)
         m/s; zero where there is no mass.
     density
-        Mass over the volume of a cell, kg/m3. Beside walls and at surfaces a node's share of space
-        is not full of snow.
+        Mass over the volume of a cell, kg/m3. It is too low beside walls and at surfaces, where
+        snow fills only part of a node's cell.
     """
 
     origin: Floats
@@ -165,20 +167,20 @@ def particles_to_grid(
     basis: Basis = "quadratic",
     affine: Optional[Floats] = None,
 ) -> GridFields:
-    """Return what particles give to the nodes of the grid.
+    """Return mass, velocity and density of particles at the nodes of the grid.
 
     Parameters
     ----------
     positions, velocities : (n, 3)
-        m, m/s; in 2D the plane is (x, z).
+        Positions, m, and velocities, m/s; in 2D the plane is (x, z).
     masses : (n,)
-        kg.
+        Masses, kg.
     dx
         Size of the grid's cells, m.
     dimension
         2 or 3.
     basis
-        Of the B-splines.
+        Kind of the B-splines.
     affine : (n, 3, 3) or (n, 9), optional
         The matrices C of APIC, 1/s.
 
@@ -195,17 +197,17 @@ def particles_to_grid(
     ((3, 3), 1.0, [1.0, 0.0])
     """
     if not len(positions):
-        raise InputError("particles: there are none, and hence no grid")
+        raise InputError("no particles: cannot build a grid")
     axes = [0, 2] if dimension == 2 else [0, 1, 2]
-    places, speeds = positions[:, axes] / dx, velocities[:, axes]
-    lowest = np.floor(places - OFFSET[basis]).astype(np.int64)
+    points, speeds = positions[:, axes] / dx, velocities[:, axes]
+    lowest = np.floor(points - OFFSET[basis]).astype(np.int64)
     first = lowest.min(axis=0)
     shape = tuple((lowest.max(axis=0) - first + SUPPORT[basis]).tolist())
     if np.prod(shape, dtype=float) > MOST_NODES:
         raise InputError(
             f"grid: {' x '.join(map(str, shape))} nodes around all particles do not fit into memory"
         )
-    weights = _weights(places - OFFSET[basis] - lowest, basis)
+    weights = _weights(points - OFFSET[basis] - lowest, basis)
     matrices = None if affine is None else affine.reshape(-1, 3, 3)[:, axes][:, :, axes]
     mass, momentum = np.zeros(shape), np.zeros((*shape, dimension))
     for steps in itertools.product(range(SUPPORT[basis]), repeat=dimension):
@@ -215,7 +217,7 @@ def particles_to_grid(
         mass += np.bincount(flat, share, mass.size).reshape(shape)
         given = speeds
         if matrices is not None:
-            given = speeds + np.einsum("nij,nj->ni", matrices, (nodes - places) * dx)
+            given = speeds + np.einsum("nij,nj->ni", matrices, (nodes - points) * dx)
         for axis in range(dimension):
             part = np.bincount(flat, share * given[:, axis], mass.size)
             momentum[..., axis] += part.reshape(shape)

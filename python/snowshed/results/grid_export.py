@@ -23,7 +23,7 @@ def export_grids(
         Folder for the files; default: ``grid`` in the results folder. Older files of the same name
         are replaced.
     snapshots
-        Take the snapshots during the events instead of the ends of events.
+        Write the grids of snapshots during the events instead of those at the ends of events.
 
     Raises
     ------

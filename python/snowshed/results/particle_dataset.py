@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     import xarray
 
 AXES = ("x", "y", "z")
-#: Quantities of a simulation that its Dataset holds, as far as the method knows them.
+#: Quantities in the Dataset of a simulation, if the method has them.
 DATASET = (
     "id",
     "position",
@@ -27,7 +27,7 @@ DATASET = (
     "event",
     "material_id",
 )
-#: Names that files give to quantities, where they are others.
+#: Names of quantities in files, where they differ.
 RENAMED = {"snow": "material_id"}
 
 
@@ -36,8 +36,8 @@ def particle_dataset(values: Mapping[str, Numbers], event: int, time: float) -> 
 
     Parameters
     ----------
-    values : of (n,) or (n, 3)
-        Quantities by name, among them ``id``.
+    values : (n,) or (n, 3) each
+        Quantities by name, including ``id``.
     event
         The event they belong to.
     time

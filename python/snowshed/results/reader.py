@@ -39,13 +39,13 @@ HISTORY = "energy_history.csv"
 class Results:
     """The results folder of a run, as `snowshed.run` and ``snowshed run`` write it.
 
-    All methods have particles, a film and, if asked for, energies. What a method has besides is
-    read by the attributes `events` and `stack`, or `summary`, `maps`, `curve` and `forces`; those
-    that the method of the scene does not have raise InputError, which names those that it has.
+    All methods have particles, a film and, on request, energies. Further attributes depend on the
+    method: `events` and `stack`, or `summary`, `maps`, `curve` and `forces`. An attribute that the
+    method of the scene does not have raises InputError with the names of those that it has.
 
-    Files are read when they are asked for. Every table has a dict of units by column in
-    ``attrs["units"]``, every variable of a Dataset its ``units`` and ``long_name`` in `attrs`. The
-    methods raise InputError where a file is missing, or holds something else.
+    Files are read on access. Every table has a dict of units by column in ``attrs["units"]``, every
+    variable of a Dataset its ``units`` and ``long_name`` in `attrs`. The methods raise InputError
+    where a file is missing or invalid.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ class Results:
     Raises
     ------
     InputError
-        If it is no results folder.
+        If it is not a results folder.
 
     Examples
     --------
@@ -77,7 +77,7 @@ class Results:
 
     @classmethod
     def of_run(cls, folder: PathLike, scene: ResolvedScene) -> Results:
-        """Return the results of a run that this process has made, whose scene it knows."""
+        """Return the results of a run of this process, whose scene is in memory."""
         results = cls(folder)
         vars(results)["scene"] = scene
         return results
@@ -97,12 +97,12 @@ class Results:
         """Version, machine, size, speed and status of the run (run.json)."""
         path = self.folder / "run.json"
         if not path.is_file():
-            raise InputError(f"{path}: not there; a run writes it with its first checkpoint")
+            raise InputError(f"{path}: missing; a run writes it with its first checkpoint")
         return dict(read_object(path))
 
     @property
     def events(self) -> pd.DataFrame:
-        """One row per event: the stack after it, and how it went (events.csv)."""
+        """One row per event: its stack, duration and end (events.csv)."""
         if not (self.folder / EVENTS).is_file():
             self._say_what_there_is()
         return _with_units(read_events(self.folder))
@@ -141,7 +141,7 @@ class Results:
         Parameters
         ----------
         event
-            Its number, from 1; None: the last one there is.
+            Its number, from 1; None: the last event.
 
         Returns
         -------
@@ -154,8 +154,8 @@ class Results:
     def grid(self, event: Optional[int] = None) -> xarray.Dataset:
         """Return mass, velocity and density at the nodes of the grid after an event.
 
-        Computed from the stored particles, of runs by the material point method. With APIC the
-        share of a node in the particles' affine velocities is missing; `Simulation.grid` has it.
+        They are computed from the stored particles, for runs by the material point method. With
+        APIC the share of the affine velocities is missing; `Simulation.grid` includes it.
 
         Parameters
         ----------
@@ -171,13 +171,13 @@ class Results:
         return grid_dataset(stored_grid(self.scene.data, file), number, self._duration(number))
 
     def _stored(self, event: Optional[int]) -> tuple[int, Path]:
-        """Return the number of an event, the last one by default, and the file after it."""
+        """Return the number of an event, the last by default, and the file of its particles."""
         there = {
             int(file.stem.rpartition("_")[2]): file
             for file in (self.folder / "particles").glob("event_*.vtp")
         }
         if not there:
-            raise InputError(f"{self.folder / 'particles'}: no particles are stored there")
+            raise InputError(f"{self.folder / 'particles'}: holds no particles")
         number = max(there) if event is None else event
         if number not in there:
             allowed = ", ".join(map(str, sorted(there)))
@@ -188,13 +188,13 @@ class Results:
         return float(self.events.set_index("event")["sim_time_s"][event])
 
     def snapshots(self) -> Iterator[xarray.Dataset]:
-        """Yield the particles of one snapshot after the other, each as `particles` does.
+        """Yield the particles of snapshot after snapshot, each in the form of `particles`.
 
         Their ``time`` counts through all events.
         """
         path = self.folder / "snapshots" / "snapshots.pvd"
         if not path.is_file():
-            raise InputError(f"{path}: not there; a run with output.snapshot_interval writes it")
+            raise InputError(f"{path}: missing; a run with output.snapshot_interval writes it")
         for time, file in read_series(path):
             values = read_particles(file)
             yield particle_dataset(values, int(values["event"].max(initial=0)), time)
@@ -233,16 +233,16 @@ class Results:
             method.read("events", self.folder)
 
     def result(self, name: str) -> object:
-        """Return what the scene's method leaves under a name, such as "maps"."""
-        found: object = method_of(self.scene.data).read(name, self.folder)
-        return found
+        """Return a result of the scene's method by its name, such as "maps"."""
+        value: object = method_of(self.scene.data).read(name, self.folder)
+        return value
 
     @property
     def film(self) -> Film:
         """The recorded film of the run, read frame by frame (film.bin)."""
         path = self.folder / FILM
         if not path.is_file():
-            raise InputError(f"{path}: not there; a run with output.film = true writes it")
+            raise InputError(f"{path}: missing; a run with output.film = true writes it")
         return run_film(path, read_record(self.folder))
 
     def film_dataset(self, every: int = 1) -> xarray.Dataset:
@@ -254,10 +254,10 @@ class Results:
         return film_dataset(self.film, every)
 
     def _numbers(self, name: str, columns: tuple[str, ...], writer: str) -> pd.DataFrame:
-        """Return a table of finite numbers only."""
+        """Return a table whose numbers are all finite."""
         path = self.folder / name
         if not path.is_file():
-            raise InputError(f"{path}: not there; {writer} writes it")
+            raise InputError(f"{path}: missing; {writer} writes it")
         check_run_file(path)
         table = read_csv(path)
         if missing := [column for column in columns if column not in table]:
@@ -278,15 +278,15 @@ def _with_units(table: pd.DataFrame) -> pd.DataFrame:
 
 
 def particle_files(folder: Path, *, snapshots: bool) -> list[Path]:
-    """Return the files of the particles after events, or of the snapshots, one after the other.
+    """Return the files of the particles after events, or of the snapshots, in order.
 
     Raises
     ------
     InputError
-        If there are none.
+        If there are no such files.
     """
     where, name = ("snapshots", "snapshot_*.vtp") if snapshots else ("particles", "event_*.vtp")
     files = sorted((folder / where).glob(name))
     if not files:
-        raise InputError(f"{folder / where}: no particles; none are stored there")
+        raise InputError(f"{folder / where}: holds no particles")
     return files

@@ -1,10 +1,10 @@
-"""The results folder of a season: what is in it.
+"""The results folder of a season: its files.
 
 ================== ==========================================================================
 season.csv         one row per row of the season file: `SEASON_COLUMNS`
 season.png         the season: load on the panel, stack and clearance, outlines
 season.json        settings, and the events at which the stack reached the panel
-run/               the slide-offs: a results folder as of ``snowshed run`` (missing without release)
+run/               the slide-offs: a results folder of ``snowshed run`` (missing without release)
 ================== ==========================================================================
 """
 

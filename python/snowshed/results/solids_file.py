@@ -14,28 +14,28 @@ from snowshed.plot.solids import Box, scene_solids
 from snowshed.scene.scene import ResolvedScene
 
 SOLIDS = "solids.vtp"
-#: What the number ``kind`` of a triangle says.
+#: Meaning of the number ``kind`` of a triangle.
 KINDS = {"ground": 0, "panel": 1, "solid": 2}
 
 
 def write_solids(
     scene: ResolvedScene, positions: Floats, folder: Path, terrain: Optional[Raster] = None
 ) -> Optional[Path]:
-    """Write what snow collides with as ``solids.vtp`` of a results folder.
+    """Write the solids that snow collides with as ``solids.vtp`` of a results folder.
 
     Triangles have the numbers ``solid``, in the order of the scene, and ``kind``: 0 ground, 1
-    panel, 2 obstacle. Obstacles that move are where they are before they move.
+    panel, 2 obstacle. Moving obstacles stand at their initial positions.
 
     Parameters
     ----------
     scene
-        What was simulated.
+        The simulated scene.
     positions : (n, 3)
-        Of the snow, m: endless solids are drawn around it.
+        Positions of the snow, m; unbounded solids are drawn around it.
     folder
         The results folder.
     terrain
-        The ground of a slide; None without.
+        Ground of a slide; None for other methods.
 
     Returns
     -------

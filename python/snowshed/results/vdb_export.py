@@ -22,7 +22,7 @@ POINT_QUANTITIES = ("velocity", "event", "mass", "density", "volumetric_plastic_
 
 @dataclass(frozen=True)
 class Exported:
-    """A file that was written and what it holds."""
+    """A file and its content."""
 
     file: Path
     content: WrittenVdb
@@ -46,9 +46,9 @@ def export_folder(
         Folder for the files; default: ``vdb`` in the results folder. Older files of the same name
         are replaced.
     snapshots
-        Take the snapshots during the events instead of the stacks after them.
+        Write the snapshots during the events instead of the stacks after them.
     width
-        In 2D, width of the strip; see `write_vdb`.
+        Width of the strip in 2D, m; see `write_vdb`.
     report
         Called after each file.
 

@@ -52,34 +52,34 @@ def write_video(
     video
         The file: .mp4 (needs the extra ``video``) or .gif.
     seconds
-        How long it is. [default: as long as the snow moves, 12 s at most]
+        Duration of the video. [default: as long as the snow moves, 12 s at most]
     width
-        Of its pictures, pixels.
+        Width of its pictures, pixels.
     colour
-        "event", "material" or a quantity of the film. [default: what the page begins with]
+        "event", "material" or a quantity of the film. [default: as on the page]
     progress
         Called with a `Progress` after every picture.
 
     Raises
     ------
     InputError
-        If there is no film, the kind of video or the colour is not known, or a library is missing;
+        If there is no film, the kind of video or the colour is unknown, or a library is missing;
         nothing has been drawn then.
     """
     file = Path(video)
     kind = file.suffix.lower()
     if kind not in RATE:
-        raise InputError(f"{file}: not a kind of video that can be written: .mp4 or .gif")
+        raise InputError(f"{file}: unknown kind of video; allowed: .mp4, .gif")
     if not 64 <= width <= 4096:
         raise InputError(f"width: {width}; 64 to 4096 pixels are allowed")
     if seconds is not None and not 0.1 <= seconds <= 600:
         raise InputError(f"seconds: {seconds:g}; 0.1 to 600 are allowed")
     encoder = require("imageio_ffmpeg", "video", "an MP4 video") if kind == ".mp4" else None
-    found = shown_results(results)
-    film = found.film
+    run = shown_results(results)
+    film = run.film
     summary = summarise_film(film)
     colouring = _colouring(summary, colour)
-    content = view_content(found, film)
+    content = view_content(run, film)
     painter = FilmPainter(film, summary, content.solids, content.focus, width=width / DPI)
     times = _times(film, seconds, RATE[kind])
     palette = _picture(painter, summary.last, colouring)  # has all colours
@@ -95,14 +95,14 @@ def write_video(
 def _colouring(summary: FilmSummary, name: Optional[str]) -> Colouring:
     if name is None:
         return summary.colourings[0]
-    known = {one.name: one for one in summary.colourings}
+    known = {colouring.name: colouring for colouring in summary.colourings}
     if name not in known:
         raise InputError(f"colour: {name!r} is none of {', '.join(known)}{suggestion(name, known)}")
     return known[name]
 
 
 def _times(film: Film, seconds: Optional[float], rate: float) -> Sequence[float]:
-    """Return where each picture is among the frames: 2.5 is half way from the third on."""
+    """Return the positions of the pictures among the frames; 2.5 is half-way after the third."""
     starts = [0.0]
     for before, after in zip(film.frames, film.frames[1:]):
         turn = after.event != before.event
@@ -114,8 +114,8 @@ def _times(film: Film, seconds: Optional[float], rate: float) -> Sequence[float]
     slower = max(length - held[-1] - HOLD, 0.3 * length) / moving
     shown = np.array(starts) * slower + held * min(1.0, length / (held[-1] + HOLD))
     wanted = np.arange(0.0, length, 1.0 / rate)
-    places = np.interp(wanted, shown, np.arange(len(shown)))
-    return list(places.tolist())
+    numbers = np.interp(wanted, shown, np.arange(len(shown)))
+    return list(numbers.tolist())
 
 
 def _pictures(
@@ -150,9 +150,9 @@ def _between(now: FilmFrame, after: FilmFrame, part: float) -> FilmFrame:
 
 
 def _write_gif(file: Path, pictures: Iterator[Any], palette: Any) -> None:
-    """Write a GIF, which the few colours of one picture keep small."""
+    """Write a GIF with the colours of a single picture, which keeps it small."""
     few = palette.quantize(COLOURS_OF_GIF, dither=pillow().Dither.NONE)
-    quantized = (one.quantize(palette=few, dither=pillow().Dither.NONE) for one in pictures)
+    quantized = (picture.quantize(palette=few, dither=pillow().Dither.NONE) for picture in pictures)
     first, others = next(quantized), quantized
     first.save(
         file,

@@ -1,4 +1,4 @@
-"""The moving view of a results folder: its film, its solids, its measures, and what it is."""
+"""The moving view of a results folder: its film, solids, measures and title."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def write_view(results: PathLike, page: Optional[PathLike] = None) -> Path:
     Raises
     ------
     InputError
-        If it is no results folder, or holds no sound film.
+        If it is not a results folder, or its film is missing or damaged.
 
     Examples
     --------
@@ -56,15 +56,15 @@ def write_view(results: PathLike, page: Optional[PathLike] = None) -> Path:
     ...     write_view(folder).name
     'view.html'
     """
-    found = shown_results(results)
+    run = shown_results(results)
     file = Path(page) if page is not None else Path(results) / PAGE
-    film = found.film
-    write_view_page(file, film, view_content(found, film))
+    film = run.film
+    write_view_page(file, film, view_content(run, film))
     return file
 
 
 def shown_results(folder: PathLike) -> Results:
-    """Return the results of a run, or those of a season's slide-offs.
+    """Return the results of a run, or those of the slide-offs of a season.
 
     Raises
     ------
@@ -76,7 +76,7 @@ def shown_results(folder: PathLike) -> Results:
 
 
 def view_content(results: Results, film: Film) -> ViewContent:
-    """Return what a page shows besides the film of a results folder."""
+    """Return the content of a page besides the film of a results folder."""
     scene = results.scene
     data = scene.data
     bounds = summarise_film(film).bounds
@@ -113,9 +113,9 @@ def _sentence(data: Mapping[str, Any], table: Optional[pd.DataFrame], film: Film
     slides = "One slide-off" if count == 1 else f"{count} slide-offs, one after the other"
     what = slides if data.get("panel") else f"The snow over {times}"
     if not last["height_m"] > 0:
-        return f"{what}; in the end no snow lies in a stack."
+        return f"{what}; at the end there is no stack."
     return (
-        f"{what}; in the end the snow lies {last['height_m']:.2f} m high and "
+        f"{what}; at the end the snow lies {last['height_m']:.2f} m high and "
         f"{last['length_m']:.2f} m long."
     )
 
@@ -147,7 +147,7 @@ def _notes(results: Results, film: Film) -> list[str]:
 def _measures(
     data: Mapping[str, Any], table: pd.DataFrame, folder: Path, front: float
 ) -> list[MeasureLine]:
-    """Return height, length and clearance after each event, where they are."""
+    """Return height, length and clearance after each event, if they are measured."""
     tilt = float((data.get("ground") or {}).get("tilt", 0.0))
     profiles = _profiles(folder)
     lines = []

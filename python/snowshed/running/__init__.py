@@ -1,1 +1,5 @@
-"""Running scenes: events, results, what happens between events, seasons."""
+"""Running scenes: events, changes of the stack between events, simulations in memory."""
+
+import lazy_loader as _lazy
+
+__getattr__, __dir__, __all__ = _lazy.attach_stub(__name__, __file__)

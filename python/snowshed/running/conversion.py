@@ -1,4 +1,4 @@
-"""A row of conversions.csv: how far reseeding moved the stack (between = "reseed")."""
+"""A row of conversions.csv: changes of the stack by reseeding (between = "reseed")."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ Measure = Callable[[Floats, Floats, Floats, Booleans], "StackMeasure"]
 
 
 def conversion_row(event: int, conversion: dict[str, Any], measure: Measure) -> dict[str, Any]:
-    """Return what the conversion before an event did to mass, height, length and outline.
+    """Return the changes of mass, height, length and outline by the conversion before an event.
 
     Parameters
     ----------
     event
         The event that follows.
     conversion
-        What the core's ``begin_event`` returned: positions, masses, initial densities and
+        Result of the core's ``begin_event``: positions, masses, initial densities and
         on_panel, each before and after.
     measure
-        Measures the stack that positions, masses, densities and on_panel make.
+        Function that measures a stack from positions, masses, densities and on_panel.
 
     Returns
     -------
@@ -52,14 +52,14 @@ def conversion_row(event: int, conversion: dict[str, Any], measure: Measure) -> 
     return {**row, "outline_rms_m": outline_difference(*outlines)}
 
 
-def outline_difference(one: Floats, other: Floats) -> float:
+def outline_difference(first: Floats, second: Floats) -> float:
     """Return the root mean square of the difference in height of two outlines, m.
 
-    Taken in 30 columns over the range of x that both cover; NaN if there is none.
+    It is taken in 30 columns over the range of x that both cover, and is NaN without such a range.
 
     Parameters
     ----------
-    one, other : (k, 2)
+    first, second : (k, 2)
         Outlines as of `Extent`.
 
     Examples
@@ -68,11 +68,11 @@ def outline_difference(one: Floats, other: Floats) -> float:
     >>> round(outline_difference(ridge, ridge + [0, 0.01]), 6)
     0.01
     """
-    if len(one) == 0 or len(other) == 0:
+    if len(first) == 0 or len(second) == 0:
         return float("nan")
-    low, high = max(one[0, 0], other[0, 0]), min(one[-1, 0], other[-1, 0])
+    low, high = max(first[0, 0], second[0, 0]), min(first[-1, 0], second[-1, 0])
     if low > high:
         return float("nan")
     columns = low + (high - low) * (np.arange(CELLS) + 0.5) / CELLS
-    difference = np.interp(columns, *one.T) - np.interp(columns, *other.T)
+    difference = np.interp(columns, *first.T) - np.interp(columns, *second.T)
     return float(np.sqrt(np.mean(difference**2)))

@@ -1,4 +1,4 @@
-"""A finished run that goes on in a new folder: with more events, or other snow from now on."""
+"""Extension of a finished run in a new folder: more events, also with other snow."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from snowshed.io.folders import check_empty
 from snowshed.io.json_file import read_object
 from snowshed.methods.registry import method_of
 from snowshed.results.folder import RunFolder
-from snowshed.running.ageing import Ageing
+from snowshed.running.ageing.ageing import Ageing
 from snowshed.running.run import run_events
 from snowshed.scene.components import Snow
 from snowshed.scene.scene import PathLike, ResolvedScene
@@ -24,7 +24,7 @@ from snowshed.scene.scene import PathLike, ResolvedScene
 if TYPE_CHECKING:
     import pandas as pd
 
-#: What a run has written that the new run goes on from.
+#: Files of a run from which the new run continues.
 CONTINUED = (
     *("run.json", "events.csv", "outline.csv", "conversions.csv", "ageing.csv", "ageing.json"),
     *("energy.csv", "film.bin", "particles.pvd", "particles", "snapshots"),
@@ -41,7 +41,7 @@ def extend_run(
     progress: Optional[Reporter] = None,
     pictures: bool = True,
 ) -> pd.DataFrame:
-    """Let more slabs slide off after a finished run, into a new results folder.
+    """Add slide-offs to a finished run, in a new results folder.
 
     The results of the finished run stay as they are. Where the slabs are the same, the new folder
     holds what a run with so many events from the start would have written, bit for bit.
@@ -53,11 +53,11 @@ def extend_run(
     out_dir
         The new folder; new or empty.
     events
-        How many events follow.
+        Number of events that follow.
     snow
-        Of the slabs of these events. [default: as before]
+        Snow of the slabs of these events. [default: as before]
     thickness
-        Of the slabs of these events, m. [default: as before]
+        Thickness of the slabs of these events, m. [default: as before]
     progress
         Called with a `Progress` about twice a second.
     pictures
@@ -74,7 +74,7 @@ def extend_run(
         If the run is not finished, its method has no further events, or an argument is not
         allowed; nothing has been written then.
     SimulationError
-        If the simulation cannot go on; a checkpoint holds its last good state.
+        If the simulation cannot continue; a checkpoint holds its last good state.
     Interrupted
         After Ctrl-C; the new folder is resumed as any other.
 
@@ -92,12 +92,14 @@ def extend_run(
     """
     earlier = RunFolder(results)
     if not earlier.scene.is_file() or not earlier.checkpoint.is_file():
-        raise InputError(f"{results}: no results that go on; it holds no scene or no checkpoint")
+        raise InputError(
+            f"{results}: not a run that can be extended; the scene or the checkpoint is missing"
+        )
     scene = ResolvedScene.load(earlier.scene)
     status = earlier.read_run().get("status")
     if status != "finished":
         raise InputError(
-            f"{results}: not finished ({status}); first go on with: snowshed run "
+            f"{results}: not finished ({status}); first resume it with: snowshed run "
             f"{earlier.scene} -o {results} --resume"
         )
     longer = extended_scene(scene, events, snow=snow, thickness=thickness)
@@ -139,7 +141,7 @@ def extended_scene(
     data: dict[str, Any] = scene.copied_data()
     method = method_of(data)
     if "stack" not in method.results:
-        raise InputError(f'/method: "{method.name}" has one event; no other can follow')
+        raise InputError(f'/method: "{method.name}" has a single event; none can follow')
     if isinstance(events, bool) or not isinstance(events, int) or events < 1:
         raise InputError(f"events: {events!r}; a whole number from 1 is needed")
     done = data["events"]["count"]
@@ -149,7 +151,7 @@ def extended_scene(
     if thickness is not None:
         changes["thickness"] = thickness
     if changes and not data.get("slab"):
-        raise InputError("/slab: the scene has none, whose snow or thickness could change")
+        raise InputError("/slab: missing; the scene has no slab to change")
     if snow is not None and "snow" not in data:
         raise InputError("/snow: the snow of this method is the same in all events")
     if data.get("slab"):
@@ -159,10 +161,10 @@ def extended_scene(
 
 
 def _change_slab(slab: dict[str, Any], done: int, last: int, changes: Mapping[str, Any]) -> None:
-    """Lay the slab as it was in the events that are done, and as it is to be in those after.
+    """Keep the slab of the past events, and set that of the events to come.
 
-    A slab that is the same in all events stays as it is. Where every layer is of one event, as
-    after an earlier change, those of the last one are laid again.
+    A slab that is the same in all events stays as it is. Where every layer belongs to a single
+    event, as after an earlier change, the layers of the last event are laid again.
     """
     layers = slab["layers"] or [{"thickness": slab["thickness"], "event": 0}]
     always = [layer for layer in layers if not layer.get("event")]
@@ -170,7 +172,9 @@ def _change_slab(slab: dict[str, Any], done: int, last: int, changes: Mapping[st
         return
     repeated = always or [layer for layer in layers if layer.get("event") == done]
     if "thickness" in changes and len(repeated) > 1:
-        raise InputError("/slab/layers: several; a thickness can be given where there is one")
+        raise InputError(
+            "/slab/layers: several layers; a new thickness needs a slab with a single layer"
+        )
     before = [
         {**layer, "event": event}
         for event in range(1, done + 1)
@@ -187,7 +191,7 @@ def _change_slab(slab: dict[str, Any], done: int, last: int, changes: Mapping[st
 
 
 def _prepare(earlier: RunFolder, scene: ResolvedScene, out_dir: Path) -> None:
-    """Make the new folder, whole or not at all, as if its run had come as far as the earlier."""
+    """Make the new folder, whole or not at all, as if its own run had computed the past events."""
     simulation = _core.Simulation.load_into(
         scene.core, scene.base_dir, os.fspath(earlier.checkpoint)
     )

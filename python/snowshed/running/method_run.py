@@ -1,4 +1,4 @@
-"""What a method does while one of its scenes is run, and what a table says of it afterwards."""
+"""The part of a method in a run: measures, files and pictures, and the rows of tables."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from snowshed.running.sequence import seal_files
 from snowshed.scene.resolved import ResolvedScene
 
 if TYPE_CHECKING:
-    from snowshed.running.ageing import Ageing
+    from snowshed.running.ageing.ageing import Ageing
 
 Cell = Union[int, float, str, None]
 
 
 @dataclass(frozen=True)
 class RunOptions:
-    """How a scene is run into its folder; see `snowshed.run`."""
+    """Options of a run; see `snowshed.run`."""
 
     resume: bool = False
     ageing: Optional[Ageing] = None
@@ -32,7 +32,7 @@ class RunOptions:
 
 
 class MethodRun:
-    """A run of a scene; a method's own is a subclass, which overrides what it needs.
+    """A run of a scene. Each method has a subclass, which overrides the steps it needs.
 
     The methods are called in the order in which they stand here; those from `between_events` to
     `before_checkpoint` for each event.
@@ -42,14 +42,14 @@ class MethodRun:
     sequence
         The core's sequence of events.
     scene, folder, options
-        What is run, into which results folder, and how.
+        The scene, its results folder, and the options of the run.
 
     Attributes
     ----------
     UNIT
-        What progress counts.
+        Unit of the progress.
     COLUMNS
-        What a table holds of each event besides ``event`` and ``wall_s``, with int, float or str.
+        Columns of a table of events besides ``event`` and ``wall_s``, with int, float or str.
     """
 
     UNIT: ClassVar[str] = "events"
@@ -73,32 +73,32 @@ class MethodRun:
         """Change the snow between two events."""
 
     def event_begun(self, reseeding: Optional[dict[str, Any]]) -> None:
-        """Take note of an event that begins; `reseeding` says what became of the stack before."""
+        """Record that an event begins; `reseeding` holds the stack before and after reseeding."""
 
     def doing(self, time_s: float) -> str:
-        """Return what is being computed at a time of the event, for those who wait."""
+        """Return the line that tells people what is computed at a time of the event."""
         return f"{time_s:.2f} s of event {self.simulation.event}"
 
     def progress(self) -> None:
-        """Do what is due about twice a second."""
+        """Do the work that is due about twice a second."""
 
     def event_ended(self, facts: Mapping[str, Any]) -> None:
-        """Write what an event came to."""
+        """Write the results of an event."""
 
     def before_checkpoint(self) -> None:
-        """Write what a run that goes on from the checkpoint must find."""
+        """Write the files that a run needs when it resumes from the checkpoint."""
 
     def interrupted(self) -> None:
-        """Write what the run has so far; it stops."""
+        """Write the results so far, because the run stops."""
 
     def finish(self) -> None:
-        """Write what the run came to, once all events have ended."""
+        """Write the results of the run, once all events have ended."""
 
     def draw(self) -> None:
         """Draw the pictures."""
 
     def write_energies(self, facts: Mapping[str, Any], *, history: bool = True) -> None:
-        """Write the energy balance of a run with one event: at its end, and over time."""
+        """Write the energy balance of a run with a single event: at its end, and over time."""
         if not self.keeps_energy:
             return
         energies = Table(self.folder / ENERGY)
@@ -109,7 +109,7 @@ class MethodRun:
         seal_files(self.sequence, self.folder, ENERGY, *([HISTORY] if history else []))
 
     def draw_energies(self) -> None:
-        """Draw the energies over time, if they are kept."""
+        """Draw the energies over time, if they are recorded."""
         if self.keeps_energy:
             draw_energies(Results.of_run(self.folder, self.scene))
 
@@ -123,15 +123,15 @@ class MethodRun:
 
     @classmethod
     def packed(cls, folder: Path) -> Iterable[tuple[int, bytes]]:
-        """Yield each event with what a study keeps of it, so that it can be evaluated anew."""
+        """Yield each event with the data that a study stores of it for later measures."""
         return ()
 
 
 def summary_rows(folder: Path, summary: type[Any]) -> list[dict[str, Cell]]:
-    """Return the row of a run with one event, whose figures stand in a `Summary`."""
+    """Return the row of a run with a single event, whose figures are those of a `Summary`."""
     if not (folder / summary.FILE).is_file():
         return []
-    found = summary.read(folder)
+    figures = summary.read(folder)
     (event,) = RunFolder(folder).read_run()["finished_events"]
-    figures = {name: getattr(found, name) for name in summary.columns()}
+    figures = {name: getattr(figures, name) for name in summary.columns()}
     return [{"event": 1, "wall_s": event["wall_s"], "steps": event["steps"], **figures}]

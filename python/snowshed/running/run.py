@@ -1,7 +1,7 @@
 """Running a scene of any method into a results folder.
 
-The core runs the events and keeps the results folder. What the scene's method measures, writes and
-draws is done by its `MethodRun`, which the one observer here calls while the core runs.
+The core runs the events and writes the results folder. The `MethodRun` of the scene's method
+measures, writes tables and draws; the observer here calls it while the core runs.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from snowshed.base.notes import tell
 from snowshed.base.progress import Progress, Reporter
 from snowshed.methods.registry import method_of
 from snowshed.results.reader import Results
-from snowshed.running.ageing import Ageing
+from snowshed.running.ageing.ageing import Ageing
 from snowshed.running.method_run import MethodRun, RunOptions
 from snowshed.running.sequence import open_sequence, run_sequence
 from snowshed.scene.scene import PathLike, SceneLike, resolve_scene
@@ -40,22 +40,22 @@ def run(
     Parameters
     ----------
     scene
-        What to simulate: a scene, its JSON data, or the path of a scene file.
+        A scene, its JSON data, or the path of a scene file.
     folder
         The results folder (see ``snowshed.results.folder``); new or empty, unless resuming.
     resume
-        Go on from the checkpoint in `folder`, which ``snowshed-run`` may have written too; the
-        particles are those of an uninterrupted run. Events that are missing in the tables are
-        measured from their stored particles, in single precision.
+        Resume from the checkpoint in `folder`, also one of ``snowshed-run``; the particles are
+        those of an uninterrupted run. Events that are missing in the tables are measured from their
+        stored particles, in single precision.
     ageing
-        What time does to a stack between the events; None: nothing. The same when resuming.
+        Ageing of the stack between the events; None: none. It must be the same when resuming.
     progress
         Called with a `Progress` about twice a second.
     pictures
         Whether to draw the pictures and pages of the method at the end.
     compact
-        Whether to leave out large files that can be had from smaller ones, as a study of many runs
-        does: of a slide, ``peaks.npz`` in place of the rasters.
+        Whether to leave out large files that follow from smaller ones, as in a study of many runs:
+        for a slide, ``peaks.npz`` replaces the rasters.
 
     Returns
     -------
@@ -68,7 +68,7 @@ def run(
         If the scene is wrong, the folder is not empty, there is nothing to resume, or the method
         has no stack that could age; nothing has been written then.
     SimulationError
-        If the simulation cannot go on; a checkpoint holds its last good state.
+        If the simulation cannot continue; a checkpoint holds its last good state.
     Interrupted
         After Ctrl-C; a checkpoint holds the state to resume from.
 
@@ -88,7 +88,9 @@ def run(
     if ageing is not None and not method.ages:
         raise _core.InputError(f'ageing: the snow of the method "{method.name}" does not age')
     if ageing is not None and ready.data["events"]["between"] != "carry":
-        raise _core.InputError('/events/between: "reseed" makes new snow of one that ages')
+        raise _core.InputError(
+            '/events/between: "reseed" replaces the snow, so that it cannot age; use "carry"'
+        )
     options = RunOptions(resume, ageing, pictures, compact)
     sequence = open_sequence(ready, folder, resume=resume)
     with sequence, deferred_interrupts() as interrupt:
@@ -115,10 +117,9 @@ def run_events(
     progress: Optional[Reporter] = None,
     pictures: bool = True,
 ) -> pd.DataFrame:
-    """Let slab after slab slide off, and return the measures of the stack after each event.
+    """Simulate slide-off after slide-off, and return the measures of the stack after each event.
 
-    This is `run`, whose parameters and errors it has, with the table of events in place of the
-    whole results.
+    Parameters and errors are those of `run`; the table of events takes the place of all results.
 
     Returns
     -------
@@ -152,7 +153,7 @@ def run_events(
 
 
 class _Observer:
-    """Is told by the core's loop how the run goes on, and tells the method and those who wait."""
+    """Observer of the core's loop: calls the method's steps, and reports the progress."""
 
     def __init__(
         self, own: MethodRun, interrupt: InterruptRequest, report: Optional[Reporter]
@@ -166,26 +167,26 @@ class _Observer:
         self.own.between_events()
 
     def event_begun(self, reseeding: Optional[dict[str, Any]]) -> None:
-        """Tell of an event that begins, or goes on after a pause."""
+        """Report an event that begins, or resumes after a pause."""
         self.own.event_begun(reseeding)
         self._tell(self.own.simulation.time_s, 0.0)
 
     def noted(self, note: str) -> None:
-        """Say what the core notes, which is in run.json already."""
+        """Give a note of the core, which is in run.json already."""
         tell(note)
 
     def progress(self, report: dict[str, Any]) -> None:
-        """Tell how far the event has come."""
+        """Report the progress of the event."""
         self.own.progress()
         self._tell(report["time_s"], report["progress"], report["updates_per_s"])
 
     def event_ended(self, facts: dict[str, Any]) -> None:
-        """Let the method write what the event came to."""
+        """Let the method write the results of the event."""
         self.own.event_ended(facts)
         self._tell(facts["sim_time_s"], 1.0)
 
     def before_checkpoint(self) -> None:
-        """Let the method write what the checkpoint is to find."""
+        """Let the method write the files that belong to the checkpoint."""
         self.own.before_checkpoint()
 
     def stop_requested(self) -> bool:
@@ -193,7 +194,7 @@ class _Observer:
         return self.interrupt.requested
 
     def _tell(self, time_s: float, fraction: float, updates_per_s: float = 0.0) -> None:
-        """Report where the run is; `fraction` is the part of the event that is done."""
+        """Report the progress of the run; `fraction` is the part of the event that is done."""
         if self.report is None:
             return
         event, count = self.own.simulation.event, self.own.simulation.event_count

@@ -1,4 +1,4 @@
-"""What is odd about a scene, told before it runs and after."""
+"""Warnings about a scene, before it runs and after."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ if TYPE_CHECKING:
 FEW = 2.0  # cells; a thinner slab is coarse
 ALL_STAYS = 0.98  # of the snow
 MOST_SEEDED = 100_000  # particles; these take two seconds
-#: What snow can land on besides a panel.
+#: Parts of a scene, besides a panel, on which snow can land.
 FLOORS = ("ground", "obstacles", "domain")
 
 
 def notes_before(scene: Mapping[str, Any]) -> list[str]:
-    """Return what a run of a scene should be warned of, a sentence each.
+    """Return warnings about a scene before it runs, a sentence each.
 
     Parameters
     ----------
@@ -38,30 +38,30 @@ def notes_before(scene: Mapping[str, Any]) -> list[str]:
     method = method_of(scene)
     if "stack" not in method.results:
         return []
-    found = []
+    notes = []
     if not any(scene.get(part) for part in FLOORS):
-        found.append(
+        notes.append(
             "the scene has no ground, no domain and no obstacles: snow falls for as long as "
             "events.max_time; add ground"
         )
     size = resolution_of(scene)
     thickness = _slab_thickness(scene)
     if thickness is not None and thickness < FEW * size:
-        found.append(
+        notes.append(
             f"the slab is {1000 * thickness:.3g} mm thick, less than two "
             f"{method.settings.ELEMENTS} of {1000 * size:.3g} mm: its stack is coarse; try "
             f"{method.settings.RESOLUTION} = {thickness / FEW:.2g} m"
         )
-    return found
+    return notes
 
 
 def notes_of_beginning(scene: ResolvedScene) -> list[str]:
-    """Return what a run of a scene notes until its first step; its first snow is laid for that.
+    """Return the notes of a run up to its first step; the snow of its first event is laid for that.
 
     Parameters
     ----------
     scene
-        The scene. Of more than `MOST_SEEDED` particles none are laid.
+        The scene. No snow is laid if it needs more than `MOST_SEEDED` particles.
 
     Raises
     ------
@@ -74,17 +74,17 @@ def notes_of_beginning(scene: ResolvedScene) -> list[str]:
     >>> notes_of_beginning(Scene.preset("lab-50").set("dimension", 2).resolve())
     []
     """
-    found = notes_before(scene.data)
+    notes = notes_before(scene.data)
     simulation = _core.Simulation(scene.core, scene.base_dir)
     if simulation.expected_particles > MOST_SEEDED:
-        found.append(
-            f"with more than {MOST_SEEDED} particles, whether snow lies in obstacles or in other "
-            "snow is looked at when the scene is run"
+        notes.append(
+            f"the scene has more than {MOST_SEEDED} particles: the run itself checks whether snow "
+            "lies in obstacles or in other snow"
         )
     else:
         simulation.begin_event()
-    found += simulation.notes
-    return found
+    notes += simulation.notes
+    return notes
 
 
 def _slab_thickness(scene: Mapping[str, Any]) -> Optional[float]:
@@ -97,7 +97,7 @@ def _slab_thickness(scene: Mapping[str, Any]) -> Optional[float]:
 
 
 def notes_after(table: pd.DataFrame, scene: Mapping[str, Any]) -> list[str]:
-    """Return what the table of events should be read with, a sentence each.
+    """Return notes on the table of events, a sentence each.
 
     Parameters
     ----------

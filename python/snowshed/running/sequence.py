@@ -34,20 +34,20 @@ def open_sequence(scene: ResolvedScene, folder: PathLike, *, resume: bool) -> _c
 
 
 def seal_files(sequence: _core.EventSequence, folder: PathLike, *names: str) -> None:
-    """Let run.json, when it is written next, say the checksums of files in the results folder."""
+    """Add checksums of files in the results folder to run.json, when it is written next."""
     marks = {name: file_mark(Path(folder) / name) for name in names}
     sequence.files = {**sequence.files, **marks}
 
 
 def say_note(sequence: _core.EventSequence, note: str) -> None:
-    """Say a note on a run and keep it for run.json, which has it once."""
+    """Give a note on a run, and add it once to run.json."""
     sequence.add_note(note)
     tell(note)
 
 
 @contextmanager
 def telling(core: _core.Simulation) -> Iterator[None]:
-    """Say what a simulation notes within the block."""
+    """Give the notes of a simulation within the block."""
     said = len(core.notes)
     yield
     for note in core.notes[said:]:
@@ -60,15 +60,14 @@ def run_sequence(
     scene: ResolvedScene,
     folder: PathLike,
 ) -> None:
-    """Run the events that are left; a failure is written down in the folder.
+    """Run the remaining events; a failure is recorded in the folder.
 
-    The observer is told of the progress about twice a second. What is odd about the scene is said
-    first.
+    The observer learns of the progress about twice a second. Warnings about the scene come first.
 
     Raises
     ------
     SimulationError, InputError
-        If the simulation cannot go on.
+        If the simulation cannot continue.
     Interrupted
         If the observer asked for a stop; a checkpoint holds the state to resume from.
     """

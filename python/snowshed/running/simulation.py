@@ -1,4 +1,4 @@
-"""A scene simulated in memory: events, steps, particles, snow added by hand; no folder."""
+"""A scene simulated in memory, without a folder: events, steps, particles, snow added by hand."""
 
 from __future__ import annotations
 
@@ -45,18 +45,17 @@ CHECK_INTERVAL = 0.1  # s of wall time; the same where the core itself runs to r
 class Simulation:
     """A scene being simulated, in memory.
 
-    It is driven event by event: `run` seeds the snow of the next one and moves it until it rests;
-    `begin_event` and `step` do so one after the other. Methods
-    such as `positions` return the particles ordered by id, which they keep; `fields` shows their
-    memory in the order of storage.
+    It is driven event by event: `run` seeds the snow of the next event and moves it until it rests;
+    `begin_event` and `step` do the same in parts. Methods such as `positions` return the particles
+    ordered by id, which never changes; `fields` shows their memory in the order of storage.
 
-    One thread at a time may use a simulation: a call that finds another thread's call under way
-    raises RuntimeError and changes nothing. Different simulations may run in different threads.
+    A simulation serves one thread at a time: a call during another thread's call raises
+    RuntimeError and changes nothing. Different simulations may run in different threads.
 
     Parameters
     ----------
     scene : Scene, ResolvedScene, dict or path
-        What to simulate: a scene, its JSON data, or a scene file.
+        A scene, its JSON data, or a scene file.
 
     Raises
     ------
@@ -84,7 +83,7 @@ class Simulation:
 
     @classmethod
     def load(cls, path: PathLike) -> Simulation:
-        """Return the simulation that `save`, or a run (``checkpoint.bin``), stored.
+        """Return the simulation in a file of `save`, or in the ``checkpoint.bin`` of a run.
 
         Raises
         ------
@@ -101,8 +100,8 @@ class Simulation:
     def save(self, path: PathLike) -> None:
         """Store the simulation in a file, which appears whole or not at all.
 
-        Between events, and before the first step of one, what is loaded goes on to the same bits.
-        In the middle of an event it agrees with the original to rounding.
+        A simulation saved between events, or before the first step of an event, continues to the
+        same bits after `load`. In the middle of an event it agrees with the original to rounding.
 
         Raises
         ------
@@ -112,12 +111,12 @@ class Simulation:
         self._core.save(os.fspath(path))
 
     def begin_event(self) -> None:
-        """Lay the snow of the next event; what should be known of it is a `SnowshedNote`.
+        """Lay the snow of the next event; notes on it are warnings, `SnowshedNote`.
 
         Raises
         ------
         InputError
-            If it cannot be seeded, or more than 1 % of a body lies where snow may not be (unless
+            If it cannot be seeded, or more than 1 % of a body lies where snow must not be (unless
             the scene's ``misplaced_snow`` is "allow").
         SimulationError
             If the present event has not ended, or its stack cannot be seeded afresh.
@@ -133,7 +132,7 @@ class Simulation:
         InputError
             If `count` is not a whole number from 0.
         SimulationError
-            If no event runs, or the simulation cannot go on.
+            If no event runs, or the simulation cannot continue.
         """
         left = whole_number("count", count, lowest=0)
         while left:
@@ -142,7 +141,7 @@ class Simulation:
             left -= taken
 
     def run(self, until: Until = "rest", *, every: int = 16) -> Ended:
-        """Take steps of the present event, or of the next one, until something is the case.
+        """Take steps of the present event, or of the next one, until a condition holds.
 
         Parameters
         ----------
@@ -151,7 +150,7 @@ class Simulation:
             until this time in the event, s, and no farther than the step that reaches it. A
             function: until it returns True; it gets the simulation and may change it.
         every
-            How many steps there are between two calls of the function.
+            Number of steps between two calls of the function.
 
         Returns
         -------
@@ -163,7 +162,7 @@ class Simulation:
         InputError
             If `until` or `every` is none of these.
         SimulationError
-            If all events have ended, or the simulation cannot go on.
+            If all events have ended, or the simulation cannot continue.
         """
         steps = whole_number("every", every, lowest=1)
         if isinstance(until, str) and until != "rest":
@@ -179,7 +178,7 @@ class Simulation:
         if callable(until):
             return self._run_until(until, steps)
         while self.time < until:
-            # Half of what is left at the present time step: the step may grow on the way.
+            # Half of the remaining time at the present time step, because the step may grow.
             left = 0.5 * (until - self.time) / self._core.time_step_s if self.time else 1
             self._core.step(max(1, min(MOST_STEPS, int(left))))
         return "reached"
@@ -202,8 +201,8 @@ class Simulation:
     ) -> None:
         """Add particles, which belong to the present event.
 
-        They get the next ids, in their order. Particles inside an obstacle or surrounded by other
-        snow are pushed out, hard; more than 1 % of them are refused, unless the scene's
+        They get the next ids, in their order. Particles inside an obstacle or within other snow are
+        pushed out at high speed; more than 1 % of such particles are refused, unless the scene's
         ``misplaced_snow`` is "allow".
 
         Parameters
@@ -211,17 +210,18 @@ class Simulation:
         positions : (n, 3), or (n, 2) in 2D
             Positions, m; two columns are x and z.
         mass
-            Of each particle, kg (per metre of width in 2D). None: as the scene seeds this snow,
-            its density times the volume of a cell over ``seeding.particles_per_voxel``.
+            Mass of each particle, kg (per metre of width in 2D). None: as the scene seeds this
+            snow, its density times the volume of a cell over ``seeding.particles_per_voxel``.
         velocity : (3,), or (2,) in 2D
             Velocity of all of them, m/s.
         material_id
-            Which of `snows` they are of; its density, not `mass`, decides how dense they lie.
+            Index into `snows`; the density of that snow, not `mass`, decides the spacing of the
+            particles.
 
         Raises
         ------
         InputError
-            If an argument is wrong, or the particles lie where snow may not be.
+            If an argument is wrong, or the particles lie where snow must not be.
         SimulationError
             If a position lies beyond the addressable grid (10^6 cells to each side, about).
 
@@ -239,11 +239,11 @@ class Simulation:
         kind = whole_number("material_id", material_id, lowest=0)
         if kind >= len(snows):
             raise InputError(f"material_id: {kind}; the scene's snows are 0 to {len(snows) - 1}")
-        places = points("positions", positions, self.dimension)
+        given = points("positions", positions, self.dimension)
         speed = points("velocity", np.atleast_2d(np.asarray(velocity)), self.dimension, 1)[0]
         heavy = self._seeded_mass(snows[kind]) if mass is None else positive("mass", mass)
         with telling(self._core):
-            self._core.add_snow(places, heavy, tuple(speed.tolist()), kind)
+            self._core.add_snow(given, heavy, tuple(speed.tolist()), kind)
 
     def add_velocity(self, changes: ArrayLike) -> None:
         """Add to the velocities of the particles.
@@ -251,12 +251,13 @@ class Simulation:
         Parameters
         ----------
         changes : (n, 3) or (3,); in 2D also (n, 2) or (2,)
-            For each particle, ordered by id, or for all alike, m/s; two columns are x and z.
+            Changes for each particle, ordered by id, or a single one for all, m/s; two columns are
+            x and z.
 
         Raises
         ------
         InputError
-            If the shape is another, or some are not finite.
+            If the shape is wrong, or a value is not finite.
         """
         rows = np.asarray(changes)
         alike = rows.ndim == 1
@@ -314,7 +315,7 @@ class Simulation:
         return cast(Integers, self._read("event", order))
 
     def material_ids(self, order: Order = "id") -> Integers:
-        """Return which of `snows` each particle (n,) is of."""
+        """Return the index into `snows` of each particle (n,)."""
         return cast(Integers, self._read("material_id", order))
 
     def on_panel(self, order: Order = "id") -> Booleans:
@@ -349,7 +350,7 @@ class Simulation:
     def grid(self) -> xarray.Dataset:
         """Return mass, velocity and density at the nodes of the grid, computed from the particles.
 
-        As the next step of the material point method would begin with.
+        The next step of the material point method would begin with them.
 
         Returns
         -------
@@ -368,16 +369,16 @@ class Simulation:
         return grid_dataset(fields, self.event, self.time)
 
     def measure(self) -> StackMeasure:
-        """Measure the stack: all snow that neither the panel nor a structure holds.
+        """Measure the stack: the snow that neither the panel nor a structure holds.
 
-        See `snowshed.snow.stack.particles` for what the ground is, and `measure_stack`.
+        See `measure_stack`; `snowshed.snow.stack.particles` defines the ground.
         """
         core = self._core
         arrays = core.positions(), core.masses(), core.densities(), core.on_panel()
         return measure_particles(core, self.scene.data, *arrays)
 
     def energy(self) -> dict[str, float]:
-        """Return the energy balance, J (per metre of width in 2D): what is stored, lost and added.
+        """Return the energy balance, J (per metre of width in 2D): energy stored, lost and added.
 
         Raises
         ------
@@ -385,7 +386,9 @@ class Simulation:
             If the scene does not keep it (``output.energy``).
         """
         if not self.scene.data["output"]["energy"]:
-            raise InputError("/output/energy: false; the energy balance is kept only where true")
+            raise InputError(
+                "/output/energy: false; the energy balance is computed only where it is true"
+            )
         return {name[: -len("_j")]: value for name, value in self._core.energy().items()}
 
     @property
@@ -395,7 +398,7 @@ class Simulation:
 
     @property
     def snows(self) -> list[Snow]:
-        """The scene's different snows, by `material_ids`."""
+        """The scene's different snows; `material_ids` are indices into them."""
         return [Snow.from_data(snow) for snow in snows_of(self._core)]
 
     @property

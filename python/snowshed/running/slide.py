@@ -46,7 +46,7 @@ def slide(
     settings
         Settings of the method. [default: `SlideSettings()`]
 
-    Other inputs, such as entrainment, are parameters of `snowshed.scene.builders.slide_scene`,
+    Other inputs, such as entrainment, are parameters of `snowshed.scene.slide_scene`,
     whose scene `snowshed.run` simulates.
 
     Returns
@@ -59,7 +59,7 @@ def slide(
     InputError, OSError
         As from `slide_scene`, or if the folder is not empty.
     SimulationError
-        If the simulation cannot go on.
+        If the simulation cannot continue.
     Interrupted
         After Ctrl-C; ``snowshed.run(folder / "scene.json", folder, resume=True)`` resumes.
 

@@ -1,12 +1,11 @@
 """Runs whose snow makes a stack (thesis 3.1.1): slab after slab slides off onto what lies there.
 
 Each event runs until the snow rests: slower than ``events.rest_speed`` (root mean square, as the
-core defines it) for ``events.rest_time``, or until ``events.max_time``, and the table says which.
+core defines it) for ``events.rest_time``, or until ``events.max_time``; the table has the reason.
 Between events the particles carry over with their state (``carry``), or the stack is turned into a
-solid and seeded afresh at rest (``reseed``, as in the thesis). Reseeding also makes the bonds in
-the stack whole again, and gives it n times the slab's volume; conversions.csv says how far that
-moved mass, height, length and outline. What time does to a stack that is carried over
-(``snowshed.running.ageing``) is left out unless asked for.
+solid and seeded afresh at rest (``reseed``, as in the thesis). Reseeding also restores the bonds in
+the stack, and gives it n times the slab's volume; conversions.csv has the changes of mass, height,
+length and outline. A stack that is carried over ages (``snowshed.running.ageing``) only on request.
 """
 
 from __future__ import annotations
@@ -40,7 +39,7 @@ from snowshed.snow.stack.measure import StackMeasure
 from snowshed.snow.stack.particles import measure_particles
 
 LARGEST_RESIDUAL = 0.01  # of the largest energy
-#: Columns of events.csv that say which event a row is of, and how long its computing took.
+#: Columns of events.csv for the number of the event and the time of its computation.
 ROW_KEYS = ("event", "wall_s")
 KINDS: Mapping[str, type] = {**dict.fromkeys(WORDS, str), "event": int, "steps": int}
 
@@ -53,7 +52,7 @@ class StackRun(MethodRun):
     }
 
     def begin(self) -> None:
-        """Write down how the stack ages, or cut the tables to the checkpoint and check them."""
+        """Record the ageing of the stack, or cut the tables to the checkpoint and check them."""
         self.results = RunFolder(self.folder)
         self.stack: Optional[StackMeasure] = None
         ageing = self.options.ageing
@@ -83,19 +82,19 @@ class StackRun(MethodRun):
         ):
             if event not in facts_of:
                 raise _core.InputError(
-                    f"{self.results.run}: does not tell how event {event} went, for the version "
-                    "before did not write it; go on with: snowshed-run"
+                    f"{self.results.run}: has no record of event {event} (written by an older "
+                    "version); resume it with snowshed-run"
                 )
             facts = facts_of[event]
             particles = read_particles(self.results.particles_of(event))
             positions = particles["position"].astype(float)
             on_panel = self.simulation.on_panel_at(positions, facts["laid_height_m"])
             masses, density = (particles[name].astype(float) for name in ("mass", "density"))
-            self._record(facts, self._measure_of(positions, masses, density, on_panel))
+            self._record(facts, self._measure_particles(positions, masses, density, on_panel))
         self._note_tables()
 
     def between_events(self) -> None:
-        """Let the time since the last event pass."""
+        """Age the stack by the time since the last event."""
         if self.options.ageing is None:
             return
         gravity = float(self.scene.data["gravity"])
@@ -104,13 +103,13 @@ class StackRun(MethodRun):
             self.results.ageings.add([row])
 
     def event_begun(self, reseeding: Optional[dict[str, Any]]) -> None:
-        """Write down how far reseeding moved the stack."""
+        """Record the changes of the stack by reseeding."""
         if reseeding is not None:
-            row = conversion_row(self.simulation.event, reseeding, self._measure_of)
+            row = conversion_row(self.simulation.event, reseeding, self._measure_particles)
             self.results.conversions.add([row])
 
     def event_ended(self, facts: Mapping[str, Any]) -> None:
-        """Measure the stack as it is in memory."""
+        """Measure the stack in memory."""
         self.stack = self._measure()
         self._record(facts, self.stack)
         _warn_of_residual(facts)
@@ -119,29 +118,29 @@ class StackRun(MethodRun):
                 say_note(self.sequence, note)
 
     def before_checkpoint(self) -> None:
-        """Note the checksums of the tables, which are cut to the checkpoint when a run goes on.
+        """Store the checksums of the tables, which are cut to the checkpoint when a run resumes.
 
-        The energies over time are in the checkpoint, and written again when it goes on.
+        The energies over time are in the checkpoint, and written again when the run resumes.
         """
         if self.keeps_energy:
             self._write_history()
         self._note_tables()
 
     def finish(self) -> None:
-        """Write the energies over time again: `snowshed-run` does not."""
+        """Write the energies over time again, because `snowshed-run` does not."""
         if self.keeps_energy:
             self._write_history()
             self.sequence.rewrite_record()
 
     def draw(self) -> None:
-        """Draw the stack as it is now, its growth and the energies, and write the solids."""
-        from snowshed.plot.figure_style import save
+        """Draw the present stack, its growth and the energies, and write the solids."""
+        from snowshed.plot.figure_style import save_figure
         from snowshed.plot.stack_figures import growth_figure, stack_figure
 
         write_solids(self.scene, self.simulation.positions(), self.folder)
         stack, data = self.stack or self._measure(), self.scene.data
-        save(stack_figure(self.simulation, stack, data), self.results.stack_picture)
-        save(growth_figure(read_events(self.folder), data), self.results.growth_picture)
+        save_figure(stack_figure(self.simulation, stack, data), self.results.stack_picture)
+        save_figure(growth_figure(read_events(self.folder), data), self.results.growth_picture)
         self.draw_energies()
 
     @classmethod
@@ -172,9 +171,11 @@ class StackRun(MethodRun):
 
     def _measure(self) -> StackMeasure:
         core = self.simulation
-        return self._measure_of(core.positions(), core.masses(), core.densities(), core.on_panel())
+        return self._measure_particles(
+            core.positions(), core.masses(), core.densities(), core.on_panel()
+        )
 
-    def _measure_of(
+    def _measure_particles(
         self, positions: Floats, masses: Floats, density: Floats, on_panel: Booleans
     ) -> StackMeasure:
         return measure_particles(
@@ -183,7 +184,7 @@ class StackRun(MethodRun):
 
 
 def _warn_of_residual(facts: Mapping[str, Any]) -> None:
-    """Warn where the time integration gained or lost more energy than it should."""
+    """Warn where the time integration gained or lost too much energy."""
     share = facts["energy_residual"]
     if share is not None and share > LARGEST_RESIDUAL:
         warnings.warn(

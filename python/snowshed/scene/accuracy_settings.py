@@ -44,7 +44,7 @@ FORMER_NAMES: Mapping[str, str] = {
 
 
 def accuracy_of(scene: Mapping[str, JsonValue]) -> Mapping[str, str]:
-    """Return where each of these settings stands in a scene, by the scene's method.
+    """Return the path of each of these settings in a scene, for the scene's method.
 
     Examples
     --------

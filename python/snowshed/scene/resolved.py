@@ -39,7 +39,7 @@ class ResolvedScene:
     def parse(cls, text: str, base_dir: PathLike = ".") -> ResolvedScene:
         """Validate JSON text; raises InputError."""
         folder = os.fspath(base_dir)
-        return cls._of(ParsedScene.parse(text, folder), folder)
+        return cls._from_core(ParsedScene.parse(text, folder), folder)
 
     @classmethod
     def from_data(cls, data: Mapping[str, JsonValue], base_dir: PathLike = ".") -> ResolvedScene:
@@ -49,17 +49,17 @@ class ResolvedScene:
     @classmethod
     def load(cls, path: PathLike) -> ResolvedScene:
         """Read and validate a scene file; raises InputError."""
-        return cls._of(ParsedScene.load(os.fspath(path)), os.fspath(Path(path).parent))
+        return cls._from_core(ParsedScene.load(os.fspath(path)), os.fspath(Path(path).parent))
 
     @classmethod
-    def _of(cls, parsed: ParsedScene, folder: str) -> ResolvedScene:
+    def _from_core(cls, parsed: ParsedScene, folder: str) -> ResolvedScene:
         scene = cls(parsed.json, folder)
         vars(scene)["core"] = parsed
         return scene
 
     @cached_property
     def core(self) -> ParsedScene:
-        """The scene as the core takes it, without parsing it again."""
+        """The scene in the core's form, without parsing it again."""
         return ParsedScene.parse(self.json, self.base_dir)
 
     @cached_property
@@ -73,7 +73,7 @@ class ResolvedScene:
         return copy.deepcopy(dict(self.data))
 
     def __getstate__(self) -> dict[str, str]:
-        """Return what is pickled: the text, not what was made of it."""
+        """Return the pickled state: the text without its parsed forms."""
         return {"json": self.json, "base_dir": self.base_dir}
 
     def save(self, path: PathLike) -> None:

@@ -56,7 +56,7 @@ def _drawing(data: Mapping[str, Any]) -> str:
 
 
 def _solids(data: Mapping[str, Any]) -> Iterator[tuple[str, list[Point]]]:
-    """Yield the color and the corners (x, z), m, of what can be drawn."""
+    """Yield the color and the corners (x, z), m, of the solids that can be drawn."""
     for obstacle in data.get("obstacles") or ():
         shape = obstacle["shape"]
         if shape["type"] == "box":

@@ -11,7 +11,7 @@ from snowshed.scene.schema import properties, resolve, scene_schema, schema_of_m
 
 
 def scene_repr(scene: Record, always: Collection[str]) -> str:
-    """Return what differs from the defaults, a line for each part of the scene.
+    """Return the differences from the defaults, a line for each part of the scene.
 
     Parameters
     ----------
@@ -29,17 +29,17 @@ def scene_repr(scene: Record, always: Collection[str]) -> str:
         if key in always and isinstance(value, Record) and not _given(value, nodes.get(key, {})):
             continue
         if key != "snowshed" and not _is_default(value, nodes.get(key, {})):
-            lines.append(f"    {name}={_text(value, nodes.get(key, {}))},\n")
+            lines.append(f"    {name}={_literal(value, nodes.get(key, {}))},\n")
     return f"Scene(\n{''.join(lines)})" if lines else "Scene()"
 
 
-def _text(value: object, node: JsonObject) -> str:
+def _literal(value: object, node: JsonObject) -> str:
     if isinstance(value, Record):
         return call_text(type(value), _given(value, node))
     if isinstance(value, (list, tuple)):
         items = resolve(scene_schema(), node).get("items")
         of_items = items if isinstance(items, dict) else {}
-        inner = ", ".join(_text(item, of_items) for item in value)
+        inner = ", ".join(_literal(item, of_items) for item in value)
         return f"[{inner}]" if isinstance(value, list) else f"({inner})"
     return f"{value:g}" if isinstance(value, float) else repr(value)
 
@@ -48,7 +48,7 @@ def _given(record: Record, node: JsonObject) -> dict[str, str]:
     """Return the fields that differ from the defaults, as texts."""
     nodes = properties(scene_schema(), node)
     return {
-        name: _text(getattr(record, name), nodes.get(key, {}))
+        name: _literal(getattr(record, name), nodes.get(key, {}))
         for key, name in record.keys().items()
         if not _is_default(getattr(record, name), nodes.get(key, {}))
     }

@@ -172,7 +172,7 @@ def _list(value: JsonValue) -> list[JsonValue]:
     return value if isinstance(value, list) else []
 
 
-def _text(value: JsonValue) -> str:
+def _string(value: JsonValue) -> str:
     return value if isinstance(value, str) else ""
 
 
@@ -180,7 +180,7 @@ def _parts(schema: Node, node: Node) -> Iterator[Node]:
     yield node
     if "$ref" in node:
         target: Node = schema
-        for name in _text(node["$ref"]).lstrip("#/").split("/"):
+        for name in _string(node["$ref"]).lstrip("#/").split("/"):
             target = _object(target[name]) if name else target
         yield from _parts(schema, target)
     for keyword in ("allOf", "oneOf", "anyOf"):
@@ -205,11 +205,11 @@ def _parameter(schema: Node, node: Node, path: str) -> Parameter:
     return Parameter(
         path,
         _kind(schema, full),
-        _text(full.get("description")),
-        _text(full.get("x-unit")),
+        _string(full.get("description")),
+        _string(full.get("x-unit")),
         full.get("default"),
-        tuple(_text(choice) for choice in _list(full["enum"])) if "enum" in full else None,
-        tuple(f"{section}.{_text(alias)}" for alias in _list(full.get("x-aliases"))),
+        tuple(_string(choice) for choice in _list(full["enum"])) if "enum" in full else None,
+        tuple(f"{section}.{_string(alias)}" for alias in _list(full.get("x-aliases"))),
         bool(full.get("x-accuracy")),
     )
 

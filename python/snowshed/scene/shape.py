@@ -1,4 +1,4 @@
-"""Solids: primitives, meshes, sampled grids, OpenVDB files, and what can be composed of them."""
+"""Solids: primitives, meshes, sampled grids, OpenVDB files, and combinations of them."""
 
 from __future__ import annotations
 
@@ -163,7 +163,7 @@ class Shape(Record):
         scale: Optional[float] = None,
         threshold: Optional[float] = None,
     ) -> Shape:
-        """Return a level set, or what is denser than `threshold`, from an OpenVDB file."""
+        """Return a level set, or the region above `threshold`, from an OpenVDB file."""
         return cls(type="vdb", file=file, grid_=grid, scale=scale, threshold=threshold)
 
     @classmethod
@@ -173,7 +173,7 @@ class Shape(Record):
 
     @classmethod
     def difference(cls, shape: Shape, *removed: Shape) -> Shape:
-        """Return what is inside `shape` and outside all of `removed`."""
+        """Return the region inside `shape` and outside all of `removed`."""
         return cls(type="difference", shapes=[shape, *removed])
 
     @classmethod

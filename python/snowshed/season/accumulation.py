@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Optional
 
-from snowshed.running.ageing import Ageing, Interval
+from snowshed.running.ageing.ageing import Ageing, Interval
 from snowshed.season.checks import check_one_season
 from snowshed.season.column import SnowColumn
 from snowshed.season.release import Balance, balance

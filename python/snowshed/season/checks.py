@@ -26,7 +26,7 @@ HINT = "is it in cm, mm or inches?"
 def check_rows(
     rows: Sequence[Weather], table_rows: Sequence[Row], name: str, *, snowless: bool = False
 ) -> None:
-    """Raise InputError if rows are no weather of seasons.
+    """Raise InputError if rows cannot be the weather of seasons.
 
     Parameters
     ----------

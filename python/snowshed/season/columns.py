@@ -36,7 +36,7 @@ class Column:
     snow : (n,)
         New snow of each day, m; NaN: unknown.
     filled : (n,)
-        Whether its value is no observation of that day.
+        Whether its value was not observed on that day.
     """
 
     source: Source
@@ -165,7 +165,7 @@ class Chooser:
         return bool(more > CONTRADICTION * less and more - less > LEAST_DIFFERENCE)
 
     def _pair(self, reference: Source, other: Source, days: Booleans) -> tuple[float, float]:
-        """Return the sums of two columns on the days that both know."""
+        """Return the sums of two columns on the days of both."""
         first, second = self.columns[reference], self.columns[other]
         both = days & first.known & second.known
         return float(first.snow[both].sum()), float(second.snow[both].sum())
@@ -176,7 +176,7 @@ class Chooser:
         return float(gauge.snow[winter & gauge.known & self._cold].sum()) > LEAST_DIFFERENCE
 
     def _sums(self, winter: Booleans) -> dict[Source, float]:
-        """Return the sum of each column on the days that all know which know any of the winter."""
+        """Return the sum of each column on the common days of columns with data in the winter."""
         there = [column for column in self._all.values() if column.known[winter].any()]
         both = winter.copy()
         for column in there:

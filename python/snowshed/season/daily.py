@@ -10,7 +10,7 @@ from datetime import date, datetime, timedelta
 import numpy as np
 
 from snowshed.base.arrays import Booleans, Floats, Integers
-from snowshed.io.weather import Observation, Station
+from snowshed.io.weather.observation import Observation, Station
 
 #: Days without a row that are set in between two rows; in longer gaps there are no days at all.
 LONGEST_GAP = 60

@@ -177,7 +177,7 @@ def _wrong(ordinals: Integers, depth: Floats, temperature: Floats, seams: Boolea
 
 
 def _longest(change: float, days: int) -> int:
-    """Return how many days a spike of a size may last."""
+    """Return the largest number of days of a spike of a size."""
     if abs(change) > RECORD_DAY * days:
         return IMPOSSIBLE_DAYS
     return SPIKE_DAYS if change > 0.0 else DROPOUT_DAYS

@@ -251,10 +251,10 @@ def _write(
     write_csv(result.table, folder.table, float_format="%.6g")
     write_text(folder.summary, text + "\n")
     if pictures:
-        from snowshed.plot.figure_style import save
+        from snowshed.plot.figure_style import save_figure
 
         outlines = _table_or_empty(folder.run.outlines)
-        save(drawn(result, outlines, scene.data), folder.figure)
+        save_figure(drawn(result, outlines, scene.data), folder.figure)
 
 
 def drawn(result: SeasonResult, outlines: pd.DataFrame, scene: Mapping[str, Any]) -> Figure:
@@ -283,7 +283,7 @@ def drawn(result: SeasonResult, outlines: pd.DataFrame, scene: Mapping[str, Any]
 
 
 def verdict(result: SeasonResult) -> str:
-    """Return in a few words whether, when and how anything first touches the panel."""
+    """Return a phrase on the first contact with the panel: cause, date and event, or none."""
     contact = result.contact
     if contact is not None:
         after = "before any slide-off" if contact.event is None else f"event {contact.event}"

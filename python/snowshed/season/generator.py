@@ -4,7 +4,7 @@ Snowfall days follow a Markov chain of two states, depths a gamma distribution, 
 autoregressive process of the first order about the mean of the month; all by month. This is the
 generator of Richardson 1981, Water Resour. Res. 17, 182-190, with gamma instead of exponential
 amounts (Katz 1977, J. Appl. Meteorol. 16, 671-676). Snow falls only at temperatures at which it did
-at the station. What it does not know: trends, wet and dry winters beyond chance.
+at the station. It has no trends, and no wet or dry winters beyond chance.
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
 `Source` names the origin of a day's new snow, for every format. Each day uses the first of the
 winter's columns (`columns`) with a value; days without a value are filled by a stated rule, or are
-missing. Missing is not zero: such a day says so.
+missing. A missing value is not zero, and is marked.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import numpy as np
 from snowshed._core import InputError
 from snowshed.base.arrays import Booleans, Floats, Integers
 from snowshed.base.formatting import plural
-from snowshed.io.weather import Station
+from snowshed.io.weather.observation import Station
 from snowshed.season.columns import CONTRADICTION, Choice, Chooser, Column
 from snowshed.season.daily import Days, days_of_station
 from snowshed.season.depth_rises import LEAST_RISE, DepthSnow, Total, snow_of_depth

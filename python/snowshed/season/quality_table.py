@@ -31,7 +31,7 @@ def quality_rows(winters: WinterList) -> list[tuple[str, ...]]:
 
 
 def shortened(rows: list[tuple[str, ...]]) -> tuple[list[tuple[str, ...]], int]:
-    """Return the rows that a console shows, and how many it leaves out."""
+    """Return the rows for a console, and the number of further rows."""
     if len(rows) <= MOST_ROWS:
         return rows, 0
     half = MOST_ROWS // 2
@@ -39,7 +39,7 @@ def shortened(rows: list[tuple[str, ...]]) -> tuple[list[tuple[str, ...]], int]:
 
 
 def caption(winters: WinterList) -> str:
-    """Return how well the snow of a season is known, in a line.
+    """Return a line on the quality of the snow data of a season.
 
     Examples
     --------

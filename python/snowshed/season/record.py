@@ -41,7 +41,7 @@ class Record:
         return calendar_of(self.rows, self.latitude)
 
     def winters(self, coverage: float = COVERAGE) -> WinterList:
-        """Return what each of its winters is worth.
+        """Return the quality of each of its winters.
 
         Parameters
         ----------
@@ -51,7 +51,7 @@ class Record:
         Raises
         ------
         InputError
-            If it is no share.
+            If it is not a share.
 
         Examples
         --------

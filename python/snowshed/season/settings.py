@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Optional, Union
 
 from snowshed._core import InputError
-from snowshed.running.ageing import Ageing, Interval
+from snowshed.running.ageing.ageing import Ageing, Interval
 from snowshed.snow.relations.new_snow import NEW_SNOW_DENSITY
 from snowshed.snow.relations.relation import choose
 from snowshed.snow.relations.settling import SETTLING_LAWS, SettlingLaw

@@ -1,4 +1,4 @@
-"""An estimate of how far the stack has settled since the last slide-off.
+"""An estimate of the settling of the stack since the last slide-off.
 
 The simulated stack ages just before the next event (`snowshed.running.ageing`). For the time until
 then, the snow below its crest is treated as a column with the mean density of the stack, which

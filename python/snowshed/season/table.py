@@ -75,7 +75,7 @@ def _panel_columns(day: Day) -> dict[str, Any]:
 
 
 class _Stack:
-    """The stack as it stands after the last event."""
+    """The stack after the last event."""
 
     def __init__(
         self,

@@ -19,7 +19,7 @@ YEAR = 366
 def filled_temperatures(
     dates: Sequence[date], measured: Floats, told: Optional[Booleans] = None
 ) -> tuple[Floats, Booleans, list[str]]:
-    """Return the temperature of every day, the days it is far from a measured one, and notes.
+    """Return the temperature of every day, the days far from a measurement, and notes.
 
     Gaps of up to three days are interpolated linearly. In longer ones, a day gets the mean of the
     file's temperatures within a week of the same day of the year, in all years; without such
@@ -67,7 +67,7 @@ def _notes(
 
 
 def some_days(dates: Sequence[date], numbers: Sequence[int] | Integers) -> str:
-    """Return how many days there are, and from when to when.
+    """Return a phrase with the number of days, the first and the last.
 
     Examples
     --------
@@ -79,7 +79,7 @@ def some_days(dates: Sequence[date], numbers: Sequence[int] | Integers) -> str:
 
 
 def _distance(days: Floats, measured_days: Floats) -> Floats:
-    """Return how far each day is from the nearest known one."""
+    """Return the distance of each day from the nearest known day."""
     near = np.searchsorted(measured_days, days)
     before, after = (
         measured_days[np.maximum(near - 1, 0)],

@@ -20,7 +20,9 @@ from snowshed.base.formatting import number_in
 from snowshed.base.messages import quoted
 from snowshed.base.notes import tell
 from snowshed.io.csv_table import Row, frame_as_text, read_text_table
-from snowshed.io.weather import Station, read_station, read_stations
+from snowshed.io.weather.joined import read_stations
+from snowshed.io.weather.observation import Station
+from snowshed.io.weather.recognise import read_station
 from snowshed.scene.scene import PathLike
 from snowshed.season.checks import NO_SNOW, check_rows
 from snowshed.season.observed import record_of
@@ -132,7 +134,7 @@ def read_record(
     if snow_from != AUTO and snow_from not in CHOICES:
         allowed = ", ".join((AUTO, *CHOICES))
         raise InputError(f"snow from: {quoted(snow_from)}; allowed: {allowed}")
-    files = _files_of(season)
+    files = _weather_files(season)
     if temperature is not None and not files:
         raise InputError(
             "a file of temperatures is allowed with weather files only, not with a table"
@@ -163,7 +165,7 @@ def read_record(
     return Record(rows)
 
 
-def _files_of(season: Season) -> list[Path]:
+def _weather_files(season: Season) -> list[Path]:
     """Return the weather files of a season; none if it is a table or rows."""
     if isinstance(season, (str, os.PathLike)):
         return [Path(season)]

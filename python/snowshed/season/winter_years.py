@@ -54,7 +54,7 @@ class Calendar:
         return str(year) if self.south else f"{year}/{(year + 1) % 100:02d}"
 
     def order(self, month: int, day: int) -> tuple[int, int]:
-        """Return what days of a winter's year are sorted by."""
+        """Return the sort key of days in a winter's year."""
         start = SOUTHERN_START if self.south else NORTHERN_START
         return (month - start) % 12, day
 

@@ -15,40 +15,6 @@ Examples
 ``study.run("results")`` computes them and returns the table.
 """
 
-from snowshed.study.definition import Study
-from snowshed.study.errors import StudyError, StudyInterrupted
-from snowshed.study.factors import (
-    Factor,
-    Span,
-    axis,
-    latin_hypercube,
-    linear,
-    logarithmic,
-    sobol,
-)
-from snowshed.study.formats import export, to_dataset
-from snowshed.study.remeasuring import remeasure
-from snowshed.study.scene_hash import Run
-from snowshed.study.season_part import SeasonPart
-from snowshed.study.session import resume
-from snowshed.study.table import read_table
+import lazy_loader as _lazy
 
-__all__ = [
-    "Factor",
-    "Run",
-    "SeasonPart",
-    "Span",
-    "Study",
-    "StudyError",
-    "StudyInterrupted",
-    "axis",
-    "export",
-    "latin_hypercube",
-    "linear",
-    "logarithmic",
-    "read_table",
-    "remeasure",
-    "resume",
-    "sobol",
-    "to_dataset",
-]
+__getattr__, __dir__, __all__ = _lazy.attach_stub(__name__, __file__)

@@ -1,7 +1,7 @@
-"""The scene of a run whose stack ages between its events, as one JSON object.
+"""The scene of a run and the ageing of its stack between events, in a single JSON object.
 
-A study keeps one JSON object for each run: the complete scene, and beside its keys ``ageing``, if
-the stack ages between events. So the identity of the run covers both.
+A study stores a JSON object for each run: the complete scene with the additional key ``ageing``, if
+the stack ages between events. The identity of the run thus covers both.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from typing import Any, Optional
 
 from snowshed.io.json_file import parse_object
-from snowshed.running.ageing import Ageing
+from snowshed.running.ageing.ageing import Ageing
 
 KEY = "ageing"
 
@@ -24,7 +24,7 @@ def with_ageing(scene: Mapping[str, Any], ageing: Optional[Ageing]) -> dict[str,
     scene
         JSON data.
     ageing
-        None: the stack stays between events as it is.
+        Ageing of the stack; None: it does not age.
 
     Examples
     --------
@@ -40,12 +40,12 @@ def taken_apart(text: str) -> tuple[dict[str, Any], Optional[Ageing]]:
     Parameters
     ----------
     text
-        What `with_ageing` made, as JSON.
+        JSON text of a scene from `with_ageing`.
 
     Raises
     ------
     InputError
-        If it is no JSON object, or its ageing is not sound.
+        If it is not a JSON object, or its ageing is invalid.
 
     Examples
     --------

@@ -1,8 +1,8 @@
 """Checksums in a store: a damaged row is found when it is read.
 
-Each is of one thing, by name: ``run HASH`` what is to be computed, ``study NAME`` the runs of a
-study, ``results HASH`` what was measured and ``particles HASH`` what is kept of the snow. What an
-earlier version wrote gets them when it is opened.
+Their names: ``run HASH`` for the scene of a run, ``study NAME`` for the runs of a study, ``results
+HASH`` for measures and ``particles HASH`` for stored particles. A store of an earlier version gets
+its checksums when it is opened.
 """
 
 from __future__ import annotations
@@ -17,17 +17,17 @@ TABLE = (
     "CREATE TABLE IF NOT EXISTS checksum"
     " (name TEXT PRIMARY KEY, digest TEXT NOT NULL) WITHOUT ROWID"
 )
-#: The tables of results; a column that came later is empty in rows from before, and not counted.
+#: The tables of results; columns of a later version are empty in older rows, and do not count.
 RESULTS = ("event", "event_timing", "run_timing")
 
 
 def note(write: sqlite3.Connection, name: str, content: object) -> None:
-    """Store the checksum of something that is written in the same transaction."""
+    """Store the checksum of content that the same transaction writes."""
     write.execute("INSERT OR REPLACE INTO checksum VALUES (?, ?)", (name, digest(content)))
 
 
 def note_run(write: sqlite3.Connection, hash_: str) -> None:
-    """Store the checksum of a run that is to be computed."""
+    """Store the checksum of a run before it is computed."""
     columns = "SELECT hash, version, scene FROM run WHERE hash = ?"
     note(write, f"run {hash_}", write.execute(columns, (hash_,)).fetchone())
 
@@ -38,7 +38,7 @@ def note_study(write: sqlite3.Connection, study: str) -> None:
 
 
 def note_results(write: sqlite3.Connection, hash_: str) -> None:
-    """Store the checksums of the results of a run, and of its particles if it kept them."""
+    """Store the checksums of the results of a run, and of its particles if they are stored."""
     note(write, f"results {hash_}", results_of(write, hash_))
     query = "SELECT event, data FROM event_particles WHERE hash = ? ORDER BY event"
     if particles := write.execute(query, (hash_,)).fetchall():
@@ -46,7 +46,7 @@ def note_results(write: sqlite3.Connection, hash_: str) -> None:
 
 
 def note_all(write: sqlite3.Connection) -> None:
-    """Store the checksums of all that a store of an earlier version holds."""
+    """Store the checksums of the whole content of a store of an earlier version."""
     for hash_, status in write.execute("SELECT hash, status FROM run").fetchall():
         note_run(write, hash_)
         if status != "pending":
@@ -56,7 +56,7 @@ def note_all(write: sqlite3.Connection) -> None:
 
 
 def study_of(connection: sqlite3.Connection, study: str) -> Sequence[Any]:
-    """Return what a store holds of a study."""
+    """Return the rows of a study in a store."""
     axes = connection.execute("SELECT axes FROM study WHERE name = ?", (study,)).fetchall()
     query = "SELECT position, hash FROM study_run WHERE study = ? ORDER BY position"
     return [axes, connection.execute(query, (study,)).fetchall()]
@@ -79,7 +79,7 @@ def _digest_of_bytes(value: object) -> str:
 
 
 def results_of(connection: sqlite3.Connection, hash_: str) -> Sequence[Any]:
-    """Return what a store holds of the results of a run, without its particles."""
+    """Return the rows of the results of a run, without its particles."""
     parts: list[Any] = connection.execute(
         "SELECT status, error FROM run WHERE hash = ?", (hash_,)
     ).fetchall()
@@ -90,9 +90,9 @@ def results_of(connection: sqlite3.Connection, hash_: str) -> Sequence[Any]:
             sorted((name, value) for name, value in zip(names, row) if value is not None)
             for row in cursor
         ]
-        parts.append(sorted(rows, key=_event_of))
+        parts.append(sorted(rows, key=_event_key))
     return parts
 
 
-def _event_of(row: Sequence[tuple[str, Any]]) -> str:
+def _event_key(row: Sequence[tuple[str, Any]]) -> str:
     return str(dict(row).get("event", "")).zfill(9)

@@ -22,8 +22,8 @@ AT_ONCE = 1000  # tasks handed over at once: enough for a cluster that grows wit
 class DaskWorkers:
     """The workers of a Dask scheduler; see `Workers` for the interface.
 
-    A worker computes as many runs at once as it has threads, each run with one thread. If one dies,
-    Dask gives its runs to others. They resume these runs if they share the study's folder.
+    A worker computes as many runs at once as it has threads, each run with one thread. If a worker
+    dies, Dask gives its runs to others. They resume these runs if they share the study's folder.
 
     Parameters
     ----------
@@ -56,12 +56,12 @@ class DaskWorkers:
 
     @property
     def fractions(self) -> Mapping[str, float]:
-        """Nothing: only the end of runs in other processes is known."""
+        """Nothing, because only the end of runs in other processes is known."""
         return {}
 
     def submit(self, task: Task) -> None:
         """Hand a task to the scheduler."""
-        # A name of its own, so that Dask never takes an earlier attempt for this one.
+        # A unique name, so that Dask never confuses this attempt with an earlier one.
         key = f"snowshed-{task.hash}-{uuid.uuid4().hex[:8]}"
         self._futures[task.hash] = self._client.submit(compute, task, key=key, pure=False)
 
@@ -77,7 +77,7 @@ class DaskWorkers:
         return [_outcome(hash_, self._futures.pop(hash_)) for hash_ in ended]
 
     def stop(self) -> list[Outcome]:
-        """Cancel the runs that have not begun; the others go on, but nobody waits for them."""
+        """Cancel the runs that have not begun; the others continue, but their ends are ignored."""
         self._client.cancel(list(self._futures.values()))
         self.close()
         return []
@@ -107,6 +107,6 @@ def _outcome(hash_: str, future: Any) -> Outcome:
     if future.status == "error":
         error = future.exception()
         if type(error).__name__ == "KilledWorker":
-            return Outcome(hash_, "failed", error="every worker that computed it died")
+            return Outcome(hash_, "failed", error="every worker that computed the run died")
         return Outcome(hash_, "unable", error=f"{type(error).__name__}: {error}")
     raise StudyError("the connection to the Dask scheduler is lost")

@@ -56,8 +56,8 @@ def compute(task: Task, report: Optional[FractionReporter] = None) -> Outcome:
 def _compute(task: Task, folder: Path, report: Optional[FractionReporter]) -> Outcome:
     if content_hash(scene_data(task.scene)) != task.hash:
         reason = (
-            f"run {task.hash} is not what was registered: a file its scene names has changed, or "
-            f"this is another version of snowshed ({_core.version})"
+            f"run {task.hash} differs from the registered one: a file of its scene has changed, "
+            f"or this is another version of snowshed ({_core.version})"
         )
         return Outcome(task.hash, "unable", error=reason)
     earlier = RunFolder(folder).read_run()
@@ -99,7 +99,7 @@ def _run_or_resume(task: Task, folder: Path, report: Optional[Reporter]) -> None
 
 
 def _outcome(task: Task, folder: Path, error: Optional[str]) -> Outcome:
-    """Return the outcome that the results folder records."""
+    """Return the outcome recorded in the results folder."""
     results = RunFolder(folder)
     runs = method_of(taken_apart(task.scene)[0]).run_class()
     events = runs.rows(folder)

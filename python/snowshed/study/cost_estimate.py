@@ -43,7 +43,7 @@ def work(scene: str) -> float:
 
 
 def speed(scene: str, threads: int) -> float:
-    """Return the particle updates per second that a scene reaches here and now."""
+    """Return the particle updates per second of a scene on this machine at present."""
     data = taken_apart(scene)[0]
     data["numerics"]["threads"] = threads
     try:
@@ -53,7 +53,7 @@ def speed(scene: str, threads: int) -> float:
 
 
 def duration(works: Iterable[float], workers: int) -> float:
-    """Return the time that workers need for tasks if the longest are begun first.
+    """Return the time that workers need for tasks if the longest start first.
 
     Parameters
     ----------
@@ -98,7 +98,7 @@ def expected(scenes: Sequence[str], works: Sequence[float], workers: int, thread
     for _ in range(ROUNDS):
         for scene, before in quickest.items():
             quickest[scene] = max(before, speed(scene, threads))
-        found = updates * statistics.fmean(1 / quickest[scene] for scene in typical)
-        if time.monotonic() - start > MEASURED * found:
+        seconds = updates * statistics.fmean(1 / quickest[scene] for scene in typical)
+        if time.monotonic() - start > MEASURED * seconds:
             break
-    return found
+    return seconds

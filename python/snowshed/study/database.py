@@ -5,13 +5,13 @@ Every change is one transaction with a write-ahead log that is flushed to the di
 =============== ========================================================================
 study           name, and its axes (JSON list of dotted paths)
 study_run       the runs of each study, in order; studies may share runs
-run             content hash, version, complete scene (JSON), status, error, who computes it, and
-                whether its particles are kept
-event           what was measured after each event of a run: the columns of all methods
-event_timing    wall time of each event, apart, since it differs whenever a run is repeated
-event_particles what each event left, packed, of runs that keep it: particles, or maps of slides
-run_timing      wall time of each run, and what computed it
-checksum        checksums of what the other tables hold (see `snowshed.study.checksums`)
+run             content hash, version, complete scene (JSON), status, error, owner, and whether its
+                particles are stored
+event           measures after each event of a run: the columns of all methods
+event_timing    wall time of each event, apart, because it differs when a run is repeated
+event_particles packed particles after each event, or maps of slides, of runs that store them
+run_timing      wall time of each run, and the machine that computed it
+checksum        checksums of the other tables (see `snowshed.study.checksums`)
 =============== ========================================================================
 """
 
@@ -31,21 +31,21 @@ from snowshed.study.locks import owner_lives
 FILE = "store.sqlite"
 RUNNING = "running"
 APPLICATION = 0x534E4F57  # "SNOW": tells our databases from others
-#: 1 was written before there were checksums, or while a process that knows only 1 went on.
+#: Version 1 is from before there were checksums, or from an older process in the same store.
 VERSIONS = (1, 2)
 BUSY_S = 60.0  # s to wait for another process that is writing
 
 SQL_TYPES: Mapping[type, str] = {int: "INTEGER", float: "REAL", str: "TEXT"}
 
-#: What each method measures after an event: int, float or str.
+#: Columns of each method's measures after an event: int, float or str.
 MEASURED: Mapping[str, Mapping[str, type]] = {
     name: method.run_class().COLUMNS for name, method in METHODS.items()
 }
-#: What any method measures, with the type it has in the store.
+#: Columns of all methods, with their types in the store.
 STORED_TYPES: Mapping[str, str] = {
     name: SQL_TYPES[kind] for columns in MEASURED.values() for name, kind in columns.items()
 }
-#: Of these, what the default method measures.
+#: Columns of the default method.
 MEASURED_TYPES: Mapping[str, str] = {name: STORED_TYPES[name] for name in MEASURED[DEFAULT]}
 #: Facts about the computing of a run.
 TIMING: Mapping[str, str] = {
@@ -87,9 +87,9 @@ TABLES = (
 
 
 def connect(folder: Path) -> sqlite3.Connection:
-    """Open the database, making what it lacks; no other process may do so at the same time."""
+    """Open the database and create missing tables; no other process may do so at the same time."""
     if not (folder / FILE).exists() and any(folder.iterdir()):
-        raise InputError(f"{folder}: not empty, and holds no study; choose a new folder")
+        raise InputError(f"{folder}: not empty, but holds no study; choose a new folder")
     with translated(folder):
         connection = sqlite3.connect(folder / FILE, timeout=BUSY_S, isolation_level=None)
         try:
@@ -105,18 +105,18 @@ def connect(folder: Path) -> sqlite3.Connection:
 
 
 def _provide_running(folder: Path) -> None:
-    """Make the folder of runs; a link could lead out of the store, where nothing is ours."""
+    """Make the folder of runs; links are refused, because they could lead out of the store."""
     if folder.is_symlink():
         raise InputError(f"{folder}: a link; it must be a folder of the store itself")
     folder.mkdir(exist_ok=True)
 
 
 def connect_read_only(folder: Path) -> sqlite3.Connection:
-    """Open the database in a folder where nothing can be written, so that nobody changes it."""
+    """Open the database in a folder without write access, which no process can change."""
     log = folder / f"{FILE}-wal"
     if log.exists() and log.stat().st_size > 0:
         raise InputError(
-            f"{folder}: cannot be written, and was left amid a change; copy it to where it can be"
+            f"{folder}: read-only, and left in the middle of a change; copy it to a writable folder"
         )
     with translated(folder):
         address = f"{(folder / FILE).as_uri()}?mode=ro&immutable=1"
@@ -146,7 +146,7 @@ def _check_format(connection: sqlite3.Connection, folder: Path) -> None:
     if _pragma(connection, "user_version") not in VERSIONS:
         raise InputError(f"{folder / FILE}: made by another version of snowshed")
     if _pragma(connection, "user_version") == VERSIONS[-1] and not _has_checksums(connection):
-        raise InputError(f"{folder / FILE}: damaged: the table of checksums is not there")
+        raise InputError(f"{folder / FILE}: damaged: the table of checksums is missing")
 
 
 def _has_checksums(connection: sqlite3.Connection) -> bool:
@@ -154,9 +154,9 @@ def _has_checksums(connection: sqlite3.Connection) -> bool:
 
 
 def _add_what_is_new(connection: sqlite3.Connection, folder: Path) -> None:
-    """Give a store of earlier days what it lacks; from then on earlier versions refuse it.
+    """Add the missing tables to a store of an earlier version; earlier versions then refuse it.
 
-    One of them that computes in it now would add results without checksums.
+    An earlier version that still computes in it would add results without checksums.
     """
     has_checksums = _has_checksums(connection)
     if _pragma(connection, "user_version") < VERSIONS[-1]:
@@ -165,16 +165,16 @@ def _add_what_is_new(connection: sqlite3.Connection, folder: Path) -> None:
             connection.execute(f"PRAGMA user_version = {VERSIONS[-1]}")
         elif not has_checksums:
             raise InputError(
-                f"{folder}: an earlier version of snowshed computes in it; wait until it has "
-                "ended, or stop it"
+                f"{folder}: an earlier version of snowshed is computing in it; wait for its "
+                "end, or stop it"
             )
     present = {row[1] for row in connection.execute("PRAGMA table_info(event)")}
     for name in STORED_TYPES.keys() - present:
         connection.execute(f"ALTER TABLE event ADD COLUMN {name} {STORED_TYPES[name]}")
     connection.execute(PARTICLES_TABLE)
     if "keep_particles" not in {row[1] for row in connection.execute("PRAGMA table_info(run)")}:
-        kept = "keep_particles INTEGER NOT NULL DEFAULT 0"
-        connection.execute(f"ALTER TABLE run ADD COLUMN {kept}")
+        column = "keep_particles INTEGER NOT NULL DEFAULT 0"
+        connection.execute(f"ALTER TABLE run ADD COLUMN {column}")
     if not has_checksums:
         connection.execute(checksums.TABLE)
         checksums.note_all(connection)
@@ -199,7 +199,7 @@ def transaction(connection: sqlite3.Connection) -> Iterator[sqlite3.Connection]:
 
 @contextmanager
 def translated(folder: Path) -> Iterator[None]:
-    """Turn errors of the database into what the user can do about them."""
+    """Turn errors of the database into errors that tell users their remedy."""
     try:
         yield
     except (sqlite3.Error, UnicodeDecodeError) as error:  # the latter: SQLite quotes damaged text

@@ -36,8 +36,8 @@ class Study:
     Parameters
     ----------
     scene
-        The scene that all runs have in common. It may lack values that a factor sets. The study
-        keeps a copy: what happens to the scene later does not change the study.
+        The scene that all runs have in common. It may lack values that a factor sets. The study has
+        a copy: later changes of the scene do not change the study.
     parts
         Each part is a sequence of factors and stands for their product. The study is the union of
         its parts. A run that is in several parts is one run.
@@ -49,15 +49,15 @@ class Study:
     description
         Purpose of the study, for readers of its file.
     season
-        A winter, where the runs are seasons: the snow of each panel gathers, is released and piles
-        up, and every slide-off is an event. The thickness of the slab and the number of events are
+        A winter, if the runs are seasons: the snow of each panel gathers, slides off and piles up,
+        and every slide-off is an event. The thickness of the slab and the number of events are
         those of the winter. None: the events are those of the scene.
 
     Raises
     ------
     InputError
         If a factor names a parameter that a scene does not have, that does not change a result, or
-        that another factor of the same part also names; or if there are too many runs.
+        that another factor of the same part also names, or if there are too many runs.
 
     Examples
     --------
@@ -107,14 +107,14 @@ class Study:
         Raises
         ------
         InputError
-            Naming the file, the key, what is wrong with it, and what is allowed.
+            If the file is wrong; the message has the key, its fault and the allowed values.
         OSError
             If the file cannot be read.
         """
         path = Path(file)
         with study_file.name_in_errors(path):
-            found = study_file.read(path)
-            study = cls(**vars(found))
+            content = study_file.read(path)
+            study = cls(**vars(content))
             study.runs()  # a wrong scene is the file's error
         return study
 
@@ -197,9 +197,9 @@ class Study:
         keep_particles: bool = False,
         progress: Optional[Reporter] = None,
     ) -> None:
-        """Compute what is not yet in the store in `folder`.
+        """Compute the runs that are missing in the store in `folder`.
 
-        After an interruption, even a kill, the same call goes on. The results are the same, bit for
+        After an interruption, even a kill, the same call resumes. The results are the same, bit for
         bit, as without the interruption.
 
         Parameters
@@ -217,8 +217,8 @@ class Study:
         retry_failed
             Whether to compute failed runs again.
         keep_particles
-            Whether to store the particles after each event too, of the runs that are still to be
-            computed, so that `snowshed.study.remeasure` can measure the stacks in another way.
+            Whether to store the particles after each event, too, for runs that are not computed
+            yet, so that `snowshed.study.remeasure` can measure their stacks differently.
         progress
             Called with a `Progress` a few times a second.
 
@@ -227,7 +227,7 @@ class Study:
         InputError
             If a scene is wrong, or the folder cannot be used.
         StudyError
-            If the study cannot go on, for example because the disk is full. Computed results are
+            If the study cannot continue, for example because the disk is full. Computed results are
             safe.
         StudyInterrupted
             After Ctrl-C.
@@ -256,7 +256,7 @@ class Study:
         keep_particles: bool = False,
         progress: Optional[Reporter] = None,
     ) -> pd.DataFrame:
-        """Compute what is not yet in the store in `folder`, and return the study's table.
+        """Compute the runs that are missing in the store in `folder`, and return the study's table.
 
         Parameters
         ----------
@@ -331,7 +331,7 @@ class Study:
             if any(path == name or path.startswith(f"{name}.") for name in WITHOUT_EFFECT):
                 raise InputError(f"{path}: cannot be varied; it does not change a result")
             if self.season is not None and any(path.startswith(name) for name in DECIDED):
-                raise InputError(f"{path}: cannot be varied; the season decides it")
+                raise InputError(f"{path}: cannot be varied; the weather of the season sets it")
         if self.seeds is not None and SEED in paths:
             raise InputError(f"{SEED}: varied by a factor and by the study's seeds")
         scene = self.scene.copy()

@@ -8,11 +8,12 @@ from snowshed._core import SimulationError
 
 
 class StudyError(SimulationError):
-    """The study cannot go on, for a reason that lies in the machine; what is stored is safe."""
+    """The study cannot continue because of a fault of the machine; stored results are safe."""
 
     def __init__(self, reason: str) -> None:
         super().__init__(
-            f"{reason}; what is stored is safe. When that is mended, repeat the command to go on"
+            f"{reason}; stored results are safe. Remove the cause, then repeat the command "
+            "to resume"
         )
 
 
@@ -20,9 +21,9 @@ class StudyInterrupted(KeyboardInterrupt):
     """A study was interrupted; its runs have left checkpoints in its folder."""
 
     def __init__(self, folder: Path) -> None:
-        super().__init__(f"interrupted; go on with: {resume_command(folder)}")
+        super().__init__(f"interrupted; resume with: {resume_command(folder)}")
 
 
 def resume_command(folder: Path) -> str:
-    """Return the command that goes on with the studies in a folder."""
+    """Return the command that resumes the studies in a folder."""
     return f"snowshed study resume {folder}"

@@ -54,7 +54,9 @@ class Factor:
                 raise InputError(f"{path}: {count} values; allowed are 1 to {LARGEST_COUNT}")
         if len(set(counts.values())) > 1:
             listed = ", ".join(f"{path} has {count}" for path, count in counts.items())
-            raise InputError(f"what varies in step needs equally many values, but {listed}")
+            raise InputError(
+                f"parameters that vary together need equally many values, but {listed}"
+            )
 
     def __len__(self) -> int:
         return len(next(iter(self.columns.values())))
@@ -69,7 +71,7 @@ Part = Sequence[Factor]
 
 
 def axis(path: str, values: Sequence[object]) -> Factor:
-    """Return the factor of one parameter.
+    """Return the factor of a single parameter.
 
     Examples
     --------
@@ -159,7 +161,7 @@ class Span:
             _check_positive(self.low, self.high)
 
     def at(self, fraction: float) -> float:
-        """Return the value at a fraction, 0 to 1, of the way."""
+        """Return the value at a fraction, 0 to 1, of the span."""
         if self.scale == "linear":
             return _tidy(self.low + fraction * (self.high - self.low))
         return _tidy(self.low * (self.high / self.low) ** fraction)
@@ -226,7 +228,7 @@ def _sample(method: str, spans: Mapping[str, Span], count: int, seed: int) -> Fa
 
 
 def _tidy(value: float) -> float:
-    """Return a value without the last digits' rounding, so that 0.1 + 2 * 0.1 is 0.3."""
+    """Return a value without rounding errors in its last digits, so that 0.1 + 2 * 0.1 is 0.3."""
     return value if isinstance(value, int) else float(f"{value:.12g}")
 
 

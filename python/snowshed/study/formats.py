@@ -54,7 +54,7 @@ def export(
 def write_table(
     make: Callable[[], pd.DataFrame], file: PathLike, form: Optional[str] = None
 ) -> None:
-    """Write the table that `make` returns, which is not called if the format is unknown.
+    """Write the table that `make` returns; an unknown format is refused before.
 
     Parameters
     ----------
@@ -83,7 +83,7 @@ def to_dataset(table: pd.DataFrame) -> xarray.Dataset:
     """
     library = require("xarray", "study", "the NetCDF form")
     if table.empty:
-        raise InputError("no run is done yet, and NetCDF needs one")
+        raise InputError("no run is done yet; NetCDF needs at least one")
     per_event = [name for name in (*STORED_TYPES, "error", "wall_s") if name in table]
     grids = table.set_index(["hash", "event"])[per_event].unstack("event")
     runs = table.drop(columns=["event", *per_event]).drop_duplicates("hash")

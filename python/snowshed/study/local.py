@@ -29,11 +29,11 @@ class LocalWorkers:
 
     @property
     def capacity(self) -> int:
-        """Number of tasks that it takes at once."""
+        """Number of tasks at once."""
         return self.pool.capacity
 
     def threads(self, unfinished: int) -> int:
-        """Return the threads of a run: several if there are few runs, one if there are many."""
+        """Return the threads of a run: several for few runs, a single one for many."""
         return self._threads or max(1, self._cores // max(1, min(self.capacity, unfinished)))
 
     @property
@@ -50,7 +50,7 @@ class LocalWorkers:
         return [_outcome(ended) for ended in self.pool.collect(timeout)]
 
     def stop(self) -> list[Outcome]:
-        """Ask all tasks to stop at a checkpoint; return what ended meanwhile."""
+        """Ask all tasks to stop at a checkpoint; return the tasks that ended meanwhile."""
         return [_outcome(ended) for ended in self.pool.stop()]
 
     def close(self) -> None:
@@ -65,5 +65,5 @@ def _outcome(ended: Ended[Task, Outcome]) -> Outcome:
         kind = type(ended.error).__name__
         return Outcome(ended.task.hash, "unable", error=f"{kind}: {ended.error}")
     if ended.never_began:
-        return Outcome(ended.task.hash, "unable", error=f"no worker starts: it {ended.death}")
+        return Outcome(ended.task.hash, "unable", error=f"no worker can start: it {ended.death}")
     return Outcome(ended.task.hash, "lost", error=f"the worker {ended.death}")

@@ -1,4 +1,4 @@
-"""File locks that end with the process that holds them, however it ends.
+"""File locks that end with the process that holds them, whatever ends it.
 
 They are locks of the kernel (flock) on a file or a folder, and prove that a process is alive.
 Unlike a process id, a lock cannot be mistaken for that of a later process, and it works across
@@ -64,7 +64,7 @@ def is_held(path: Path) -> bool:
     except FileNotFoundError:
         return False
     try:
-        # Shared, so that two that look at the same time do not take each other for the holder.
+        # Shared, so that two processes that test at the same time are not taken for the holder.
         _lock(handle, path, fcntl.LOCK_SH | fcntl.LOCK_NB)
     except BlockingIOError:
         return True
@@ -74,7 +74,7 @@ def is_held(path: Path) -> bool:
 
 
 def is_owner(name: str) -> bool:
-    """Return whether a name is one that `ownership` gives, and no way out of the store's folder.
+    """Return whether a name has the form of `ownership`, so that it cannot lead out of the store.
 
     Examples
     --------
@@ -85,7 +85,7 @@ def is_owner(name: str) -> bool:
 
 
 def owner_lives(folder: Path, owner: str) -> bool:
-    """Return whether the process of an owner still runs, whose lock would be in the folder."""
+    """Return whether the process of an owner still runs; its lock would be in the folder."""
     return is_owner(owner) and is_held(folder / f"{owner}.lock")
 
 

@@ -9,14 +9,14 @@ from typing import Any, Optional
 
 @dataclass(frozen=True)
 class Task:
-    """A run to be computed.
+    """A run for a worker.
 
     Attributes
     ----------
     hash, scene
-        The run.
+        Content hash and scene of the run.
     folder
-        Folder to work in; an earlier attempt there is resumed.
+        Working folder; an earlier attempt there is resumed.
     threads
         Number of threads that the run may use.
     keep_particles
@@ -37,11 +37,11 @@ class Outcome:
     Attributes
     ----------
     hash
-        The run.
+        Content hash of the run.
     status
         - done: all events are there;
-        - failed: the simulation could not go on, nor could it if repeated;
-        - interrupted: stopped on request, to be resumed;
+        - failed: the simulation could not continue, and would fail again;
+        - interrupted: stopped on request, and can be resumed;
         - lost: the worker died, or ran out of memory;
         - unable: the machine could not compute it, for example because its disk is full.
     events
@@ -51,10 +51,10 @@ class Outcome:
     error
         Reason why the run is not done.
     particles
-        What each completed event left, packed (see `MethodRun.packed`), by events; empty unless
-        the task asked for it.
+        Packed results of each completed event (see `MethodRun.packed`), by event; empty unless the
+        task asked for them.
     notes
-        What readers of the results should know, as run.json has it.
+        Notes on the results, as in run.json.
     """
 
     hash: str

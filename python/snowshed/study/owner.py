@@ -1,4 +1,4 @@
-"""The owner of runs: a process that claims them and holds a lock as long as it lives."""
+"""The owner of runs: a process that claims them and holds a lock until it ends."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from snowshed.study.store import Store
 
 @contextmanager
 def ownership(store: Store) -> Iterator[str]:
-    """Yield the name of a new owner, to claim runs with; its claims are released at the end.
+    """Yield the name of a new owner, which can claim runs; its claims are released at the end.
 
     If the process dies, its lock ends, and `release_dead` of another process releases its claims.
     """

@@ -1,4 +1,4 @@
-"""Measuring the stacks of a study again, from the particles that its store keeps."""
+"""Measuring the stacks of a study again, from the particles in its store."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from snowshed.study.table import read_table
 if TYPE_CHECKING:
     import pandas as pd
 
-#: From the particles after an event to columns of the table.
+#: Function from the particles after an event to columns of the table.
 Measuring = Callable[[EventParticles], Mapping[str, object]]
 
 
@@ -29,19 +29,19 @@ def remeasure(
 ) -> pd.DataFrame:
     """Measure the stacks of a study again, and return its table.
 
-    Particles are kept in single precision, so that the last digits of a measure may differ from
-    those that were measured while the run went on.
+    Particles are stored in single precision, so that the last digits of a measure may differ from
+    the measure during the run.
 
     Parameters
     ----------
     folder
-        Where the store is.
+        Folder of the store.
     study
-        Name of the study; not needed if the store holds but one.
+        Name of the study; not needed if the store holds a single one.
     trimming
-        The reading of A.4.2 that the columns without a prefix shall be of.
+        Trimming rule of A.4.2 for the columns without a prefix.
     measure
-        Returns more columns for an event, or others of the same name.
+        Function that returns further columns for an event, or replaces some.
 
     Returns
     -------
@@ -51,8 +51,8 @@ def remeasure(
     Raises
     ------
     InputError
-        If there is no such study or reading, or the store is damaged, or lacks the particles of a
-        stack: the study was computed without `keep_particles`.
+        If there is no such study or trimming rule, the store is damaged, or particles of a stack
+        are missing because the study was computed without `keep_particles`.
 
     Examples
     --------
@@ -70,13 +70,13 @@ def remeasure(
     check_trimming(trimming)
     table = read_table(folder, study)
     if "trimming" not in table:
-        raise InputError(f"{folder}: the runs of this study make no stacks that could be measured")
+        raise InputError(f"{folder}: the runs of this study make no stacks")
     rows = {
         (row["hash"], int(row["event"])): index
         for index, row in table.iterrows()
         if isinstance(row["trimming"], str)  # a run that failed has a row without a stack
     }
-    found: dict[Any, dict[str, Any]] = {}
+    measures: dict[Any, dict[str, Any]] = {}
     with Store.open(folder) as store:
         for hash_ in table["hash"].unique():
             for event, data in store.particles(hash_).items():
@@ -84,13 +84,13 @@ def remeasure(
                     particles = _unpacked(store, hash_, event, data)
                     more = measure(particles) if measure else {}
                     columns = measured_columns(particles.measure(trimming))
-                    found[rows[hash_, event]] = {**columns, **more}
-    if len(found) < len(rows):
+                    measures[rows[hash_, event]] = {**columns, **more}
+    if len(measures) < len(rows):
         raise InputError(
-            f"{folder}: no particles of {len(rows) - len(found)} of {len(rows)} stacks; their runs "
-            "were computed without keep_particles"
+            f"{folder}: no particles of {len(rows) - len(measures)} of {len(rows)} stacks; "
+            "their runs were computed without keep_particles"
         )
-    return _replaced(table, found)
+    return _replaced(table, measures)
 
 
 def _unpacked(store: Store, hash_: str, event: int, data: bytes) -> EventParticles:
@@ -100,9 +100,9 @@ def _unpacked(store: Store, hash_: str, event: int, data: bytes) -> EventParticl
         raise store.damaged(f"run {hash_}, event {event}: {error}") from None
 
 
-def _replaced(table: pd.DataFrame, found: Mapping[Any, Mapping[str, Any]]) -> pd.DataFrame:
-    """Return the table with what was found for its rows."""
+def _replaced(table: pd.DataFrame, measures: Mapping[Any, Mapping[str, Any]]) -> pd.DataFrame:
+    """Return the table with the new measures of its rows."""
     import pandas as pd
 
-    new = pd.DataFrame.from_dict(dict(found), orient="index").reindex(table.index)
+    new = pd.DataFrame.from_dict(dict(measures), orient="index").reindex(table.index)
     return table.assign(**{str(name): new[name] for name in new})

@@ -20,21 +20,21 @@ from typing import Any, Optional
 
 import snowshed._core as _core
 from snowshed.io.input_file import read_regular
-from snowshed.running.ageing import Ageing
+from snowshed.running.ageing.ageing import Ageing
 from snowshed.scene.scene import ResolvedScene
 from snowshed.study.aged_scene import with_ageing
 
 HASH_DIGITS = 32  # hexadecimal: 128 bits
 HASH = re.compile(f"[0-9a-f]{{{HASH_DIGITS}}}")
 WITHOUT_EFFECT = ("title", "output")
-#: What terrain tells of its files and believes of them: a result does not depend on it.
+#: Descriptions of terrain files and assumptions about them: a result does not depend on these.
 TERRAIN_WITHOUT_EFFECT = ("notes", "max_slope", "max_thickness")
-#: Keys of a scene under which the path of a file stands.
+#: Keys of a scene whose values are paths of files.
 FILES = ("file", "thickness_file")
-#: Settings keep the name that they had when they were first hashed, so that runs computed then are
-#: found; for the same reason a scene of the default method does not name it.
+#: Settings are hashed under the name of the first version, so that runs of that version are
+#: recognised; for the same reason a scene of the default method does not name it.
 HASHED_AS = {"courant_factor": "step_factor"}
-#: The same of contact conditions: what is now separate was called slip in version 1 of scenes.
+#: The same for contact conditions: "separate" was called "slip" in version 1 of scenes.
 CONDITION_HASHED_AS = {"separate": "slip", "slip": "slip of version 2"}
 
 
@@ -56,14 +56,14 @@ class Run:
 
     @classmethod
     def of(cls, scene: ResolvedScene, ageing: Optional[Ageing] = None) -> Run:
-        """Return the run of a scene, without the outputs that a study does not keep.
+        """Return the run of a scene, without the outputs that a study does not store.
 
         Parameters
         ----------
         scene
             The scene.
         ageing
-            Of its stack between events; None: it does not age.
+            Ageing of its stack between events; None: it does not age.
 
         Examples
         --------
@@ -82,7 +82,7 @@ class Run:
 
 
 def is_hash(name: str) -> bool:
-    """Return whether a text is a content hash, and so the name of no folder but a run's.
+    """Return whether a text is a content hash, so that it can only name the folder of a run.
 
     Examples
     --------
@@ -124,11 +124,13 @@ def content_hash(scene: Mapping[str, Any]) -> str:
 
 
 def _as_version_1(scene: dict[str, Any]) -> dict[str, Any]:
-    """Return a scene with the version and the conditions that version 1 had for the same."""
+    """Return a scene with version 1 and the names of conditions in that version."""
     older = {**scene, "snowshed": 1}
     for key in {"panel", "ground"} & scene.keys():
         older[key] = _condition_of_version_1(scene[key])
-    older["obstacles"] = [_condition_of_version_1(one) for one in scene.get("obstacles", ())]
+    older["obstacles"] = [
+        _condition_of_version_1(obstacle) for obstacle in scene.get("obstacles", ())
+    ]
     return older
 
 
@@ -144,17 +146,17 @@ def _with_file_contents(value: Any) -> Any:
     if not isinstance(value, dict):
         return value
     return {
-        key: _digest_of(inner) if key in FILES and inner else _with_file_contents(inner)
+        key: _cached_digest(inner) if key in FILES and inner else _with_file_contents(inner)
         for key, inner in value.items()
     }
 
 
-def _digest_of(path: str) -> str:
+def _cached_digest(path: str) -> str:
     facts = Path(path).stat()
     return _digest(path, facts.st_mtime_ns, facts.st_size)
 
 
 @functools.lru_cache(maxsize=64)
 def _digest(path: str, modified: int, size: int) -> str:
-    """Return the digest of a file's content; kept, since the runs of a study share their files."""
+    """Return the digest of a file's content; cached, because runs share their files."""
     return hashlib.sha256(read_regular(Path(path))).hexdigest()

@@ -1,4 +1,4 @@
-"""The winter that all runs of a study have in common, where they are seasons."""
+"""The winter that all runs of a study have in common, if they are seasons."""
 
 from __future__ import annotations
 
@@ -22,20 +22,20 @@ if TYPE_CHECKING:
     import pandas as pd
 
 WEATHER = "weather"
-#: Parameters of a scene that the winter decides.
+#: Parameters of a scene that the winter sets.
 DECIDED = ("slab.thickness", "slab.layers", "events.count", "bodies")
 
 
 @dataclass(frozen=True)
 class SeasonPart:
-    """A winter, and how its snow gathers and is released.
+    """A winter, with the settings for gathering and release of its snow.
 
     Attributes
     ----------
     weather
         A season file, a DataFrame, or rows of `Weather`, as for `snowshed.season.run_season`.
     settings
-        Release, density, strength, settling; the same in all runs.
+        Settings of release, density, strength and settling; the same in all runs.
 
     Examples
     --------
@@ -56,14 +56,14 @@ class SeasonPart:
 
     @classmethod
     def of(cls, given: Mapping[str, object], folder: Path) -> SeasonPart:
-        """Return what a table of a study file gives; its file is looked for in `folder`.
+        """Return the part that a table of a study file describes; its file is relative to `folder`.
 
         Raises
         ------
         InputError
             If a key is unknown, or a value is not allowed.
         """
-        kinds = {one.name: one for one in fields(SeasonSettings)}
+        kinds = {field.name: field for field in fields(SeasonSettings)}
         for key in given:
             if key != WEATHER and key not in kinds:
                 allowed = ", ".join((WEATHER, *kinds))
@@ -97,7 +97,7 @@ class SeasonPart:
             raise InputError("/panel: missing; a season needs a panel for the snow to gather on")
         days = accumulate(self.rows, self.settings, data["panel"]["tilt"], data["gravity"])
         if not any(day.event for day in days):
-            raise InputError("no snow is released all winter, so that there is nothing to compute")
+            raise InputError("no snow slides off all winter; there is nothing to compute")
         made = season_scene(scene, days, self.settings)
         return Run.of(made, stack_ageing(days, self.settings))
 
@@ -107,10 +107,12 @@ class SeasonPart:
         Raises
         ------
         InputError
-            If the winter is in no file.
+            If the winter is not in a file.
         """
         if not isinstance(self.weather, (str, os.PathLike)):
-            raise InputError("season: its weather is in no file that a study file could name")
+            raise InputError(
+                "season: its weather is not in a file, and a study file needs the file's name"
+            )
         usual = asdict(SeasonSettings())
         own = {key: value for key, value in asdict(self.settings).items() if value != usual[key]}
         written = {key: "none" if value is None else value for key, value in own.items()}
@@ -118,7 +120,7 @@ class SeasonPart:
 
 
 def _setting(key: str, value: object) -> object:
-    """Return a setting as `SeasonSettings` takes it; "none" switches off what may be None."""
+    """Return a setting for `SeasonSettings`; "none" switches off settings that may be None."""
     usual = getattr(SeasonSettings(), key)
     may_be_none = key in ("settling", "sintering", "strength")
     if may_be_none and value == "none":

@@ -1,4 +1,4 @@
-"""Computing the runs of studies that are not yet in the store."""
+"""Computing the runs of studies that are missing in the store."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class Resources:
             if value is not None and value < 1:
                 raise InputError(f"{name}: {value} is not positive")
             if value is not None and self.scheduler is not None:
-                raise InputError(f"{name}: not with a scheduler, whose workers decide that")
+                raise InputError(f"{name}: not allowed with a scheduler, whose workers set it")
 
     def workers(self, runs: int) -> tuple[Workers, int]:
         """Return workers for a number of runs, and how many runs they compute at once."""
@@ -173,7 +173,7 @@ def _compute(
 
 
 def _tell_of_runs(notes: Counter[str]) -> None:
-    """Say the notes on runs, those on most runs first."""
+    """Give the notes on runs, the most frequent first."""
     for note, runs in notes.most_common(MOST_NOTES):
         tell(f"{runs} {'run' if runs == 1 else 'runs'}: {note}")
     if len(notes) > MOST_NOTES:
@@ -184,14 +184,14 @@ def _check_version(store: Store, pending: Sequence[StoredRun]) -> None:
     for run in pending:
         if run.version != _core.version:
             raise InputError(
-                f"{store.folder}: its runs are for snowshed {run.version}, and this is "
+                f"{store.folder}: its runs are for snowshed {run.version}, but this is "
                 f"{_core.version}; start the study again with `snowshed study run`, "
                 "which computes all its runs with this version"
             )
 
 
 def _tidy(store: Store) -> None:
-    """Remove files of killed processes that no run needs to go on; nothing that is not ours."""
+    """Remove files of killed processes that no run needs to resume, and no foreign files."""
     for path in store.running.iterdir():
         if path.is_symlink():
             continue
@@ -202,7 +202,7 @@ def _tidy(store: Store) -> None:
 
 
 def _remove(folder: Path) -> None:
-    """Remove the folder of a run with what a run writes into it."""
+    """Remove the folder of a run with the files that a run writes."""
     if not folder.is_symlink():
         shutil.rmtree(folder, ignore_errors=True)
 
@@ -225,7 +225,7 @@ class _Session:
         self.counts = Counter(run.status for run in runs)
         pending = [run for run in runs if run.status == "pending"]
         self.work = {run.hash: cost_estimate.work(run.scene) for run in pending}
-        # The longest first, so that none is left to run alone at the end.
+        # The longest first, so that no long run is left alone at the end.
         self.waiting = deque(sorted(pending, key=lambda run: -self.work[run.hash]))
         self.running: dict[str, StoredRun] = {}
         self.elsewhere: list[StoredRun] = []
@@ -310,7 +310,7 @@ class _Session:
             self.waiting.appendleft(run)
 
     def _after_death(self, outcome: Outcome) -> Outcome:
-        """Return the outcome of a run whose worker died; a run fails only after several deaths."""
+        """Return the outcome of a run whose worker died; a run fails after several deaths."""
         self.deaths[outcome.hash] += 1
         if self.deaths[outcome.hash] < DEATHS:
             return outcome

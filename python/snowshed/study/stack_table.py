@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 LARGEST_TABLE = 1_000_000  # rows of a Parquet file, which packs them well
-#: Columns that make two rows the result of different physics or methods where they differ.
+#: Columns for physics and methods; rows that differ in them cannot be compared.
 SETTINGS = ("version", "dimension", "trimming", *ACCURACY)
 
 
@@ -41,16 +41,16 @@ class StackTable:
     Attributes
     ----------
     frame
-        The columns of a study's table: ``hash``, what varies by dotted paths, ``seed``, ``event``,
-        the measures, and settings. Of a CSV file all cells are texts.
+        The columns of a study's table: ``hash``, the axes by dotted paths, ``seed``, ``event``, the
+        measures, and settings. All cells of a CSV file are texts.
     axes
-        Dotted paths of what varies, or is written down though it does not.
+        Dotted paths of the parameters that vary, or have a column with a single value.
     points
         One row per run, computed or not: ``hash``, the axes, and ``seeding.seed``.
     pending
-        Runs that are not computed yet, as far as that is known.
+        Number of runs that are not computed yet, if known.
     name
-        Of the study, or of the file.
+        Name of the study, or of the file.
 
     Examples
     --------
@@ -75,16 +75,15 @@ class StackTable:
         Parameters
         ----------
         source
-            The folder of a study's store, that of a command which keeps such a store as ``runs``, a
-            results folder of one run, or a file that ``snowshed study export`` wrote (CSV or
-            Parquet).
+            The folder of a study's store, that of a command with such a store in ``runs``, the
+            results folder of a single run, or a file of ``snowshed study export`` (CSV or Parquet).
         study
-            Name of the study in a store; not needed if there is but one.
+            Name of the study in a store; not needed if there is a single one.
 
         Raises
         ------
         InputError
-            If there is no table of stacks, or it is damaged; it names the source.
+            If the table is missing or damaged; the message names the source.
         """
         path = Path(source)
         if not path.is_dir():
@@ -97,7 +96,7 @@ class StackTable:
 
     @classmethod
     def read_study(cls, folder: PathLike, study: Optional[str] = None) -> StackTable:
-        """Read a study from its store, as far as it is computed.
+        """Read the computed runs of a study from its store.
 
         Raises
         ------
@@ -197,11 +196,11 @@ class StackTable:
                 "value: axes.panel.tilt = 40"
             )
         elif any(name.startswith(tuple(TRIMMINGS)) for name in missing):
-            hint = "; its stacks were measured before there was that reading of A.4.2"
+            hint = "; its stacks were measured by a version without that trimming rule"
         raise InputError(f"no column {', '.join(missing)}; it has {self.columns}{hint}")
 
     def numbers(self, column: str, *, positive: bool = False) -> Floats:
-        """Return a column as numbers; raises InputError naming the line of what is none."""
+        """Return a column as numbers; raises InputError with the line of a wrong cell."""
         import pandas as pd
 
         numbers = np.asarray(pd.to_numeric(self.frame[column], errors="coerce"), dtype=float)
@@ -237,7 +236,7 @@ class StackTable:
         measure
             One of `snowshed.snow.stack.quantities.MEASURES`.
         quantities
-            Which, of `snowshed.snow.stack.quantities.QUANTITIES`.
+            Names in `snowshed.snow.stack.quantities.QUANTITIES`.
 
         Raises
         ------
@@ -256,16 +255,16 @@ class StackTable:
         frame = frame.dropna(subset=list(quantities))
         frame = _as_numbers(frame, [*self.axes, "seed", "event"])
         if frame.empty:
-            raise InputError("nothing of it is computed yet; see `snowshed study status`")
+            raise InputError("none of its runs is computed yet; see `snowshed study status`")
         return frame
 
     def varying(self, paths: Sequence[str], purpose: str) -> list[str]:
-        """Return those of some axes that have several values; these must be numbers.
+        """Return the axes with several values; these must be numbers.
 
         Raises
         ------
         InputError
-            If they are not, saying what needs numbers: the `purpose`.
+            If they are not; the message names the `purpose`, which needs numbers.
         """
         import pandas as pd
 
@@ -277,7 +276,7 @@ class StackTable:
         return varying
 
     def common_settings(self, inputs: Sequence[str]) -> dict[str, str]:
-        """Return what all rows have in common, as text; refuse rows that differ otherwise.
+        """Return the common settings of all rows, as text; refuse rows that differ otherwise.
 
         Parameters
         ----------
@@ -292,8 +291,8 @@ class StackTable:
             values = sorted(set(self.frame[name].astype(str)))
             if len(values) > 1:
                 raise InputError(
-                    f"{name}: the rows have different values ({', '.join(values[:6])}), and it is "
-                    f"not an input; choose some with --where {name}={values[0]}"
+                    f"{name}: the rows have different values ({', '.join(values[:6])}), but it is "
+                    f"not an input; select rows with --where {name}={values[0]}"
                 )
             common[name] = values[0]
         return common
@@ -303,13 +302,13 @@ def _as_numbers(frame: pd.DataFrame, columns: Sequence[str]) -> pd.DataFrame:
     """Return a table in which columns of texts that are all numbers are numbers."""
     import pandas as pd
 
-    found = {}
+    converted = {}
     for name in columns:
         if name in frame and not pd.api.types.is_numeric_dtype(frame[name]):
             numbers = pd.to_numeric(frame[name], errors="coerce")
             if not numbers.isna().any():
-                found[name] = numbers
-    return frame.assign(**found)
+                converted[name] = numbers
+    return frame.assign(**converted)
 
 
 def _points(axes: Sequence[str], scenes: Mapping[str, Mapping[str, object]]) -> pd.DataFrame:

@@ -1,4 +1,4 @@
-"""The store of studies: an SQLite database that survives any end of the processes that use it.
+"""The store of studies: an SQLite database that survives any end of its processes.
 
 Its tables are described in `snowshed.study.database`. The status of a run is pending, done or
 failed. While a run is computed, its owner is the name of a lock in the folder ``running`` (see
@@ -44,7 +44,7 @@ NO_STUDY = "holds no study; start one with `snowshed study run`"
 
 @dataclass(frozen=True)
 class StoredRun:
-    """A run as the store knows it; see the table ``run``."""
+    """A run in the store; see the table ``run``."""
 
     hash: str
     version: str
@@ -55,7 +55,7 @@ class StoredRun:
     keep_particles: bool
 
 
-#: What tells a complete scene from anything else that a damaged store may hold.
+#: Keys of a complete scene, which a damaged text may lack.
 WHOLE_SCENE = {"dimension": float, "numerics": dict, "events": dict}
 
 
@@ -131,17 +131,17 @@ class Store:
     def register(
         self, study: str, axes: Sequence[str], runs: Iterable[Run], *, keep_particles: bool = False
     ) -> None:
-        """Enter a study with its runs; it takes the place of one with the same name.
+        """Register a study with its runs; it replaces a study of the same name.
 
-        With `keep_particles` the particles after each event are stored too, of those runs that are
-        still to be computed.
+        With `keep_particles` the particles after each event are stored, too, for runs that are not
+        computed yet.
         """
         runs = list(runs)
         with self._transaction() as write:
             write.execute("DELETE FROM study_run WHERE study = ?", (study,))
             write.execute("INSERT OR REPLACE INTO study VALUES (?, ?)", (study, json.dumps(axes)))
             write.executemany(
-                # A known run keeps its results; if it has none, files may be elsewhere by now.
+                # A known run keeps its results; without results, its files may have moved since.
                 "INSERT INTO run (hash, version, scene) VALUES (?, ?, ?) ON CONFLICT (hash)"
                 " DO UPDATE SET scene = excluded.scene WHERE status = 'pending'",
                 ((run.hash, _core.version, run.scene) for run in runs),
@@ -210,22 +210,22 @@ class Store:
         )
         query = "SELECT count(*) FROM study_run WHERE study = ?"
         if self.read(query, (study,)) != [(len(rows),)]:
-            raise self.damaged(f"{study}: not all of its runs are there")
+            raise self.damaged(f"{study}: some of its runs are missing")
         return [self._stored(row) for row in rows]
 
     def find(self, beginning: str) -> StoredRun:
-        """Return the run whose hash begins so; raises InputError unless there is exactly one."""
+        """Return the only run whose hash begins with a text; else raise InputError."""
         rows = self.read(
             f"SELECT {self._run_columns()} FROM run WHERE substr(hash, 1, ?) = ? LIMIT 2",
             (len(beginning), beginning),
         )
         if len(rows) != 1:
-            found = "several runs" if rows else "no run"
-            raise InputError(f"{self.folder}: {found} with a hash that begins with {beginning!r}")
+            matches = "several runs" if rows else "no run"
+            raise InputError(f"{self.folder}: {matches} with a hash that begins with {beginning!r}")
         return self._stored(rows[0])
 
     def damaged(self, what: str) -> InputError:
-        """Return the error that says what is damaged."""
+        """Return the error about a damaged part."""
         return InputError(f"{self.folder / FILE}: damaged: {what}")
 
     def _stored(self, row: Sequence[Any]) -> StoredRun:
@@ -243,12 +243,12 @@ class Store:
         return run
 
     def check_results(self, hash_: str) -> None:
-        """Raise InputError if the results of a run are not those that were stored."""
+        """Raise InputError if the results of a run have changed since they were stored."""
         with translated(self.folder):
             self._check(f"results {hash_}", lambda: checksums.results_of(self._connection, hash_))
 
     def _check(self, name: str, content: Callable[[], object]) -> None:
-        """Raise InputError if the checksum of the content is another; an old store has none."""
+        """Raise InputError if the checksum of the content differs; an old store has none."""
         if not self._digests:
             return
         if name not in self._digests:
@@ -269,7 +269,7 @@ class Store:
         return self._read_digests[1]
 
     def state(self, hash_: str) -> tuple[str, Optional[str]]:
-        """Return the status of a run, which may be "unknown", and who computes it."""
+        """Return the status of a run, which may be "unknown", and its owner."""
         rows = self.read("SELECT status, owner FROM run WHERE hash = ?", (hash_,))
         return (rows[0][0], rows[0][1]) if rows else ("unknown", None)
 
@@ -329,7 +329,7 @@ class Store:
                         write.execute("DELETE FROM checksum WHERE name = ?", (f"{kind} {hash_}",))
 
     def particles(self, hash_: str) -> dict[int, bytes]:
-        """Return the particles after each event of a run, packed; none if it did not keep them.
+        """Return the packed particles after each event of a run; empty if they were not stored.
 
         Raises
         ------
@@ -339,15 +339,15 @@ class Store:
         if not self.columns("event_particles"):
             return {}
         query = "SELECT event, data FROM event_particles WHERE hash = ? ORDER BY event"
-        found = dict(self.read(query, (hash_,)))
-        if not all(isinstance(data, bytes) for data in found.values()):
+        particles = dict(self.read(query, (hash_,)))
+        if not all(isinstance(data, bytes) for data in particles.values()):
             raise self.damaged(f"run {hash_}: its particles are no bytes")
-        if found or f"particles {hash_}" in self._digests:
-            self._check(f"particles {hash_}", lambda: sorted(found.items()))
-        return found
+        if particles or f"particles {hash_}" in self._digests:
+            self._check(f"particles {hash_}", lambda: sorted(particles.items()))
+        return particles
 
     def columns(self, table: str) -> set[str]:
-        """Return the columns of a table; one of earlier days that cannot be written has fewer."""
+        """Return the columns of a table; a read-only store of an earlier version has fewer."""
         return {row[1] for row in self.read(f"PRAGMA table_info({table})")}
 
     def _run_columns(self) -> str:

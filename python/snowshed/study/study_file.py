@@ -52,8 +52,8 @@ SAMPLE_METHODS: Mapping[str, Callable[..., Factor]] = {
 
 _TEMPLATE = """\
 # A study: one scene, and the parameters that vary in it.
-#   snowshed study plan FILE          how many runs, and how long they will take
-#   snowshed study run FILE -o DIR    compute them; again after an interruption to go on
+#   snowshed study run FILE --dry-run print the number of runs and their time
+#   snowshed study run FILE -o DIR    compute them; repeat after an interruption
 # Every parameter is named by its path in a scene (see `snowshed schema`). SI units, degrees.
 
 name = "cohesion-and-slope"   # default: the file's name
@@ -61,7 +61,7 @@ dimension = 2
 events = 3
 seeds = 2                     # repetitions: seeds 1, 2; or a list such as [1, 7]
 
-# What all runs have in common. In this order, the later ones override:
+# Common to all runs. In this order, later lines override earlier ones:
 [scene]
 preset = "sensitivity"        # lab-40, lab-50, sensitivity, geometry
 # file = "scene.json"         # a scene file, found from this file's folder
@@ -94,7 +94,7 @@ snow.critical_state_slope = { from = 0.3, to = 0.7, step = 0.2 }
 
 # A table `season` with the name of a season file, `weather`, makes a season of every run.
 
-# Several products in one study: each part is crossed with what stands above, and their union runs.
+# Several products in a study: each part is crossed with the axes above, and their union runs.
 # [[part]]
 # axes.panel.tilt = [40]
 # [[part]]
@@ -174,13 +174,13 @@ def _shared_axes(parts: Sequence[Part]) -> Part:
 def _factor_blocks(part: Part, prefix: str, folder: Path) -> Iterator[list[str]]:
     """Yield the lines of each table of factors, in the order in which they are read."""
     columns = [_with_absolute_files(dict(factor.columns), folder) for factor in part]
-    single = [len(one) == 1 for one in columns]
+    single = [len(factor) == 1 for factor in columns]
     first = single.index(False) if False in single else len(columns)
-    axes = {path: values for one in columns[:first] for path, values in one.items()}
+    axes = {path: values for factor in columns[:first] for path, values in factor.items()}
     if axes:
         yield [f"[{prefix}axes]", *_axis_lines(axes)]
-    for one in columns[first:]:
-        yield [f"[[{prefix}zip]]", *_axis_lines(one)]
+    for factor in columns[first:]:
+        yield [f"[[{prefix}zip]]", *_axis_lines(factor)]
 
 
 def _axis_lines(axes: Mapping[str, Any]) -> list[str]:
@@ -238,12 +238,12 @@ def _scene(data: Mapping[str, Any], folder: Path) -> Scene:
 
 
 def _scene_file(file: Path) -> dict[str, Any]:
-    found: dict[str, Any] = _with_absolute_files(Scene.load(file).to_data(), file.parent)
-    return found
+    data: dict[str, Any] = _with_absolute_files(Scene.load(file).to_data(), file.parent)
+    return data
 
 
 def _with_absolute_files(value: Any, folder: Path) -> Any:
-    """Make the path under every key of a file absolute, since a study's scenes are in no folder."""
+    """Make the path under every key of a file absolute, because a study's scenes have no folder."""
     if isinstance(value, list):
         return [_with_absolute_files(item, folder) for item in value]
     if not isinstance(value, dict):
@@ -335,7 +335,7 @@ def _range(value: Mapping[str, Any], where: str) -> list[float]:
 
 
 def _range_numbers(value: Any, keys: tuple[str, ...], where: str) -> dict[str, Any]:
-    """Return the numbers of a range, checked: `from`, `to` and what else `keys` allow."""
+    """Return the checked numbers of a range: `from`, `to` and the other `keys`."""
     if not isinstance(value, dict):
         raise InputError(f"{where}: {value!r} is not a range such as {{ from = 1, to = 2 }}")
     _check_keys(value, keys, f"{where}.")

@@ -21,7 +21,7 @@ from snowshed.study.store import Store, StoredRun
 if TYPE_CHECKING:
     import pandas as pd
 
-#: The reading of A.4.2 of tables from before they named it.
+#: Trimming rule of A.4.2 in tables from before they named it.
 FORMER_TRIMMING = "equal_pace"
 FAILED = "failed"  # what the column `ended` says of the event at which a run failed
 RUN_TIMING = tuple(TIMING)
@@ -30,7 +30,7 @@ RUN_TIMING = tuple(TIMING)
 def read_table(
     folder: PathLike, study: Optional[str] = None, *, timing: bool = False
 ) -> pd.DataFrame:
-    """Read the table of a study, as far as its runs are computed.
+    """Read the table of a study; runs that are not computed yet are missing in it.
 
     The table depends on the runs alone. Their order, interruptions and the number of workers do not
     change it.
@@ -50,11 +50,11 @@ def read_table(
     -------
     pandas.DataFrame
         One row per run and event, runs in the study's order: ``hash`` of the run; the parameters
-        that vary, by their dotted paths; ``seed``; ``event``; what the method measures, such as the
-        columns of events.csv or the figures of a slide; ``error``;
-        ``version`` of snowshed; ``dimension``; and the accuracy settings (``dx``, ``precision``,
-        ...). A run that failed has, after its completed events, a row without measures whose
-        ``ended`` is "failed" and whose ``error`` says why.
+        that vary, by their dotted paths; ``seed``; ``event``; the measures of the method, such as
+        the columns of events.csv or the figures of a slide; ``error``; ``version`` of snowshed;
+        ``dimension``; and the accuracy settings (``dx``, ``precision``, ...). A run that failed
+        has, after its completed events, a row without measures whose ``ended`` is "failed" and
+        whose ``error`` says why.
 
     Raises
     ------
@@ -84,10 +84,10 @@ def read_table(
 
 
 def with_trimming(table: pd.DataFrame) -> pd.DataFrame:
-    """Return a table whose rows all name their reading of A.4.2.
+    """Return a table whose rows all name their trimming rule of A.4.2.
 
-    Rows from before there were two of them do not; they are of `FORMER_TRIMMING`, and their
-    measures are also those in its columns. A run that failed has no measures, and names none.
+    Rows from before there were two rules do not; they follow `FORMER_TRIMMING`, and its columns get
+    their measures, too. A run that failed has no measures, and names no rule.
 
     Examples
     --------

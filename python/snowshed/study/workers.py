@@ -13,7 +13,7 @@ class Workers(Protocol):
 
     @property
     def capacity(self) -> int:
-        """Number of tasks that it takes at once."""
+        """Number of tasks at once."""
 
     def threads(self, unfinished: int) -> int:
         """Return the number of threads of a run while `unfinished` runs are left."""
@@ -26,7 +26,7 @@ class Workers(Protocol):
 
     @property
     def fractions(self) -> Mapping[str, float]:
-        """Fraction of the work of each submitted run that is done, as far as it is known."""
+        """Finished fraction of each submitted run, if known."""
 
     def stop(self) -> Sequence[Outcome]:
         """Ask all tasks to stop at checkpoints; return the tasks that ended meanwhile."""

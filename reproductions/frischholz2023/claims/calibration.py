@@ -21,13 +21,13 @@ if TYPE_CHECKING:
 
     import pandas as pd
 
-#: The best part of the sets, among which a known snow should be found.
+#: Share of the sets, the best first, that should contain a known snow.
 BEST_PART = 0.25
 
 
 @dataclass(frozen=True)
 class Recovery:
-    """A known snow, looked for with its own synthetic stacks.
+    """The search for a known snow with its own synthetic stacks.
 
     Attributes
     ----------
@@ -64,7 +64,7 @@ def is_in_the_ranges(data: Recovery) -> Finding:
     One of three may miss it by chance, in one draw of the errors out of seven.
 
     p0 and beta of the true snow lie at the ends of the grid, which no range between quantiles
-    reaches: a range that is open at an end goes on to it.
+    reaches: a range that is open at an end extends to it.
     """
     outside = [
         row["parameter"]
@@ -74,10 +74,10 @@ def is_in_the_ranges(data: Recovery) -> Finding:
     widths = (data.ranges["upper_95"] - data.ranges["lower_95"]) / (
         data.ranges["high"] - data.ranges["low"]
     )
-    words = f"{len(data.ranges) - len(outside)} of {len(data.ranges)} parameters inside"
+    text = f"{len(data.ranges) - len(outside)} of {len(data.ranges)} parameters inside"
     verdict = (CONFIRMED, UNDECIDED, CONTRADICTED)[min(len(outside), 2)]
     return Finding(
-        verdict, f"{words}; the ranges are {percent(widths.mean(), 2)} of the grid on average"
+        verdict, f"{text}; the ranges are {percent(widths.mean(), 2)} of the grid on average"
     )
 
 
@@ -90,9 +90,9 @@ def _upper(row: Mapping[Any, Any]) -> float:
 
 
 def is_the_laboratory(data: Recovery) -> Finding:
-    """Say why nothing can be said of the laboratory's snow: its stacks exist in figures only."""
-    words = "the measured stacks are printed as figures only, so that nothing can be compared"
-    return Finding(UNDECIDED, words)
+    """Return that the laboratory's snow cannot be judged: its stacks exist in figures only."""
+    text = "the thesis prints the measured stacks as figures only; a comparison is impossible"
+    return Finding(UNDECIDED, text)
 
 
 CALIBRATION: tuple[Claim[Recovery], ...] = (

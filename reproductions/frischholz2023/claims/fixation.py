@@ -1,8 +1,8 @@
-"""Claims of section 3.4: what stacks do, on average over all other parameters.
+"""Claims of section 3.4: effects of a parameter, on average over all other parameters.
 
 The data are the table of `snowshed.analysis.sensitivity.fixation` with a column ``noise_m``: the
 standard deviation that the seeding gives ``mean_m``. Where the event is not named, it is the last.
-Values of the other parameters are a design, no sample: the seeding is all that is by chance.
+Values of the other parameters are a design, not a sample: only the seeding is random.
 """
 
 from __future__ import annotations
@@ -34,18 +34,18 @@ from snowshed.plot.labels import label
 if TYPE_CHECKING:
     import pandas as pd
 
-#: Part of the stack by which it may change over the whole range of a parameter that hardly matters.
+#: Largest relative change of the stack over the range of a parameter that hardly matters.
 HARDLY = 0.1
-#: Below this cohesion the others are said to matter little (3.4.1, takeaways).
+#: Cohesion below which the other parameters should matter little (3.4.1, takeaways).
 DRIVES = 0.2
-#: Part of the stack up to which a deviation is an "almost insensitive" height.
+#: Largest relative deviation of an "almost insensitive" height.
 INSENSITIVE = 0.1
 YIELD = (SLOPE, PRESSURE, COHESION)
 
 
 def effect(table: pd.DataFrame, parameter: str, target: str) -> Estimate:
-    """Return by how much the mean stack changes over the range of a parameter, last event, m."""
-    rows = _last(_of(table, target), parameter)
+    """Return the change of the mean stack over the range of a parameter, last event, m."""
+    rows = _last(_of_target(table, target), parameter)
     low, high = (Estimate(row["mean_m"], row["noise_m"]) for row in (rows.iloc[0], rows.iloc[-1]))
     return high - low
 
@@ -63,7 +63,7 @@ def lowers(table: pd.DataFrame, parameter: str, target: str) -> Finding:
 def shortens_at_first(table: pd.DataFrame, parameter: str) -> Finding:
     """Test whether all stacks shrink from the first value of a parameter to the second."""
     findings = []
-    for event, rows in _by_event(_of(table, "length"), parameter):
+    for event, rows in _by_event(_of_target(table, "length"), parameter):
         low, high = (Estimate(row["mean_m"], row["noise_m"]) for _, row in rows.iloc[:2].iterrows())
         what = f"length, second minus lowest {label(parameter).symbol}, event {event:g}"
         findings.append(negative(high - low, what, "m"))
@@ -74,32 +74,35 @@ def hardly_matter(table: pd.DataFrame, target: str) -> Finding:
     """Test whether the stack changes little over the ranges of both hardening parameters."""
     findings = []
     for parameter in (HARDENING, MODULUS):
-        mean = _last(_of(table, target), parameter)["mean_m"].mean()
-        found = effect(table, parameter, target).scaled(1 / mean)
-        findings.append(small(found, HARDLY, _change(parameter, target), "%"))
+        mean = _last(_of_target(table, target), parameter)["mean_m"].mean()
+        change = effect(table, parameter, target).scaled(1 / mean)
+        findings.append(small(change, HARDLY, _change(parameter, target), "%"))
     return all_of(findings)
 
 
 def events_matter_more(table: pd.DataFrame, target: str) -> Finding:
     """Test whether the events change the stack more than any parameter does over its range."""
-    first, last = _ends(_of(table, target))
-    found = {one: effect(table, one, target) for one in dict.fromkeys(table["parameter"])}
-    rival = max(found, key=lambda one: abs(found[one].value))
-    strongest = Estimate(abs(found[rival].value), found[rival].noise)
+    first, last = _ends(_of_target(table, target))
+    effects = {
+        parameter: effect(table, parameter, target)
+        for parameter in dict.fromkeys(table["parameter"])
+    }
+    rival = max(effects, key=lambda parameter: abs(effects[parameter].value))
+    strongest = Estimate(abs(effects[rival].value), effects[rival].noise)
     lead = (last - first) - strongest
-    words = f"{target}, growth by the events minus change by {label(rival).symbol}, the strongest"
-    return positive(lead, words, "m")
+    text = f"{target}, growth by the events minus change by {label(rival).symbol}, the strongest"
+    return positive(lead, text, "m")
 
 
 def second_event_adds_most_length(table: pd.DataFrame) -> Finding:
     """Test whether the second event adds more length than the third."""
-    rows = _of(table, "length")
+    rows = _of_target(table, "length")
     events = sorted(rows["event"].unique())
     if len(events) < 3:
         raise LookupError("three events")
-    one, two, three = (_mean(rows[rows["event"] == event]) for event in events[:3])
-    more = 2 * two.value - one.value - three.value
-    noise = math.sqrt(one.noise**2 + 4 * two.noise**2 + three.noise**2)
+    first, second, third = (_mean(rows[rows["event"] == event]) for event in events[:3])
+    more = 2 * second.value - first.value - third.value
+    noise = math.sqrt(first.noise**2 + 4 * second.noise**2 + third.noise**2)
     return positive(Estimate(more, noise), "length, growth at the second minus at the third", "m")
 
 
@@ -110,7 +113,7 @@ def cohesive_snow_is_more_sensitive(table: pd.DataFrame) -> Finding:
     """
     findings = []
     for parameter in YIELD:
-        rows = _last(_of(table, "height"), parameter)
+        rows = _last(_of_target(table, "height"), parameter)
         low, high = (_deviation(row) for row in (rows.iloc[0], rows.iloc[-1]))
         what = f"scatter at the highest {label(parameter).symbol} minus at the lowest"
         findings.append(positive(high - low, what, "m"))
@@ -121,7 +124,7 @@ def mass_makes_sensitive(table: pd.DataFrame) -> Finding:
     """Test whether heights scatter more after the last event than after the first."""
     findings = []
     for parameter in YIELD:
-        by_event = [rows for _, rows in _by_event(_of(table, "height"), parameter)]
+        by_event = [rows for _, rows in _by_event(_of_target(table, "height"), parameter)]
         first, last = (
             mean_of([_deviation(row) for _, row in rows.iterrows()])
             for rows in (by_event[0], by_event[-1])
@@ -134,7 +137,7 @@ def mass_makes_sensitive(table: pd.DataFrame) -> Finding:
 def cohesion_drives(table: pd.DataFrame) -> Finding:
     """Test whether heights of all events hardly scatter over M and p0 where beta is small."""
     findings = []
-    for event, rows in _by_event(_of(table, "height"), COHESION):
+    for event, rows in _by_event(_of_target(table, "height"), COHESION):
         for _, row in rows[rows["value"] < DRIVES * (1 - 1e-9)].iterrows():
             scatter = _deviation(row).scaled(1 / row["mean_m"])
             what = f"scatter at β {row['value']:g}, event {event:g}"
@@ -142,7 +145,7 @@ def cohesion_drives(table: pd.DataFrame) -> Finding:
     return all_of(findings)
 
 
-def _of(table: pd.DataFrame, target: str) -> pd.DataFrame:
+def _of_target(table: pd.DataFrame, target: str) -> pd.DataFrame:
     return table[table["target"] == target]
 
 
@@ -171,7 +174,7 @@ def _mean(rows: pd.DataFrame) -> Estimate:
 
 
 def _deviation(row: pd.Series[float]) -> Estimate:
-    """Return the deviation over n points without the seeding's part, and what the seeding leaves.
+    """Return the deviation over n points without the seeding's part, and its noise.
 
     A point's seeding has the variance s2 = n noise_m^2. The variance over the points is larger by
     s2, and has itself the variance (4 D^2 s2 + 2 s2^2) / (n - 1) to first order.
@@ -196,20 +199,20 @@ FIXATION: tuple[Claim[pd.DataFrame], ...] = (
     *(
         Claim(
             "3.4.1",
-            f"{label(one).symbol} raises the stack.",
+            f"{label(parameter).symbol} raises the stack.",
             RAISE,
-            partial(raises, parameter=one, target="height"),
+            partial(raises, parameter=parameter, target="height"),
         )
-        for one in YIELD
+        for parameter in YIELD
     ),
     *(
         Claim(
             "3.4.1",
-            f"{label(one).symbol} shortens the stack.",
+            f"{label(parameter).symbol} shortens the stack.",
             RAISE.replace("higher", "lower"),
-            partial(lowers, parameter=one, target="length"),
+            partial(lowers, parameter=parameter, target="length"),
         )
-        for one in (SLOPE, COHESION)
+        for parameter in (SLOPE, COHESION)
     ),
     Claim(
         "3.4.1",

@@ -1,10 +1,10 @@
 """Claims of section 5.1: how stacks depend on the panel.
 
 The data have one row per panel and event: ``event``, ``panel_height``, ``panel_length`` (m),
-``panel_tilt`` (degrees), and ``ratio``, ``height``, ``length`` of the stack. Each input is looked
-at among rows that share all others, relative to the mean of these rows. The noise is the standard
-error of a fitted slope, from the scatter about the fit. The events of one panel are no independent
-witnesses, since each builds on the one before: errors are summed by panels.
+``panel_tilt`` (degrees), and ``ratio``, ``height``, ``length`` of the stack. Each input is judged
+among rows that share all others, relative to the mean of these rows. The noise is the standard
+error of a fitted slope, from the scatter about the fit. The events of a panel are not independent,
+because each builds on the one before: errors are summed by panels.
 """
 
 from __future__ import annotations
@@ -35,16 +35,16 @@ if TYPE_CHECKING:
 
 PANEL = ("panel_height", "panel_length", "panel_tilt")
 INPUTS = ("event", *PANEL)
-#: A shape fits better if it leaves so many times less variance.
+#: Ratio of remaining variances from which a shape fits better.
 FITS_BETTER = 1.5
-#: Part of a straight line's change by which a parabola may depart from it.
+#: Largest departure of a parabola from a straight line, relative to the line's change.
 STRAIGHT = 0.25
-#: Part of the mean slope by which slopes may differ and still be the same.
+#: Largest difference of equal slopes, relative to the mean slope.
 SAME = 0.25
-#: Part of the ratio by which it may change over all tilts and still hardly depend on them.
+#: Largest relative change of the ratio over all tilts if it hardly depends on them.
 HARDLY = 0.1
 
-#: Of the inputs, as slopes are given.
+#: Units of the inputs in slopes.
 UNITS = {
     "panel_length": "unit of ln L",
     "panel_height": "m of panel height",
@@ -61,11 +61,11 @@ class Fit:
     Attributes
     ----------
     slopes
-        Part of the group's mean per unit of each shape.
+        Change per unit of each shape, relative to the group's mean.
     variance
-        What the fit leaves, per degree of freedom.
+        Remaining variance, per degree of freedom.
     span
-        From the lowest to the highest input.
+        Difference between the highest and the lowest input.
     """
 
     slopes: Sequence[Estimate]
@@ -115,8 +115,8 @@ def fit(table: pd.DataFrame, varied: str, target: str, *shapes: Shape) -> Fit:
     clusters = len(sums)
     robust = inverse @ sums.T @ sums @ inverse * (clusters / max(clusters - 1, 1))
     errors = np.sqrt(np.maximum(variance * np.diag(inverse), np.diag(robust)))
-    found = [Estimate(float(one), float(error)) for one, error in zip(slopes, errors)]
-    return Fit(found, variance, float(np.ptp(np.concatenate(inputs))))
+    estimates = [Estimate(float(slope), float(error)) for slope, error in zip(slopes, errors)]
+    return Fit(estimates, variance, float(np.ptp(np.concatenate(inputs))))
 
 
 def straight(x: Floats) -> Floats:
@@ -143,7 +143,7 @@ def falls_with(table: pd.DataFrame, varied: str, target: str) -> Finding:
 
 
 def _slope(table: pd.DataFrame, varied: str, target: str) -> tuple[Estimate, str]:
-    """Return the slope of a target on an input, of the length on its logarithm; and what it is."""
+    """Return the slope of a target on an input (or the length's logarithm), and its name."""
     slope = fit(table, varied, target, np.log if varied == "panel_length" else straight).slopes[0]
     return slope, f"relative change of {_name(target)} per {UNITS[varied]}"
 
@@ -160,8 +160,8 @@ def slopes_are_the_same(table: pd.DataFrame) -> Finding:
     mean = abs(sum(map(_value, slopes))) / len(slopes)
     if not mean:
         raise LookupError("a slope")
-    words = "largest difference between slopes of two events, of the mean slope"
-    return small((high - low).scaled(1 / mean), SAME, words, "%")
+    text = "largest difference between slopes of two events, of the mean slope"
+    return small((high - low).scaled(1 / mean), SAME, text, "%")
 
 
 def is_logarithmic(table: pd.DataFrame) -> Finding:
@@ -174,17 +174,17 @@ def is_logarithmic(table: pd.DataFrame) -> Finding:
         verdict = CONFIRMED
     elif better < 1 / FITS_BETTER:
         verdict = CONTRADICTED
-    words = "variance left by a straight line over that left by a logarithm"
-    return Finding(verdict, f"{words}: {better:.2f}")
+    text = "variance left by a straight line over that left by a logarithm"
+    return Finding(verdict, f"{text}: {better:.2f}")
 
 
 def is_linear_in_height(table: pd.DataFrame) -> Finding:
     """Test whether a parabola bends H/L away from a straight line by a small part of its change."""
     middle = (table["panel_height"].min() + table["panel_height"].max()) / 2
-    found = fit(table, "panel_height", "ratio", straight, lambda x: (x - middle) ** 2)
-    slope, bend = found.slopes
-    change = slope.value * found.span
-    departure = bend.scaled((found.span / 2) ** 2 / change)
+    parabola = fit(table, "panel_height", "ratio", straight, lambda x: (x - middle) ** 2)
+    slope, bend = parabola.slopes
+    change = slope.value * parabola.span
+    departure = bend.scaled((parabola.span / 2) ** 2 / change)
     return small(departure, STRAIGHT, "departure from a line, of the line's change", "%")
 
 
@@ -193,20 +193,20 @@ def hardly_depends_on_tilt(table: pd.DataFrame) -> Finding:
     first, *others = sorted(table["panel_tilt"].unique())
     if not others:
         raise LookupError("several tilts")
-    found = fit(table, "panel_tilt", "ratio", *(partial(_equal, value=tilt) for tilt in others))
-    means = [Estimate(0.0, 0.0), *found.slopes]  # relative to the first tilt
+    offsets = fit(table, "panel_tilt", "ratio", *(partial(_equal, value=tilt) for tilt in others))
+    means = [Estimate(0.0, 0.0), *offsets.slopes]  # relative to the first tilt
     low, high = min(means, key=_value), max(means, key=_value)
     tilts = [first, *others]
-    words = f"{tilts[means.index(high)]:g} and {tilts[means.index(low)]:g} degrees"
-    return small(high - low, HARDLY, f"largest relative difference of H/L, of {words}", "%")
+    text = f"{tilts[means.index(high)]:g} and {tilts[means.index(low)]:g} degrees"
+    return small(high - low, HARDLY, f"largest relative difference of H/L, of {text}", "%")
 
 
 def _equal(x: Floats, value: float) -> Floats:
     return np.asarray(x == value, dtype=float)
 
 
-def _value(found: Estimate) -> float:
-    return found.value
+def _value(estimate: Estimate) -> float:
+    return estimate.value
 
 
 def _name(target: str) -> str:

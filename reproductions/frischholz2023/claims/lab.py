@@ -34,16 +34,16 @@ RATIO_3D_2D, RATIO_ABOUT = 2 / 3, 0.1
 #: Section 4.3: mean errors of 0.010 m, about 10 %, and 0.061 m, about 20 %, give the mean stack.
 MEAN_HEIGHT, HEIGHT_ABOUT = 0.10, 0.010
 MEAN_LENGTH, LENGTH_ABOUT = 0.30, 0.061
-#: Part of the stack's length by which the tail may move and still hardly move.
+#: Largest motion of a tail that hardly moves, relative to the stack's length.
 TAIL_STAYS = 0.1
-#: Part of all events' snow that tells a slab that stayed from one that slid.
+#: Share of all events' snow that separates a slab that stayed from a slab that slid.
 STAYS = 0.5
 
 Metric = Callable[..., float]
 
 
 def mean_over_runs(rows: pd.DataFrame, metric: Metric) -> Estimate:
-    """Return the mean of a number that each run gives, over the tilts, with its seeding noise.
+    """Return the mean of a number of each run, over the tilts, with its seeding noise.
 
     The noise is pooled over the tilts, and widened where it is known from few seedings.
 
@@ -58,7 +58,7 @@ def mean_over_runs(rows: pd.DataFrame, metric: Metric) -> Estimate:
     --------
     >>> import pandas as pd
     >>> rows = pd.DataFrame({"tilt": 40, "seed": [1, 2], "event": 1, "height": [0.1, 0.2]})
-    >>> mean_over_runs(rows, lambda run: run.loc[1, "height"]).in_words("m")
+    >>> mean_over_runs(rows, lambda run: run.loc[1, "height"]).text("m")
     '0.15 ± 0.35 m'
     """
     runs = [
@@ -66,7 +66,8 @@ def mean_over_runs(rows: pd.DataFrame, metric: Metric) -> Estimate:
         for (tilt, _), run in rows.groupby(["tilt", "seed"])
     ]
     by_tilt = [
-        np.array([value for one, value in runs if one == tilt]) for tilt in {one for one, _ in runs}
+        np.array([value for other, value in runs if other == tilt])
+        for tilt in {tilt for tilt, _ in runs}
     ]
     freedom = sum(len(values) - 1 for values in by_tilt)
     squares = sum(float(((values - values.mean()) ** 2).sum()) for values in by_tilt)
@@ -127,11 +128,11 @@ def _added(run: pd.DataFrame, column: str, event: int) -> float:
     return float(run[column][event] - run[column][event - 1])
 
 
-def _least(found: Sequence[Estimate]) -> Estimate:
+def _least(estimates: Sequence[Estimate]) -> Estimate:
     """Return the smallest of several means: a minimum over single runs would favour noise."""
-    if not found:
+    if not estimates:
         raise LookupError("enough events")
-    return min(found, key=lambda one: one.value)
+    return min(estimates, key=lambda estimate: estimate.value)
 
 
 def height_slope_falls(rows: pd.DataFrame) -> Finding:
@@ -163,14 +164,14 @@ def steeper_throws_further(rows: pd.DataFrame) -> Finding:
 
 def mean_height(rows: pd.DataFrame) -> Finding:
     """Test whether the mean height over the events is about that of the laboratory."""
-    found = mean_over_runs(rows, lambda run: float(run["height"].mean()))
-    return near(found, MEAN_HEIGHT, HEIGHT_ABOUT, "mean height over the events", "m")
+    height = mean_over_runs(rows, lambda run: float(run["height"].mean()))
+    return near(height, MEAN_HEIGHT, HEIGHT_ABOUT, "mean height over the events", "m")
 
 
 def mean_length(rows: pd.DataFrame) -> Finding:
     """Test whether the mean length over the events is about that of the laboratory."""
-    found = mean_over_runs(rows, lambda run: float(run["length"].mean()))
-    return near(found, MEAN_LENGTH, LENGTH_ABOUT, "mean length over the events", "m")
+    length = mean_over_runs(rows, lambda run: float(run["length"].mean()))
+    return near(length, MEAN_LENGTH, LENGTH_ABOUT, "mean length over the events", "m")
 
 
 def ratio_of_dimensions(both: tuple[pd.DataFrame, pd.DataFrame]) -> Finding:
@@ -186,14 +187,14 @@ def ratio_of_dimensions(both: tuple[pd.DataFrame, pd.DataFrame]) -> Finding:
     three, two = (mean_over_runs(rows, lambda run: float(run["height"].iloc[-1])) for rows in both)
     ratio = three.value / two.value
     parts = math.hypot(three.noise / three.value, two.noise / two.value)
-    words = "3D over 2D height after the last event"
-    return near(Estimate(ratio, ratio * parts), RATIO_3D_2D, RATIO_ABOUT, words)
+    text = "3D over 2D height after the last event"
+    return near(Estimate(ratio, ratio * parts), RATIO_3D_2D, RATIO_ABOUT, text)
 
 
 def slabs_stop_at_30_degrees(rows: pd.DataFrame) -> Finding:
     """Test whether a slab at 30 degrees stays on a panel of any of the frictions.
 
-    Whether it *sometimes* does cannot be told by one coefficient, which stops all slabs or none.
+    A single coefficient cannot show whether it *sometimes* does: it stops all slabs or none.
 
     Parameters
     ----------

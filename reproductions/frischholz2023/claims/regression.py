@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 SUB_CENTIMETRE = 0.01
 #: Section 5.3.1, of the RBF kernel.
 VALIDATION_SCORE = 0.005
-#: Part by which a number may differ and still be about another.
+#: Largest relative difference of two numbers that are about equal.
 ABOUT = 0.25
 
 
@@ -43,7 +43,7 @@ class Regressed:
     Attributes
     ----------
     rows, panels
-        How many rows the data have, and of how many panels.
+        Number of rows of the data, and of panels.
     scores
         One row per outer fold: ``model``, ``round``, ``fold``, ``development_score``,
         ``validation_score``, ``C``.
@@ -84,7 +84,7 @@ def _mean_over_folds(of_model: pd.DataFrame, values: Floats) -> Estimate:
 
 
 def overfitting(data: Regressed, model: str) -> Estimate:
-    """Return by how much validation scores are worse than those on the development sets."""
+    """Return the excess of validation scores over those on the development sets."""
     folds = _folds(data, model)
     lost = folds["validation_score"] - folds["development_score"]
     return _mean_over_folds(folds, lost.to_numpy(float))
@@ -108,16 +108,16 @@ def rbf_is_so_much_better(data: Regressed) -> Finding:
     linear, rbf = validation(data, "linear"), validation(data, "rbf")
     ratio = linear.value / rbf.value
     noise = ratio * math.hypot(linear.noise / linear.value, rbf.noise / rbf.value)
-    words = "validation score, linear over RBF"
-    return near(Estimate(ratio, noise), LINEAR_WORSE, ABOUT * LINEAR_WORSE, words)
+    text = "validation score, linear over RBF"
+    return near(Estimate(ratio, noise), LINEAR_WORSE, ABOUT * LINEAR_WORSE, text)
 
 
 def score_is_the_thesis(data: Regressed) -> Finding:
     """Test whether the RBF kernel's validation score is about 0.005."""
-    found = near(
+    finding = near(
         validation(data, "rbf"), VALIDATION_SCORE, ABOUT * VALIDATION_SCORE, "validation score, RBF"
     )
-    return _of_as_many_rows(found, data)
+    return _of_as_many_rows(finding, data)
 
 
 def rbf_overfits_more(data: Regressed) -> Finding:
@@ -128,26 +128,26 @@ def rbf_overfits_more(data: Regressed) -> Finding:
 
 def linear_chooses_more_widely(data: Regressed) -> Finding:
     """Test whether the chosen C varies more for the linear kernel than for the RBF kernel."""
-    linear, rbf = (float(np.log10(_folds(data, one)["C"]).std()) for one in ("linear", "rbf"))
-    words = f"deviation of log₁₀ C: {linear:.2f} for the linear kernel, {rbf:.2f} for RBF"
+    linear, rbf = (float(np.log10(_folds(data, kernel)["C"]).std()) for kernel in ("linear", "rbf"))
+    text = f"deviation of log₁₀ C: {linear:.2f} for the linear kernel, {rbf:.2f} for RBF"
     if linear == rbf or math.isnan(linear + rbf):
-        return Finding(UNDECIDED, words)
-    return Finding(CONFIRMED if linear > rbf else CONTRADICTED, words)
+        return Finding(UNDECIDED, text)
+    return Finding(CONFIRMED if linear > rbf else CONTRADICTED, text)
 
 
 def is_sub_centimetre(data: Regressed) -> Finding:
     """Test whether the RBF models' mean absolute error is below 0.01."""
     error = mean_error(data, "rbf")
     left = Estimate(SUB_CENTIMETRE, 0.0) - error
-    return Finding(positive(left, "").verdict, f"mean absolute error of H/L: {error.in_words()}")
+    return Finding(positive(left, "").verdict, f"mean absolute error of H/L: {error.text()}")
 
 
 def error_is_the_thesis(data: Regressed, model: str) -> Finding:
     """Test whether a model's mean absolute error is about that of Table 5.3.2."""
     aim = THESIS_ERRORS[model][0]
-    words = f"mean absolute error (thesis {aim})"
-    found = near(mean_error(data, model), aim, ABOUT * aim, words)
-    return _of_as_many_rows(found, data)
+    text = f"mean absolute error (thesis {aim})"
+    finding = near(mean_error(data, model), aim, ABOUT * aim, text)
+    return _of_as_many_rows(finding, data)
 
 
 def quartiles_are_the_thesis(data: Regressed) -> Finding:
@@ -159,20 +159,20 @@ def quartiles_are_the_thesis(data: Regressed) -> Finding:
         scatter = math.hypot(
             data.errors["mean_absolute_error"][model], data.errors["standard_deviation"][model]
         )
-        # The largest is that of one panel, the others are of many.
+        # The largest belongs to a single panel, the others to many.
         noise = scatter / np.array([*[math.sqrt(data.panels)] * 3, 1.0]) / np.array(printed)
         worst = Estimate(float(off.max()), float(noise[off.argmax()]))
         findings.append(near(worst, 0.0, QUARTILES_OFF, f"{model}, worst quartile off by", "%"))
-    found = all_of(findings)
-    return _of_as_many_rows(found, data)
+    finding = all_of(findings)
+    return _of_as_many_rows(finding, data)
 
 
-def _of_as_many_rows(found: Finding, data: Regressed) -> Finding:
+def _of_as_many_rows(finding: Finding, data: Regressed) -> Finding:
     """Leave a finding open whose number is the thesis's only for as many rows."""
     if data.rows == THESIS_ROWS:
-        return found
-    words = f"{found.sentence}, but of {data.rows} rows, not the thesis's {THESIS_ROWS}"
-    return Finding(UNDECIDED, words)
+        return finding
+    text = f"{finding.sentence}, but of {data.rows} rows, not the thesis's {THESIS_ROWS}"
+    return Finding(UNDECIDED, text)
 
 
 REGRESSION: tuple[Claim[Regressed], ...] = (

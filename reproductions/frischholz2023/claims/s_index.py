@@ -29,7 +29,7 @@ PRESSURE = "snow.preconsolidation_pressure"
 COHESION = "snow.cohesion"
 HARDENING = "snow.hardening_factor"
 MODULUS = "snow.youngs_modulus"
-#: |S| up to this is hardly any effect: doubling the parameter changes the stack by a tenth.
+#: Largest |S| of a negligible effect: doubling the parameter changes the stack by a tenth.
 HARDLY = 0.1
 
 
@@ -64,28 +64,29 @@ def lowers(table: pd.DataFrame, parameter: str, target: str) -> Finding:
 def hardly_matter(table: pd.DataFrame, target: str) -> Finding:
     """Test whether |S| of both hardening parameters is below `HARDLY`."""
     return all_of(
-        [small(index(table, one, target), HARDLY, _named(one, target))
-         for one in (HARDENING, MODULUS)]
+        [small(index(table, parameter, target), HARDLY, _named(parameter, target))
+         for parameter in (HARDENING, MODULUS)]
     )  # fmt: skip
 
 
 def cohesion_is_strongest(table: pd.DataFrame) -> Finding:
     """Test whether |S| of beta exceeds that of every other parameter."""
-    others = [one for one in _parameters(table) if one != COHESION]
-    found = {one: _magnitude(index(table, one, "height")) for one in others}
-    rival = max(found, key=lambda one: found[one].value)
-    lead = _magnitude(index(table, COHESION, "height")) - found[rival]
+    others = [parameter for parameter in _parameters(table) if parameter != COHESION]
+    magnitudes = {parameter: _magnitude(index(table, parameter, "height")) for parameter in others}
+    rival = max(magnitudes, key=lambda parameter: magnitudes[parameter].value)
+    lead = _magnitude(index(table, COHESION, "height")) - magnitudes[rival]
     return positive(lead, f"|S| of β minus |S| of {label(rival).symbol}, the next, height")
 
 
 def length_less_than_height(table: pd.DataFrame) -> Finding:
     """Test whether the mean |S| over the parameters is smaller for the length than the height."""
     parameters = _parameters(table)
-    found = [
-        _magnitude(index(table, one, "height")) - _magnitude(index(table, one, "length"))
-        for one in parameters
+    differences = [
+        _magnitude(index(table, parameter, "height"))
+        - _magnitude(index(table, parameter, "length"))
+        for parameter in parameters
     ]
-    return positive(mean_of(found), "mean |S| of height minus that of length")
+    return positive(mean_of(differences), "mean |S| of height minus that of length")
 
 
 def cohesion_gains_with_mass(table: pd.DataFrame) -> Finding:
@@ -101,8 +102,11 @@ def slope_needs_mass(table: pd.DataFrame) -> Finding:
     beyond = _magnitude(last) - Estimate(HARDLY, 0.0)
     return all_of(
         [
-            *(small(one, HARDLY, f"{what}, event {event}") for event, one in enumerate(before, 1)),
-            Finding(positive(beyond, "").verdict, f"after the last: {last.in_words()}"),
+            *(
+                small(estimate, HARDLY, f"{what}, event {event}")
+                for event, estimate in enumerate(before, 1)
+            ),
+            Finding(positive(beyond, "").verdict, f"after the last: {last.text()}"),
         ]
     )
 
@@ -112,23 +116,23 @@ def length_effects_gain_with_mass(table: pd.DataFrame) -> Finding:
     return all_of(
         [
             negative(
-                index(table, one, "length") - index(table, one, "length", last=False),
-                f"{_named(one, 'length')}, last event minus first",
+                index(table, parameter, "length") - index(table, parameter, "length", last=False),
+                f"{_named(parameter, 'length')}, last event minus first",
             )
-            for one in (SLOPE, COHESION)
+            for parameter in (SLOPE, COHESION)
         ]
     )
 
 
 def _parameters(table: pd.DataFrame) -> list[str]:
-    found = list(dict.fromkeys(table["parameter"]))
-    if len(found) < 2:
+    parameters = list(dict.fromkeys(table["parameter"]))
+    if len(parameters) < 2:
         raise LookupError("several parameters")
-    return found
+    return parameters
 
 
-def _magnitude(found: Estimate) -> Estimate:
-    return Estimate(abs(found.value), found.noise)
+def _magnitude(estimate: Estimate) -> Estimate:
+    return Estimate(abs(estimate.value), estimate.noise)
 
 
 S_INDEX: tuple[Claim[pd.DataFrame], ...] = (

@@ -30,21 +30,21 @@ if TYPE_CHECKING:
 #: Standard deviation of the synthetic measurements, relative, and the seed of their errors.
 UNCERTAINTY, ERRORS_SEED = 0.05, 1
 TEXT = (
-    "The measured stacks are printed as figures only, so that the snow of the laboratory cannot be "
-    "calibrated again. What can be tested is the procedure: a snow that is known, the calibrated "
-    "one of Table 4.3.1 (M 0.5, p₀ 7 kPa, β 0.2), is simulated at both tilts with a placement of "
-    f"its particles that no other run has (seed {TRUTH_SEED}), \u201cmeasured\u201d with random "
-    f"errors of {percent(UNCERTAINTY)}, and looked for among the triplets.",
+    "The thesis prints the measured stacks as figures only, so that the snow of the laboratory "
+    "cannot be calibrated again. This section tests the procedure. A known snow, the calibrated "
+    "snow of Table 4.3.1 (M 0.5, p₀ 7 kPa, β 0.2), is simulated at both tilts with a placement of "
+    f"particles of its own (seed {TRUTH_SEED}), \u201cmeasured\u201d with random errors of "
+    f"{percent(UNCERTAINTY)}, and searched for among the triplets.",
     PANEL_FRICTION,
-    "All numbers below called synthetic compare simulations with this simulated truth. They are no "
-    "reproduction of the thesis's scores, which compare with the laboratory: they are what remains "
-    "of an RMSE where the model is exact, and hence smaller.",
+    "Numbers called synthetic compare simulations with this simulated truth. They do not "
+    "reproduce the thesis's scores, which compare with the laboratory. They are smaller, because "
+    "the model is exact here.",
 )
 FIGURES = {
     "relative-error": ("Mean relative error", "As Figure 4.2.1, against the synthetic truth."),
     "rmse": ("RMSE of the triplets", "As Figure 4.2.2, against the synthetic truth."),
     "fit": ("Fit", "“Measured” are the synthetic stacks."),
-    "posterior": ("Posterior", "What the synthetic stacks allow; not in the thesis."),
+    "posterior": ("Posterior", "Parameters that the synthetic stacks allow; not in the thesis."),
 }
 SCORES = {
     "height_mean_error_m": "height, mean error, m",

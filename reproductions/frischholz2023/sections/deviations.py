@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 STACKS = "stacks.csv"
-#: What the variations are, beside our settings.
+#: Descriptions of the variations of our settings.
 WORDS: Mapping[str, str] = {
     "coarse-cells": "cells a third larger",
     "half-damping": f"damping {DAMPING_RATE / 2:g} 1/s instead of {DAMPING_RATE:g}",
@@ -51,55 +51,58 @@ def build(work: ThesisComputation) -> Content:
     folder.mkdir(exist_ok=True)
     write_csv(stacks, folder / STACKS, float_format="%.6g")
     tables = [
-        ("What the deviations are", deviations_grid()),
-        ("What each changes when it is undone", changes_grid(stacks)),
-        ("What changes where a setting of ours is varied", variations_grid(stacks)),
-        ("Quartiles of H/L, of the rows, by both readings of A.4.2", quartiles_grid(stacks)),
+        ("The deviations", deviations_grid()),
+        ("Changes when a deviation is undone", changes_grid(stacks)),
+        ("Changes when a setting of ours is varied", variations_grid(stacks)),
+        ("Quartiles of H/L, of the rows, by both trimming rules", quartiles_grid(stacks)),
     ]
     return Content(sample_text(stacks), tables)
 
 
 def sample_text(stacks: pd.DataFrame) -> list[str]:
-    """Return in words what was computed, and how to read the tables."""
+    """Return the text on the computed sample and the meaning of the tables."""
     ours = stacks[stacks["variant"] == DEFAULTS]
     stacks = stacks[stacks["variant"].isin(VARIANTS)]
     panels, seeds = len(ours[list(PANEL)].drop_duplicates()), ours["seed"].nunique()
     cells = " and ".join(f"{100 * dx:.3g} cm" for dx in sorted(stacks["dx"].unique(), reverse=True))
     longest, events = ours["panel.length"].max(), ours["event"].max()
     return [
-        f"A sample of {panels} of the 122 panels of chapter 5, up to {longest:g} m long, with "
-        f"{events:g} events and {seeds} seeding{'s' if seeds > 1 else ''} each: by our settings, "
-        "with each deviation undone alone, and with all undone together. It is chosen by the "
-        f"panels' geometry alone. Cells of {cells}; undoing the grid takes the smaller ones.",
-        "A change is that of the mean stack below a panel, against our settings with the same "
-        "seed; the noise is the standard error over the panels. Stacks are measured by "
-        "outermost_first, but for the deviation in the trimming and for all together. A change "
-        f"that is not above {SIGMAS:g} standard errors may be chance.",
-        f"Table 5.3.1 holds quartiles of predictions for {THESIS_ROWS} rows; these are of rows of "
-        "a sample, so compare rows only with each other.",
-        f"Frames are counted at {FRAME_RATE:g} a second; the thesis prints their number only.",
+        f"The sample has {panels} of the 122 panels of chapter 5, up to {longest:g} m long, with "
+        f"{events:g} events and {seeds} seeding{'s' if seeds > 1 else ''} each. They were chosen "
+        "by their geometry alone, and simulated with our settings, with each deviation undone, "
+        f"and with all undone. Cells have {cells}; undoing the grid takes the smaller ones.",
+        "A change is the change of the mean stack below a panel, relative to our settings with "
+        "the same seed; its noise is the standard error over the panels. Stacks are measured by "
+        "outermost_first, except for the deviation in the trimming and for all together. A change "
+        f"of up to {SIGMAS:g} standard errors may be chance.",
+        f"Table 5.3.1 holds quartiles of predictions for {THESIS_ROWS} rows. The quartiles here "
+        "are those of rows of a sample: compare them only with each other.",
+        f"Frames are counted at {FRAME_RATE:g} per second; the thesis prints only their number.",
     ]
 
 
 def deviations_grid() -> Grid:
-    """Return what each deviation is, and its reason."""
-    rows = [[one.name, one.thesis, one.here, one.reason] for one in DEVIATIONS.values()]
+    """Return each deviation and its reason."""
+    rows = [
+        [deviation.name, deviation.thesis, deviation.here, deviation.reason]
+        for deviation in DEVIATIONS.values()
+    ]
     return Grid(["deviation", "the thesis", "here", "because"], rows, "llll")
 
 
 def changes_grid(stacks: pd.DataFrame) -> Grid:
-    """Return how much each deviation changes a stack, the largest change of H/L first."""
+    """Return the change of a stack by each deviation, the largest change of H/L first."""
     rows = []
     for name in by_size(stacks):
         rows.append([_title(stacks, name), *_changes(stacks, name)])
     if THESIS in set(stacks["variant"]):
-        rows.append(["all but the trimming", *_changes(stacks, THESIS, DEFAULT_TRIMMING)])
+        rows.append(["all except the trimming", *_changes(stacks, THESIS, DEFAULT_TRIMMING)])
         rows.append([_title(stacks, THESIS), *_changes(stacks, THESIS)])
     return Grid(["undone", *QUANTITIES.values()], rows, "l" + "r" * len(QUANTITIES))
 
 
 def variations_grid(stacks: pd.DataFrame) -> Grid:
-    """Return how much a stack changes where a setting of ours is varied."""
+    """Return the change of a stack by each variation of our settings."""
     there = [name for name in VARIATIONS if name in set(stacks["variant"])]
     rows = [[WORDS[name], *_changes(stacks, name)] for name in there]
     return Grid(["varied", *QUANTITIES.values()], rows, "l" + "r" * len(QUANTITIES))
@@ -107,7 +110,7 @@ def variations_grid(stacks: pd.DataFrame) -> Grid:
 
 def _changes(stacks: pd.DataFrame, name: str, trimming: Optional[str] = None) -> list[str]:
     estimates = (change(stacks, name, quantity, trimming) for quantity in QUANTITIES)
-    return [change_in_words(one) for one in estimates]
+    return [change_text(estimate) for estimate in estimates]
 
 
 def errors_grid(errors: pd.DataFrame, stacks: pd.DataFrame) -> Grid:
@@ -121,23 +124,23 @@ def errors_grid(errors: pd.DataFrame, stacks: pd.DataFrame) -> Grid:
         From `reproductions.frischholz2023.variants.read_variants`.
     """
     rows = []
-    for one in errors.to_dict("records"):
-        numbers = [f"{one[name]:.3f}" for name in QUARTILES]
-        numbers += [f"{one[name]:.4f}" for name in ("mean_absolute_error", "held_out_error")]
-        part = percent(one["mean_absolute_error"] / one["Q2"], 2)
-        name = _title(stacks, str(one["variant"]))
-        rows.append([name, str(one["trimming"]), str(one["model"]), *numbers, part])
-    head = ["undone", "reading of A.4.2", "model", *QUARTILES]
+    for row in errors.to_dict("records"):
+        numbers = [f"{row[name]:.3f}" for name in QUARTILES]
+        numbers += [f"{row[name]:.4f}" for name in ("mean_absolute_error", "held_out_error")]
+        part = percent(row["mean_absolute_error"] / row["Q2"], 2)
+        name = _title(stacks, str(row["variant"]))
+        rows.append([name, str(row["trimming"]), str(row["model"]), *numbers, part])
+    head = ["undone", "trimming rule", "model", *QUARTILES]
     head += ["mean absolute error", "on rows not trained on", "of the median prediction"]
     return Grid(head, rows, "lll" + "r" * 7)
 
 
-def change_in_words(change: Estimate) -> str:
+def change_text(change: Estimate) -> str:
     """Return a relative change with its noise.
 
     Examples
     --------
-    >>> change_in_words(Estimate(-0.081, 0.02)), change_in_words(Estimate(0.0, 0.0))
+    >>> change_text(Estimate(-0.081, 0.02)), change_text(Estimate(0.0, 0.0))
     ('-8 ± 2 %', 'none')
     """
     if change.value == 0 and change.noise == 0:
@@ -147,19 +150,19 @@ def change_in_words(change: Estimate) -> str:
 
 
 def quartiles_grid(stacks: pd.DataFrame) -> Grid:
-    """Return the quartiles of H/L of each variant that has runs of its own, by both readings."""
+    """Return the quartiles of H/L of each variant with its own runs, by both trimming rules."""
     rows = [
         [
             _title(stacks, name),
             trimming,
-            *(f"{one:.3f}" for one in quartiles(of_one, trimming)),
+            *(f"{quartile:.3f}" for quartile in quartiles(of_one, trimming)),
         ]
         for name, of_one in with_runs_of_its_own(stacks)
         for trimming in TRIMMINGS
     ]
-    printed = [f"{one:.3f}" for one in THESIS_QUARTILES["rbf"]]
+    printed = [f"{quartile:.3f}" for quartile in THESIS_QUARTILES["rbf"]]
     rows.append(["Table 5.3.1, RBF", "not printed", *printed])
-    return Grid(["undone", "reading of A.4.2", "Q1", "Q2", "Q3", "Q4"], rows, "llrrrr")
+    return Grid(["undone", "trimming rule", "Q1", "Q2", "Q3", "Q4"], rows, "llrrrr")
 
 
 def _title(stacks: pd.DataFrame, variant: str) -> str:

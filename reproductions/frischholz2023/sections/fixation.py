@@ -22,7 +22,7 @@ from reproductions.frischholz2023.tables import (
 )
 from snowshed._core import InputError
 from snowshed.analysis.sensitivity.noise import seeding_noise
-from snowshed.analysis.sensitivity.report import evaluate
+from snowshed.analysis.sensitivity.report import evaluate_sensitivity
 from snowshed.analysis.sensitivity.stored import StoredRuns, read_stored
 from snowshed.plot.html_page import Grid, Picture
 from snowshed.plot.labels import label
@@ -47,7 +47,7 @@ TITLES = {"yield": ("3.4.1 and 3.4.2", "yield"), "hardening": ("3.4.3 and 3.4.4"
 def build(work: ThesisComputation) -> Content:
     """Return the content; raises InputError if nothing of it is computed."""
     runs, folder = work.folder.runs, work.folder.of_stage("fixation")
-    table = evaluate(runs, folder, "fixation", study=FIXATION)
+    table = evaluate_sensitivity(runs, folder, "fixation", study=FIXATION)
     stored = read_stored(runs, FIXATION)
     own = work.settings.fixation_seeds > 1
     noise = seeding_noise(stored if own else _other(work))
@@ -55,11 +55,11 @@ def build(work: ThesisComputation) -> Content:
     pictures = [
         Picture.read(
             folder / f"fixation-{group}.png",
-            f"Fixation of the {words} parameters",
+            f"Fixation of the {names} parameters",
             f"As Figures {figures}. Envelope: one standard deviation over the other parameters.",
             dpi=SAVED_DPI,
         )
-        for group, (figures, words) in TITLES.items()
+        for group, (figures, names) in TITLES.items()
         if (folder / f"fixation-{group}.png").is_file()
     ]
     scenes = work.study_stages["fixation"].scenes(FIXATION)

@@ -67,7 +67,7 @@ def inputs_grid(table: pd.DataFrame) -> Grid:
 
 
 def columns_grid(table: pd.DataFrame) -> Grid:
-    """Return the settings of the rows that their table tells, the thesis's beside ours."""
+    """Return the settings of the rows from their table, the thesis's beside ours."""
     rows = [
         [row.title, row.text, ", ".join(str(value) for value in np.unique(table[row.path]))]
         for row in printed.PANEL_SETTINGS
@@ -77,7 +77,7 @@ def columns_grid(table: pd.DataFrame) -> Grid:
 
 
 def _settings(work: ThesisComputation) -> list[tuple[str, Grid]]:
-    """Return what all panels have in common, unless their table is somebody's own."""
+    """Return the common settings of all panels, unless the table is the user's."""
     if work.table is not None and work.table != shipped_rows():
         return []
     scene = geometry(work.settings)[0].runs()[0].scene

@@ -32,10 +32,10 @@ TEXT = (
     "event. The thesis does not print the friction between snow and panel (it measured a static "
     "coefficient of 0.6 to 0.8 on Plexiglas), so that stacks are given for each friction that was "
     "computed, and claims are judged at 0.6.",
-    "The measured stacks are printed as figures only (2.4.1 to 2.4.4); there are no numbers to set "
-    "beside ours. The claims about them are judged on simulated stacks. All that can be derived is "
-    "the mean stack: mean errors of 0.010 m (about 10 %) and 0.061 m (about 20 %) in Table 4.3.1 "
-    "make it about 0.10 m high and 0.30 m long.",
+    "The thesis prints the measured stacks as figures only (2.4.1 to 2.4.4), so that our stacks "
+    "cannot be compared with numbers. Claims about them are judged on simulated stacks. Only the "
+    "mean stack follows from numbers: mean errors of 0.010 m (about 10 %) and 0.061 m (about 20 %) "
+    "in Table 4.3.1 give a height of about 0.10 m and a length of about 0.30 m.",
 )
 CAPTION = (
     "As Figures 2.4.1 to 2.4.4, simulated. Bars: deviation between seedings. The origin is the "
@@ -48,7 +48,7 @@ def build(work: ThesisComputation) -> Content:
     stage = work.study_stages["lab"]
     rows = lab_rows(work)
     released = release_rows(read_table(work.folder.runs, RELEASE))
-    scenes = [one for name in (LAB_2D, LAB_3D, RELEASE) for one in stage.scenes(name)]
+    scenes = [scene for name in (LAB_2D, LAB_3D, RELEASE) for scene in stage.scenes(name)]
     tables = [
         ("Tables 2.3.1, 4.1.1 and 4.3.1: settings", settings_grid(printed.LABORATORY, scenes)),
         ("Stacks after each event (mean ± deviation between seedings)", stacks_grid(rows)),
@@ -95,7 +95,7 @@ def variants_grid(rows: pd.DataFrame) -> Grid:
     """Return the verdict of every claim for every dimension and friction."""
     variants = dict(grouped(rows, "dimension", "friction"))
     verdicts = [
-        [one.finding.verdict for one in judge(claims.GROWTH, of_variant)]
+        [claim.finding.verdict for claim in judge(claims.GROWTH, of_variant)]
         for of_variant in variants.values()
     ]
     head = ["claim", *(f"{d:g}D, friction {mu:g}" for d, mu in variants)]
@@ -123,7 +123,7 @@ def stacks_grid(rows: pd.DataFrame) -> Grid:
 
 
 def release_grid(rows: pd.DataFrame) -> Grid:
-    """Return what became of the slabs at 30 degrees."""
+    """Return the outcome of the slabs at 30 degrees."""
     table = [
         [f"{row['friction']:g}", f"{row['event']:g}", percent(row["stayed"], 2), row["ended"]]
         for _, row in rows.sort_values(["friction", "seed"]).iterrows()

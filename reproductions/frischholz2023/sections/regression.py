@@ -54,19 +54,19 @@ def build(work: ThesisComputation) -> Content:
     """Return the content; raises InputError if the regression is not done."""
     state = work.regression.state()
     if not state.finished:
-        raise InputError(f"regression: {state.in_words()}")
+        raise InputError(f"regression: {state.text()}")
     parts = work.regression.parts()
-    data = {rows_in_words(part.rows): _regressed(part) for part in parts}
+    data = {rows_label(part.rows): _regressed(part) for part in parts}
     single, scheme = next(iter(data.values())), parts[0].scheme
     numbers = {"rounds": scheme.rounds, "folds": scheme.folds, "inner": scheme.inner_folds}
     text = [line.format(rows=single.rows, thesis_rows=THESIS_ROWS, **numbers) for line in TEXT]
     if len(parts) > 1:
         text.append(MEANS.format(seeds=parts[-1].rows.most_seeds))
-    formula = _text(parts[0].folder / TARGET / "linear.txt")
+    formula = _read_text(parts[0].folder / TARGET / "linear.txt")
     text.append(f"The mean linear model of the {next(iter(data))}: {formula}.")
     tables = [
         ("Table 5.3.1: quartiles of the predicted H/L", quartiles_grid(data)),
-        ("Quartiles of the rows' H/L, by what counts as the stack", rows_grid(work.rows.file)),
+        ("Quartiles of the rows' H/L, by the definition of the stack", rows_grid(work.rows.file)),
         ("Table 5.3.2: mean absolute error of H/L", errors_grid(data)),
     ]
     folder = parts[0].folder / TARGET
@@ -79,7 +79,7 @@ def build(work: ThesisComputation) -> Content:
     return Content(text, tables, pictures, claims)
 
 
-def rows_in_words(rows: StackRows) -> str:
+def rows_label(rows: StackRows) -> str:
     """Return whether rows are of one seed, or means."""
     return "rows of one seed" if rows.most_seeds == 1 else f"means of up to {rows.most_seeds} seeds"
 
@@ -118,11 +118,11 @@ def quartiles_grid(data: Mapping[str, Regressed]) -> Grid:
     rows = []
     for model in KINDS:
         rows.append([f"{NAMES[model]}, thesis", "predictions", *_numbers(THESIS_QUARTILES[model])])
-        for name, one in data.items():
-            ours = _numbers(one.quartiles.loc[model, list(QUARTILES)])
+        for name, regressed in data.items():
+            ours = _numbers(regressed.quartiles.loc[model, list(QUARTILES)])
             rows.append([f"{NAMES[model]}, here", f"predictions, {name}", *ours])
-    for name, one in data.items():
-        rows.append(["none", name, *_numbers(one.quartiles.loc["data", list(QUARTILES)])])
+    for name, regressed in data.items():
+        rows.append(["none", name, *_numbers(regressed.quartiles.loc["data", list(QUARTILES)])])
     return Grid(["model", "of", *QUARTILES], rows, "ll" + "r" * len(QUARTILES))
 
 
@@ -130,7 +130,7 @@ def rows_grid(file: Path) -> Grid:
     """Return the quartiles of H/L of a table's rows by each measure that it has."""
     rows = []
     for measure in MEASURES.values():
-        if measure.name == "stack":  # one of the two that name their reading of A.4.2
+        if measure.name == "stack":  # one of the two that name their trimming rule
             continue
         try:
             measured = read_rows(file, measure.name)
@@ -138,7 +138,7 @@ def rows_grid(file: Path) -> Grid:
             continue
         for of_one in (measured.of_one_seed(), *([measured] if measured.most_seeds > 1 else [])):
             numbers = _numbers(quartiles(of_one.targets[TARGET]))
-            rows.append([measure.label, rows_in_words(of_one), *numbers])
+            rows.append([measure.label, rows_label(of_one), *numbers])
     return Grid(["the stack is", "of", *QUARTILES], rows, "ll" + "r" * len(QUARTILES))
 
 
@@ -149,20 +149,23 @@ def errors_grid(data: Mapping[str, Regressed]) -> Grid:
         score = f"about {VALIDATION_SCORE}" if model == "rbf" else ""
         printed = [*_numbers(THESIS_ERRORS[model]), percent(published().relative_error(model), 2)]
         rows.append([f"{NAMES[model]}, thesis", "rows of one seed", *printed, "", score])
-        for name, one in data.items():
-            row = one.errors.loc[model]
+        for name, regressed in data.items():
+            row = regressed.errors.loc[model]
             ours = _numbers([row["mean_absolute_error"], row["standard_deviation"]], 4)
-            error, median = one.errors["mean_absolute_error"][model], one.quartiles["Q2"][model]
+            error, median = (
+                regressed.errors["mean_absolute_error"][model],
+                regressed.quartiles["Q2"][model],
+            )
             part = float(error) / float(median)
             held_out = _numbers([row["held_out_error"]], 4)
-            score = validation(one, model).in_words()
+            score = validation(regressed, model).text()
             rows.append([f"{NAMES[model]}, here", name, *ours, percent(part, 2), *held_out, score])
     head = ["model", "of", "mean absolute error", "standard deviation", "of the median prediction"]
     head += ["on rows not trained on", "median absolute error, validation"]
     return Grid(head, rows, "ll" + "r" * 5)
 
 
-def _text(file: Path) -> str:
+def _read_text(file: Path) -> str:
     try:
         return file.read_bytes().decode("utf-8").strip()
     except UnicodeDecodeError as error:

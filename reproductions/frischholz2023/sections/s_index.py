@@ -20,7 +20,7 @@ from reproductions.frischholz2023.tables import (
 )
 from snowshed.analysis.sensitivity.noise import seeding_noise
 from snowshed.analysis.sensitivity.parameter_ranges import PAIRS
-from snowshed.analysis.sensitivity.report import evaluate
+from snowshed.analysis.sensitivity.report import evaluate_sensitivity
 from snowshed.analysis.sensitivity.stored import read_stored
 from snowshed.plot.html_page import Grid, Picture
 from snowshed.plot.labels import label
@@ -43,7 +43,7 @@ CAPTION = (
 def build(work: ThesisComputation) -> Content:
     """Return the content; raises InputError if nothing of it is computed."""
     folder = work.folder.of_stage("s-index")
-    table = evaluate(work.folder.runs, folder, "s", study=INDEX)
+    table = evaluate_sensitivity(work.folder.runs, folder, "s", study=INDEX)
     scenes = work.study_stages["s-index"].scenes(INDEX)
     picture = Picture.read(folder / "s.png", "Index S", CAPTION, dpi=SAVED_DPI)
     tables = [
@@ -57,7 +57,7 @@ def build(work: ThesisComputation) -> Content:
 
 
 def _settings(scenes: list[str]) -> Grid:
-    """Return Table 3.2.1 with what Table 3.3.1 has in its place."""
+    """Return Table 3.2.1 with the values of Table 3.3.1 where they replace its own."""
     grid = settings_grid(printed.SENSITIVITY, scenes)
     pairs = {row.title: row for row in printed.SENSITIVITY if row.path in PAIRS}
     rows = [list(row) for row in grid.rows]

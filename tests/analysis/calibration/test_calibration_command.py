@@ -10,7 +10,7 @@ import xarray as xr
 from stand_in import COHESION, PARAMETERS, fill, measured, write_measurements
 
 from snowshed import Scene
-from snowshed.analysis.calibration import (
+from snowshed.analysis import (
     Measurement,
     calibrate,
     calibration_study,

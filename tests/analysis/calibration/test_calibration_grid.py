@@ -8,7 +8,7 @@ import pytest
 from stand_in import COHESION, PRESSURE, SLOPE, measured, stack, table_of, thesis_triplets
 
 from snowshed import InputError
-from snowshed.analysis.calibration import Measurement, calibration_study, compare, rank
+from snowshed.analysis import Measurement, calibration_study, compare_stacks, rank_sets
 from snowshed.analysis.calibration.comparison import simulated
 from snowshed.analysis.calibration.misfit import statistics
 
@@ -47,7 +47,7 @@ def test_scores_by_hand():
         Measurement(40.0, 1, 1, "length", 0.2, 0.02),
     ]
     stacks = simulated(pd.DataFrame(rows))
-    ranked = rank(stacks, compare(stacks, measurements)).set_index(COHESION)
+    ranked = rank_sets(stacks, compare_stacks(stacks, measurements)).set_index(COHESION)
     assert ranked.loc[0.1, "height_rmse_m"] == pytest.approx(0.01)
     assert ranked.loc[0.1, "height_relative_error"] == pytest.approx(0.1)
     assert ranked.loc[0.2, "length_relative_error"] == pytest.approx(-0.25)
@@ -67,7 +67,7 @@ def test_errors_of_both_signs_do_not_cancel_in_the_rmse():
     ]  # fmt: skip
     measurements = [Measurement(40.0, event, 1, "height", 0.1, 0.01) for event in (1, 2)]
     stacks = simulated(pd.DataFrame(rows))
-    ranked = rank(stacks, compare(stacks, measurements)).set_index(COHESION).loc[0.1]
+    ranked = rank_sets(stacks, compare_stacks(stacks, measurements)).set_index(COHESION).loc[0.1]
     assert ranked["height_rmse_m"] == pytest.approx((0.5 * (0.03**2 + 0.04**2)) ** 0.5)
     assert ranked["height_mean_error_m"] == pytest.approx(0.035)
     assert ranked["height_relative_error"] == pytest.approx(-0.05)
@@ -75,7 +75,7 @@ def test_errors_of_both_signs_do_not_cancel_in_the_rmse():
 
 def test_exact_measurements_find_their_triplet():
     stacks = simulated(table_of(thesis_triplets(), noise=0, seeds=(1,)))
-    ranked = rank(stacks, compare(stacks, measured(TRUTH, uncertainty=1e-9, noise=0)))
+    ranked = rank_sets(stacks, compare_stacks(stacks, measured(TRUTH, uncertainty=1e-9, noise=0)))
     assert tuple(ranked.iloc[0][[SLOPE, PRESSURE, COHESION]]) == TRUTH
     assert ranked.iloc[0]["rescaled_rmse"] == pytest.approx(0, abs=1e-6)
     assert ranked["rank"].tolist() == list(range(1, 49))
@@ -87,7 +87,7 @@ def test_sets_with_failed_runs_are_not_ranked():
     at = (table[SLOPE] == 0.5) & (table[PRESSURE] == 7e3) & (table[COHESION] == 0.2)
     table.loc[at & (table["panel.tilt"] == 50) & (table["event"] > 3), "height_m"] = np.nan
     stacks = simulated(table)
-    ranked = rank(stacks, compare(stacks, measured(TRUTH)))
+    ranked = rank_sets(stacks, compare_stacks(stacks, measured(TRUTH)))
     assert len(stacks.sets) == 48 and len(ranked) == 47
     assert not (ranked[[SLOPE, PRESSURE, COHESION]].to_numpy() == TRUTH).all(axis=1).any()
 
@@ -98,19 +98,19 @@ def test_sets_of_failed_runs_are_counted():
     table.loc[table[COHESION] == 0.2, ["height_m", "length_m", "head_m", "tail_m"]] = np.nan
     stacks = simulated(table)
     assert len(stacks.sets) == 48 and stacks.sets[COHESION].max() == 0.2
-    assert len(rank(stacks, compare(stacks, measured(TRUTH)))) == 32
+    assert len(rank_sets(stacks, compare_stacks(stacks, measured(TRUTH)))) == 32
 
 
 def test_head_and_tail_are_scored_and_not_ranked_by():
     stacks = simulated(table_of(thesis_triplets(), noise=0, seeds=(1,)))
     measurements = measured(TRUTH, noise=0)
-    alone = rank(stacks, compare(stacks, measurements))
+    alone = rank_sets(stacks, compare_stacks(stacks, measurements))
     head = Measurement(40.0, 1, 1, "head", 0.1, 0.01, 9)
-    both = rank(stacks, compare(stacks, [*measurements, head]))
+    both = rank_sets(stacks, compare_stacks(stacks, [*measurements, head]))
     assert both["head_rmse_m"].tolist() == pytest.approx([0.01] * 48)
     assert both["rescaled_rmse"].tolist() == alone["rescaled_rmse"].tolist()
     with pytest.raises(InputError, match="neither height_m nor length_m was measured"):
-        rank(stacks, compare(stacks, [head]))
+        rank_sets(stacks, compare_stacks(stacks, [head]))
 
 
 def test_what_does_not_fit_together_is_named():
@@ -122,7 +122,7 @@ def test_what_does_not_fit_together_is_named():
         (Measurement(40.0, 6, 1, "height", value, 0.01, 8), "event 6, measured in line 8"),
     ):
         with pytest.raises(InputError, match=message):
-            compare(stacks, [one])
+            compare_stacks(stacks, [one])
     for wrong, message in (
         (table.drop(columns="panel.tilt"), "no axis panel.tilt"),
         (table.assign(**{COHESION: 0.1, SLOPE: 0.5, PRESSURE: 1e3}), "only tilt and seed vary"),

@@ -3,7 +3,7 @@
 import pytest
 
 from snowshed import InputError
-from snowshed.analysis.calibration import read_measurements, template
+from snowshed.analysis import measurements_template, read_measurements
 from snowshed.analysis.calibration.measurements import COLUMNS
 
 HEADER = "tilt_deg,event,height_m,height_std_m,length_m,length_std_m"
@@ -25,12 +25,12 @@ def test_values_uncertainties_and_lines(tmp_path):
 
 
 def test_the_template_holds_no_number_that_nobody_measured(tmp_path):
-    lines = [line for line in template().splitlines() if not line.startswith("#")]
+    lines = [line for line in measurements_template().splitlines() if not line.startswith("#")]
     assert lines[0] == ",".join(COLUMNS) and len(lines) == 1 + 2 * 5
     assert all(line.split(",")[3:] == [""] * 8 for line in lines[1:])
     with pytest.raises(InputError, match="no measurement in it"):
-        read(tmp_path, template())
-    filled = template().replace(
+        read(tmp_path, measurements_template())
+    filled = measurements_template().replace(
         "\n40,1,1,,,,,,,,", "\n40,1,1,0.05,0.005,0.2,0.02,0.1,0.01,0.3,0.01"
     )
     assert [one.quantity for one in read(tmp_path, filled)] == ["height", "length", "head", "tail"]

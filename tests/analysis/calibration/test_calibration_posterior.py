@@ -7,7 +7,7 @@ import xarray as xr
 from stand_in import COHESION, HIGH, LOW, measured, table_of, thesis_triplets
 
 from snowshed import InputError
-from snowshed.analysis.calibration import Surrogate, calibrate, sample_posterior
+from snowshed.analysis import Surrogate, calibrate, sample_posterior
 from snowshed.analysis.calibration.comparison import Simulated, simulated
 from snowshed.analysis.calibration.posterior import Posterior, outputs_of
 

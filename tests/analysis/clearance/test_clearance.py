@@ -12,7 +12,8 @@ from plot.browser import check_page
 from station_files import days, elements, ghcn
 
 from snowshed import InputError
-from snowshed.analysis.clearance import Design, Ranges, clearance_of, statistics, winters_of
+from snowshed.analysis import Design, Ranges, clearance_of, winters_of
+from snowshed.analysis.clearance import statistics
 from snowshed.analysis.clearance.answer import STUDY, forecast
 from snowshed.analysis.clearance.report import write_report
 from snowshed.analysis.clearance.statistics import burial_interval, levels_of, shares_of

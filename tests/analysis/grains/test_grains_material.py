@@ -107,6 +107,15 @@ def test_each_reading_finds_what_the_law_was_made_with():
     assert surface.residual < 1e-6
 
 
+@pytest.mark.parametrize("factor", [1e-9, 0.1, 1.0, 900.0])
+def test_hardening_is_its_closed_form(factor):
+    bulk, compaction = E / (3 - 6 * NU), np.linspace(0.0, 0.6, 50)
+    expected = bulk * np.sinh(np.arcsinh(P0 / bulk) + factor * compaction)
+    law = CamClay(300.0, Elasticity(E, NU), M, P0, BETA, factor)
+    assert law.hardened(compaction) == pytest.approx(expected, rel=1e-12)
+    assert law.lost_after == pytest.approx(np.arcsinh(P0 / bulk) / factor, rel=1e-12)
+
+
 def test_confined_compression_yields_where_the_rate_equations_do():
     law = CamClay(300.0, Elasticity(E, NU), M, P0, BETA, XI)
     times = evenly(2e-2, 4000)

@@ -10,7 +10,7 @@ from snowshed import GrainsSettings, InputError, LoadingStage
 from snowshed.analysis.grains.figures import sensitivity_figure
 from snowshed.analysis.grains.ratios import STRESSES, compare_variants
 from snowshed.analysis.grains.samples import LabelledSample
-from snowshed.analysis.grains.sensitivity import evaluate_sensitivity
+from snowshed.analysis.grains.sensitivity import evaluate_variants
 from snowshed.analysis.grains.variants import BASE, sensitivity_variants
 
 
@@ -86,7 +86,7 @@ def test_computed_and_evaluated(tmp_path):
     settings = GrainsSettings(density_scaling=1e4)
     found = sensitivity_variants(columns(2), tmp_path / "samples", stage, settings)
     found.study().compute(tmp_path / "runs", jobs=1, threads=1)
-    table = evaluate_sensitivity(found, tmp_path / "runs", tmp_path)
+    table = evaluate_variants(found, tmp_path / "runs", tmp_path)
     assert set(table["variant"]) == {one.name for one in found.variants}
     read = pd.read_csv(tmp_path / "sensitivity.csv")
     assert read["ratio"].tolist() == pytest.approx(table["ratio"].tolist(), nan_ok=True)

@@ -3,7 +3,7 @@
 import numpy as np
 import pandas as pd
 
-from snowshed.analysis.regression import rows_of
+from snowshed.analysis import rows_of
 
 HEIGHTS = (1, 1.5, 2, 2.5, 3, 3.5, 4)
 LENGTHS = (0.5, 1, 1.5, 2, 2.5, 3, 3.5, 4, 6, 8, 10)

@@ -7,7 +7,8 @@ import pandas as pd
 import pytest
 from made_up_rows import few_inputs, made_up_rows, smooth_length, thesis_inputs, write_table
 
-from snowshed.analysis.regression import RegressionInterrupted, geometry_study, pipeline, predict
+from snowshed.analysis import RegressionInterrupted, geometry_study, predict
+from snowshed.analysis.regression import pipeline
 from snowshed.cli.main import main
 from snowshed.study import Study
 
@@ -118,7 +119,7 @@ def test_height_and_length_are_predicted_beside_the_ratio(regressed):
     assert table[2, "ratio"] == pytest.approx(table[2, "height"] / table[2, "length"], rel=0.05)
 
 
-def test_predict_answers_in_words_and_as_json(regressed, capsys):
+def test_predict_answers_text_and_as_json(regressed, capsys):
     question = ["predict", "--height", 2, "--length", 4, "--tilt", 50, "--events", 3]
     question += ["--model", regressed / "out" / "model.npz"]
     assert run(*question) == 0

@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 
 from snowshed import InputError, Scene, run_events
-from snowshed.analysis.regression import OutsideDataError, load_model, predict
+from snowshed.analysis import OutsideDataError, load_model, predict
 from snowshed.analysis.regression.dataset import MODEL, MODEL_BETWEEN, geometry_rows, geometry_table
 from snowshed.analysis.regression.geometry import BETWEEN, geometry_study
 

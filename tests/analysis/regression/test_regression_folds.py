@@ -8,7 +8,8 @@ import pytest
 from made_up_rows import few_inputs, made_up_rows
 
 from snowshed import InputError
-from snowshed.analysis.regression import CrossValidation, RegressionInterrupted, nested, regress
+from snowshed.analysis import CrossValidation, RegressionInterrupted, regress
+from snowshed.analysis.regression import nested
 from snowshed.analysis.regression.fold_result import FoldResult
 from snowshed.analysis.regression.folds import ShuffledGroupKFold
 from snowshed.analysis.regression.kinds import kinds, kinds_named

@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 
 from snowshed import InputError
-from snowshed.analysis.regression import CrossValidation, predict, read_rows, regress
+from snowshed.analysis import CrossValidation, predict, read_rows, regress
 from snowshed.analysis.regression.model_file import load_model
 from snowshed.cli.main import main
 

@@ -12,12 +12,7 @@ import pytest
 from made_up_rows import few_inputs, made_up_rows, smooth_ratio, thesis_inputs
 
 from snowshed import InputError
-from snowshed.analysis.regression import (
-    OutsideDataError,
-    load_model,
-    predict,
-    save_model,
-)
+from snowshed.analysis import OutsideDataError, load_model, predict, save_model
 from snowshed.analysis.regression.ensemble import Ensemble
 from snowshed.analysis.regression.kinds import kinds
 from snowshed.analysis.regression.model_file import Member, StackModel

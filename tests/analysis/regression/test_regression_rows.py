@@ -6,7 +6,7 @@ import pytest
 from made_up_rows import few_inputs, made_up_rows, thesis_inputs, write_table
 
 from snowshed import InputError
-from snowshed.analysis.regression import read_rows, rows_of
+from snowshed.analysis import read_rows, rows_of
 from snowshed.analysis.regression import rows as rows_module
 
 

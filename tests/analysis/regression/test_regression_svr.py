@@ -10,7 +10,8 @@ from sklearn.svm import SVR
 from sklearn.utils.estimator_checks import parametrize_with_checks
 
 from snowshed import InputError
-from snowshed.analysis.regression import EpsilonSVR, support_vectors
+from snowshed.analysis import EpsilonSVR
+from snowshed.analysis.regression import support_vectors
 from snowshed.analysis.regression.folds import CrossValidation, ShuffledGroupKFold
 from snowshed.analysis.regression.gradient_boosting import StagedGradientBoosting
 from snowshed.analysis.regression.grid_kinds import EPSILON, GAMMA, rbf_svr

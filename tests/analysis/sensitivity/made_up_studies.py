@@ -7,7 +7,7 @@ import json
 import numpy as np
 import pandas as pd
 
-from snowshed.analysis.sensitivity import StoredRuns, sensitivity_study
+from snowshed.analysis import StoredRuns, sensitivity_study
 from snowshed.analysis.sensitivity.sampling import SAMPLERS
 from snowshed.study.table import value_at
 

@@ -6,7 +6,7 @@ import pandas as pd
 import pytest
 
 from snowshed import Scene
-from snowshed.analysis.sensitivity import read_stored
+from snowshed.analysis import read_stored
 from snowshed.cli.main import main
 from snowshed.results.folder import WORDS
 from snowshed.study import Study
@@ -93,7 +93,7 @@ def test_what_is_missing_is_said(tmp_path, capsys):
 
 def test_designs_are_read_off_the_store(tmp_path, capsys):
     """Written as a study file, stored, and evaluated; one run is missing."""
-    from snowshed.analysis.sensitivity import sensitivity_study
+    from snowshed.analysis import sensitivity_study
 
     sensitivity_study("morris", quick=True, samples=3).save(tmp_path / "morris.toml")
     study = Study.load(tmp_path / "morris.toml")
@@ -109,7 +109,7 @@ def test_designs_are_read_off_the_store(tmp_path, capsys):
 
 def test_a_second_design_in_the_same_folder_is_evaluated_too(tmp_path):
     """All runs are done; the command must know which of the two studies it has just finished."""
-    from snowshed.analysis.sensitivity import sensitivity_study
+    from snowshed.analysis import sensitivity_study
 
     out = tmp_path / "out"
     fill(out / "runs", grid("earlier"))

@@ -7,7 +7,7 @@ import pytest
 from made_up_studies import BETA, P0, REFERENCE, SEED, XI, E, M
 
 from snowshed import InputError
-from snowshed.analysis.sensitivity import sensitivity_study
+from snowshed.analysis import sensitivity_study
 
 
 def runs_of(method, **options):

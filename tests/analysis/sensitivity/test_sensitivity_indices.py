@@ -6,7 +6,7 @@ import pytest
 from made_up_studies import BETA, P0, REFERENCE, SEED, XI, E, M, designed, noisy, stored
 
 from snowshed import InputError
-from snowshed.analysis.sensitivity import (
+from snowshed.analysis import (
     StoredRuns,
     fixation,
     local_index,

@@ -9,7 +9,7 @@ from snowshed import InputError
 from snowshed.analysis.tomography.downscaling import downscaled
 from snowshed.analysis.tomography.gaussian_snow import gaussian_snow
 from snowshed.analysis.tomography.ice_image import IceImage
-from snowshed.analysis.tomography.microstructure import mean_chords, measure
+from snowshed.analysis.tomography.microstructure import mean_chords, measure_microstructure
 from snowshed.analysis.tomography.parts import largest_part
 from snowshed.analysis.tomography.threshold import ImageSettings, read_ice
 from snowshed.base.notes import recorded
@@ -193,14 +193,14 @@ def test_images_without_snow_are_named_as_such(tmp_path, voxels, options, messag
 )
 def test_voxels_in_another_unit_are_named_as_such(size, message):
     with pytest.raises(InputError, match=message):
-        measure(IceImage(SNOW.ice, size, "an image"))
+        measure_microstructure(IceImage(SNOW.ice, size, "an image"))
 
 
 def test_numbers_of_layers():
     """Layers 4 voxels thick, 12 apart: chords, fraction; their surface with its known bias."""
     ice = np.zeros((48, 20, 20), dtype=bool)
     ice[np.arange(48) % 12 // 4 == 1] = True
-    numbers = measure(IceImage(ice, VOXEL, "layers"))
+    numbers = measure_microstructure(IceImage(ice, VOXEL, "layers"))
     assert numbers.ice_fraction == pytest.approx(1 / 3)
     assert numbers.ice_chord_z_m == pytest.approx(4 * VOXEL, rel=0.2)
     assert numbers.pore_chord_z_m == pytest.approx(8 * VOXEL, rel=0.2)

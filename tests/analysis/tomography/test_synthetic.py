@@ -8,7 +8,7 @@ from snowshed import InputError
 from snowshed.analysis.tomography.gaussian_snow import SHELL_WIDTH, gaussian_snow
 from snowshed.analysis.tomography.microstructure import (
     correlation_length,
-    measure,
+    measure_microstructure,
     two_point_correlation,
 )
 from snowshed.analysis.tomography.parts import largest_part
@@ -28,7 +28,7 @@ def test_the_ice_fraction_is_right_within_a_voxel():
 def test_density_and_specific_surface_are_as_asked(density, surface):
     snow = gaussian_snow((64, 64, 64), VOXEL, density=density, specific_surface=surface, seed=4)
     assert snow.density == pytest.approx(density, rel=2e-4)
-    assert measure(snow).specific_surface_m2_kg == pytest.approx(surface, rel=0.03)
+    assert measure_microstructure(snow).specific_surface_m2_kg == pytest.approx(surface, rel=0.03)
     assert (largest_part(snow.ice) == snow.ice).all()
     assert snow.synthetic
     assert snow.source.startswith("synthetic: ")
@@ -38,7 +38,7 @@ def test_the_surface_is_that_of_a_level_of_a_gaussian_field():
     """Adler and Taylor (2007), chapter 12, and the value that was measured for such snow."""
     length, fraction = 5e-4, 0.327
     found = [
-        measure(
+        measure_microstructure(
             gaussian_snow(
                 (96, 96, 96), VOXEL, ice_fraction=fraction, correlation_length=length, seed=seed,
                 connected=False,

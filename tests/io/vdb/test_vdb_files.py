@@ -8,7 +8,7 @@ from conftest import tiny_scene
 
 from snowshed import InputError, Scene, Shape, _core, measure_stack
 from snowshed.cli.main import main
-from snowshed.io.vdb import write_vdb
+from snowshed.io import write_vdb
 from snowshed.io.vtk.vtp import read_particles
 from snowshed.results.folder import read_events
 from snowshed.results.vdb_export import export_folder

@@ -11,7 +11,8 @@ from conftest import tiny_scene
 
 from snowshed import InputError, _core
 from snowshed.cli.main import main
-from snowshed.io.vdb import program, write_vdb
+from snowshed.io import write_vdb
+from snowshed.io.vdb import program
 
 INSTALL = r"built; install it \(Debian, Ubuntu: libopenvdb-dev libboost-dev\) and build snowshed"
 
@@ -22,7 +23,7 @@ def no_program(monkeypatch, tmp_path):
 
 
 def test_writing_says_what_to_install(no_program, tmp_path):
-    assert not program.available()
+    assert not program.vdb_available()
     with pytest.raises(InputError, match=INSTALL):
         write_vdb(
             tmp_path / "a.vdb", np.zeros((1, 3)), np.ones(1), dimension=2, dx=0.1,

@@ -11,7 +11,7 @@ from made import ghcn, meteoswiss, smet
 from weather_files import EPW
 
 from snowshed import InputError
-from snowshed.io.weather import read_stations
+from snowshed.io import read_stations
 from snowshed.season import read_season
 from snowshed.season.weather import read_weather
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from made import epw, hourly, tmy3
 
-from snowshed.io.weather import read_station
+from snowshed.io import read_station
 
 iotools = pytest.importorskip("pvlib.iotools")
 RANDOM = np.random.default_rng(3)

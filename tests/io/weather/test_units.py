@@ -104,7 +104,7 @@ def test_spikes_of_a_sensor_are_no_other_unit(step, warm, station):
     ],
 )  # fmt: skip
 def test_numbers_that_cannot_be_in_their_unit_are_refused(text, message, written):
-    from snowshed.io.weather import read_station
+    from snowshed.io import read_station
 
     file = written(text)
     with pytest.raises(InputError, match=re.escape(f"{file}, {message}")):

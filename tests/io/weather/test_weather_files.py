@@ -9,7 +9,8 @@ import weather_files
 from weather_files import FILES, METEOSWISS, NEW_SNOW, VARIANTS
 
 from snowshed import InputError
-from snowshed.io.weather import FORMATS, read_station
+from snowshed.io import read_station
+from snowshed.io.weather.recognise import FORMATS
 from snowshed.season import read_season
 from snowshed.season.gauge import snow_fraction
 from snowshed.season.weather import read_weather

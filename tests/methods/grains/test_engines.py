@@ -23,7 +23,7 @@ from benchmarks.engines.voxel_sample import VoxelSample
 from snowshed import GrainsSettings, LoadingStage
 from snowshed.methods.grains.curve import LoadingCurve
 from snowshed.running.run import run
-from snowshed.scene.builders import grains_scene
+from snowshed.scene import grains_scene
 
 VOXEL = 5e-5  # m
 #: Of our steps, over root of mass over stiffness; and of theirs, over that of `Press`.

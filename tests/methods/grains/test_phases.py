@@ -173,5 +173,5 @@ def test_a_curve_survives_its_file(tmp_path):
     read = LoadingCurve.read(tmp_path / "curve.csv")
     assert all((read[name] == curve[name]).all() for name in COLUMNS)
     (tmp_path / "other.csv").write_text("time_s,stage\n0,1\n")
-    with pytest.raises(InputError, match="no column axial_strain"):
+    with pytest.raises(InputError, match="the column axial_strain is missing"):
         LoadingCurve.read(tmp_path / "other.csv")

@@ -8,8 +8,7 @@ from snowshed.io.film import Film
 from snowshed.methods.slide.frames import Frame, slide_frames
 from snowshed.methods.slide.maps import slide_maps
 from snowshed.running.run import run
-from snowshed.scene import Scene
-from snowshed.scene.builders import example_slide
+from snowshed.scene import Scene, example_slide
 from snowshed.scene.terrain_grid import slide_terrain
 
 
@@ -82,5 +81,5 @@ def test_the_film_of_another_method_is_refused(tmp_path):
     tiny = tiny.update({"events": {"count": 1, "max_time": 0.1}})
     run_events(tiny, tmp_path, pictures=False)
     ground = type("Ground", (), {"cell": 1.0, "heights": np.zeros((2, 2))})()
-    with pytest.raises(InputError, match="holds no thickness; it is not the film of a slide"):
+    with pytest.raises(InputError, match="not the film of a slide; it holds no thickness"):
         slide_frames(Film(tmp_path / "film.bin"), ground)

@@ -57,7 +57,7 @@ def test_a_slide_within_the_stated_range_has_no_warning():
         (area(36.0), {}, {"drop_m": 120.0}, "drop is 120 m"),
         (area(36.0), {}, {"bonds_broken": 40}, "40 % of the bonds broke"),
         (area(36.0), {"bonds": False}, {}, "plain avalanche"),
-        (area(36.0), {}, {"ended": "time_limit"}, "not come to rest"),
+        (area(36.0), {}, {"ended": "time_limit"}, "still moving"),
     ],
 )
 def test_every_way_out_of_it_is_said(release, settings, figures, said):

@@ -45,5 +45,5 @@ def test_a_contradiction_without_a_cause_is_refused(data):
 def test_claims_are_read_as_they_were_written(data):
     claims = [judged(CONFIRMED), judged(CONTRADICTED, 'It grows, as "they" say; ±')]
     assert read_claims(data(*claims) / "claims.csv") == claims
-    with pytest.raises(InputError, match="no table of claims"):
+    with pytest.raises(InputError, match="not a table of claims"):
         read_claims(data(judged("believed")) / "claims.csv")

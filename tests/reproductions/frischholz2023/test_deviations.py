@@ -10,8 +10,8 @@ from reproductions.frischholz2023.deviations import (
 )
 
 from snowshed import InputError, Scene
+from snowshed.analysis import geometry_study
 from snowshed.analysis.regression import deviations as package
-from snowshed.analysis.regression import geometry_study
 from snowshed.analysis.regression.deviations import deviations_named
 from snowshed.snow.stack.trimming import DEFAULT_TRIMMING, TRIMMINGS
 from snowshed.study.table import value_at

@@ -73,7 +73,7 @@ def test_what_may_be_chance_is_called_so(monkeypatch, found, words):
 def test_a_deviation_that_was_not_switched_is_not_called_small(monkeypatch):
     stacks = pd.DataFrame({"variant": ["slip"], "same_runs": [True]})
     monkeypatch.setattr(gap_page, "change", lambda *arguments: Estimate(0.0, 0.0))
-    assert "what it changes is not known" in gap_page._cause(stacks, "slip")
+    assert "its effect is unknown" in gap_page._cause(stacks, "slip")
 
 
 def test_new_results_are_taken_in_and_others_refused(data, tmp_path):
@@ -86,6 +86,6 @@ def test_new_results_are_taken_in_and_others_refused(data, tmp_path):
     assert after != before and "1. **`reseed`**" in after
     with pytest.raises(InputError, match="no column"):
         gap_page.keep(data, data / "regression-equal_pace" / "scores.csv", None, None)
-    with pytest.raises(InputError, match="one seed; scatter needs several"):
+    with pytest.raises(InputError, match="a single seed; scatter needs several"):
         gap_page.keep(data, None, tmp_path / "stacks.csv", None)
     assert gap_page.page(data) == after

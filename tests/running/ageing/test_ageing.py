@@ -8,10 +8,10 @@ import pytest
 from conftest import tiny_scene
 
 from snowshed import InputError, Interrupted, Scene, Shape, _core, run_events
-from snowshed.running.ageing import Ageing, Interval
+from snowshed.running import Ageing, Interval
 from snowshed.running.sequence import open_sequence
 from snowshed.season.column import SnowColumn
-from snowshed.snow.relations import SETTLING_LAWS, SINTERING_LAWS
+from snowshed.snow import SETTLING_LAWS, SINTERING_LAWS
 
 DAY = 86400.0
 WEEK = [Interval(2 * DAY, -3.0), Interval(5 * DAY, -8.0)]
@@ -135,7 +135,7 @@ def test_an_interrupted_run_ages_as_an_uninterrupted_one(aged, tmp_path):
 def test_a_run_resumes_only_as_it_aged(aged):
     _, folder, _ = aged
     for other in (None, Ageing({2: WEEK}, "essery-2013")):
-        with pytest.raises(InputError, match=r"ageing\.json: between its events the stack aged"):
+        with pytest.raises(InputError, match=r"ageing\.json: ageing settings differ"):
             run_events(tiny_scene(), folder, ageing=other, resume=True, pictures=False)
 
 
@@ -173,7 +173,7 @@ def test_what_is_refused(values, message):
 
 def test_reseeded_snow_cannot_age(tmp_path):
     scene = tiny_scene(**{"events.between": "reseed"})
-    with pytest.raises(InputError, match='/events/between: "reseed" makes new snow'):
+    with pytest.raises(InputError, match='/events/between: "reseed" replaces the snow'):
         run_events(scene, tmp_path / "a", ageing=Ageing({2: WEEK}, "vionnet-2012"))
     assert not (tmp_path / "a").exists()
 
@@ -193,7 +193,7 @@ def test_snow_ages_between_events_only():
     ("change", "message"),
     [
         ({"pauses": []}, "pauses: not an object"),
-        ({"pauses": {"two": []}}, "two is no number of an event"),
+        ({"pauses": {"two": []}}, "two is not the number of an event"),
         ({"pauses": {"2": [[1.0]]}}, "not pairs of seconds"),
         ({"pauses": {"2": [[-1.0, 0.0]]}}, "not pairs of seconds"),
         ({"pauses": {"2": [["1", 0.0]]}}, "not pairs of seconds"),

@@ -8,7 +8,7 @@ from slide_files import WITH_HOLE, box, plane, write_polygons, write_project
 
 from snowshed import InputError, _core
 from snowshed.io.raster.raster import read_raster
-from snowshed.scene.builders import avaframe_scene
+from snowshed.scene import avaframe_scene
 from snowshed.scene.builders.avaframe import avaframe_simulations
 
 pytest.importorskip("pyogrio")

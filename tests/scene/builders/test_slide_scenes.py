@@ -7,7 +7,7 @@ from slide_files import SQUARE, WITH_HOLE, write_polygons
 from snowshed import InputError
 from snowshed.io.raster.areas import read_areas
 from snowshed.io.raster.raster import Raster, write_ascii_grid
-from snowshed.scene.builders import slide_scene
+from snowshed.scene import slide_scene
 
 pytest.importorskip("pyogrio")
 pytest.importorskip("shapely")

@@ -6,14 +6,7 @@ import numpy as np
 import pytest
 
 from snowshed import InputError, _core
-from snowshed.scene.builders import (
-    gable_roof,
-    mesh_structure,
-    panel_rows,
-    panel_table,
-    shed_roof,
-    tracker,
-)
+from snowshed.scene import gable_roof, mesh_structure, panel_rows, panel_table, shed_roof, tracker
 
 PANEL = {"height": 0.6, "length": 1.0, "tilt": 40.0, "snow": 0.1, "dx": 0.05}
 ROOF = {"eaves": 2.0, "length": 2.0, "tilt": 30.0, "snow": 0.2, "dx": 0.05}

@@ -8,7 +8,8 @@ import pytest
 import rasterio
 
 from snowshed import InputError, Scene, _core
-from snowshed.scene.builders import Raster, on_terrain, read_raster, single_panel
+from snowshed.io import Raster, read_raster
+from snowshed.scene import on_terrain, single_panel
 from snowshed.scene.builders.terrain import signed_distances
 
 ASCII = """ncols 3

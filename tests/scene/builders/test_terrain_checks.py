@@ -6,7 +6,7 @@ from raster_files import CELL, SLOPE, grid_text, in_unit, scaled, write_geotiff
 
 from snowshed import InputError
 from snowshed.io.raster.raster import Raster
-from snowshed.scene.builders import on_terrain, single_panel, slide_scene
+from snowshed.scene import on_terrain, single_panel, slide_scene
 from snowshed.scene.builders.terrain_checks import check_terrain, read_terrain
 
 pytest.importorskip("rasterio")

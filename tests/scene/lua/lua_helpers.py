@@ -5,7 +5,7 @@ import resource
 import pytest
 
 from snowshed import InputError
-from snowshed.scene.lua import load_lua
+from snowshed.scene import load_lua
 
 
 def load(folder, init, update=None, **options):

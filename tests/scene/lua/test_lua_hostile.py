@@ -8,7 +8,7 @@ import sys
 import pytest
 from lua_helpers import error_of, error_within, load
 
-from snowshed.scene.lua import Limits
+from snowshed.scene import LuaLimits
 
 STOPPED = "stopped after 10000000 instructions"
 MEMORY = "stopped: more than 8 MB of memory"
@@ -16,7 +16,7 @@ SOFT = "stopped after 0.25 s"
 HARD = "stopped in one operation that takes more than the 0.4 s"
 PATIENCE = 1.0  # s of processor time
 # Where what a script does stops it, a slow moment of the machine shall not come first.
-UNHURRIED = Limits(soft_seconds=3, hard_seconds=3)
+UNHURRIED = LuaLimits(soft_seconds=3, hard_seconds=3)
 
 # A table with gaps that claims 2^40 items; all of its keys are in the hash part.
 GAPS = "{" + ",".join(f"[{2**k}]=1" for k in range(41)) + "}"
@@ -164,7 +164,7 @@ SCRIPTS = {
 @pytest.mark.parametrize("name", SCRIPTS)
 def test_stopped_in_time_with_a_clear_error(name, tmp_path):
     script, line, message = SCRIPTS[name]
-    limits = Limits() if message in (SOFT, HARD) else UNHURRIED
+    limits = LuaLimits() if message in (SOFT, HARD) else UNHURRIED
     error = error_within(PATIENCE, tmp_path, script, limits=limits)
     place = f"init.lua:{line}: " if line else "init.lua: "
     assert error.startswith(place)
@@ -215,18 +215,18 @@ def test_no_text_or_order_depends_on_addresses(tmp_path):
 
 
 def test_instructions_are_counted(tmp_path):
-    error = error_of(tmp_path, "while true do end", limits=Limits(instructions=10_000))
+    error = error_of(tmp_path, "while true do end", limits=LuaLimits(instructions=10_000))
     assert error == "init.lua:1: stopped after 10000 instructions"
 
 
 def test_an_endless_call_ends_with_the_process(tmp_path):
-    unlimited = Limits(instructions=10**15, soft_seconds=1e9, hard_seconds=0.1)
+    unlimited = LuaLimits(instructions=10**15, soft_seconds=1e9, hard_seconds=0.1)
     error = error_within(PATIENCE, tmp_path, "x = 1", "while true do end", limits=unlimited)
     assert error == (
         "init.lua with update.lua: stopped in one operation that takes more than the 0.1 s of "
         "processor time scripts have"
     )
-    clock = Limits(instructions=10**15, soft_seconds=1e9, hard_seconds=10, wall_seconds=0.1)
+    clock = LuaLimits(instructions=10**15, soft_seconds=1e9, hard_seconds=10, wall_seconds=0.1)
     error = error_of(tmp_path, "while true do end", limits=clock)
     assert error == "init.lua: stopped after 0.1 s by the clock"
 

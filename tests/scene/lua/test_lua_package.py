@@ -3,7 +3,7 @@
 import pytest
 from paths import ROOT
 
-from snowshed.scene.lua.limits import Limits
+from snowshed.scene.lua.limits import LuaLimits
 from snowshed.scene.lua.vocabulary import SHAPES, SYMBOLS, WORDS
 
 DOCS = (ROOT / "docs" / "guides" / "lua.md").read_text()
@@ -20,7 +20,7 @@ def test_the_guide_has_every_shape_and_symbol(name):
 
 
 def test_the_guide_has_the_limits():
-    limits = Limits()
+    limits = LuaLimits()
     for shown in (
         f"{limits.instructions // 10**6} million instructions",
         f"{limits.memory_bytes >> 20} MB of memory",

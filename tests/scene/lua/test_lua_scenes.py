@@ -9,7 +9,7 @@ from lua_helpers import error_of, load
 from paths import ROOT
 
 from snowshed import InputError, Scene
-from snowshed.scene.lua import load_lua
+from snowshed.scene import load_lua
 
 EXAMPLES = ROOT / "lua_compat" / "examples"
 DOCS = (ROOT / "docs" / "guides" / "lua.md").read_text()

@@ -127,7 +127,7 @@ class Measurement:
         Raises
         ------
         InputError
-            If the data is no such measurement, naming `where` it is.
+            If the data is not such a measurement; the message names its place, `where`.
         """
         check_values(data, FORM, where)
         if unknown := sorted(data.keys() - FORM.keys()):

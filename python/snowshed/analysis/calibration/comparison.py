@@ -91,7 +91,7 @@ def simulated(frame: pd.DataFrame, measure: str = "stack") -> Simulated:
     )
 
 
-def compare(stacks: Simulated, measurements: Sequence[Measurement]) -> pd.DataFrame:
+def compare_stacks(stacks: Simulated, measurements: Sequence[Measurement]) -> pd.DataFrame:
     """Return simulated beside measured values.
 
     Returns

@@ -18,7 +18,7 @@ from snowshed.analysis.calibration.posterior import LEVELS, Posterior
 from snowshed.analysis.calibration.surrogate import EXTRA
 from snowshed.base.arrays import Booleans
 from snowshed.base.extras import require
-from snowshed.plot.figure_style import BODY, COLOURS, FAINT, INK, STYLE, blank, headline
+from snowshed.plot.figure_style import BODY, COLOURS, FAINT, INK, STYLE, blank_figure, headline
 from snowshed.plot.labels import label
 
 if TYPE_CHECKING:
@@ -86,7 +86,7 @@ def _bars(
     best = rows["rank"].to_numpy() == 1
     colours = np.where(best, BEST, PLAIN)
     with matplotlib.rc_context(STYLE):
-        figure = blank(max(7.0, 1.5 + 0.17 * len(rows)), 1.2 + 2.0 * len(panels))
+        figure = blank_figure(max(7.0, 1.5 + 0.17 * len(rows)), 1.2 + 2.0 * len(panels))
         headline(figure, title)
         grid = np.ravel(figure.subplots(len(panels), 1, sharex=True, squeeze=False))
         for axes, (name, column) in zip(grid, panels):
@@ -140,7 +140,7 @@ def fit_figure(
     tilts = sorted(comparison["tilt"].unique())
     quantities = list(posterior.quantities)
     with matplotlib.rc_context(STYLE):
-        figure = blank(1.6 + 3.0 * len(tilts), 1.3 + 2.3 * len(quantities))
+        figure = blank_figure(1.6 + 3.0 * len(tilts), 1.3 + 2.3 * len(quantities))
         headline(figure, "Measured and simulated stacks")
         grid = figure.subplots(
             len(quantities), len(tilts), sharex=True, sharey="row", squeeze=False

@@ -98,12 +98,12 @@ class Measurement:
     line: int = 0
 
 
-def template() -> str:
+def measurements_template() -> str:
     """Return an empty measurements file for the tilts and events of the thesis's calibration.
 
     Examples
     --------
-    >>> template().splitlines()[-1]
+    >>> measurements_template().splitlines()[-1]
     '50,5,1,,,,,,,,'
     """
     rows = [
@@ -115,7 +115,7 @@ def template() -> str:
 
 
 def read_measurements(file: PathLike) -> list[Measurement]:
-    r"""Read measured stacks from a CSV file; `template` describes its content.
+    r"""Read measured stacks from a CSV file; `measurements_template` describes its content.
 
     Raises
     ------

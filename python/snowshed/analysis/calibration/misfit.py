@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 RANKED = ("height", "length")
 
 
-def rank(stacks: Simulated, comparison: pd.DataFrame) -> pd.DataFrame:
+def rank_sets(stacks: Simulated, comparison: pd.DataFrame) -> pd.DataFrame:
     """Score every parameter set, and rank the sets by the mean rescaled RMSE, as section 4.1 does.
 
     Parameters

@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Optional
 
 from snowshed._core import InputError
-from snowshed.analysis.calibration.comparison import Simulated, compare, read_simulated
+from snowshed.analysis.calibration.comparison import Simulated, compare_stacks, read_simulated
 from snowshed.analysis.calibration.measurements import Measurement
-from snowshed.analysis.calibration.misfit import RANKED, rank, statistics
+from snowshed.analysis.calibration.misfit import RANKED, rank_sets, statistics
 from snowshed.analysis.calibration.posterior import STEPS, Posterior, outputs_of, sample_posterior
 from snowshed.analysis.calibration.surrogate import EXTRA, Surrogate
 from snowshed.base.extras import require
@@ -32,9 +32,9 @@ class Calibration:
     stacks
         The simulated stacks.
     comparison
-        Simulated beside measured values; see `compare`.
+        Simulated beside measured values; see `compare_stacks`.
     ranked
-        The parameter sets, the best first; see `rank`.
+        The parameter sets, the best first; see `rank_sets`.
     posterior
         The posterior of the parameters.
     """
@@ -87,8 +87,8 @@ def calibrate(
         If no quantity was measured, a measured stack was not simulated, or a library is missing.
     """
     used = _used(measurements, quantities)
-    comparison = compare(stacks, measurements)
-    ranked = rank(stacks, comparison)
+    comparison = compare_stacks(stacks, measurements)
+    ranked = rank_sets(stacks, comparison)
     surrogate = Surrogate.fitted(stacks, outputs_of(used))
     return Calibration(
         stacks, comparison, ranked, sample_posterior(surrogate, used, steps=steps, seed=seed)
@@ -109,7 +109,7 @@ def _used(measurements: Sequence[Measurement], quantities: Sequence[str]) -> lis
 
 
 def check_libraries() -> None:
-    """Raise InputError if a library that `evaluate` needs is missing, before runs are computed."""
+    """Raise InputError if a library that the evaluation needs is missing, before runs start."""
     require("sklearn.gaussian_process", EXTRA, "calibration")
     require("emcee", EXTRA, "calibration")
     require("xarray", EXTRA, "calibration")
@@ -117,7 +117,7 @@ def check_libraries() -> None:
     require("corner", EXTRA, "calibration")
 
 
-def evaluate(
+def evaluate_calibration(
     measurements: Sequence[Measurement],
     stored: PathLike,
     folder: PathLike,
@@ -156,7 +156,7 @@ def evaluate(
 def write(calibration: Calibration, folder: Path) -> None:
     """Write the tables and figures of a calibration into a folder."""
     from snowshed.analysis.calibration import figures
-    from snowshed.plot.figure_style import save
+    from snowshed.plot.figure_style import save_figure
 
     posterior, parameters = calibration.posterior, calibration.stacks.parameters
     bands = figures.predicted_bands(posterior)
@@ -182,4 +182,4 @@ def write(calibration: Calibration, folder: Path) -> None:
     with replacing(folder / "posterior.nc") as beside:
         posterior.draws.to_netcdf(beside, engine="scipy")
     for name, figure in drawings.items():
-        save(figure, folder / f"{name}.png")
+        save_figure(figure, folder / f"{name}.png")

@@ -43,8 +43,8 @@ def clearance(
     Parameters
     ----------
     weather
-        Years of daily weather: a file of a station or several, or what else
-        `snowshed.season.weather.read_record` reads.
+        Years of daily weather: a file of a station or several, or any other input of
+        `snowshed.season.read_record`.
     folder
         Folder of the store of runs; the same call resumes there.
     slope_length

@@ -50,7 +50,7 @@ def winters_of(season: Sequence[Weather], coverage: float = COVERAGE) -> list[Wi
     Raises
     ------
     InputError
-        If no winter counts, or the coverage is no share.
+        If no winter counts, or the coverage is not a share.
 
     Examples
     --------

@@ -9,7 +9,7 @@ import numpy as np
 
 from snowshed.analysis.grains.ratios import STRESSES
 from snowshed.analysis.grains.variants import BASE
-from snowshed.plot.figure_style import COLOURS, FAINT, INK, NOISE, STYLE, blank, headline
+from snowshed.plot.figure_style import COLOURS, FAINT, INK, NOISE, STYLE, blank_figure, headline
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -35,7 +35,7 @@ def sensitivity_figure(comparison: pd.DataFrame, title: str = "") -> Figure:
     reached = set(base.index[np.isfinite(base["value_pa"])])  # before the tests end
     stresses = [name for name in STRESSES if name in reached]
     with matplotlib.rc_context(STYLE):
-        figure = blank(11.0, 1.6 + 0.3 * max(len(names), 4))
+        figure = blank_figure(11.0, 1.6 + 0.3 * max(len(names), 4))
         headline(
             figure,
             (f"{title}: " if title else "")

@@ -69,7 +69,7 @@ class LogMean:
 
 
 def compare_variants(table: pd.DataFrame) -> pd.DataFrame:
-    """Return how the stresses of each variant compare with the base.
+    """Return the stresses of each variant relative to the base.
 
     Ratios are taken sample by sample, so that samples that differ from each other do not blur them.
     Means are geometric. Stresses that are not positive are left out.

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 TESTS, TABLE, FIGURE = "tests.csv", "sensitivity.csv", "sensitivity.png"
 
 
-def evaluate_sensitivity(comparison: Comparison, runs: Path, folder: Path) -> pd.DataFrame:
+def evaluate_variants(comparison: Comparison, runs: Path, folder: Path) -> pd.DataFrame:
     """Evaluate the computed variants; write the table and the figure.
 
     Parameters
@@ -38,12 +38,12 @@ def evaluate_sensitivity(comparison: Comparison, runs: Path, folder: Path) -> pd
         If the base is not computed.
     """
     from snowshed.analysis.grains.figures import sensitivity_figure
-    from snowshed.plot.figure_style import save
+    from snowshed.plot.figure_style import save_figure
 
     tests = comparison.table(runs)
     table = compare_variants(tests)
     folder.mkdir(parents=True, exist_ok=True)
     write_csv(tests, folder / TESTS)
     write_csv(table, folder / TABLE)
-    save(sensitivity_figure(table, comparison.scene.title or ""), folder / FIGURE)
+    save_figure(sensitivity_figure(table, comparison.scene.title or ""), folder / FIGURE)
     return table

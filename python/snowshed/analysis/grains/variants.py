@@ -140,7 +140,7 @@ def sensitivity_variants(
     coarser: int = 1,
     finer: bool = False,
 ) -> Comparison:
-    """Return the variants that tell what matters, and write their samples.
+    """Return the variants of a sensitivity study, and write their samples.
 
     Parameters
     ----------

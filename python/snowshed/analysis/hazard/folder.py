@@ -36,7 +36,7 @@ from snowshed.io.atomic import write_text
 from snowshed.io.raster.output import write_raster
 from snowshed.methods.registry import SETTINGS_KEY
 from snowshed.methods.slide.validity import AS_ONE, release_areas, validity_notes
-from snowshed.plot.figure_style import save
+from snowshed.plot.figure_style import save_figure
 from snowshed.plot.hazard_figure import part_shown, probability_figure
 from snowshed.plot.hazard_page import HazardPage
 from snowshed.plot.html_page import Grid
@@ -99,7 +99,7 @@ def write_hazard(
     part = part_shown(maps.terrain, probability, page.outlines)
     label = f"{first}, of {maps.runs} slides"
     figure = probability_figure(maps.terrain, probability, page.outlines, part, label=label)
-    save(figure, place / "hazard.png")
+    save_figure(figure, place / "hazard.png")
     page.write(place / "hazard.html")
     return maps
 

@@ -133,7 +133,7 @@ def hazard_maps(
         terrain = slide_terrain(ResolvedScene.parse(runs[0].scene))
         sums = _Sums(terrain.heights.shape, len(done), reached, pressures, percentiles)
         for begin, end in _bands(terrain.heights.shape, len(done)):
-            sums.add(begin, end, (_maps_of(store, hash_) for hash_ in done))
+            sums.add(begin, end, (_stored_maps(store, hash_) for hash_ in done))
     failed = sum(run.status == "failed" for run in runs)
     return HazardMaps(terrain, len(done), failed, sums.exceedances(), sums.percentiles)
 
@@ -219,7 +219,7 @@ def _bands(shape: tuple[int, ...], runs: int) -> Iterator[tuple[int, int]]:
         yield begin, min(begin + height, rows)
 
 
-def _maps_of(store: Store, hash_: str) -> PeakMaps:
+def _stored_maps(store: Store, hash_: str) -> PeakMaps:
     for data in store.particles(hash_).values():
         try:
             return PeakMaps.unpacked(data)
@@ -238,7 +238,7 @@ def _check(reached: float, pressures: Sequence[float], percentiles: Sequence[int
 
 
 def hazard_facts(maps: HazardMaps) -> dict[str, Any]:
-    """Return the numbers of the maps as JSON data: areas by probability, and how sure they are."""
+    """Return the numbers of the maps as JSON data: areas by probability, and their uncertainty."""
     return {
         "runs": maps.runs,
         "failed": maps.failed,

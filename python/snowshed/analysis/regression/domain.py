@@ -78,7 +78,7 @@ class Domain:
         return objections
 
     def _misplaced(self, question: Floats, panels: Floats) -> list[str]:
-        """Say where a question within all ranges lies among the panels that have its event."""
+        """Return the place of a question within all ranges among the panels that have its event."""
         event, panel = question[0], question[1:]
         if not len(panels):
             return [f"event {event:g} is not in the data"]

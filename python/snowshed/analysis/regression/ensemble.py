@@ -45,7 +45,7 @@ class Ensemble:
         )
 
     def predict(self, inputs: Floats) -> Floats:
-        """Return what each model says of each point.
+        """Return the prediction of each model for each point.
 
         Parameters
         ----------

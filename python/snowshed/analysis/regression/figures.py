@@ -17,7 +17,7 @@ from snowshed.analysis.regression.rows import INPUTS, TARGETS, StackRows
 from snowshed.analysis.regression.scaling import Scaling
 from snowshed.base.arrays import Floats
 from snowshed.plot import figure_style
-from snowshed.plot.figure_style import FAINT, INK, STYLE, blank, headline
+from snowshed.plot.figure_style import FAINT, INK, STYLE, blank_figure, headline
 from snowshed.plot.labels import label
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ ALONG = 80  # points of a predicted curve
 def selection(elected: Elected, titles: Titles, target: str) -> Figure:
     """Draw the scores of the elected models over the rounds, as Figure 5.3.1."""
     with matplotlib.rc_context(STYLE):
-        figure = blank(7.5, 4.2)
+        figure = blank_figure(7.5, 4.2)
         axes = figure.subplots()
         for shift, (kind, results) in enumerate(elected.items()):
             validation = _by_round(results, "validation_score")
@@ -71,7 +71,7 @@ def hyperparameters(
     names = {kind: list(results[0].parameters) for kind, results in elected.items()}
     columns = max(len(listed) for listed in names.values())
     with matplotlib.rc_context(STYLE):
-        figure = blank(1.2 + 1.9 * columns, 0.6 + 1.75 * len(names))
+        figure = blank_figure(1.2 + 1.9 * columns, 0.6 + 1.75 * len(names))
         grid = figure.subplots(len(names), columns, squeeze=False)
         for row, (kind, results) in zip(grid, elected.items()):
             for axes, name in zip(row, names[kind]):
@@ -88,7 +88,7 @@ def hyperparameters(
 def quantiles(elected: Elected, titles: Titles, values: Floats, target: str) -> Figure:
     """Draw sorted mean predictions over sorted data, with the models' deviation: Figure 5.3.3."""
     with matplotlib.rc_context(STYLE):
-        figure = blank(1 + 2.6 * len(elected), 3.4)
+        figure = blank_figure(1 + 2.6 * len(elected), 3.4)
         grid = figure.subplots(1, len(elected), sharex=True, sharey=True, squeeze=False)[0]
         for axes, (kind, results) in zip(grid, elected.items()):
             everything = np.array([result.predictions for result in results])
@@ -126,7 +126,7 @@ def predictions(
         return None
     events = np.unique(rows.inputs[:, 0])
     with matplotlib.rc_context(STYLE):
-        figure = blank(1 + 2.9 * len(varying), 1.0 + 2.6 * len(members))
+        figure = blank_figure(1 + 2.9 * len(varying), 1.0 + 2.6 * len(members))
         grid = figure.subplots(len(members), len(varying), sharey=True, sharex="col", squeeze=False)
         for row, (kind, member) in zip(grid, members.items()):
             for axes, number in zip(row, varying):
@@ -152,7 +152,7 @@ def predictions(
 def cost(errors: pd.DataFrame, titles: Titles, target: str) -> Figure:
     """Draw the error on rows and panels that were not trained on, over fitting time."""
     with matplotlib.rc_context(STYLE):
-        figure = blank(6.5, 4.0)
+        figure = blank_figure(6.5, 4.0)
         axes = figure.subplots()
         axes.set(xscale="log", yscale="log")
         for kind, row in errors.iterrows():

@@ -40,7 +40,7 @@ class GaussianProcess:
     cost_s: float = 6.0
 
     def searcher(self, cv: ShuffledGroupKFold) -> LikelihoodSearch:
-        """Return what maximises the marginal likelihood; the folds are not needed."""
+        """Return the search for the largest marginal likelihood; the folds are not needed."""
         return LikelihoodSearch()
 
     def estimator(self, parameters: Mapping[str, float]) -> GaussianProcessRegressor:

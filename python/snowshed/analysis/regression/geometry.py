@@ -158,7 +158,7 @@ def check_between(between: str) -> None:
 
 
 def _share(length: float) -> int:
-    """Return for how many seeds of a short panel one of this length, m, has one."""
+    """Return the number of seeds of a short panel per seed of a panel of this length, m."""
     return next(share for longest, share in SHARES.items() if length <= longest)
 
 

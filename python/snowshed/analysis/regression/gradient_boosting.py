@@ -43,5 +43,5 @@ class StagedGradientBoosting(GradientBoostingRegressor):
             yield np.asarray(stages[count - 1])
 
     def path_fits(self, grid: Mapping[str, Sequence[int]]) -> int:
-        """Return how many models `path_predictions` fits: one."""
+        """Return the number of models that `path_predictions` fits: one."""
         return 1

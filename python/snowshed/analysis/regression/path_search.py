@@ -30,7 +30,7 @@ class PathEstimator(Protocol):
         """Train on X and y; yield the predictions at `at` for each point of the grid."""
 
     def path_fits(self, grid: Grid) -> int:
-        """Return how many models that fits."""
+        """Return the number of fitted models."""
 
 
 class PathSearchCV(MetaEstimatorMixin, BaseEstimator):

@@ -220,7 +220,7 @@ class _Output:
         members: Mapping[str, Member],
     ) -> None:
         from snowshed.analysis.regression import figures
-        from snowshed.plot.figure_style import save
+        from snowshed.plot.figure_style import save_figure
 
         target, titles = report.target, self._titles
         values = self._rows.targets[target]
@@ -235,4 +235,4 @@ class _Output:
         }
         for name, figure in drawings.items():
             if figure is not None:
-                save(figure, self._folder / target / name)
+                save_figure(figure, self._folder / target / name)

@@ -114,8 +114,7 @@ def predict(
     ----------
     panels
         One row for each panel, with the columns ``height``, ``length``, ``tilt`` and ``events``,
-        or what else are the inputs of the model, in any order and no other: a column that means
-        something else must not be taken for nothing.
+        or the other inputs of the model, in any order. Other columns are refused.
     height, length
         Instead of a table: of the panel, its lower edge above the ground, and along the slope, m.
         Each of the four is a number, or a sequence or array with one for each panel.
@@ -131,7 +130,7 @@ def predict(
     kind
         "rbf", "gaussian-process" or "linear"; None: the first of these that the file holds.
     extrapolate
-        Answer even if panels lie outside the data; their answers are marked.
+        Whether to answer even if panels lie outside the data; such answers are marked.
 
     Raises
     ------

@@ -82,7 +82,7 @@ class Questions:
         if table is not None:
             if given:
                 raise InputError(f"{given[0]}: not beside a table of panels, which has it")
-            columns = _columns_of(table, names)
+            columns = _table_columns(table, names)
         panels = _stacked(columns, names)
         labels = pd.RangeIndex(panels.shape[1]) if table is None else table.index
         _check(dict(zip(names, panels)), labels)
@@ -92,7 +92,7 @@ class Questions:
         return cls(labels, which, np.column_stack([events, panels[:-1, which].T]))
 
 
-def _columns_of(table: pd.DataFrame, allowed: Sequence[str]) -> dict[str, Optional[Numbers]]:
+def _table_columns(table: pd.DataFrame, allowed: Sequence[str]) -> dict[str, Optional[Numbers]]:
     import pandas as pd
 
     if not isinstance(table, pd.DataFrame):

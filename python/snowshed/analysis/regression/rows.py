@@ -154,7 +154,7 @@ def read_rows(
     where
         Columns and the value they must have: only these rows are read.
     inputs
-        Besides the event, what stacks depend on: any parameters of the scene that the study varied.
+        Inputs besides the event: any parameters of the scene that the study varied.
 
     Raises
     ------

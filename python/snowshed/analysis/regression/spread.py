@@ -63,7 +63,7 @@ class Spread:
         return cls(floor, float(slope), factors)
 
     def half_width(self, predictions: Floats, deviations: Floats, part: float = SPREAD) -> Floats:
-        """Return within how much of the predictions that part of the stacks lies."""
+        """Return the half width around predictions that holds a part of the stacks."""
         return self.factors[part] * _scales(self.floor, self.slope, predictions, deviations)
 
 

@@ -87,7 +87,7 @@ class EpsilonSVR(RegressorMixin, BaseEstimator):
         rates = self._rates(points)
         solution = fit_one(kernel_matrix(points, points, rates), targets, self.epsilon, self.C)
         if np.isnan(solution.intercept):
-            raise NotConvergedError(f"the {self._words()} does not converge on these rows")
+            raise NotConvergedError(f"the {self._description()} does not converge on these rows")
         self.expansion_ = Expansion(points, solution.coefficients, solution.intercept, rates)
         return self
 
@@ -125,7 +125,7 @@ class EpsilonSVR(RegressorMixin, BaseEstimator):
                 yield across @ fit.coefficients + fit.intercept
 
     def path_fits(self, grid: Mapping[str, Sequence[float]]) -> int:
-        """Return how many models `path_predictions` yields the predictions of."""
+        """Return the number of models behind `path_predictions`."""
         return len(grid["epsilon"]) * len(grid["C"])
 
     def _check(self) -> None:
@@ -142,7 +142,7 @@ class EpsilonSVR(RegressorMixin, BaseEstimator):
     def _rates(self, X: Floats) -> Floats:
         return np.full(X.shape[1] if self.kernel == "rbf" else 0, float(self.gamma))
 
-    def _words(self) -> str:
+    def _description(self) -> str:
         names = ("epsilon", "C", "gamma") if self.kernel == "rbf" else ("epsilon", "C")
         values = ", ".join(f"{name} {getattr(self, name):g}" for name in names)
         return f"SVR with {self.kernel} kernel, {values}"

@@ -15,7 +15,7 @@ from matplotlib.patches import Patch
 from snowshed.analysis.sensitivity.single_parameter import CONFIDENT
 from snowshed.analysis.sensitivity.stored import TARGETS
 from snowshed.base.arrays import Floats
-from snowshed.plot.figure_style import COLOURS, FAINT, INK, STYLE, blank, headline
+from snowshed.plot.figure_style import COLOURS, FAINT, INK, STYLE, blank_figure, headline
 from snowshed.plot.labels import label
 from snowshed.study.factors import SEED
 
@@ -38,7 +38,7 @@ def local_index_figure(table: pd.DataFrame) -> Figure:
     events, parameters = _unique(table, "event"), _unique(table, "parameter")
     has_errors = bool(table["standard_error"].notna().any())
     with matplotlib.rc_context(STYLE):
-        figure = blank(8.4, 6.2)
+        figure = blank_figure(8.4, 6.2)
         headline(figure, "Single-parameter sensitivity index S")
         for axes, target in zip(figure.subplots(2, 1, sharex=True), TARGETS):
             for number, (event, colour) in enumerate(zip(events, _shades(len(events)))):
@@ -90,7 +90,7 @@ def fixation_figure(table: pd.DataFrame, group: str) -> Figure:
     table = table[table["group"] == group]
     parameters, events = _unique(table, "parameter"), _unique(table, "event")
     with matplotlib.rc_context(STYLE):
-        figure = blank(1.4 + 2.7 * len(parameters), 6.2)
+        figure = blank_figure(1.4 + 2.7 * len(parameters), 6.2)
         headline(figure, f"Single-parameter fixation, {group} parameters")
         grid = figure.subplots(2, len(parameters), sharey="row", sharex="col", squeeze=False)
         for row, target in zip(grid, TARGETS):
@@ -136,7 +136,7 @@ def sobol_figure(table: pd.DataFrame) -> Figure:
     """
     events, parameters = _unique(table, "event"), _unique(table, "parameter")
     with matplotlib.rc_context(STYLE):
-        figure = blank(1.4 + 2.6 * len(events), 6.0)
+        figure = blank_figure(1.4 + 2.6 * len(events), 6.0)
         headline(figure, "Sobol indices: shares of the variance of the stack")
         grid = figure.subplots(2, len(events), sharey=True, sharex=True, squeeze=False)
         for row, target in zip(grid, TARGETS):
@@ -182,7 +182,7 @@ def morris_figure(table: pd.DataFrame) -> Figure:
     """
     events, parameters = _unique(table, "event"), _unique(table, "parameter")
     with matplotlib.rc_context(STYLE):
-        figure = blank(1.4 + 2.6 * len(events), 6.2)
+        figure = blank_figure(1.4 + 2.6 * len(events), 6.2)
         headline(figure, "Elementary effects, relative to the mean stack, per range of a parameter")
         grid = figure.subplots(2, len(events), sharey="row", sharex="row", squeeze=False)
         for row, target in zip(grid, TARGETS):

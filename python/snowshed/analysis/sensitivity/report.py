@@ -28,7 +28,7 @@ EVALUATIONS: Mapping[str, Callable[[StoredRuns], pd.DataFrame]] = {
 NOISE = "noise"
 
 
-def evaluate(
+def evaluate_sensitivity(
     stored: PathLike,
     folder: PathLike,
     method: str = "s",
@@ -65,7 +65,7 @@ def evaluate(
     InputError
         If there is no such study, or its runs do not fit the method.
     """
-    from snowshed.plot.figure_style import save
+    from snowshed.plot.figure_style import save_figure
 
     if method not in EVALUATIONS:
         raise InputError(f"method: {method!r} is unknown; allowed: {', '.join(EVALUATIONS)}")
@@ -84,7 +84,7 @@ def evaluate(
     write_csv(table, folder / f"{method}.csv")
     write_csv(seeding_noise(runs).reset_index(), folder / f"{NOISE}.csv")
     for name, figure in figures(method, table).items():
-        save(figure, folder / f"{name}.png")
+        save_figure(figure, folder / f"{name}.png")
     return table
 
 

@@ -67,7 +67,7 @@ def _overlap(step: int, count: int) -> tuple[slice, slice]:
 def surface_area(phase: Booleans, voxel_size: float = 1.0) -> float:
     """Return the area of the surface between a phase and the other, m2.
 
-    The sides of the image are no part of it.
+    The sides of the image do not belong to it.
 
     Parameters
     ----------
@@ -104,7 +104,7 @@ def surface_density(phase: Booleans, voxel_size: float = 1.0) -> float:
 
 
 def _crossings(phase: Booleans, direction: tuple[int, int, int]) -> tuple[int, int]:
-    """Return how many neighbours in a direction differ, and how many neighbours there are."""
+    """Return the number of different neighbours in a direction, and of all neighbours."""
     crossings = pairs = 0
     for here, there in neighbours(phase, direction):
         crossings += int(np.count_nonzero(here != there))

@@ -52,7 +52,7 @@ def downscaled(image: IceImage, factor: int) -> IceImage:
 
 
 def _block_counts(image: IceImage, factor: int) -> AnyIntegers:
-    """Return how many voxels of ice there are in each block."""
+    """Return the number of voxels of ice in each block."""
     nz, ny, nx = (count // factor for count in image.ice.shape)
     counts = np.zeros((nz, ny, nx), dtype=np.uint16)
     for z in range(factor):

@@ -114,7 +114,7 @@ def grain_statistics(grains: pd.DataFrame, contacts: pd.DataFrame) -> GrainStati
 
 
 def _centres(labels: Labels) -> tuple[Integers, Floats]:
-    """Return how many voxels each label has, and the mean of their centres (x, y, z), in voxels."""
+    """Return the number of voxels of each label, and their mean centre (x, y, z), in voxels."""
     count = int(labels.max(initial=0)) + 1
     voxels = np.zeros(count, dtype=np.int64)
     sums = np.zeros((count, 3))

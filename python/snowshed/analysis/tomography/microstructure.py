@@ -66,7 +66,7 @@ class Microstructure:
     pore_chord_z_m: float
 
 
-def measure(image: IceImage) -> Microstructure:
+def measure_microstructure(image: IceImage) -> Microstructure:
     """Return the numbers of an image.
 
     Raises
@@ -79,7 +79,7 @@ def measure(image: IceImage) -> Microstructure:
     --------
     >>> from snowshed.analysis.tomography.gaussian_snow import gaussian_snow
     >>> snow = gaussian_snow((48, 48, 48), 5e-5, density=300, specific_surface=15, seed=1)
-    >>> abs(measure(snow).specific_surface_m2_kg - 15) < 0.2
+    >>> abs(measure_microstructure(snow).specific_surface_m2_kg - 15) < 0.2
     True
     """
     check_phases(image)

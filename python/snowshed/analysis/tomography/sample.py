@@ -32,7 +32,7 @@ from snowshed.analysis.tomography.grain_table import (
     grain_table,
 )
 from snowshed.analysis.tomography.ice_image import IceImage
-from snowshed.analysis.tomography.microstructure import Microstructure, measure
+from snowshed.analysis.tomography.microstructure import Microstructure, measure_microstructure
 from snowshed.analysis.tomography.segmentation import Segmentation
 from snowshed.analysis.tomography.surface_mesh import write_surface
 from snowshed.base.arrays import AnyIntegers
@@ -89,7 +89,7 @@ def write_ice(folder: PathLike, image: IceImage, facts: Mapping[str, Fact]) -> S
     from snowshed.analysis.tomography.slices import slices_figure
 
     check_new(folder)
-    path, numbers = Path(folder), SampleNumbers(measure(image))
+    path, numbers = Path(folder), SampleNumbers(measure_microstructure(image))
     path.mkdir(parents=True, exist_ok=True)
     _write_array(path / SNOW, image.ice.view(np.uint8))
     _write_numbers(path, numbers, facts)
@@ -138,7 +138,7 @@ def write_grains(
     check_new(folder)
     image, path = segmentation.image, Path(folder)
     grains, contacts = grain_table(segmentation), contact_table(segmentation)
-    numbers = SampleNumbers(measure(image), grain_statistics(grains, contacts))
+    numbers = SampleNumbers(measure_microstructure(image), grain_statistics(grains, contacts))
     _check_sizes(image, numbers)
     path.mkdir(parents=True, exist_ok=True)
     _write_array(path / SNOW, image.ice.view(np.uint8))
@@ -180,6 +180,6 @@ def _rounded(value: object) -> object:
 
 
 def _save(figure: Figure, path: Path) -> None:
-    from snowshed.plot.figure_style import save
+    from snowshed.plot.figure_style import save_figure
 
-    save(figure, path / "slices.png")
+    save_figure(figure, path / "slices.png")

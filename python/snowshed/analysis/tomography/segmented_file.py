@@ -7,7 +7,7 @@ from math import prod
 from typing import Optional
 
 from snowshed._core import InputError
-from snowshed.analysis.tomography.microstructure import measure
+from snowshed.analysis.tomography.microstructure import measure_microstructure
 from snowshed.analysis.tomography.sample import Fact, SampleNumbers, check_new, write_grains
 from snowshed.analysis.tomography.segmentation import SegmentationSettings, segment
 from snowshed.analysis.tomography.threshold import (
@@ -91,7 +91,7 @@ def segment_image(
     report(0.0, "reading")
     with recorded() as told:
         read = read_ice(file, wanted)
-    measure(read.image)  # what cannot be snow is refused before the long part
+    measure_microstructure(read.image)  # what cannot be snow is refused before the long part
     segmentation = segment(
         read.image, settings, lambda part, doing: report(READ + (FOUND - READ) * part, doing)
     )

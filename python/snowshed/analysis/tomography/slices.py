@@ -9,7 +9,7 @@ import numpy as np
 
 from snowshed.analysis.tomography.microstructure import Microstructure
 from snowshed.base.arrays import Floats, Labels
-from snowshed.plot.figure_style import STYLE, blank, describe
+from snowshed.plot.figure_style import STYLE, blank_figure, describe
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -47,8 +47,8 @@ def slices_figure(
     ]
     with rc_context(STYLE):
         tallest = max(height / width for *_, width, height in cuts)
-        figure = blank(10.0, 1.3 + 2.85 * min(tallest, 2.5))
-        describe(figure, _text(numbers, grains))
+        figure = blank_figure(10.0, 1.3 + 2.85 * min(tallest, 2.5))
+        describe(figure, _caption(numbers, grains))
         for axes, (cut, across, up, width, height) in zip(figure.subplots(1, 3), cuts):
             _draw(axes, cut, numbers.voxel_size_m, (width, height))
             axes.set(xlabel=f"{across}, mm", ylabel=f"{up}, mm")
@@ -80,7 +80,7 @@ def _coloured(cut: Labels) -> Floats:
     return np.asarray(colours)
 
 
-def _text(numbers: Microstructure, grains: Optional[GrainStatistics]) -> str:
+def _caption(numbers: Microstructure, grains: Optional[GrainStatistics]) -> str:
     text = (
         f"{numbers.source}\n{numbers.density_kg_m3:.0f} kg/m³, "
         f"{numbers.specific_surface_m2_kg:.1f} m²/kg"

@@ -39,7 +39,7 @@ def write_surface(path: Path, labels: Labels, voxel_size: float) -> int:
         if not ice.any() or ice.all():
             continue
         corners, faces, *_ = measure.marching_cubes(ice.astype(np.float32), 0.5)
-        grains.append(_grain_of(part, corners[faces].mean(axis=1)))
+        grains.append(_nearest_grain(part, corners[faces].mean(axis=1)))
         placed = (corners[:, ::-1] + np.array([0, 0, low]) + 0.5) * voxel_size
         points.append(placed.astype(np.float32))
         triangles.append(faces.astype(np.int64) + offset)
@@ -50,7 +50,7 @@ def write_surface(path: Path, labels: Labels, voxel_size: float) -> int:
     return sum(map(len, triangles))
 
 
-def _grain_of(labels: Labels, centres: Floats) -> Labels:
+def _nearest_grain(labels: Labels, centres: Floats) -> Labels:
     """Return the grain of triangles: that of the nearest voxel of ice around their centres."""
     low = np.floor(centres).astype(np.int64)
     grains = np.zeros(len(centres), dtype=np.int32)

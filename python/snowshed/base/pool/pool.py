@@ -267,7 +267,7 @@ class _Process(Generic[Task, Result]):
             return None
         task, self.task = self.task, None
         if isinstance(message, Died):
-            return Ended(task, death=_ending(message.code), last_words=self._last_words())
+            return Ended(task, death=_ending(message.code), last_words=self._last_error_line())
         if isinstance(message, Raised):
             return Ended(task, error=message.error)
         return Ended(task, cast(Result, message.result))
@@ -302,7 +302,7 @@ class _Process(Generic[Task, Result]):
         code = self._wait()
         never_began = code >= 0 and not self._ready
         return Ended(
-            task, death=_ending(code), last_words=self._last_words(), never_began=never_began
+            task, death=_ending(code), last_words=self._last_error_line(), never_began=never_began
         )
 
     def _signal(self, number: signal.Signals) -> None:
@@ -310,7 +310,7 @@ class _Process(Generic[Task, Result]):
         with suppress(ProcessLookupError):
             os.killpg(self._process.pid, number)
 
-    def _last_words(self) -> str:
+    def _last_error_line(self) -> str:
         """Return the last line that the process wrote to stderr since it was asked before."""
         size = self._errors.seek(0, os.SEEK_END)
         self._errors.seek(max(0, size - LAST_WORDS))

@@ -74,11 +74,11 @@ def calibrate(
     from snowshed.analysis.calibration import measurements as reading
     from snowshed.analysis.calibration.design import calibration_study
     from snowshed.analysis.calibration.misfit import RANKED
-    from snowshed.analysis.calibration.report import check_libraries, evaluate
+    from snowshed.analysis.calibration.report import check_libraries, evaluate_calibration
     from snowshed.io.atomic import write_text
 
     if template is not None:
-        write_text(template, reading.template())
+        write_text(template, reading.measurements_template())
         return
     if measurements is None:
         raise click.UsageError("give a MEASUREMENTS file, or --template FILE to write an empty one")
@@ -92,7 +92,7 @@ def calibrate(
         if runs is None:
             return
         stored, name = runs
-    calibration = evaluate(
+    calibration = evaluate_calibration(
         measured,
         stored,
         folder,

@@ -23,7 +23,9 @@ from snowshed.cli.weather_options import weather_options
 from snowshed.cli.winters_table import print_quality
 
 if TYPE_CHECKING:
-    from snowshed.analysis.clearance import Answer, Design, Ranges, Winter
+    from snowshed.analysis.clearance.answer import Answer
+    from snowshed.analysis.clearance.design import Design, Ranges
+    from snowshed.analysis.clearance.winters import Winter
     from snowshed.season.record import Record, WinterList
 
 EXAMPLE = "example"  # in place of a file: synthetic winters
@@ -90,9 +92,8 @@ def clearance(
     Example:
       snowshed clearance winters.csv --slope-length 4 --tilt 60 --heights 1.5:4:0.5 -o answer
     """  # noqa: D301 - click wants the control character
-    from snowshed.analysis.clearance import Design, Ranges
     from snowshed.analysis.clearance.answer import forecast
-    from snowshed.analysis.clearance.design import DEFAULT_RANGES
+    from snowshed.analysis.clearance.design import DEFAULT_RANGES, Design, Ranges
     from snowshed.analysis.clearance.report import write_report
     from snowshed.analysis.clearance.winters import counted
 
@@ -137,7 +138,7 @@ def _answers(
     *,
     quiet: bool,
 ) -> list[Answer]:
-    from snowshed.analysis.clearance import clearance_of
+    from snowshed.analysis.clearance.answer import clearance_of
     from snowshed.cli.progress import progress_bar
     from snowshed.study.errors import StudyInterrupted
 

@@ -94,7 +94,7 @@ def sensitivity(
     Example:
       snowshed grains sensitivity a.npy b.npy --voxel 5e-5 --coarser 2 -o sensitivity
     """  # noqa: D301 - click wants the control character
-    from snowshed.analysis.grains.sensitivity import evaluate_sensitivity
+    from snowshed.analysis.grains.sensitivity import evaluate_variants
     from snowshed.analysis.grains.variants import sensitivity_variants
     from snowshed.cli.compute_study import compute_study, print_study_cost
     from snowshed.scene.loading import LoadingStage
@@ -110,7 +110,7 @@ def sensitivity(
         print_study_cost(study, jobs)
         return
     compute_study(study, folder / RUNS, quiet=quiet, jobs=jobs)
-    table = evaluate_sensitivity(comparison, folder / RUNS, folder)
+    table = evaluate_variants(comparison, folder / RUNS, folder)
     if not quiet:
         print_comparison(table)
         say(f"tests.csv, sensitivity.csv and sensitivity.png in {folder}")

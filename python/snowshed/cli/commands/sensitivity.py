@@ -58,7 +58,7 @@ def sensitivity(
       snowshed sensitivity --method morris --quick -o morris
     """  # noqa: D301 - click wants the control character
     from snowshed.analysis.sensitivity.designs import sensitivity_study
-    from snowshed.analysis.sensitivity.report import evaluate
+    from snowshed.analysis.sensitivity.report import evaluate_sensitivity
 
     folder = check_options(context)
     if stored is None:
@@ -68,7 +68,7 @@ def sensitivity(
             return
         stored, name = runs
     note = None if quiet else lambda text: say(f"note: {text}", err=True)
-    table = evaluate(stored, folder, method, study=name, measure=measure, note=note)
+    table = evaluate_sensitivity(stored, folder, method, study=name, measure=measure, note=note)
     if not quiet:
         print_indices(method, table)
         say(f"tables and figures in {folder}")

@@ -11,6 +11,7 @@ from typing import Any, Optional
 import click
 
 from snowshed._core import InputError
+from snowshed.base.notes import held, recorded, told_on_failure
 from snowshed.cli.commands.slide_ranges import (
     RangeOptions,
     range_options,
@@ -21,7 +22,12 @@ from snowshed.cli.common_options import PATH, given_values, run_options
 from snowshed.cli.dry_run import print_cost
 from snowshed.cli.run_scene import run_scene
 from snowshed.cli.settings_options import settings_options
-from snowshed.cli.slide_files import INPUTS, SlideFiles, refuse_changed_areas
+from snowshed.cli.slide_files import (
+    INPUTS,
+    SlideFiles,
+    notes_for_summary,
+    refuse_changed_areas,
+)
 from snowshed.cli.slide_project import print_project_cost, run_project, write_particles
 from snowshed.scene.builders.terrain_copy import removing_copies
 from snowshed.scene.scene import ResolvedScene
@@ -122,10 +128,12 @@ def slide(
                 run_project(avaframe, results, resume=resume, steps=steps, **project)
             return
         with removing_copies(results):
+            in_summary: list[str] = []
             if resume and not files.any() and ranges.sample is None and not dry_run:
                 resolved = ResolvedScene.load(results / "scene.json")
             else:
-                scene = files.scene(results, example=example, settings=given, limits=limits)
+                with recorded() if dry_run or ranges.sample else held() as notes:
+                    scene = files.scene(results, example=example, settings=given, limits=limits)
                 if max_time is not None:
                     scene.set("events.max_time", max_time)
                 if ranges.sample is not None:
@@ -137,7 +145,9 @@ def slide(
                     return
                 if resume:
                     refuse_changed_areas(resolved, results, files.of_areas())
-            run_scene(resolved, results, resume, quiet)
+                in_summary = notes_for_summary(notes, scene)
+            with told_on_failure(in_summary):
+                run_scene(resolved, results, resume, quiet)
         if steps:
             write_particles(resolved, results, steps)
 

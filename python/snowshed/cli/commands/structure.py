@@ -17,7 +17,11 @@ from snowshed._core import InputError
 from snowshed.cli.common_options import PATH, given_values, quiet_option
 from snowshed.cli.parameter_docs import parameter_docs
 from snowshed.cli.terminal import say
-from snowshed.scene import builders
+from snowshed.scene.builders.meshes import mesh_structure
+from snowshed.scene.builders.panels import panel_rows, panel_table
+from snowshed.scene.builders.roofs import gable_roof, shed_roof
+from snowshed.scene.builders.terrain import on_terrain
+from snowshed.scene.builders.tracker import tracker
 from snowshed.scene.components import Condition
 from snowshed.scene.scene import Scene
 
@@ -34,21 +38,21 @@ class Structure(NamedTuple):
 
 STRUCTURES = {
     "shed-roof": Structure(
-        builders.shed_roof, "--eaves 2.5 --length 4 --tilt 30 --snow 0.3 --guards 0.5 --dx 0.05"
+        shed_roof, "--eaves 2.5 --length 4 --tilt 30 --snow 0.3 --guards 0.5 --dx 0.05"
     ),
     "gable-roof": Structure(
-        builders.gable_roof, "--eaves 2.5 --length 3 --tilt 40 --snow 0.25 --guards 0.4 --dx 0.05"
+        gable_roof, "--eaves 2.5 --length 3 --tilt 40 --snow 0.25 --guards 0.4 --dx 0.05"
     ),
     "rows": Structure(
-        builders.panel_rows,
+        panel_rows,
         "--count 3 --pitch 4 --height 0.6 --length 2 --tilt 35 --snow 0.1",
     ),
     "table": Structure(
-        builders.panel_table,
+        panel_table,
         "--modules 3 --gap 0.06 --module-length 1 --height 0.6 --tilt 35 --snow 0.1",
     ),
-    "tracker": Structure(builders.tracker, "--axis-height 1.5 --length 2 --snow 0.1 --tilt-to 45"),
-    "mesh": Structure(builders.mesh_structure, "carport.stl --snow 0.2 --dx 0.05"),
+    "tracker": Structure(tracker, "--axis-height 1.5 --length 2 --snow 0.1 --tilt-to 45"),
+    "mesh": Structure(mesh_structure, "carport.stl --snow 0.2 --dx 0.05"),
 }
 
 
@@ -105,11 +109,11 @@ def _terrain() -> click.Command:
         values = given_values(given)
         start = Scene.load(scene)
         distances = file.with_suffix(".npy")
-        built = _built(builders.on_terrain, start, raster, distances, **values)
+        built = _built(on_terrain, start, raster, distances, **values)
         _tell([*_write(built, file, picture), distances], quiet)
 
-    docs = parameter_docs(builders.on_terrain)
-    parameters = [*inspect.signature(builders.on_terrain).parameters.values()][3:]
+    docs = parameter_docs(on_terrain)
+    parameters = [*inspect.signature(on_terrain).parameters.values()][3:]
     options = [_option(parameter, docs.get(parameter.name, "")) for parameter in parameters]
     command = click.Command(
         "terrain",
@@ -192,10 +196,10 @@ def _write(scene: Scene, file: Path, picture: Optional[Path]) -> list[Path]:
     if picture is not None:
         if picture.suffix not in PICTURES:
             raise InputError(f"--picture: {picture}; allowed: {', '.join(PICTURES)}")
-        from snowshed.plot.figure_style import save
+        from snowshed.plot.figure_style import save_figure
         from snowshed.plot.scene_picture import scene_figure
 
-        save(scene_figure(resolved), picture)
+        save_figure(scene_figure(resolved), picture)
         written.append(picture)
     resolved.save(file)
     return [*written, file]

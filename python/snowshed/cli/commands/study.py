@@ -233,7 +233,7 @@ def scene(folder: Path, hash_: str, file: Optional[Path]) -> None:
 
 def _draw(folder: Path, file: Optional[Path], name: Optional[str]) -> Path:
     """Write the picture of a study, and return its file."""
-    from snowshed.plot.figure_style import save
+    from snowshed.plot.figure_style import save_figure
     from snowshed.plot.study_figure import study_figure
     from snowshed.study.table import read_table
 
@@ -241,7 +241,7 @@ def _draw(folder: Path, file: Optional[Path], name: Optional[str]) -> Path:
         study_name = store.named(name)
         axes = store.axes(study_name)
     picture_file = file or folder / "study.png"
-    save(study_figure(read_table(folder, study_name), axes, study_name), picture_file)
+    save_figure(study_figure(read_table(folder, study_name), axes, study_name), picture_file)
     return picture_file
 
 

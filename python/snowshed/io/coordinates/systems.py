@@ -29,7 +29,7 @@ def read_prj(raster: Path) -> str:
     Raises
     ------
     InputError
-        If the file is no coordinate system, or one in degrees.
+        If the file is not a coordinate system, or its unit is the degree.
     """
     file = next((f for f in map(raster.with_suffix, (".prj", ".PRJ")) if f.is_file()), None)
     text = "" if file is None else read_system(file)

@@ -15,7 +15,7 @@ CURVED = (8, 9, 10, 11, 12)
 
 
 def count_corners(wkb: bytes, where: str) -> int:
-    r"""Return how many corners a polygon or several have.
+    r"""Return the number of corners of a polygon or several.
 
     Raises
     ------

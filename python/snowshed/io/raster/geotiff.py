@@ -139,7 +139,7 @@ def _without_words_of_gdal() -> Iterator[None]:
 
 
 def _sidecars(path: Path) -> dict[str, bytes]:
-    """Return what GDAL may see beside a GeoTIFF: its .aux.xml, and its world file."""
+    """Return the files that GDAL may see beside a GeoTIFF: its .aux.xml and its world file."""
     mask = path.with_name(f"{path.name}.msk")
     if mask.exists():
         raise InputError(

@@ -33,7 +33,7 @@ def resampled_raster(path: PathLike, cell: float) -> Raster:
     Raises
     ------
     InputError
-        If the file is no such raster, rasterio is missing, or the new grid has too many cells.
+        If the file is not such a raster, rasterio is missing, or the new grid has too many cells.
     """
     old = read_raster(path)
     rows, columns = old.heights.shape

@@ -24,7 +24,7 @@ def sidecar(raster: Path, ending: str = ENDING) -> Optional[bytes]:
     Raises
     ------
     InputError
-        If it is no regular file, or is large.
+        If it is not a regular file, or too large.
     OSError
         If it cannot be read.
     """

@@ -13,7 +13,7 @@ PROGRAM = Path(core_file).with_name("snowshed-vdb")
 REFUSED = 2  # exit code; the reason is on standard output
 
 
-def available() -> bool:
+def vdb_available() -> bool:
     """Return whether this snowshed was built with OpenVDB."""
     return os.access(PROGRAM, os.X_OK)
 
@@ -28,7 +28,7 @@ def run_writer(path: Path, request: bytes) -> bytes:
     OSError
         If it cannot be run or dies.
     """
-    if not available():
+    if not vdb_available():
         raise InputError(
             "writing OpenVDB files needs OpenVDB, without which this snowshed was built; install "
             "it (Debian, Ubuntu: libopenvdb-dev libboost-dev) and build snowshed again"

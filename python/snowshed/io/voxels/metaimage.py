@@ -188,7 +188,7 @@ def _spacing(fields: Fields) -> Optional[float]:
 
 
 def _turn(fields: Fields) -> Turn:
-    """Return how the axes follow from those of the file.
+    """Return the axes in terms of those of the file.
 
     Three numbers are where an axis of the file points to, x first.
     """

@@ -61,7 +61,7 @@ def described(name: str, text: str, pixels_per_unit: Optional[float]) -> Descrip
     Raises
     ------
     InputError
-        If the pages are no stack of slices, or not on cubes.
+        If the pages are not a stack of slices, or the voxels not cubes.
 
     Examples
     --------

@@ -54,7 +54,7 @@ class Layout:
     coding: Coding
 
     def rows_of(self, number: int) -> int:
-        """Return how many rows a strip or tile has."""
+        """Return the number of rows of a strip or tile."""
         if self.tiled:
             return self.piece[0]
         return min(self.piece[0], self.size[0] - number * self.piece[0])

@@ -62,11 +62,11 @@ class Coding:
     options: int = 0
 
     def row_bytes(self, columns: int) -> int:
-        """Return how many bytes a row takes once it is unpacked."""
+        """Return the number of bytes of an unpacked row."""
         return (columns * self.bits + 7) // 8
 
     def longest(self, rows: int, columns: int) -> int:
-        """Return how many bytes packed rows may take; no kind makes them much longer."""
+        """Return the largest number of bytes of packed rows; no kind makes them much longer."""
         return 2 * rows * self.row_bytes(columns) + (1 << 16)
 
 
@@ -109,7 +109,7 @@ def _unpacked(coding: Coding, packed: bytes, rows: int, columns: int) -> bytes:
 
 
 def _by_libtiff(coding: Coding, packed: bytes, rows: int, columns: int) -> NDArray[Any]:
-    """Return what libtiff makes of a strip, as bytes, or of fax as bits."""
+    """Return a strip unpacked by libtiff, as bytes, or for fax as bits."""
     pillow = require("PIL.Image", "images", "reading compressed pictures")
     fax = coding.compression in FAX
     tags = {

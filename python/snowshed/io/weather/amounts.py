@@ -33,7 +33,7 @@ class Total(NamedTuple):
 def without_overlap(
     totals: Sequence[Total], step: float, what: str
 ) -> tuple[list[float], list[str]]:
-    """Return what each total adds to the shorter ones that it contains, and notes.
+    """Return the excess of each total over the shorter totals that it contains, and notes.
 
     Parameters
     ----------

@@ -91,14 +91,14 @@ def _lines(content: bytes, path: Path) -> list[str]:
         raise InputError(f"{path}, line {line}: not text: it holds bytes that are 0")
     if max(content.count(b"\n"), content.count(b"\r")) > WEATHER_LINES:
         raise InputError(f"{path}: more than {WEATHER_LINES} lines; cut it into parts")
-    lines = re.split("\r\n|\n|\r", _text(content).rstrip("\r\n"))
+    lines = re.split("\r\n|\n|\r", _decoded(content).rstrip("\r\n"))
     longest = max(range(len(lines)), key=lambda i: len(lines[i]))
     if len(lines[longest]) > WEATHER_LINE:
         raise InputError(f"{path}, line {longest + 1}: longer than {WEATHER_LINE // KB} KB")
     return lines
 
 
-def _text(content: bytes) -> str:
+def _decoded(content: bytes) -> str:
     for encoding in ("utf-8-sig", "cp1252"):  # names of places in EPW and MeteoSwiss files
         try:
             return content.decode(encoding)

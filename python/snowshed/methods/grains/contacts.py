@@ -34,9 +34,9 @@ class GrainContacts:
     grains : (n, 2)
         The two grains of each contact.
     points : (n, 3)
-        Where they touch, m.
+        Points of contact, m.
     forces : (n, 3)
-        On the first of the two, N.
+        Force on the first of the two grains, N.
     bonded : (n,)
         Whether a bond still holds them together.
     """
@@ -56,10 +56,10 @@ class GrainContacts:
         return np.asarray(np.stack(sums, axis=1) / count[:, None])
 
     def arms(self, side: int) -> tuple[Floats, Booleans]:
-        """Return the ways from the centres of the first (0) or second (1) grains to the contacts.
+        """Return the vectors from the first (0) or second (1) grains' centres to the contacts.
 
-        Those that leave a periodic sample at one side and enter it at the other are none: the
-        second array tells which are ways, (n,).
+        The second array, (n,), is False for vectors that leave a periodic sample at one side and
+        enter it at the other.
         """
         ways = self.points - self.centres[self.grains[:, side]]
         half = 0.5 * np.ptp(self.spheres, axis=0)
@@ -106,8 +106,8 @@ def read_forces(folder: Path) -> pd.DataFrame:
     Returns
     -------
     pandas.DataFrame
-        A row per contact: the numbers of its two grains, where they touch, the force on the first
-        one, and whether a bond holds them together; ``attrs["units"]`` has the units.
+        A row per contact: the numbers of its two grains, the point of contact, the force on the
+        first grain, and whether a bond holds them together; ``attrs["units"]`` has the units.
 
     Raises
     ------
@@ -116,7 +116,7 @@ def read_forces(folder: Path) -> pd.DataFrame:
     """
     file = folder / CONTACTS
     if not file.is_file():
-        raise InputError(f"{file}: not there; a run writes it at its end")
+        raise InputError(f"{file}: missing; a run writes it at its end")
     check_run_file(file)
     table = read_csv(file)
     units = {str(name): unit_of_column(str(name)) for name in table}

@@ -1,4 +1,4 @@
-"""The curve of a loading test, and what is read off it."""
+"""The curve of a loading test, and the stresses and strains of its stages."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 CURVE = "curve.csv"  # in the results folder
-#: What every curve has; energies follow where they are kept.
+#: Columns of every curve; energies follow if they are recorded.
 COLUMNS = (
     "time_s",
     "stage",
@@ -39,8 +39,8 @@ COLUMNS = (
     "coordination",
     "solid_fraction",
 )
-#: Of these a curve also has what they were, since the row before, in the step in which the sample
-#: carried most: `PEAK` and the name. Curves of earlier versions do not.
+#: Columns with a second value, named `PEAK` and the name: that of the step since the row before in
+#: which the sample carried most. Curves of earlier versions lack it.
 PEAKED = (
     "axial_strain",
     "shear_strain",
@@ -57,14 +57,14 @@ COUNTS = ("stage", "bonds", "broken_in_tension", "broken_in_shear", "contacts")
 
 @dataclass(frozen=True)
 class LoadingCurve:
-    """What a loading test measured, row by row.
+    """Measurements of a loading test, row by row.
 
     Attributes
     ----------
     columns
         Arrays of equal length by name: `COLUMNS`, `PEAKED` of the peaks between rows, and energies
-        in joules if they were kept. Stages count from 1; a row where
-        a stage ends belongs to it. Stresses are positive in compression.
+        in joules if they were recorded. Stages count from 1; a row where a stage ends belongs to
+        it. Stresses are positive in compression.
     """
 
     columns: Mapping[str, Floats]
@@ -83,7 +83,7 @@ class LoadingCurve:
 
     @property
     def energies(self) -> tuple[str, ...]:
-        """Names of the energies, if they were kept."""
+        """Names of the energies, if they were recorded."""
         return tuple(name for name in self.columns if name.endswith("_j"))
 
     def of_stage(self, stage: int) -> LoadingCurve:
@@ -107,7 +107,7 @@ class LoadingCurve:
     def peaks(self) -> LoadingCurve:
         """The same rows with the strains and stresses of the peaks that they end with.
 
-        Rows of earlier versions, which knew no peaks, are as they are.
+        Rows of earlier versions have no peaks and stay as they are.
 
         Examples
         --------
@@ -126,29 +126,33 @@ class LoadingCurve:
         Raises
         ------
         InputError
-            If the file is no such table, or not the one that the run beside it wrote.
+            If the file is not such a table, or not the one that the run beside it wrote.
         OSError
             If it cannot be read.
         """
         check_run_file(Path(path))
-        return cls._of(read_csv(Path(path), as_text=True), str(path))  # pandas rounds its numbers
+        return cls._from_table(
+            read_csv(Path(path), as_text=True), str(path)
+        )  # pandas rounds its numbers
 
     @classmethod
     def parse(cls, text: str, where: str) -> LoadingCurve:
-        """Return the curve of the text of a ``curve.csv``; errors name `where` it was.
+        """Return the curve of the text of a ``curve.csv``; errors name its place, `where`.
 
         Raises
         ------
         InputError
-            If it is no such table.
+            If it is not such a table.
         """
-        return cls._of(parse_csv(text, where, as_text=True), where)
+        return cls._from_table(parse_csv(text, where, as_text=True), where)
 
     @classmethod
-    def _of(cls, table: pd.DataFrame, where: str) -> LoadingCurve:
+    def _from_table(cls, table: pd.DataFrame, where: str) -> LoadingCurve:
         missing = [name for name in COLUMNS if name not in table]
         if missing:
-            raise InputError(f"{where}: no curve of a loading test: no column {missing[0]}")
+            raise InputError(
+                f"{where}: not a curve of a loading test; the column {missing[0]} is missing"
+            )
         try:
             return cls({str(name): table[name].to_numpy().astype(np.float64) for name in table})
         except ValueError as error:
@@ -165,7 +169,7 @@ class LoadingCurve:
 
 
 def loading_curve(simulation: AnySimulation) -> LoadingCurve:
-    """Return what a loading test has measured so far.
+    """Return the measurements of a loading test so far.
 
     Parameters
     ----------
@@ -197,7 +201,7 @@ def read_curve(folder: Path) -> pd.DataFrame:
 
     file = folder / CURVE
     if not file.is_file():
-        raise InputError(f"{file}: not there; a run writes it while it goes on")
+        raise InputError(f"{file}: missing; a run writes it while it advances")
     table = pd.DataFrame(dict(LoadingCurve.read(file).columns))
     units = {name: unit_of_column(str(name)) for name in table}
     table.attrs["units"] = {name: unit for name, unit in units.items() if unit}
@@ -215,8 +219,8 @@ def stage_stress(curve: LoadingCurve, kind: str) -> Floats:
 def carried_stress(curve: LoadingCurve, kind: str) -> Floats:
     """Return the stress that a sample carries from plate to plate, Pa.
 
-    Between plates it is the smaller one of the two: a plate that sets out fast knocks on the
-    grains next to it, which the sample's strength has no part in.
+    Between plates it is the smaller of the two stresses: a plate that starts fast hits the grains
+    next to it, which says nothing of the sample's strength.
     """
     stress = stage_stress(curve, kind)
     if kind in ("shear", "penetrate"):
@@ -226,7 +230,7 @@ def carried_stress(curve: LoadingCurve, kind: str) -> Floats:
 
 
 def untouched(curve: LoadingCurve, kind: str) -> str:
-    """Return why a stage tells nothing of the snow: what loads it never touched it; else nothing.
+    """Return why a stage says nothing of the snow: its load never touched the snow; else "".
 
     Examples
     --------

@@ -2,8 +2,8 @@
 
 Hagenmuller, Chambon and Naaim (2015, doi:10.5194/tc-9-1969-2015) describe them: stress first grows
 linearly and reversibly, without a broken bond; then bonds break and grains rearrange; at last,
-dense snow hardens, and the stress grows like an exponential. How the phases are told apart in
-numbers is our own choice, and stands with each function.
+dense snow hardens, and the stress grows like an exponential. The numerical criteria for the phases
+are our own choice; each function states its own.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ from snowshed.methods.grains.curve import (
 BIN = 0.01  # of strain, over which stresses are averaged before hardening is looked for
 DOUBLED = math.log(2.0)  # the rise by which hardening counts as such
 EXPLAINED = 0.5  # part of the scatter of the stress that hardening explains at least
-#: Rows of the elastic phase without which no modulus is told.
+#: Rows that the elastic phase needs for a modulus.
 LEAST_ROWS = 4
-#: R2 of the line through the elastic phase below which it is none.
+#: R2 of the line through the elastic phase, below which the phase does not count as linear.
 LINEAR = 0.95
 PEAK_BELOW = 0.05  # strain below which the peak of the brittle phase is looked for
 MEANS = ((0.05, 0.10), (0.10, 0.15), (0.25, 0.30))  # strains between which the stress is averaged
@@ -36,7 +36,7 @@ MEANS = ((0.05, 0.10), (0.10, 0.15), (0.25, 0.30))  # strains between which the 
 
 @dataclass(frozen=True)
 class Phases:
-    """The phases of one stage; what the stage does not show is None.
+    """The phases of a stage; quantities that the stage does not show are None.
 
     Attributes
     ----------
@@ -54,9 +54,9 @@ class Phases:
         Largest stress of all time steps that the sample carries from plate to plate, Pa: in
         compression that below a strain of 5 %.
     touched_from
-        Strain before which nothing touched the snow.
+        Strain up to which nothing touched the snow.
     unknown
-        Why nothing is known, if that is so.
+        Reason why nothing is known; else empty.
     """
 
     elastic_limit: Optional[float]
@@ -77,7 +77,7 @@ def find_phases(curve: LoadingCurve, kind: str = "compress") -> Phases:
     curve
         The rows of the stage (`LoadingCurve.of_stage`).
     kind
-        Of the stage, as scenes have it.
+        Kind of the stage, as in scenes.
 
     Examples
     --------
@@ -119,7 +119,7 @@ def mean_stress(strain: Floats, stress: Floats, low: float, high: float) -> Opti
     strain : (n,)
         In rising order.
     stress : (n,)
-        At these strains; in between it is linear.
+        Stress at these strains, linear in between.
 
     Examples
     --------
@@ -156,8 +156,8 @@ def _hardening(
     """Return onset and rate of hardening.
 
     The logarithm of the stress, averaged over bins of `BIN`, is fitted by a constant and a rising
-    line that meet; the onset is where they meet with the least squares. A rise to less than twice
-    the constant is none, nor is one that explains less than half of the logarithm's scatter.
+    line that meet at the onset, with least squares. A rise to less than twice the constant does not
+    count, nor does one that explains less than half of the logarithm's scatter.
     """
     edges = np.arange(limit, strain[-1] + 1e-9, BIN)
     if len(edges) < 6:
@@ -176,7 +176,7 @@ def _hardening(
 
 
 def _hinge(x: Floats, y: Floats, onset: float) -> tuple[float, float, float]:
-    """Return the squared misfit of a constant and a line from an onset on, this, and the slope."""
+    """Return the squared misfit of a constant and a later line, the onset, and the slope."""
     design = np.column_stack([np.ones_like(x), np.maximum(x - onset, 0.0)])
-    found, *_ = np.linalg.lstsq(design, y, rcond=None)
-    return float(np.sum((design @ found - y) ** 2)), onset, float(found[1])
+    coefficients, *_ = np.linalg.lstsq(design, y, rcond=None)
+    return float(np.sum((design @ coefficients - y) ** 2)), onset, float(coefficients[1])

@@ -1,4 +1,4 @@
-"""Loading tests of grains: the results folder with its curve, and what it comes to.
+"""Loading tests of grains: the results folder with its curve and its figures.
 
 Beside what every run writes (``snowshed.results.folder``), the folder holds
 
@@ -35,13 +35,13 @@ WRITE_INTERVAL = 5.0  # s of wall time between two versions of curve.csv
 
 
 class GrainsRun(MethodRun):
-    """Writes the curve of a loading test while it runs, and what the test came to."""
+    """Writes the curve of a loading test while it runs, and its figures at the end."""
 
     UNIT: ClassVar[str] = "loading tests"
     COLUMNS: ClassVar[Mapping[str, type]] = {"steps": int, **GrainsSummary.columns()}
 
     def begin(self) -> None:
-        """Say what should be known of the sample."""
+        """Give the notes on the sample."""
         self.stages = self.scene.data["loading"]
         self.sample_notes = [note] if (note := self.simulation.label_note()) else []
         for note in self.sample_notes:
@@ -88,14 +88,14 @@ class GrainsRun(MethodRun):
 
     def draw(self) -> None:
         """Draw ``grains.png`` and ``forces.png``."""
-        from snowshed.plot.figure_style import save
+        from snowshed.plot.figure_style import save_figure
         from snowshed.plot.force_chains import force_figure
         from snowshed.plot.loading_figure import loading_figure
 
         title, size = self.scene.data.get("title", ""), self.scene.data["sample"]["voxel_size"]
         kinds = [stage["kind"] for stage in self.stages]
-        save(loading_figure(self.curve, kinds, title), self.folder / "grains.png")
-        save(force_figure(self.contacts, size, title), self.folder / "forces.png")
+        save_figure(loading_figure(self.curve, kinds, title), self.folder / "grains.png")
+        save_figure(force_figure(self.contacts, size, title), self.folder / "forces.png")
 
     @classmethod
     def rows(cls, folder: Path) -> list[dict[str, Cell]]:
@@ -114,7 +114,7 @@ class GrainsRun(MethodRun):
 
 
 def _reading(kind: str, row: Mapping[str, float]) -> str:
-    """Return what a stage builds up, with units."""
+    """Return the strain and stress of a stage, or its force, with units."""
     if kind == "penetrate":
         return f"{row['cone_force_n']:.3g} N"
     if kind == "shear":
@@ -123,7 +123,7 @@ def _reading(kind: str, row: Mapping[str, float]) -> str:
 
 
 def _synthetic(scene: Mapping[str, Any]) -> str:
-    """Return how the sample was made, if its folder or the scene's title says it is synthetic."""
+    """Return the origin of the sample, if its folder or the scene's title says it is synthetic."""
     title = str(scene.get("title", ""))
     known = find_sample(scene["sample"]["file"], LABELS).source
     return known or (title if title.startswith(SYNTHETIC) else "")

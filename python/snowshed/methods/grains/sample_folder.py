@@ -1,4 +1,4 @@
-"""Folders with images of snow: what loading tests and segmentation take from them."""
+"""Folders with images of snow: the files that loading tests and segmentation read."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ SYNTHETIC = "synthetic"  # begins the source of what no image shows
 
 @dataclass(frozen=True)
 class SampleFile:
-    """An image or labels, and what is known of them.
+    """An image or labels, with voxel size and origin.
 
     Attributes
     ----------
     file
-        Where they are.
+        The file.
     voxel_size
         Edge of a voxel, m; None: not known.
     source
-        How they were made, if they are synthetic; else empty.
+        Origin of synthetic ones; else empty.
     """
 
     file: Path
@@ -36,14 +36,14 @@ class SampleFile:
 
 
 def find_sample(path: PathLike, name: str) -> SampleFile:
-    """Return a file of a sample, and what ``microstructure.json`` beside it says.
+    """Return a file of a sample, with the numbers of ``microstructure.json`` beside it.
 
     Parameters
     ----------
     path
         A folder that ``snowshed grains segment`` or ``synthetic`` wrote, or any other path.
     name
-        What is looked for in such a folder, `SNOW` or `LABELS`.
+        Name of the file in such a folder, `SNOW` or `LABELS`.
 
     Raises
     ------

@@ -13,17 +13,17 @@ from snowshed.methods.grains.curve import LoadingCurve, stage_strain, stage_stre
 from snowshed.methods.grains.phases import LINEAR, MEANS, Phases, find_phases, mean_stress
 from snowshed.methods.summary import Summary
 
-#: Grains below which one sample hardly stands for its snow.
+#: Number of grains below which a sample hardly represents its snow.
 FEW_GRAINS = 1000
-#: Mean difference of the stresses on the two plates, over their mean, that inertia may make.
+#: Largest mean difference of the stresses on the two plates, over their mean, due to inertia.
 UNBALANCED = 0.2
-#: density_scaling times speed squared, m2/s2, up to which inertia was seen not to raise stresses.
+#: density_scaling times speed squared, m2/s2, up to which inertia did not raise stresses in tests.
 INERTIA = 0.004
 
 
 @dataclass(frozen=True)
 class GrainsSummary(Summary):
-    """What a loading test came to. Stresses of the first stage are those that it builds up.
+    """The figures of a loading test. Stresses of the first stage are those that it builds up.
 
     Attributes
     ----------
@@ -32,34 +32,34 @@ class GrainsSummary(Summary):
     sim_time_s
         Simulated time of the test, s.
     final_particles, spheres
-        Number of grains, and of the spheres that they consist of.
+        Number of grains, and of their spheres.
     density_kg_m3
-        Of the snow at the beginning.
+        Density of the snow at the beginning.
     solid_fraction, solid_fraction_at_end
         Volume of ice over that between the plates.
     axial_strain, shear_strain
-        At the end.
+        Strains at the end.
     bonds, broken_in_tension, broken_in_shear
         Pairs of spheres that were bonded, and how many of them broke.
     coordination_at_end
         Mean number of grains that a grain touches.
     elastic_limit_strain, tangent_modulus_pa, linearity
-        Of the first stage: strain before the first broken bond, slope up to there and its R2.
+        Strain of the first stage before the first broken bond, slope up to there and its R2.
     strength_pa
         Largest stress of all time steps that the sample carries from plate to plate in the first
         stage, in compression below a strain of 5 %.
     mean_stress_5_10_pa, mean_stress_10_15_pa, mean_stress_25_30_pa
-        Its mean stress between two strains in percent.
+        Mean stress of the first stage between two strains in percent.
     hardening_onset_strain, hardening_rate
-        Where its stress begins to grow like exp(rate * strain), and this rate.
+        Strain at which its stress begins to grow like exp(rate * strain), and this rate.
     largest_cone_force_n
         Largest force on the cone of all time steps; None where it never touched the snow.
     synthetic
-        How the sample was made, if it is known to be synthetic; else None.
+        Origin of a sample that is known as synthetic; else None.
     notes
-        What should be known of these figures.
+        Notes on these figures.
     sample_notes
-        What should be known of the sample, which was told when the test began.
+        Notes on the sample, which were given when the test began.
     """
 
     ended: str
@@ -95,7 +95,7 @@ class GrainsSummary(Summary):
     REMARKS: ClassVar[tuple[str, ...]] = ("synthetic", "notes", "sample_notes")
 
     def lines(self) -> Mapping[str, str]:
-        """Return what people read of it, by name, as far as it is known."""
+        """Return the lines that people read, by name, without figures that are unknown."""
         broken = self.broken_in_tension + self.broken_in_shear
         force = self.largest_cone_force_n
         lines = {
@@ -131,17 +131,17 @@ def summarise(
     Parameters
     ----------
     curve
-        What it measured.
+        Its curve.
     scene
         The complete scene's data.
     ended
-        How it ended.
+        "rest" or "time_limit".
     grains, spheres
-        How many there are.
+        Number of grains and of spheres.
     synthetic
-        How the sample was made, if it is known to be synthetic.
+        Origin of a sample that is known as synthetic.
     sample_notes
-        What should be known of the sample.
+        Notes on the sample.
     """
     kind = str(scene["loading"][0]["kind"])
     first = curve.of_stage(1)
@@ -184,7 +184,7 @@ def _cone_force(curve: LoadingCurve, scene: Mapping[str, Any]) -> Optional[float
     kinds = [str(stage["kind"]) for stage in scene["loading"]]
     if "penetrate" in kinds and untouched(curve, "penetrate"):
         return None
-    return float(max(np.abs(one["cone_force_n"]).max() for one in (curve, curve.peaks)))
+    return float(max(np.abs(rows["cone_force_n"]).max() for rows in (curve, curve.peaks)))
 
 
 NO_PHASES = Phases(None, None, None, None, None, None)
@@ -196,8 +196,8 @@ def _notes(
     notes = []
     if grains < FEW_GRAINS:
         notes.append(
-            f"{grains} grains: stresses of such a small sample depend on the sample; "
-            f"{FEW_GRAINS} or more stand for the snow"
+            f"{grains} grains: the stresses depend on this small sample; "
+            f"{FEW_GRAINS} or more represent the snow"
         )
     if kind in ("compress", "stretch"):
         top, bottom = first["top_stress_pa"], first["bottom_stress_pa"]
@@ -205,31 +205,31 @@ def _notes(
         if mean > 0 and apart > UNBALANCED * mean:
             notes.append(
                 f"the stresses on the two plates differ by {100 * apart / mean:.0f} % of their "
-                "mean: the test is not quasi-static; load more slowly, or with less density_scaling"
+                "mean: the test is not quasi-static; load more slowly, or reduce density_scaling"
             )
     kinds = [str(stage["kind"]) for stage in scene["loading"]]
     if "penetrate" in kinds and (reason := untouched(curve, "penetrate")):
-        notes.append(f"{reason}: there is no force on it")
+        notes.append(f"{reason}: no force acts on it")
     phases = find_phases(first, kind) if kind != "penetrate" else NO_PHASES
     if phases.unknown:
-        notes.append(f"{phases.unknown}: modulus, strength and mean stresses are not known")
+        notes.append(f"{phases.unknown}: modulus, strength and mean stresses are unknown")
     if phases.touched_from > 0.0:
         notes.append(
-            f"nothing touched the snow before a strain of {percent(phases.touched_from)}, from "
-            "which on the modulus is fitted; all strains count from the beginning"
+            f"nothing touched the snow before a strain of {percent(phases.touched_from)}: the "
+            "modulus is fitted from there on; all strains count from the beginning"
         )
     linearity = phases.linearity
     if linearity is not None and linearity < LINEAR:
         notes.append(
-            f"the stress is not linear before the first bond breaks (R2 {linearity:.2f}), as waves "
-            "run through the sample; load more slowly to find the modulus"
+            f"the stress is not linear before the first bond breaks (R2 {linearity:.2f}), "
+            "because waves run through the sample; load more slowly to find the modulus"
         )
     scaling = float(scene["numerics"]["density_scaling"])
     fastest = max(float(stage["speed"]) for stage in scene["loading"])
     if scaling * fastest**2 > INERTIA * (1.0 + 1e-9):
         notes.append(
-            f"density_scaling times speed squared is {scaling * fastest**2:g} m2/s2; compare with "
-            f"a run of {INERTIA:g} or less, as inertia may raise the stresses"
+            f"density_scaling times speed squared is {scaling * fastest**2:g} m2/s2: inertia may "
+            f"raise the stresses; compare with a run of {INERTIA:g} or less"
         )
     return notes
 

@@ -65,7 +65,7 @@ class MpmSettings(MethodSettings):
     INSTEAD_OF: ClassVar[Mapping[str, str]] = {"damping_rate": "flip_ratio"}
 
     def damping_text(self, rate: Optional[float] = None) -> str:
-        """Return how PIC damps, for captions; the settings must be complete.
+        """Return a caption on the damping by PIC; the settings must be complete.
 
         Examples
         --------

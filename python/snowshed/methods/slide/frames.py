@@ -24,11 +24,11 @@ class Frame:
     Attributes
     ----------
     time
-        s.
+        Time, s.
     thickness : (rows, columns)
-        m, of the rectangle that holds all snow, the southernmost row first.
+        Thickness in the rectangle that holds all snow, m, the southernmost row first.
     first_row, first_column
-        Where the rectangle begins in the whole grid.
+        First row and column of the rectangle in the whole grid.
     """
 
     time: float
@@ -38,31 +38,31 @@ class Frame:
 
     def window(self, rows: slice, columns: slice) -> Singles:
         """Return a rectangle of the whole grid, zero where there is no snow."""
-        found = np.zeros((rows.stop - rows.start, columns.stop - columns.start), dtype=np.float32)
+        heights = np.zeros((rows.stop - rows.start, columns.stop - columns.start), dtype=np.float32)
         top, left = self.first_row - rows.start, self.first_column - columns.start
         height, width = self.thickness.shape
-        r0, r1 = max(top, 0), min(top + height, found.shape[0])
-        c0, c1 = max(left, 0), min(left + width, found.shape[1])
+        r0, r1 = max(top, 0), min(top + height, heights.shape[0])
+        c0, c1 = max(left, 0), min(left + width, heights.shape[1])
         if r0 < r1 and c0 < c1:
-            found[r0:r1, c0:c1] = self.thickness[r0 - top : r1 - top, c0 - left : c1 - left]
-        return found
+            heights[r0:r1, c0:c1] = self.thickness[r0 - top : r1 - top, c0 - left : c1 - left]
+        return heights
 
 
 def slide_frames(film: Film, ground: Raster, most: int = MOST_FRAMES) -> list[Frame]:
     """Return maps of the thickness of the snow over time, at the nodes of a slide's grid.
 
     A node has the mean thickness of the particles in the four cells around it, with bilinear
-    weights. Of a film that holds only some of the particles, the mean is taken over larger squares,
-    so that the snow has no holes.
+    weights. If the film holds only some of the particles, the mean is taken over larger squares, so
+    that the snow has no holes.
 
     Parameters
     ----------
     film
-        Of a run of a slide.
+        Film of a slide.
     ground
         The grid.
     most
-        How many maps, at most; the first and the last frame are among them.
+        Largest number of maps; the first and the last frame are among them.
 
     Raises
     ------
@@ -74,7 +74,7 @@ def slide_frames(film: Film, ground: Raster, most: int = MOST_FRAMES) -> list[Fr
     >>> from tempfile import TemporaryDirectory
     >>> import snowshed
     >>> from snowshed.scene.terrain_grid import slide_terrain
-    >>> from snowshed.scene.builders import example_slide
+    >>> from snowshed.scene.builders.slides import example_slide
     >>> with TemporaryDirectory() as folder:
     ...     scene = example_slide(folder).set("events.max_time", 0.5)
     ...     _ = snowshed.run(scene, folder + "/out", pictures=False)
@@ -82,30 +82,30 @@ def slide_frames(film: Film, ground: Raster, most: int = MOST_FRAMES) -> list[Fr
     >>> frames[0].time, round(float(np.median(frames[0].thickness)), 1)
     (0.0, 0.5)
     """
-    names = [one.name for one in film.quantities]
+    names = [quantity.name for quantity in film.quantities]
     if "thickness" not in names:
-        raise InputError(f"{film.path}: holds no thickness; it is not the film of a slide")
+        raise InputError(f"{film.path}: not the film of a slide; it holds no thickness")
     column = names.index("thickness")
     count = len(film.frames)
     chosen = set(np.linspace(0, count - 1, min(count, most)).round().astype(int).tolist())
     frames: list[Frame] = []
     edge = 0
-    for number, one in enumerate(film):
-        if number not in chosen or not len(one.ids):
+    for number, frame in enumerate(film):
+        if number not in chosen or not len(frame.ids):
             continue
-        edge = edge or _edge(film, one, ground)
-        thickness = film.quantities[column].values(one.codes[:, column])
-        frames.append(_map(one, thickness, ground, edge))
+        edge = edge or _edge(film, frame, ground)
+        thickness = film.quantities[column].values(frame.codes[:, column])
+        frames.append(_map(frame, thickness, ground, edge))
     return frames
 
 
 def _edge(film: Film, frame: FilmFrame, ground: Raster) -> int:
     """Return the edge of the squares that a film has enough particles for, in cells."""
     edge = 1
-    places = np.floor(frame.positions[:, :2] / ground.cell).astype(int)
+    cells = np.floor(frame.positions[:, :2] / ground.cell).astype(int)
     while film.share < 1.0 and edge < max(ground.heights.shape):
-        squares = len(np.unique(places // edge, axis=0))
-        if len(places) >= LEAST_PARTICLES * squares:
+        squares = len(np.unique(cells // edge, axis=0))
+        if len(cells) >= LEAST_PARTICLES * squares:
             break
         edge *= 2
     return edge
@@ -116,7 +116,7 @@ def _map(frame: FilmFrame, thickness: Singles, ground: Raster, edge: int) -> Fra
     weight, sums = np.zeros((rows, columns)), np.zeros((rows, columns))
     # The middle of a square of several cells stands for it.
     x, y = frame.positions[:, :2].T / (ground.cell * edge) - 0.5 * (1.0 - 1.0 / edge)
-    west, south = (np.clip(np.floor(one).astype(int), 0, None) for one in (x, y))
+    west, south = (np.clip(np.floor(values).astype(int), 0, None) for values in (x, y))
     for row, column, share in _corners(x - west, y - south):
         at = (np.minimum(south + row, rows - 1), np.minimum(west + column, columns - 1))
         np.add.at(weight, at, share)
@@ -132,7 +132,7 @@ def _map(frame: FilmFrame, thickness: Singles, ground: Raster, edge: int) -> Fra
 
 
 def _corners(east: Floats, north: Floats) -> list[tuple[int, int, Floats]]:
-    """Return the bilinear weights of the four nodes around places within cells, by row, column."""
+    """Return the bilinear weights of the four nodes around points within cells, by row, column."""
     east, north = np.clip(east, 0.0, 1.0), np.clip(north, 0.0, 1.0)
     return [
         (row, column, (north if row else 1.0 - north) * (east if column else 1.0 - east))

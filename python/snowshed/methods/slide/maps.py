@@ -22,7 +22,7 @@ from snowshed.io.raster.raster import Raster, read_raster
 if TYPE_CHECKING:
     import xarray
 
-#: Files of the maps in a results folder, which AvaFrame's tools know.
+#: Files of the maps in a results folder, with names that AvaFrame's tools know.
 RASTERS: Mapping[str, str] = {
     "peak_thickness": "peaks/pft.asc",
     "peak_speed": "peaks/pfv.asc",
@@ -50,15 +50,15 @@ class SlideMaps:
     terrain
         Elevations, m.
     peak_thickness, thickness
-        Of the snow, normal to the ground, m: the largest over time, and now.
+        Thickness of the snow normal to the ground, m: the largest over time, and the present one.
     peak_speed, speed
-        m/s.
+        Speed, m/s: the largest over time, and the present one.
     west, south
         Map coordinates of the south-west node, m.
     cell
         Distance of the nodes, m.
     density
-        Of the snow, kg/m3.
+        Density of the snow, kg/m3.
     """
 
     terrain: Floats
@@ -78,12 +78,12 @@ class SlideMaps:
         return pressure
 
     def raster(self, values: Floats, crs: str = "") -> Raster:
-        """Return one of the maps with its place, and its coordinate system in words."""
+        """Return a map with its place and the text of its coordinate system."""
         return Raster(values, self.west, self.south, self.cell, crs=crs)
 
 
 def slide_maps(simulation: AnySimulation) -> SlideMaps:
-    """Return the maps of a slide as they are now.
+    """Return the present maps of a slide.
 
     Parameters
     ----------
@@ -97,7 +97,7 @@ def slide_maps(simulation: AnySimulation) -> SlideMaps:
     """
     maps = core_of(simulation).slide_maps()
     # The mean speed of the default mode fades beyond the snow (kernels/mean_speed.hpp). In the maps
-    # that people read, no place that snow never reached has a speed or a pressure.
+    # that people read, speed and pressure are zero where snow never came.
     maps["peak_speed"] = np.where(maps["peak_thickness"] > 0.0, maps["peak_speed"], 0.0)
     return SlideMaps(**maps)
 
@@ -114,8 +114,8 @@ def read_maps(folder: Path) -> xarray.Dataset:
     -------
     xarray.Dataset
         ``peak_thickness``, ``peak_speed``, ``peak_pressure``, ``thickness`` and ``speed`` with
-        dimensions y and x: map coordinates, m, of the nodes. The attribute ``crs`` is the
-        coordinate system, if it is known.
+        dimensions y and x: map coordinates of the nodes, m. The attribute ``crs`` is the coordinate
+        system, if it is known.
 
     Raises
     ------
@@ -126,7 +126,7 @@ def read_maps(folder: Path) -> xarray.Dataset:
     rasters = {}
     for name, file in RASTERS.items():
         if not (folder / file).is_file():
-            raise InputError(f"{folder / file}: not there; a run that is not compact writes it")
+            raise InputError(f"{folder / file}: missing; a run that is not compact writes it")
         rasters[name] = read_raster(folder / file)
     first = rasters["peak_thickness"]
     rows, columns = first.heights.shape
@@ -152,9 +152,9 @@ class PeakMaps:
     Attributes
     ----------
     thickness, speed, pressure : (rows, columns)
-        m, m/s and kPa, in single precision, the southernmost row first.
+        Values in m, m/s and kPa, in single precision, the southernmost row first.
     first_row, first_column
-        Where the rectangle begins in the whole grid.
+        First row and column of the rectangle in the whole grid.
     shape
         Rows and columns of the whole grid.
 
@@ -181,22 +181,24 @@ class PeakMaps:
         if not rows.size:
             rows = columns = np.array([0])
         window = np.s_[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
-        cut = (np.asarray(one)[window].astype(np.float32) for one in (thickness, speed, pressure))
+        cut = (
+            np.asarray(values)[window].astype(np.float32) for values in (thickness, speed, pressure)
+        )
         height, width = snow.shape
         h, v, p = cut
         return cls(h, v, p, int(rows[0]), int(columns[0]), (height, width))
 
     def window(self, name: str, begin: int, end: int) -> Singles:
         """Return the rows from `begin` to before `end` of a whole map, zero where no snow was."""
-        found = np.zeros((end - begin, self.shape[1]), dtype=np.float32)
-        kept: Singles = getattr(self, name)
-        rows, columns = kept.shape
+        whole = np.zeros((end - begin, self.shape[1]), dtype=np.float32)
+        stored: Singles = getattr(self, name)
+        rows, columns = stored.shape
         top, bottom = max(begin, self.first_row), min(end, self.first_row + rows)
         if top < bottom:
             across = slice(self.first_column, self.first_column + columns)
-            cut = kept[top - self.first_row : bottom - self.first_row]
-            found[top - begin : bottom - begin, across] = cut
-        return found
+            cut = stored[top - self.first_row : bottom - self.first_row]
+            whole[top - begin : bottom - begin, across] = cut
+        return whole
 
     def packed(self) -> bytes:
         """Return the maps as a compressed NumPy archive, which `unpacked` reads."""
@@ -217,7 +219,7 @@ class PeakMaps:
         Raises
         ------
         InputError
-            If it did not, or the bytes are damaged.
+            If the bytes are damaged, or of another origin.
         """
         try:
             with open_archive(data) as archive:
@@ -225,4 +227,4 @@ class PeakMaps:
                 h, v, p = (archive[name] for name in ("thickness", "speed", "pressure"))
                 return cls(h, v, p, row, column, (rows, columns))
         except (OSError, *DAMAGED) as error:
-            raise InputError(f"not maps that snowshed kept: {error}") from None
+            raise InputError(f"not maps that snowshed stored: {error}") from None

@@ -1,4 +1,4 @@
-"""Runs of a snow slide: the results folder with its maps, and what they come to.
+"""Runs of a snow slide: the results folder with its maps and its figures.
 
 Beside what every run writes (``snowshed.results.folder``), the folder holds
 
@@ -50,7 +50,7 @@ class SlideRun(MethodRun):
     COLUMNS: ClassVar[Mapping[str, type]] = {"steps": int, **SlideSummary.columns()}
 
     def doing(self, time_s: float) -> str:
-        """Return how far the slide has come."""
+        """Return the progress of the slide."""
         return f"{time_s:.2f} s of the slide"
 
     def finish(self) -> None:
@@ -73,13 +73,13 @@ class SlideRun(MethodRun):
 
     def draw(self) -> None:
         """Draw ``slide.png`` and the energies, and write ``slide.html``."""
-        from snowshed.plot.figure_style import save
+        from snowshed.plot.figure_style import save_figure
         from snowshed.plot.slide_figure import slide_figure
         from snowshed.plot.slide_page import write_slide_page
 
         self.draw_energies()
         scene, page = self.scene.data, self.folder / "slide.html"
-        save(slide_figure(self.maps, release_outlines(scene)), self.folder / "slide.png")
+        save_figure(slide_figure(self.maps, release_outlines(scene)), self.folder / "slide.png")
         frames = _frames(self.folder, self.maps)
         write_slide_page(page, self.maps, scene, self.areas, asdict(self.summary), frames)
 
@@ -96,7 +96,7 @@ class SlideRun(MethodRun):
 
 
 def _frames(folder: Path, maps: SlideMaps) -> list[Frame]:
-    """Return the snow over time, as far as the run has recorded it."""
+    """Return the snow over time, up to the last frame of the film."""
     try:
         return slide_frames(Film(folder / FILM), maps.raster(maps.terrain))
     except (_core.InputError, OSError):
@@ -146,10 +146,7 @@ def _border_notes(left: float, maps: SlideMaps) -> tuple[str, ...]:
         return ()
     holes = np.isnan(maps.terrain).any()
     where = "or went where the raster has no elevation" if holes else "at its border"
-    return (
-        f"{left:,.0f} kg of snow left the terrain {where}; what lies beyond is not part of these "
-        "figures",
-    )
+    return (f"{left:,.0f} kg of snow left the terrain {where}; these figures do not include it",)
 
 
 def _write_packed(folder: Path, maps: SlideMaps) -> None:

@@ -1,4 +1,4 @@
-"""What a slide came to."""
+"""The figures of a slide."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from snowshed.methods.summary import Summary
 
 @dataclass(frozen=True)
 class SlideSummary(Summary):
-    """What a slide came to.
+    """The figures of a slide.
 
     Attributes
     ----------
@@ -26,17 +26,17 @@ class SlideSummary(Summary):
     left_terrain_kg, on_terrain_kg
         Mass that left the terrain or fell into its holes, and mass that is on it at the end.
     bonds_made, bonds_broken
-        Bonds between particles, and how many of them broke or left the terrain.
+        Bonds between particles, and those of them that broke or left the terrain.
     peak_speed_m_s, peak_thickness_m, peak_pressure_kpa
         Largest values anywhere.
     reached_m2
-        Area on the map that snow reached, of cells around nodes.
+        Area on the map that snow reached, in cells around nodes.
     run_out_m
         Largest distance on the map between the middle of the release and snow at the end.
     drop_m
-        Height between the highest node of the release and the lowest where snow lies.
+        Height between the highest node of the release and the lowest node with snow at the end.
     notes
-        What should be known of these figures.
+        Notes on these figures.
     """
 
     ended: str
@@ -61,7 +61,7 @@ class SlideSummary(Summary):
     OPENED: ClassVar[str] = "maps, slide.html and slide.png"
 
     def lines(self) -> Mapping[str, str]:
-        """Return what people read of it, by name."""
+        """Return the lines that people read, by name."""
         broken = f"{self.bonds_broken:,} of {self.bonds_made:,}"
         return {
             "ended": f"{self.ended} after {self.sim_time_s:.2f} s",

@@ -26,16 +26,16 @@ OUTSIDE = 0.1  # share of a release that may lie outside the range of slopes
 
 @dataclass(frozen=True)
 class ReleaseArea:
-    """What a release area is like.
+    """Size, altitude and slope of a release area.
 
     Attributes
     ----------
     name
-        Of the area.
+        Name of the area.
     thickness
-        Of its snow, m; the mean where a raster gives it.
+        Thickness of its snow, m; the mean where a raster gives it.
     area, sloping_area
-        On the map, and along the ground, m2.
+        Area on the map, and along the ground, m2.
     lowest, highest
         Altitudes, m.
     slope, steepest, flattest
@@ -67,14 +67,14 @@ def thickness_map(terrain: Mapping[str, Any], folder: Path) -> Optional[Raster]:
     Parameters
     ----------
     terrain
-        Of a complete scene.
+        Terrain of a complete scene.
     folder
-        What its files are relative to.
+        Folder from which its relative paths start.
 
     Raises
     ------
     InputError
-        If the raster is none.
+        If the file is not a raster.
     OSError
         If it cannot be read.
     """
@@ -85,7 +85,7 @@ def thickness_map(terrain: Mapping[str, Any], folder: Path) -> Optional[Raster]:
 def release_areas(
     ground: Raster, areas: Sequence[Mapping[str, Any]], thickness: Optional[Raster] = None
 ) -> list[ReleaseArea]:
-    """Return what release areas are like on a terrain.
+    """Return size, altitude and slope of release areas on a terrain.
 
     Parameters
     ----------
@@ -94,7 +94,7 @@ def release_areas(
     areas
         The areas of a complete scene: name, outline (map coordinates, m) and thickness, m.
     thickness
-        In place of that of the areas, m.
+        Raster of thicknesses that replaces those of the areas, m.
     """
     inclination = _inclination(ground)
     if thickness is not None:
@@ -105,64 +105,64 @@ def release_areas(
 def validity_notes(
     areas: Sequence[ReleaseArea], settings: Mapping[str, Any], figures: Mapping[str, Any]
 ) -> list[str]:
-    """Return where a slide leaves the stated validity, a sentence each; none where it does not.
+    """Return warnings where a slide is outside the stated validity, a sentence each.
 
     Parameters
     ----------
     areas
-        Of the release.
+        The release areas.
     settings
         The settings of the method, as a scene holds them.
     figures
-        What the slide came to, as ``slide.json`` has it.
+        The figures of ``slide.json``.
 
     Examples
     --------
     >>> validity_notes([], {"bonds": False}, {"drop_m": 50.0, "ended": "rest"})
     ['Without bonds this is a plain avalanche; the validity is stated for slabs with bonds.']
     """
-    found = [text for area in areas for text in _of_release(area, settings)]
+    notes = [text for area in areas for text in _of_release(area, settings)]
     drop = figures.get("drop_m", 0.0)
     if drop and not DROPS[0] <= drop <= DROPS[1]:
-        found.append(
+        notes.append(
             f"The drop is {drop:.0f} m; the method was made for {DROPS[0]:.0f} to {DROPS[1]:.0f} m."
         )
     made, broken = figures.get("bonds_made", 0), figures.get("bonds_broken", 0)
     if not settings.get("bonds", True):
-        found.append(
+        notes.append(
             "Without bonds this is a plain avalanche; the validity is stated for slabs with bonds."
         )
     elif made and broken > AS_ONE * made:
-        found.append(
+        notes.append(
             f"{100.0 * broken / made:.0f} % of the bonds broke: the slide does not move as a unit, "
             "for which the method was made."
         )
     if figures.get("ended") == "time_limit":
-        found.append("The slide had not come to rest at the time limit; it may go farther.")
-    return found
+        notes.append("The slide was still moving at the time limit; it may run farther.")
+    return notes
 
 
 def _of_release(area: ReleaseArea, settings: Mapping[str, Any]) -> list[str]:
-    found = []
+    notes = []
     if area.outside > OUTSIDE:
-        found.append(
+        notes.append(
             f"Release {area.name!r}: {100.0 * area.outside:.0f} % of it slope less than "
             f"{SLOPES[0]:.0f} or more than {SLOPES[1]:.0f} degrees ({area.flattest:.0f} to "
             f"{area.steepest:.0f}, mean {area.slope:.0f}), for which the method was made."
         )
     if area.lowest < ALTITUDES[0] or area.highest > ALTITUDES[1]:
-        found.append(
+        notes.append(
             f"Release {area.name!r}: its altitude is {area.lowest:.0f} to {area.highest:.0f} m; "
             f"the method was made for {ALTITUDES[0]:.0f} to {ALTITUDES[1]:.0f} m."
         )
     layer = settings.get("layer_thickness", 0.0)
     if area.thickness < layer:
-        found.append(
+        notes.append(
             f"Release {area.name!r}: {area.thickness:g} m of snow are less than the layer of a "
             f"particle ({layer:g} m), so that a cell holds less than one particle; choose a "
             "smaller layer_thickness."
         )
-    return found
+    return notes
 
 
 def _mean_thickness(thickness: Raster, area: Mapping[str, Any]) -> float:
@@ -192,7 +192,7 @@ def _described(ground: Raster, inclination: Floats, area: Mapping[str, Any]) -> 
 
 
 def _within(ground: Raster, area: Mapping[str, Any]) -> Booleans:
-    """Return which nodes an area holds; of one that is smaller than a cell the node next to it."""
+    """Return the nodes inside an area; for an area smaller than a cell, the node next to it."""
     outline = np.asarray(area["outline"], dtype=float)
     inside = _inside(ground, outline)
     for hole in area.get("holes") or ():
@@ -210,12 +210,12 @@ def _inclination(ground: Raster) -> Floats:
     if min(ground.heights.shape) < 2:
         return np.zeros(ground.heights.shape)
     north, east = np.gradient(ground.heights, ground.cell)
-    found: Floats = np.degrees(np.arctan(np.hypot(north, east)))
-    return found
+    degrees: Floats = np.degrees(np.arctan(np.hypot(north, east)))
+    return degrees
 
 
 def _inside(ground: Raster, ring: Floats) -> Booleans:
-    """Return which nodes lie in a ring, by the even-odd rule."""
+    """Return the nodes inside a ring, by the even-odd rule."""
     rows, columns = ground.heights.shape
     x = (ground.east + ground.cell * np.arange(columns))[None, :]
     y = (ground.north + ground.cell * np.arange(rows))[:, None]

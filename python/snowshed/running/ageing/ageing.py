@@ -1,9 +1,9 @@
 """Settling and sintering of a simulated stack between two slide-offs.
 
-Settling lowers the particles by what the snow below them shortens, and compacts them: the strain
-goes into the volumetric plastic strain, which hardens them as any compaction does. Sintering gives
-back strength to what broke: it lowers the volumetric plastic strain until the yield surface is as
-large as bonds of that age make it, at most as large as it was at first. Elastic stresses stay.
+Settling lowers the particles by the shortening of the snow below them, and compacts them: the
+strain goes into the volumetric plastic strain, which hardens them as any compaction does. Sintering
+gives strength back to broken snow: it lowers the volumetric plastic strain until the yield surface
+has the size of bonds of that age, and at most its initial size. Elastic stresses stay.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from snowshed.snow.relations.relation import choose
 from snowshed.snow.relations.settling import SETTLING_LAWS, settled_densities
 from snowshed.snow.relations.sintering import SINTERING_LAWS
 
-# Snow that has come apart has a volume that means nothing; the laws were made for snow.
+# Loosened snow has a volume without meaning; the laws hold for connected snow.
 LIGHTEST = 50.0  # kg/m3
 
 
@@ -44,7 +44,7 @@ class Ageing:
     Attributes
     ----------
     pauses
-        For events (2 is the second), what time passes before it.
+        Time that passes before an event, by its number (2 is the second).
     settling
         A name in `SETTLING_LAWS`; None: the stack does not settle.
     sintering
@@ -86,7 +86,7 @@ class Ageing:
         data
             JSON data; it may come from anywhere.
         where
-            What errors say of its place.
+            Its place, for errors.
 
         Raises
         ------
@@ -99,7 +99,7 @@ class Ageing:
         >>> Ageing.from_data(one.data, "ageing") == one
         True
         """
-        names = {one.name for one in fields(cls)}
+        names = {field.name for field in fields(cls)}
         if not isinstance(data, dict) or set(data) != names:
             raise InputError(f"{where}: needed: an object with {', '.join(sorted(names))}")
         pauses = data["pauses"]
@@ -127,7 +127,7 @@ class Ageing:
     def apply(
         self, simulation: _core.Simulation, event: int, gravity: float
     ) -> Optional[dict[str, float]]:
-        """Let the time before an event pass; return its row of ageing.csv, None if there is none.
+        """Age the stack by the time before an event; return its row of ageing.csv, if any.
 
         Snow that lies on the panel does not age: the next slab is laid on it at once. The gravity
         of the scene, m/s2, makes the stack settle.
@@ -156,7 +156,7 @@ class Ageing:
         }
 
     def _strains(self, snow: _Snow, event: int) -> Floats:
-        """Return by how much the nodes of the columns shorten, as logarithms."""
+        """Return the shortening of the nodes of the columns, as logarithms."""
         nodes = snow.columns
         if self.settling is None or not snow.yields.any():  # elastic snow has no density to gain
             return np.zeros(nodes.densities.shape)
@@ -168,7 +168,7 @@ class Ageing:
         return strains
 
     def _sinter(self, snow: _Snow, plastic_strains: Floats, seconds: float) -> Floats:
-        """Return the plastic strains that snow of its strength after sintering has."""
+        """Return the plastic strains of snow with the strength after sintering."""
         if self.sintering is None:
             return plastic_strains
         strength = snow.strengths(plastic_strains)
@@ -190,18 +190,18 @@ def _is_number(value: object) -> bool:
 
 def _event(key: object, where: str) -> int:
     if not (isinstance(key, str) and key.isdecimal() and key.isascii() and len(key) < 8):
-        raise InputError(f"{where}/pauses: {shortened(str(key))} is no number of an event")
+        raise InputError(f"{where}/pauses: {shortened(str(key))} is not the number of an event")
     return int(key)
 
 
-def _intervals(found: object, where: str) -> list[Interval]:
-    pairs = found if isinstance(found, list) else []
+def _intervals(given: object, where: str) -> list[Interval]:
+    pairs = given if isinstance(given, list) else []
     sound = [
         Interval(float(pair[0]), float(pair[1]))
         for pair in pairs
         if isinstance(pair, list) and len(pair) == 2 and all(map(_is_number, pair)) and pair[0] >= 0
     ]
-    if not isinstance(found, list) or len(sound) < len(pairs):
+    if not isinstance(given, list) or len(sound) < len(pairs):
         raise InputError(f"{where}/pauses: not pairs of seconds and a temperature")
     return sound
 
@@ -237,7 +237,7 @@ class _Snow:
         return strengths
 
     def plastic_strains_of(self, strengths: Floats) -> Floats:
-        """Return the volumetric plastic strains at which snow has strengths, as `strengths`."""
+        """Return the volumetric plastic strains for strengths, the inverse of `strengths`."""
         strains = self.plastic_strains.copy()
         for law, own in self._kinds_that_yield():
             strains[own] = law.initial_plastic_strain(strengths[own] * self._p0[own])
@@ -249,7 +249,7 @@ class _Snow:
                 yield law, self._kinds == kind
 
     def intact(self, plastic_strains: Floats) -> float:
-        """Return the mean strength of the stack, nothing counting more than undisturbed snow."""
+        """Return the mean strength of the stack, for each particle at most that of intact snow."""
         if not self.stack.any():
             return 1.0
         strength = np.minimum(self.strengths(plastic_strains), 1.0)

@@ -1,8 +1,8 @@
-"""A cloud of particles as columns of snow: what lies on it, and how far it sinks.
+"""A cloud of particles as columns of snow: the load on each particle, and its settling.
 
-The particles are spread linearly over the nodes of a grid with the simulation's cells. A column is
-what lies above one another without an empty node between: snow does not press, nor sink, through a
-gap, which may hold a roof or a panel.
+The particles are spread linearly over the nodes of a grid with the simulation's cells. A column
+consists of nodes above one another without an empty node between them: snow neither presses nor
+sinks through a gap, which may hold a roof or a panel.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ class SnowColumns:
         self.densities = np.divide(self.masses, volumes, out=np.ones(self._shape), where=full)
         filled = volumes / dx**dimension
         self._snow = self.masses > EMPTY * self.densities * dx**dimension
-        # The columns along a wall of snow cover but a part of their base.
+        # The columns along a wall of snow cover only a part of their base.
         cover = np.clip(filled.max(axis=-1, keepdims=True), THINNEST, 1.0)
         self._base = cover[..., 0] * dx ** (dimension - 1)
         # Between snow above and below, cells are full, however the particles are scattered.
@@ -81,7 +81,7 @@ class SnowColumns:
         return result
 
     def drops(self, strains: Floats) -> Floats:
-        """Return how far each particle sinks (n,), m, where nodes shorten by strains (their shape).
+        """Return the settling of each particle (n,), m, for strains of the nodes (their shape).
 
         A strain is the logarithm of the old over the new height.
         """
@@ -96,7 +96,7 @@ class SnowColumns:
         return self.at_particles(sunk)
 
     def at_particles(self, values: Floats) -> Floats:
-        """Return values of the nodes between them, where the particles are (n,)."""
+        """Return the values of the nodes interpolated at the particles (n,)."""
         result = np.zeros(len(self._place))
         for node, share in self._corners():
             result += share * values.ravel()[node]
@@ -109,7 +109,7 @@ class SnowColumns:
         return total.reshape(self._shape)
 
     def _corners(self) -> Iterator[tuple[NDArray[np.int64], Floats]]:
-        """Yield, for each corner of the particles' cells, the node and the share it gets."""
+        """Yield the node and its share of each particle, for each corner of the cells."""
         cell = np.floor(self._place).astype(np.int64)
         part = self._place - cell
         for corner in product((0, 1), repeat=len(self._shape)):

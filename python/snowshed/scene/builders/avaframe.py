@@ -99,7 +99,7 @@ def avaframe_simulations(
     if not inputs.is_dir():
         raise InputError(f"{root}: not an AvaFrame project: it has no folder Inputs")
     own = project_inputs(root)
-    project = read_ini(_ini_of(root, inputs / "CFGs", inputs))
+    project = read_ini(_find_ini(root, inputs / "CFGs", inputs))
     project.values.update(settings or {})
     project.values["mode"] = "compatible"
     if thickness is not None:
@@ -269,7 +269,7 @@ def _refuse_what_is_not_done(inputs: Path, project: ProjectSettings) -> None:
         raise InputError(f"{dams[0]}: dams are not available; set dam = False to leave them out")
 
 
-def _ini_of(*folders: Path) -> Optional[Path]:
+def _find_ini(*folders: Path) -> Optional[Path]:
     """Return the ini of com5SnowSlide in the folders; None without one."""
     files = [file for folder in folders for file in sorted(folder.glob("*com5SnowSlideCfg.ini"))]
     if len(files) > 1:

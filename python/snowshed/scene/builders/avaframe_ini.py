@@ -127,7 +127,7 @@ class _Keys:
 
     def __init__(self, file: Optional[Path]) -> None:
         self.file = file
-        keys, self._lines = _keys_of(file)
+        keys, self._lines = _read_keys(file)
         self._blank = {key for key, text in keys.items() if not text.strip()}
         self._found = {key: text for key, text in keys.items() if text.strip()}
 
@@ -236,7 +236,7 @@ class _Keys:
                 raise InputError(f"{self.where(key)}: unknown key{near}")
 
 
-def _keys_of(file: Optional[Path]) -> tuple[dict[str, str], dict[str, int]]:
+def _read_keys(file: Optional[Path]) -> tuple[dict[str, str], dict[str, int]]:
     """Return the values of the keys, and the lines that they stand in."""
     if file is None:
         return {}, {}
@@ -257,10 +257,10 @@ def _keys_of(file: Optional[Path]) -> tuple[dict[str, str], dict[str, int]]:
                 "allowed: [GENERAL], [com1DFA_com1DFA_override]"
             )
         values.update(parser.items(section))
-    return values, _lines_of(text)
+    return values, _key_lines(text)
 
 
-def _lines_of(text: str) -> dict[str, int]:
+def _key_lines(text: str) -> dict[str, int]:
     """Return the line of each key, from 1; the last one counts, as for its value."""
     lines: dict[str, int] = {}
     for number, line in enumerate(text.splitlines(), 1):

@@ -119,7 +119,7 @@ def slide_scene(
     crs = common_system(files)
     most = MAX_THICKNESS if max_thickness is None else max_thickness
     rings = [_snow_area(area, thickness, most, depth) for area in areas]
-    file = _as_text(Path(raster), terrain, ascii_copy)
+    file = _ascii_grid(Path(raster), terrain, ascii_copy)
     map_file = None if depth is None else str(_thickness_file(depth, ascii_copy).resolve())
     return Scene(
         method="slide",
@@ -173,7 +173,7 @@ def example_slide(folder: PathLike) -> Scene:
     )
 
 
-def _as_text(file: Path, raster: Raster, copy: Optional[PathLike]) -> Path:
+def _ascii_grid(file: Path, raster: Raster, copy: Optional[PathLike]) -> Path:
     """Return an ASCII grid of a raster: itself, or its copy."""
     if raster.plain:
         return file
@@ -188,7 +188,7 @@ def _thickness_file(depth: Raster, ascii_copy: Optional[PathLike]) -> Path:
     copy = None
     if ascii_copy is not None:
         copy = Path(ascii_copy).with_name(f"{Path(ascii_copy).stem}-thickness.asc")
-    return _as_text(Path(depth.name), depth if depth.plain else snow_part(depth), copy)
+    return _ascii_grid(Path(depth.name), depth if depth.plain else snow_part(depth), copy)
 
 
 class _Polygons:

@@ -60,7 +60,7 @@ def on_terrain(
     scene
         Any scene; it stays as it is.
     raster
-        Terrain, or its file, which `snowshed.scene.builders.terrain_checks.read_terrain` reads.
+        Terrain, or its file, which `read_terrain` reads.
     file
         File to write the grid of distances to (.npy); the scene names it by its absolute path.
     origin

@@ -48,7 +48,7 @@ def read_terrain(
     Raises
     ------
     InputError
-        If it is no such raster, or `check_terrain` refuses it.
+        If it is not such a raster, or `check_terrain` refuses it.
     OSError
         If the file cannot be read.
     """

@@ -58,7 +58,7 @@ class Builder:
         """Set the value at a dotted path."""
         self._scene.set(path, value)
         if isinstance(value, list):
-            self._names[path] = [_name_of(item) for item in value]
+            self._names[path] = [_item_name(item) for item in value]
         else:
             self._names.pop(path, None)
         self._origins.note(_pointer(path), value, place)
@@ -75,7 +75,7 @@ class Builder:
         self._scene.append(path, value)
         names = self._names.setdefault(path, [])
         self._origins.note(f"{_pointer(path)}/{len(names)}", value, place)
-        names.append(_name_of(value))
+        names.append(_item_name(value))
 
     def put(self, path: str, name: str, values: Mapping[str, Any], place: Place) -> None:
         """Append an item to a list, or change the item that was put there under the same name."""
@@ -123,7 +123,7 @@ class Builder:
             raise InputError(f"{where}: there is no file {file!r} in {self._folder}")
 
 
-def _name_of(item: Any) -> str:
+def _item_name(item: Any) -> str:
     return str(item.get("name", "")) if isinstance(item, Mapping) else ""
 
 

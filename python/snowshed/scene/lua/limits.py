@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
-class Limits:
+class LuaLimits:
     """The resources that the scripts of one scene may use together.
 
     A script that exceeds one of the first three is stopped with an error that names the line. The

@@ -10,7 +10,7 @@ from snowshed._core import InputError
 from snowshed.base.paths import PathLike
 from snowshed.io.input_file import read_input
 from snowshed.scene.lua.builder import Builder, LuaRun
-from snowshed.scene.lua.limits import Limits
+from snowshed.scene.lua.limits import LuaLimits
 from snowshed.scene.lua.sandbox import Place, Script, run_sandboxed
 from snowshed.scene.lua.vocabulary import SHAPES, WORDS, apply
 
@@ -20,7 +20,7 @@ def load_lua(
     update: Optional[PathLike] = None,
     *,
     echo: Optional[Callable[[str], None]] = None,
-    limits: Optional[Limits] = None,
+    limits: Optional[LuaLimits] = None,
 ) -> list[LuaRun]:
     """Run an initialisation script, then an update script, and return the scenes they describe.
 
@@ -33,7 +33,7 @@ def load_lua(
     echo
         Called with every line that the scripts print, also if they fail after that.
     limits
-        Limits of the scripts. [default: `Limits()`]
+        Limits of the scripts. [default: `LuaLimits()`]
 
     Returns
     -------
@@ -59,7 +59,7 @@ def load_lua(
     >>> [(run.name, run.scene.data["snow"]["critical_state_slope"]) for run in runs]
     [('M3', 3.0), ('M4', 4.0)]
     """
-    limits = limits or Limits()
+    limits = limits or LuaLimits()
     scripts = [_read(Path(file), limits) for file in (init, update) if file is not None]
     calls = run_sandboxed(scripts, WORDS, SHAPES, limits, echo)
     builder = Builder(Path(init).parent)
@@ -70,7 +70,7 @@ def load_lua(
     return builder.runs
 
 
-def _read(file: Path, limits: Limits) -> Script:
+def _read(file: Path, limits: LuaLimits) -> Script:
     content = read_input(file, limits.script_bytes)
     try:
         return Script(str(file), content.decode("utf-8-sig"))

@@ -14,7 +14,7 @@ from typing import Any, Optional, Union
 
 from snowshed._core import InputError
 from snowshed.base.extras import require
-from snowshed.scene.lua.limits import Limits
+from snowshed.scene.lua.limits import LuaLimits
 
 PROGRAM = Path(__file__).with_name("child.py")
 START_SECONDS = 60.0  # for the process to start and answer, on a machine that is very busy
@@ -55,7 +55,7 @@ def run_sandboxed(
     scripts: Sequence[Script],
     functions: Sequence[str],
     shapes: Mapping[str, str],
-    limits: Optional[Limits] = None,
+    limits: Optional[LuaLimits] = None,
     echo: Optional[Callable[[str], None]] = None,
 ) -> list[Call]:
     """Run scripts one after the other in one Lua state.
@@ -69,7 +69,7 @@ def run_sandboxed(
     shapes
         Functions that make shapes from tables, and the types of these shapes.
     limits
-        Limits of the scripts. [default: `Limits()`]
+        Limits of the scripts. [default: `LuaLimits()`]
     echo
         Called with every line that the scripts print, also if they fail after that.
 
@@ -89,7 +89,7 @@ def run_sandboxed(
     [Call(word='gravity', arguments=[19.62], place=Place(script='a.lua', line=1))]
     """
     lupa = require("lupa.lua54", "lua", "running Lua scripts")
-    limits = limits or Limits()
+    limits = limits or LuaLimits()
     request = {
         "lupa_in": str(Path(lupa.__file__).parents[1]),
         "texts": [script.text for script in scripts],
@@ -110,7 +110,7 @@ def run_sandboxed(
     ]
 
 
-def _ask(request: str, names: list[str], limits: Limits) -> dict[str, Any]:
+def _ask(request: str, names: list[str], limits: LuaLimits) -> dict[str, Any]:
     """Return the answer of the process that runs Lua."""
     # -I and -S: nothing but the standard library; the request says where lupa is.
     command: list[Union[str, Path]] = [sys.executable, "-I", "-S", PROGRAM]
@@ -135,7 +135,7 @@ def _ask(request: str, names: list[str], limits: Limits) -> dict[str, Any]:
     return answer
 
 
-def _failure(error: dict[str, Any], names: list[str], limits: Limits) -> InputError:
+def _failure(error: dict[str, Any], names: list[str], limits: LuaLimits) -> InputError:
     """Return the error with its place in front, once."""
     message = OUR_OWN_PLACE.sub("", error["message"])
     script, line = error["script"], error["line"]

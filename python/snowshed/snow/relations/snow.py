@@ -19,7 +19,7 @@ def snow_from_density(
     strength_factor: float = 1.0,
     base: str = "calibrated",
 ) -> Snow:
-    """Return snow of a density, with what published relations say of it.
+    """Return snow of a density, with parameters from published relations.
 
     Parameters
     ----------

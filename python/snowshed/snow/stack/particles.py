@@ -37,7 +37,7 @@ class Surroundings:
 def surroundings(
     simulation: _core.Simulation, scene: Mapping[str, Any], positions: Floats
 ) -> Surroundings:
-    """Return what lies around particles.
+    """Return the structures and the ground around particles.
 
     Obstacles of a scene with a plane ground are structures. Without one, obstacles are the ground,
     as is terrain.

@@ -15,7 +15,7 @@ QUANTITIES = ("height", "length", "head", "tail")
 
 @dataclass(frozen=True)
 class Measure:
-    """A definition of what counts as the stack.
+    """A definition of the stack.
 
     Attributes
     ----------

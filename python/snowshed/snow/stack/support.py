@@ -39,7 +39,7 @@ class Support:
 def supports(
     snow: Floats, on_panel_snow: Floats, touches_structure: Booleans, heights: Floats, dx: float
 ) -> Support:
-    """Return what snow rests on.
+    """Return the support of snow.
 
     Parameters
     ----------

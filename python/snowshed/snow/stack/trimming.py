@@ -26,7 +26,7 @@ from snowshed.base.arrays import Booleans, Floats, Integers
 
 DROPPED_FRACTION = 0.03
 DIVISIONS = 30  # of radius and angle, as of the grid of the surface (A.4.3)
-#: The reading that stacks are measured by unless another one of `TRIMMINGS` is asked for.
+#: Default trimming rule.
 DEFAULT_TRIMMING = "outermost_first"
 
 
@@ -49,7 +49,7 @@ def inliers(
     Raises
     ------
     InputError
-        If there is no such reading.
+        If there is no such rule.
 
     Examples
     --------
@@ -106,7 +106,7 @@ TRIMMINGS: Mapping[str, Callable[[Floats, Floats], Integers]] = {
 
 
 def check_trimming(name: str) -> None:
-    """Raise InputError unless there is a reading of that name."""
+    """Raise InputError unless there is a trimming rule of that name."""
     if name not in TRIMMINGS:
         raise InputError(f"trimming: {name!r} is unknown; allowed: {', '.join(TRIMMINGS)}")
 

@@ -24,7 +24,7 @@ from snowshed.analysis.grains.material.tests import (
     Curves,
 )
 from snowshed.methods.grains.curve import LoadingCurve
-from snowshed.plot.figure_style import BODY, COLOURS, FAINT, INK, STYLE, blank, headline
+from snowshed.plot.figure_style import BODY, COLOURS, FAINT, INK, STYLE, blank_figure, headline
 from snowshed.plot.labels import label
 
 if TYPE_CHECKING:
@@ -52,7 +52,7 @@ def material_figure(fitted: FittedSnow, curves: Curves, *, synthetic: bool) -> F
     )
     kind = "Synthetic snow" if synthetic else "Snow"
     with matplotlib.rc_context(STYLE):
-        figure = blank(9.6, 4.4)
+        figure = blank_figure(9.6, 4.4)
         headline(figure, f"{kind} of {law.density:.0f} kg/m³: {values}")
         hardening, plane = figure.subplots(1, 2)
         _draw_hardening(hardening, fitted, curves)

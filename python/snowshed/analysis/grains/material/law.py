@@ -1,4 +1,8 @@
-"""The cohesive Cam-Clay law of the material point method (thesis 1.2.5-1.2.7), in closed form."""
+"""The cohesive Cam-Clay law of the material point method (thesis 1.2.5-1.2.7).
+
+Hardening is the core's. The yield stress at a pressure and that of confined compression are closed
+forms of (1.2.6), which the core does not need.
+"""
 
 from __future__ import annotations
 
@@ -7,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+import snowshed._core as _core
 from snowshed.base.arrays import Floats
 from snowshed.scene.components import Snow
 
@@ -18,9 +23,9 @@ class Elasticity:
     Attributes
     ----------
     youngs_modulus
-        E, Pa.
+        Young's modulus E, Pa.
     poissons_ratio
-        nu.
+        Poisson's ratio nu.
     """
 
     youngs_modulus: float
@@ -39,8 +44,16 @@ class Elasticity:
 
     def hardened(self, p0: float, factor: float, compaction: Floats) -> Floats:
         """Return p0 after plastic volumetric compaction, Pa: K sinh(asinh(p0/K) + xi e)."""
-        bulk = self.bulk_modulus
-        return np.asarray(bulk * np.sinh(math.asinh(p0 / bulk) + factor * compaction))
+        law = self._hardening(factor)
+        return law.preconsolidation(law.initial_plastic_strain(p0) - compaction)
+
+    def lost_after(self, p0: float, factor: float) -> float:
+        """Return the plastic dilation at which the strength is lost: asinh(p0/K)/xi."""
+        return -self._hardening(factor).initial_plastic_strain(p0)
+
+    def _hardening(self, factor: float) -> _core.CamClay:
+        """Return a law with this hardening; M and beta do not matter for it."""
+        return _core.CamClay(self.youngs_modulus, self.poissons_ratio, 1.0, 0.0, factor)
 
 
 @dataclass(frozen=True)
@@ -50,11 +63,11 @@ class CamClay:
     Attributes
     ----------
     density
-        kg/m3.
+        Density, kg/m3.
     elastic
-        E and nu.
+        Elastic constants, E and nu.
     critical_state_slope, preconsolidation_pressure, cohesion, hardening_factor
-        M, p0 in Pa, beta, xi.
+        Parameters M, p0 (Pa), beta and xi.
     """
 
     density: float
@@ -91,9 +104,8 @@ class CamClay:
 
     @property
     def lost_after(self) -> float:
-        """Plastic dilation at which the strength is lost: asinh(p0/K)/xi."""
-        p0, bulk = self.preconsolidation_pressure, self.elastic.bulk_modulus
-        return math.asinh(p0 / bulk) / self.hardening_factor
+        """Plastic dilation at which the strength is lost."""
+        return self.elastic.lost_after(self.preconsolidation_pressure, self.hardening_factor)
 
     def hardened(self, compaction: Floats) -> Floats:
         """Return the pressure of isotropic compression after a plastic compaction, Pa."""

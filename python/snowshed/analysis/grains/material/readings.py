@@ -114,7 +114,7 @@ def elasticity(curve: LoadingCurve) -> tuple[Elasticity, float]:
 
 
 def _unknown(curve: LoadingCurve, kind: str, what: str) -> str:
-    """Return that something cannot be read, and why if that is known."""
+    """Return the error that something cannot be read, with its reason if known."""
     return f"{what}: {untouched(curve, kind) or 'nothing to be read'}"
 
 
@@ -138,7 +138,7 @@ def isotropic_yield(curve: LoadingCurve) -> float:
 
 
 def confined_peak(curve: LoadingCurve) -> float:
-    """Return the largest stress of confined compression, Pa, that is no impact.
+    """Return the largest stress of confined compression without impacts, Pa.
 
     Raises
     ------
@@ -158,7 +158,7 @@ def shear_strength(curve: LoadingCurve) -> tuple[float, float]:
     """Return p and q, Pa, at the largest shear stress under a normal stress.
 
     Until then, bonds hold the snow together, as in the other strengths. Afterwards a sheared layer
-    is loose, and its strength is no property of the surrounding snow.
+    is loose, and its strength is not that of the surrounding snow.
 
     Raises
     ------

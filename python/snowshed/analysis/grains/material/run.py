@@ -59,7 +59,7 @@ class MaterialFolder:
         InputError
             If no snow can be fitted.
         """
-        from snowshed.plot.figure_style import save
+        from snowshed.plot.figure_style import save_figure
 
         curves = {**read_curves(tests.without_shear(), self.runs), **read_curves(shear, self.runs)}
         fitted = fit_material(
@@ -70,7 +70,7 @@ class MaterialFolder:
             fitted.notes.append("the snow is synthetic")
         write_snow(self.path, fitted, _source(tests, self.settings))
         figure = material_figure(fitted, curves, synthetic=synthetic)
-        save(figure, self.path / f"material-{tests.density:.0f}.png")
+        save_figure(figure, self.path / f"material-{tests.density:.0f}.png")
         return fitted
 
     def write_table(self, fits: Sequence[FittedSnow]) -> None:

@@ -23,13 +23,13 @@ class SlideState:
     Attributes
     ----------
     time
-        s.
+        Time, s.
     positions : (n, 3)
-        m, x and y from the south-west node of the terrain.
+        Positions, m; x and y from the south-west node of the terrain.
     thickness : (n,)
-        Of the snow, m.
+        Thickness of the snow, m.
     bonds : (m, 2)
-        Which particles each bond holds together, by their places in `positions`.
+        The two particles of each bond, as rows of `positions`.
     """
 
     time: float
@@ -39,14 +39,14 @@ class SlideState:
 
 
 def slide_states(scene: SceneLike, times: Sequence[float]) -> list[SlideState]:
-    """Return a slide at some times, whether it rests by then or not.
+    """Return the states of a slide at given times, moving or at rest.
 
     Parameters
     ----------
     scene
         A scene whose method is "slide".
     times
-        s, in rising order; the step that reaches each is the one that is shown.
+        Times, s, in rising order; each state is that of the step that reaches its time.
 
     Raises
     ------
@@ -58,7 +58,7 @@ def slide_states(scene: SceneLike, times: Sequence[float]) -> list[SlideState]:
     Examples
     --------
     >>> from tempfile import TemporaryDirectory
-    >>> from snowshed.scene.builders import example_slide
+    >>> from snowshed.scene.builders.slides import example_slide
     >>> with TemporaryDirectory() as folder:
     ...     first, later = slide_states(example_slide(folder), [0.0, 0.5])
     >>> len(later.bonds) <= len(first.bonds)
@@ -78,7 +78,7 @@ def slide_states(scene: SceneLike, times: Sequence[float]) -> list[SlideState]:
 
 
 def particles_at(scene: SceneLike, steps: Sequence[int]) -> dict[int, pd.DataFrame]:
-    """Return the particles after some numbers of steps, whether the slide rests by then or not.
+    """Return the particles of a slide after given numbers of steps, moving or at rest.
 
     Parameters
     ----------
@@ -90,13 +90,13 @@ def particles_at(scene: SceneLike, steps: Sequence[int]) -> dict[int, pd.DataFra
     Returns
     -------
     dict of pandas.DataFrame
-        By the number of steps: ID, x, y, z [m], ux, uy, uz [m/s], m [kg], h [m]; x and y from the
-        south-west node of the terrain.
+        Tables by the number of steps: ID, x, y, z [m], ux, uy, uz [m/s], m [kg], h [m]; x and y
+        from the south-west node of the terrain.
 
     Examples
     --------
     >>> from tempfile import TemporaryDirectory
-    >>> from snowshed.scene.builders import example_slide
+    >>> from snowshed.scene.builders.slides import example_slide
     >>> with TemporaryDirectory() as folder:
     ...     tables = particles_at(example_slide(folder), [0, 2])
     >>> list(tables)

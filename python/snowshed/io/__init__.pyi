@@ -1,0 +1,15 @@
+from .film import Film as Film
+from .film import FilmFrame as FilmFrame
+from .film import FilmQuantity as FilmQuantity
+from .raster.output import write_raster as write_raster
+from .raster.raster import Raster as Raster
+from .raster.raster import read_raster as read_raster
+from .vdb.program import vdb_available as vdb_available
+from .vdb.writing import WrittenVdb as WrittenVdb
+from .vdb.writing import write_vdb as write_vdb
+from .voxels.open_voxels import open_voxels as open_voxels
+from .voxels.voxel_file import VoxelFile as VoxelFile
+from .weather.joined import read_stations as read_stations
+from .weather.observation import Observation as Observation
+from .weather.observation import Station as Station
+from .weather.recognise import read_station as read_station

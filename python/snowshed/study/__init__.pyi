@@ -1,0 +1,17 @@
+from .definition import Study as Study
+from .errors import StudyError as StudyError
+from .errors import StudyInterrupted as StudyInterrupted
+from .factors import Factor as Factor
+from .factors import Span as Span
+from .factors import axis as axis
+from .factors import latin_hypercube as latin_hypercube
+from .factors import linear as linear
+from .factors import logarithmic as logarithmic
+from .factors import sobol as sobol
+from .formats import export as export
+from .formats import to_dataset as to_dataset
+from .remeasuring import remeasure as remeasure
+from .scene_hash import Run as Run
+from .season_part import SeasonPart as SeasonPart
+from .session import resume as resume
+from .table import read_table as read_table
