@@ -126,7 +126,7 @@ def test_what_does_not_fit_together_is_named():
     for wrong, message in (
         (table.drop(columns="panel.tilt"), "no axis panel.tilt"),
         (table.assign(**{COHESION: 0.1, SLOPE: 0.5, PRESSURE: 1e3}), "only tilt and seed vary"),
-        (table.assign(height_m=np.nan), "nothing of it is computed yet"),
+        (table.assign(height_m=np.nan), "none of its runs is computed yet"),
         (
             table.assign(**{COHESION: ["soft", "hard"] * (len(table) // 2)}),
             "cohesion: holds 'soft'",

@@ -148,7 +148,7 @@ def test_what_is_wrong_is_said(tmp_path, capsys):
             ("--stored", tmp_path / "store", "--method", "sobol", *out),
             "grid: points 1 to 4 are not",
         ),
-        (("--stored", tmp_path / "empty", *out), "nothing of it is computed yet"),
+        (("--stored", tmp_path / "empty", *out), "none of its runs is computed yet"),
         (("--stored", tmp_path / "words", *out), "numerics.transfer: holds 'flip'"),
         (("--study", bad, *out), "bad.toml: snow.cohesoin"),
         (("--study", tmp_path / "none.toml", *out), "none.toml: No such file"),
