@@ -1,4 +1,14 @@
+from . import analysis as analysis
+from . import io as io
+from . import methods as methods
+from . import plot as plot
 from . import pv as pv
+from . import results as results
+from . import running as running
+from . import scene as scene
+from . import season as season
+from . import snow as snow
+from . import study as study
 from ._core import InputError as InputError
 from ._core import SimulationError as SimulationError
 from .analysis.clearance.clearance import clearance as clearance

@@ -1,5 +1,5 @@
-from .accuracy.stack_error import StackError as StackError
-from .accuracy.stack_error import stack_error as stack_error
+from .accuracy.stack_errors import StackError as StackError
+from .accuracy.stack_errors import stack_error as stack_error
 from .calibration.comparison import Simulated as Simulated
 from .calibration.comparison import compare_stacks as compare_stacks
 from .calibration.comparison import read_simulated as read_simulated

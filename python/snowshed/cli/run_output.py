@@ -8,7 +8,7 @@ from typing import Any, Optional
 
 from rich.table import Table
 
-from snowshed.analysis.accuracy.stack_error import stack_error
+from snowshed.analysis.accuracy.stack_errors import stack_error
 from snowshed.cli.terminal import PlainConsole, plain_table, wide_console
 from snowshed.io.json_file import read_object
 from snowshed.methods.registry import method_of, settings_of

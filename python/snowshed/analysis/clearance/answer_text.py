@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from snowshed.analysis.accuracy.stack_error import recorded_bias
+from snowshed.analysis.accuracy.stack_errors import recorded_bias
 from snowshed.analysis.clearance.answer import Answer
 from snowshed.analysis.clearance.design import MEANING, Ranges
 from snowshed.base.formatting import plural

@@ -88,7 +88,7 @@ def _input(text: str) -> tuple[str, float]:
 
 def print_prediction(prediction: Prediction, title: str) -> None:
     """Print the answers, one line per event, and mark extrapolated ones."""
-    from snowshed.analysis.accuracy.stack_error import recorded_bias
+    from snowshed.analysis.accuracy.stack_errors import recorded_bias
     from snowshed.analysis.regression.rows import TARGETS
     from snowshed.snow.stack.quantities import measure_named
 

@@ -273,7 +273,7 @@ def _print_cost(
 
 def print_season(result: SeasonResult, folder: Path) -> None:
     """Print the table, the event that buries the panel, and notes on the limits of the results."""
-    from snowshed.analysis.accuracy.stack_error import recorded_bias
+    from snowshed.analysis.accuracy.stack_errors import recorded_bias
     from snowshed.season.driver import verdict
 
     console = wide_console(120)

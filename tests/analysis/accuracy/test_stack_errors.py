@@ -4,7 +4,8 @@ from snowshed import Scene
 from snowshed.analysis.accuracy.measurements import Measured, Measurement
 from snowshed.analysis.accuracy.recorded import load_recorded
 from snowshed.analysis.accuracy.recorded_stacks import CASE
-from snowshed.analysis.accuracy.stack_error import recorded_bias, stack_error
+from snowshed.analysis.accuracy.stack_errors import recorded_bias, stack_error
+from snowshed.scene import example_slide
 
 
 def stack(dx, height, length, **settings):
@@ -59,8 +60,8 @@ def test_the_sentence_names_the_recorded_scene_and_the_sign_of_the_error():
     assert text.endswith("single runs scatter by 4 % and 6 %")
 
 
-def test_scenes_without_a_stack_on_a_grid_have_none():
-    assert stack_error({"method": "mps", "numerics": {"spacing": 0.01}}, RECORDED) is None
+def test_scenes_without_a_stack_on_a_grid_have_none(tmp_path):
+    assert stack_error(example_slide(tmp_path), RECORDED) is None
     assert stack_error(scene(), []) is None
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import Any, Optional, Union
+from typing import Optional, Union
 
 from snowshed.analysis.accuracy.measurements import Measurement, Settings
 from snowshed.analysis.accuracy.recorded import load_recorded
@@ -88,7 +88,7 @@ class StackError:
 
 
 def stack_error(
-    scene: Union[Scene, ResolvedScene, Mapping[str, Any]],
+    scene: Union[Scene, ResolvedScene],
     measurements: Optional[Iterable[Measurement]] = None,
 ) -> Optional[StackError]:
     """Return the error of a scene's stack after its last event, from the nearest recorded runs.
@@ -96,7 +96,7 @@ def stack_error(
     Parameters
     ----------
     scene
-        The scene, or the data of a resolved scene.
+        The scene.
     measurements
         Recorded measurements; by default those of the package.
 
@@ -110,8 +110,7 @@ def stack_error(
     >>> stack_error(Scene.preset("lab-50").with_({"numerics.dx": 0.02})).recorded_cells
     1.0
     """
-    data = scene.resolve().data if isinstance(scene, Scene) else scene
-    data = data.data if isinstance(data, ResolvedScene) else data
+    data = (scene.resolve() if isinstance(scene, Scene) else scene).data
     thickness = None if data.get("panel") is None else slab_thickness(data)
     if thickness is None or not isinstance(settings_of(data), MpmSettings):
         return None
