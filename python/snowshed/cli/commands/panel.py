@@ -8,6 +8,7 @@ from typing import Any, Optional
 import click
 
 from snowshed.cli.accuracy import accuracy_option
+from snowshed.cli.check import check_option, check_run
 from snowshed.cli.common_options import run_options
 from snowshed.cli.dry_run import print_cost
 from snowshed.cli.resolve_options import resolve_options
@@ -18,6 +19,7 @@ from snowshed.cli.scene_options import scene_options
 @click.command()
 @run_options
 @accuracy_option
+@check_option
 @scene_options
 def panel(
     folder: Path,
@@ -25,6 +27,7 @@ def panel(
     dry_run: bool,
     quiet: bool,
     accuracy: Optional[float],
+    check: bool,
     preset: Optional[str],
     snow_preset: Optional[str],
     **options: Any,
@@ -41,3 +44,5 @@ def panel(
         print_cost(scene)
     else:
         run_scene(scene, folder, resume, quiet)
+        if check:
+            check_run(folder, quiet)

@@ -8,6 +8,7 @@ from typing import Optional
 import click
 
 from snowshed.cli.accuracy import accuracy_option
+from snowshed.cli.check import check_option, check_run
 from snowshed.cli.common_options import PATH, run_options
 from snowshed.cli.dry_run import print_cost
 from snowshed.cli.resolve_options import with_accuracy
@@ -19,6 +20,7 @@ from snowshed.scene.scene import ResolvedScene, Scene
 @click.argument("scene", type=PATH)
 @run_options
 @accuracy_option
+@check_option
 def run(
     scene: Path,
     folder: Path,
@@ -26,6 +28,7 @@ def run(
     dry_run: bool,
     quiet: bool,
     accuracy: Optional[float],
+    check: bool,
 ) -> None:
     """Run a scene file.
 
@@ -39,6 +42,8 @@ def run(
         print_cost(resolved)
     else:
         run_scene(resolved, folder, resume, quiet)
+        if check:
+            check_run(folder, quiet)
 
 
 @click.command(hidden=True)
