@@ -31,7 +31,15 @@ def test_rows_go_from_the_beginning_of_each_event_to_its_end(finished):
 def test_every_row_balances(finished):
     table = Results(finished).energy_history
     stored = table[["kinetic_j", "gravitational_j", "elastic_j"]].sum(axis=1)
-    spent = ["plastic_j", "friction_j", "sticking_j", "impact_j", "transfer_j", "sleep_j"]
+    spent = [
+        "plastic_j",
+        "friction_j",
+        "sticking_j",
+        "impact_j",
+        "transfer_j",
+        "sleep_j",
+        "damping_j",
+    ]
     balance = stored + table[spent].sum(axis=1) - table.added_j
     assert balance.to_numpy() == pytest.approx(table.residual_j.to_numpy(), abs=1e-7)
 

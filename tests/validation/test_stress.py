@@ -23,7 +23,7 @@ class Ledger:
     """A simulation that consists of its energies and two particles."""
 
     def __init__(self) -> None:
-        self.values = {f"{name}_j": 0.0 for name in (*TERMS, "transfer", "sleep")}
+        self.values = {f"{name}_j": 0.0 for name in (*TERMS, "transfer", "sleep", "damping")}
         self.velocity = np.zeros((2, 3))
 
     def energy(self) -> dict[str, float]:

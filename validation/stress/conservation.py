@@ -13,7 +13,15 @@ from snowshed import _core
 #: a cell are no measure for an error.
 LEAST_DROP = 1e-2
 
-_SPENT = ("plastic_j", "friction_j", "sticking_j", "impact_j", "transfer_j", "sleep_j")
+_SPENT = (
+    "plastic_j",
+    "friction_j",
+    "sticking_j",
+    "impact_j",
+    "transfer_j",
+    "sleep_j",
+    "damping_j",
+)
 
 
 class Conservation:

@@ -5,6 +5,11 @@
 //   p0 = K sinh(xi max(-e_v, 0)),  K = E/(3 - 6 nu)                   (1.2.7)
 //
 // p is positive in compression; e_v, the volumetric plastic strain, is negative in compaction.
+//
+// With a crack band (Bazant and Oh 1983), snow that has dilated beyond its initial plastic strain
+// e_0 softens s times as fast: (1.2.7) holds with e_0 + s (e_v - e_0) in place of e_v > e_0. Cracks
+// are a few cells wide on any grid; with s in proportion to the cells, the energy that a crack
+// takes per area is the same on all. s = 1 is the law without it, bit for bit.
 #pragma once
 
 #include "snowshed/core/simd_math.hpp"
@@ -18,26 +23,29 @@ struct PQ {
   V p, q;
 };
 
-/// Constants and return mapping of a Cam-Clay material. C is a scalar if all particles of a pack
-/// share the constants, and a SIMD pack if each particle has its own.
-template <class C>
-struct CamClay {
+/// Constants and return mapping of a Cam-Clay material, with or without a crack band. C is a scalar
+/// if all particles of a pack share the constants, and a SIMD pack if each particle has its own.
+template <class C, bool band>
+struct CamClayLaw {
   using T = Scalar<C>;
   Elasticity<C> elastic;
   C m2{};         ///< M^2, M the slope of the critical state line
   C beta{};       ///< cohesion: tensile strength over p0
   C xi{};         ///< hardening factor
   C hardening{};  ///< K, Pa
+  // Of the crack band only.
+  C softening = C{} + T(1);  ///< s
+  C band_begin{};            ///< e_0
 
   static constexpr bool plastic = true;
 
   /// Returns the constants from E (Pa), nu, M, beta, xi. M is at least 1e-4. This stands for the
   /// frictionless limit, in which snow carries no shear but keeps its tensile strength and its
   /// preconsolidation pressure.
-  static CamClay from(double youngs_modulus, double poissons_ratio, double critical_state_slope,
-                      double cohesion, double hardening_factor, int dimension) {
+  static CamClayLaw from(double youngs_modulus, double poissons_ratio, double critical_state_slope,
+                         double cohesion, double hardening_factor, int dimension) {
     const double slope = critical_state_slope > 1e-4 ? critical_state_slope : 1e-4;
-    CamClay c;
+    CamClayLaw c;
     c.elastic = Elasticity<C>::from(youngs_modulus, poissons_ratio, dimension);
     c.m2 = C(slope * slope);
     c.beta = C(cohesion);
@@ -54,8 +62,8 @@ struct CamClay {
   /// Returns p0 of (1.2.7), Pa; `slope` receives d p0 / d e_v.
   template <class V>
   SNOWSHED_INLINE V preconsolidation(const V& ev, V& slope) const {
-    const auto k = hyperbolic(max(V(-xi * ev), broadcast<V>(T(0))));
-    slope = select(ev < T(0), V(-xi * k.cosh), broadcast<V>(T(0)));
+    const auto k = hyperbolic(max(V(-xi * softened(ev)), broadcast<V>(T(0))));
+    slope = select(ev < end_of_strength(ev), strength_slope(k, ev), broadcast<V>(T(0)));
     return k.sinh;
   }
   template <class V>
@@ -80,7 +88,7 @@ struct CamClay {
   template <class V>
   SNOWSHED_INLINE bool return_map(PQ<V>& s, V& ev) const {
     // Snow that dilated far beyond the loss of its strength (u < -1) has none; u is clamped there.
-    const auto hardness = hyperbolic(max(V(-xi * ev), broadcast<V>(T(-1))));
+    const auto hardness = hyperbolic(max(V(-xi * softened(ev)), broadcast<V>(T(-1))));
     const auto yields = yield(s, strength(hardness)) > T(0);
     if (!any(yields)) return false;
     project(s, ev, hardness, yields);
@@ -88,6 +96,34 @@ struct CamClay {
   }
 
  private:
+  /// The plastic strain that stands in (1.2.7) for e_v.
+  template <class V>
+  SNOWSHED_INLINE V softened(const V& ev) const {
+    if constexpr (band)
+      return ev + (softening - T(1)) * max(V(ev - band_begin), broadcast<V>(T(0)));
+    else
+      return ev;
+  }
+  /// How it changes while e_v changes by d.
+  template <class V>
+  SNOWSHED_INLINE V softened_by(const V& ev, const V& d) const {
+    if constexpr (band) {
+      const V zero = broadcast<V>(T(0));
+      return d + (softening - T(1)) *
+                     (max(V(ev + d - band_begin), zero) - max(V(ev - band_begin), zero));
+    } else {
+      return d;
+    }
+  }
+  /// e_v from which on p0 is zero.
+  template <class V>
+  SNOWSHED_INLINE V end_of_strength(const V&) const {
+    if constexpr (band)
+      return broadcast<V>(C(band_begin - band_begin / softening));
+    else
+      return broadcast<V>(T(0));
+  }
+
   /// K sinh(u) and K cosh(u), Pa.
   template <class V>
   struct Hyperbolic {
@@ -111,6 +147,20 @@ struct CamClay {
     return {k.sinh * cosh_w + k.cosh * sinh_w, k.cosh * cosh_w + k.sinh * sinh_w};
   }
 
+  /// How many times faster than in (1.2.7) snow softens at e_v.
+  template <class V>
+  SNOWSHED_INLINE V softening_at(const V& ev) const {
+    return select(ev > band_begin, broadcast<V>(softening), broadcast<V>(T(1)));
+  }
+  /// d p0 / d e_v where p0 > 0.
+  template <class V>
+  SNOWSHED_INLINE V strength_slope(const Hyperbolic<V>& k, const V& ev) const {
+    if constexpr (band)
+      return V(-xi * k.cosh) * softening_at(ev);
+    else
+      return V(-xi * k.cosh);
+  }
+
   /// p0 from K sinh(u).
   template <class V>
   static SNOWSHED_INLINE V strength(const Hyperbolic<V>& k) {
@@ -130,8 +180,8 @@ struct CamClay {
   template <class V>
   SNOWSHED_INLINE V preconsolidation_after(const Trial<V>& trial, const V& d, V& slope) const {
     if (!trial.series_suffices) return preconsolidation(V(trial.ev + d), slope);
-    const auto k = shifted(trial.hardness, V(-xi * d));
-    slope = select(k.sinh > T(0), V(-xi * k.cosh), broadcast<V>(T(0)));
+    const auto k = shifted(trial.hardness, V(-xi * softened_by(trial.ev, d)));
+    slope = select(k.sinh > T(0), strength_slope(k, V(trial.ev + d)), broadcast<V>(T(0)));
     return strength(k);
   }
 
@@ -148,13 +198,14 @@ struct CamClay {
     const auto compacts = n_trial > T(0);
 
     // The far end of the bracket. In compaction p = 0 lies past the centre. In dilation p0 reaches
-    // zero at D = -e_v (if e_v < 0).
-    const V far = select(compacts, to_origin, max(V(-ev), zero));
+    // zero at the end of strength, D = -e_v without a crack band (if e_v < 0).
+    const V end = end_of_strength(ev);
+    const V far = select(compacts, to_origin, max(V(end - ev), zero));
     // Loose snow has no strength left at the end: either p0 stays zero on the way to p = 0, or the
     // tension remains after softening to p0 = 0. Its stress becomes zero and e_v takes the rest of
     // the volume.
-    const auto loose = ev + to_origin >= T(0);
-    trial.series_suffices = !any(abs(V(xi * far)) > series_limit);
+    const auto loose = ev + to_origin >= end;
+    trial.series_suffices = !any(abs(V(xi * softened_by(ev, far))) > series_limit);
 
     const V d = root(trial, n_trial, far, yields & !loose);
 
@@ -195,7 +246,10 @@ struct CamClay {
         max(V((trial.p + beta * p0_old) * (p0_old - trial.p)), V(T(0.05) * p0_old * p0_old));
     const V q_s = sqrt(V(m2 / (T(1) + T(2) * beta) * inside));
     const V excess = clamp(V(trial.q / (q_s + T(1e-30)) - T(1)), zero, broadcast<V>(T(1e6)));
-    const V n_slope_trial = T(2) * elastic.bulk + (T(1) - beta) * xi * from.hardness.cosh;
+    V hardening_rate = broadcast<V>(xi);
+    if constexpr (band) hardening_rate = hardening_rate * softening_at(from.ev);
+    const V n_slope_trial =
+        T(2) * elastic.bulk + (T(1) - beta) * hardening_rate * from.hardness.cosh;
     V d = -n_trial * excess / (c + n_slope_trial * excess);
     d = select(abs(d) < abs(far), d, V(T(0.5) * far));
     auto active = sought;
@@ -248,5 +302,10 @@ struct CamClay {
     return select(sought, d, zero);
   }
 };
+
+template <class C>
+using CamClay = CamClayLaw<C, false>;
+template <class C>
+using BandedCamClay = CamClayLaw<C, true>;
 
 SNOWSHED_VARIANT_END

@@ -13,11 +13,14 @@ namespace snowshed {
 struct EnergyBalance {
   double kinetic = 0, gravitational = 0, elastic = 0;
   double plastic = 0, friction = 0, sticking = 0, impact = 0, transfer = 0;
-  double sleep = 0;  // motion that snow lost as it fell asleep
-  double added = 0;  // brought by particles that were added
+  double sleep = 0;    // motion that snow lost as it fell asleep
+  double damping = 0;  // over a length; that of PIC is part of the transfer
+  double added = 0;    // brought by particles that were added
 
   double stored() const { return kinetic + gravitational + elastic; }
-  double spent() const { return plastic + friction + sticking + impact + transfer + sleep; }
+  double spent() const {
+    return plastic + friction + sticking + impact + transfer + sleep + damping;
+  }
   double residual() const { return stored() + spent() - added; }
 };
 
@@ -32,11 +35,12 @@ inline std::vector<std::string> names_of(const NamedEnergies& energies) {
 
 /// Returns the balance as tables have it, names with units.
 inline NamedEnergies named_energies(const EnergyBalance& e) {
-  return {
-      {"kinetic_j", e.kinetic}, {"gravitational_j", e.gravitational}, {"elastic_j", e.elastic},
-      {"plastic_j", e.plastic}, {"friction_j", e.friction},           {"sticking_j", e.sticking},
-      {"impact_j", e.impact},   {"transfer_j", e.transfer},           {"sleep_j", e.sleep},
-      {"added_j", e.added},     {"residual_j", e.residual()}};
+  return {{"kinetic_j", e.kinetic},   {"gravitational_j", e.gravitational},
+          {"elastic_j", e.elastic},   {"plastic_j", e.plastic},
+          {"friction_j", e.friction}, {"sticking_j", e.sticking},
+          {"impact_j", e.impact},     {"transfer_j", e.transfer},
+          {"sleep_j", e.sleep},       {"damping_j", e.damping},
+          {"added_j", e.added},       {"residual_j", e.residual()}};
 }
 
 }  // namespace snowshed

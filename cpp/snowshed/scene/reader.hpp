@@ -49,6 +49,7 @@ class Reader : public Checker {
     if (object_.contains(key) && object_.contains(other))
       throw InputError(at(key), "takes the place of " + at(other) + "; give one of the two");
     keys_.push_back(key);
+    if (object_.contains(other)) value.reset();
     if (object_.contains(key)) number(key, value.emplace(), unit, range, doc);
   }
 

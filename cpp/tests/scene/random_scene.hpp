@@ -205,7 +205,11 @@ inline Scene random_scene(std::uint64_t seed) {
     mend_mps(scene);
   } else {
     mpm::Settings& numerics = scene.numerics.as<mpm::Settings>();
-    if (numerics.transfer != mpm::Transfer::flip) numerics.damping_rate.reset();
+    numerics.scheme = mpm::Scheme::thesis;
+    if (numerics.transfer == mpm::Transfer::apic) numerics.damping_rate.reset();
+    if (numerics.transfer != mpm::Transfer::affine_flip || !numerics.damping_rate)
+      numerics.damping_length = 0;
+    if (numerics.crack_band_length > 0) numerics.crack_band_length = 2 * numerics.dx;
     if (numerics.damping_rate) numerics.flip_ratio = mpm::Settings{}.flip_ratio;
   }
   for (auto& body : scene.bodies) body.event = std::min(body.event, scene.events.count);

@@ -73,6 +73,7 @@ TEST(SceneJson, EveryFieldIsRead) {
     "seeding": {"particles_per_voxel": 3, "pattern": "regular", "seed": 18446744073709551615,
                 "allow_sparse": true},
     "numerics": {"dx": 0.02, "precision": "double", "transfer": "apic", "flip_ratio": 0.5,
+                 "crack_band_length": 0.03, "contact": "touch", "contact_radius": 0.7,
                  "basis": "cubic", "courant_factor": 0.3, "strain_limit": 0.1, "sleep_speed": 0.4,
                  "sleep_time": 0.7, "threads": 3},
     "events": {"count": 4, "between": "reseed", "max_time": 3, "rest_speed": 0.1,
@@ -87,9 +88,11 @@ TEST(SceneJson, EveryFieldIsRead) {
   EXPECT_TRUE(*scene.ground == (Ground{-5, Condition::slip, 0.4}));
   EXPECT_TRUE(*scene.domain == (Domain{Vec3(-5, -4, -3), Vec3(6, 5, 4)}));
   EXPECT_TRUE(scene.seeding == (Seeding{3, SeedPattern::regular, 18446744073709551615u, true}));
-  EXPECT_TRUE(scene.numerics.as<mpm::Settings>() ==
-              (mpm::Settings{0.02, mpm::Precision::float64, mpm::Transfer::apic, 0.5, std::nullopt,
-                             mpm::Basis::cubic, 0.3, 0.1, 0.4, 0.7, 3}));
+  EXPECT_TRUE(
+      scene.numerics.as<mpm::Settings>() ==
+      (mpm::Settings{mpm::Scheme::thesis, 0.02, mpm::Precision::float64, mpm::Transfer::apic, 0.5,
+                     std::nullopt, 0, 0.03, mpm::Contacting::touch, 0.7, mpm::Basis::cubic, 0.3,
+                     0.1, 0.4, 0.7, 3}));
   EXPECT_TRUE(scene.events == (Events{4, Between::reseed, 3, 0.1, 0.2}));
   EXPECT_TRUE(scene.output == (Output{0.25, false, 0.5, true, 30}));
 
@@ -280,6 +283,31 @@ TEST(SceneJson, SlipOfVersion1IsSeparate) {
   EXPECT_EQ(present.panel->condition, Condition::slip);
   EXPECT_EQ(present.obstacles[1].condition, Condition::slip);
   EXPECT_TRUE(notes.empty());
+}
+
+TEST(SceneJson, ASchemeSetsItsMechanismsUnlessTheyAreGiven) {
+  const auto numerics = [](const std::string& given) {
+    return parse_scene(
+               R"({"snowshed": 2, "bodies": [{"shape": {"type": "sphere", "radius": 1}}],
+                           "numerics": {)" +
+               given + "}}")
+        .numerics.as<mpm::Settings>();
+  };
+  mpm::Settings expected;
+  expected.adopt(mpm::Scheme::objective);
+  EXPECT_TRUE(numerics(R"("scheme": "objective")") == expected);
+  EXPECT_EQ(expected.transfer, mpm::Transfer::affine_flip);
+  EXPECT_EQ(*expected.damping_rate, 380.0);
+  expected.damping_rate = 190;
+  expected.crack_band_length = 0.02;
+  expected.dx = 0.02;
+  const std::string given =
+      R"("crack_band_length": 0.02, "dx": 0.02, "damping_rate": 190, "scheme": "objective")";
+  EXPECT_TRUE(numerics(given) == expected);
+  EXPECT_TRUE(numerics(R"("scheme": "thesis")") == mpm::Settings{});
+  expected = {};
+  expected.contact = mpm::Contacting::touch;  // a mechanism alone
+  EXPECT_TRUE(numerics(R"("contact": "touch")") == expected);
 }
 
 TEST(SceneJson, ADampingRateTakesThePlaceOfTheFlipRatio) {

@@ -19,7 +19,11 @@ Obstacle thick_enough(Obstacle obstacle, double dx, int dimension) {
 }
 
 template <class T, int D>
-Boundary<T, D>::Boundary(std::vector<Obstacle> obstacles, double dx) : dx_(dx) {
+Boundary<T, D>::Boundary(std::vector<Obstacle> obstacles, double dx, std::vector<Shape> surfaces,
+                         double margin)
+    : surfaces_(std::move(surfaces)), dx_(dx), margin_(margin) {
+  if (surfaces_.empty())
+    for (const Obstacle& o : obstacles) surfaces_.push_back(o.shape);
   for (Obstacle& o : obstacles) {
     laws_.push_back(o.law);
     any_motion_ = any_motion_ || o.motion.has_value();
@@ -58,11 +62,14 @@ void Boundary<T, D>::find(BlockKey key, double time, bool moving,
     if (obstacle.motion.has_value() != moving) continue;
     const RigidPose pose = moving ? obstacle.motion->at(time) : RigidPose{};
     const auto local = [&](const Vec3& x) { return moving ? pose.to_body(x) : x; };
-    if (obstacle.shape->distance(local(embed(block_centre<D>(block, dx_)))) > reach) continue;
+    if (obstacle.shape->distance(local(embed(block_centre<D>(block, dx_)))) > reach + margin_)
+      continue;
     for (int node = 0; node < block_nodes<D>; ++node) {
       const Vec3 x = embed(node_position<D>(block, node, dx_));
       const Vec3 body = local(x);
-      if (!(obstacle.shape->distance(body) <= on_surface)) continue;
+      if (!(obstacle.shape->distance(body) <= on_surface) &&
+          !(margin_ > 0 && surfaces_[o]->distance(body) <= margin_))
+        continue;
       Vec3 normal = obstacle.shape->normal(body);
       if (moving) normal = pose.normal_to_world(normal);
       VecD<D> n = section<D>(normal);

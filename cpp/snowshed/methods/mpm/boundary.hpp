@@ -9,6 +9,7 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 #include <vector>
 
 #include "snowshed/geometry/thickened.hpp"
@@ -26,23 +27,47 @@ Obstacle thick_enough(Obstacle obstacle, double dx, int dimension);
 template <class T, int D>
 class Boundary {
  public:
-  Boundary(std::vector<Obstacle> obstacles, double dx);
+  /// `surfaces` are the obstacles as they are given, before thin parts were made thicker; without
+  /// them the obstacles themselves are. Nodes within a `margin` (m) outside these have contacts,
+  /// too.
+  Boundary(std::vector<Obstacle> obstacles, double dx, std::vector<Shape> surfaces = {},
+           double margin = 0);
 
   const std::vector<ContactLaw>& laws() const { return laws_; }
   bool any_motion() const { return any_motion_; }
+  std::size_t size() const { return obstacles_.size(); }
   bool any_slip() const {
     return std::any_of(laws_.begin(), laws_.end(),
                        [](const ContactLaw& law) { return law.condition == Condition::slip; });
   }
   bool is_moving(const Contact<T>& c) const { return obstacles_[c.obstacle].motion.has_value(); }
 
+  /// An obstacle as it is given, at a time.
+  class Surface {
+   public:
+    Surface(const LevelSet& shape, const std::optional<RigidMotion>& motion, double time)
+        : shape_(shape) {
+      if (motion) pose_ = motion->at(time);
+    }
+    /// Signed, m.
+    double distance(const Vec3& x) const { return shape_.distance(pose_ ? pose_->to_body(x) : x); }
+
+   private:
+    const LevelSet& shape_;
+    std::optional<RigidPose> pose_;
+  };
+  Surface surface(std::int32_t obstacle, double time) const {
+    return {*surfaces_[obstacle], obstacles_[obstacle].motion, time};
+  }
+
   /// Appends a block's contacts at a time: with the obstacles that move, or with those at rest.
   void find(BlockKey block, double time, bool moving, std::vector<Contact<T>>& found) const;
 
  private:
   std::vector<Obstacle> obstacles_;
+  std::vector<Shape> surfaces_;  // of the obstacles as they are given
   std::vector<ContactLaw> laws_;
-  double dx_;
+  double dx_, margin_;
   bool any_motion_ = false;
 };
 

@@ -32,7 +32,8 @@ void visit_particles(Archive& archive, Particles& particles, std::size_t materia
 }
 
 template <class T, int D, class Archive, class Layout, class Progress>
-void visit_rest(Archive& archive, Layout& layout, Stored<T, D>& stored, Progress& p) {
+void visit_rest(Archive& archive, Layout& layout, Stored<T, D>& stored, Progress& p,
+                const Settings& settings) {
   const std::size_t blocks = archive.size("blocks/keys", layout.particle_blocks);
   archive.array("blocks/keys", layout.particle_blocks, blocks);
   archive.array("blocks/first", layout.first, blocks + 1);
@@ -56,6 +57,10 @@ void visit_rest(Archive& archive, Layout& layout, Stored<T, D>& stored, Progress
   archive.numbers("clock", p.time, p.dt, p.speed, c.smallest_dt, p.stress_power);
   archive.counts("counters", c.steps, c.rejected, c.sorts, c.particle_updates, p.slept_updates,
                  p.next_id);
+  if (settings.damps_over_length()) {
+    archive.numbers("damping", p.undamped_time, e.damping);
+    archive.counts("damping_steps", p.undamped_steps);
+  }
 }
 
 /// Blocks without particles would take memory out of all proportion to the file.
@@ -104,7 +109,7 @@ void SolverImpl<T, D>::save(BinaryWriter& out) const {
   StateWriter archive(out);
   Stored<T, D> stored{state_.contacts.stored_impulses(), state_.sleep.states()};
   visit_particles(archive, state_.particles, model_.materials.size());
-  visit_rest<T, D>(archive, state_.layout, stored, state_.progress);
+  visit_rest<T, D>(archive, state_.layout, stored, state_.progress, model_.options.settings);
 }
 
 template <class T, int D>
@@ -114,7 +119,7 @@ State<T, D> SolverImpl<T, D>::read_state(const BinaryReader& in) const {
   Stored<T, D> stored;
   visit_particles(archive, next.particles, model_.materials.size());
   check_materials(archive, next.particles.material_id, model_.materials.size());
-  visit_rest<T, D>(archive, next.layout, stored, next.progress);
+  visit_rest<T, D>(archive, next.layout, stored, next.progress, model_.options.settings);
   next.find_elastic_limits(model_);
   next.layout =
       whole_layout<T>(archive, std::move(next.layout), next.particles.size(), work_.grid.tile_size);

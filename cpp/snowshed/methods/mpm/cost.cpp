@@ -124,12 +124,17 @@ std::vector<Feature> features_of(const Settings& n, const SceneView& scene,
   const bool yields = std::any_of(outline.snows.begin(), outline.snows.end(), [](const Snow& snow) {
     return snow.model == SnowModel::cam_clay;
   });
-  std::vector<Feature> features{{"third dimension", scene.dimension == 3},
-                                {"double precision", n.precision == Precision::float64},
-                                {"plasticity and hardening (Cam-Clay)", yields},
-                                {"several snows", outline.snows.size() > 1},
-                                {"APIC affine velocities", n.transfer == Transfer::apic},
-                                {"cubic B-splines", n.basis == Basis::cubic}};
+  std::vector<Feature> features{
+      {"third dimension", scene.dimension == 3},
+      {"double precision", n.precision == Precision::float64},
+      {"plasticity and hardening (Cam-Clay)", yields},
+      {"several snows", outline.snows.size() > 1},
+      {"APIC affine velocities", n.transfer == Transfer::apic},
+      {"FLIP with affine velocities", n.transfer == Transfer::affine_flip},
+      {"damping over a length", n.damps_over_length()},
+      {"crack band", n.crack_band_length > 0},
+      {"contact by touch", n.contact == Contacting::touch},
+      {"cubic B-splines", n.basis == Basis::cubic}};
   for (const auto& [condition, name] : EnumNames<Condition>::list) {
     const bool of_domain = condition == Condition::sticky && outline.has_domain;
     features.push_back(

@@ -5,17 +5,35 @@
 namespace snowshed::mpm {
 
 void describe(SettingsVisitor& v, Settings& n) {
-  v.accuracy({"dx", "precision", "transfer", "flip_ratio", "damping_rate", "basis",
+  v.accuracy({"dx", "scheme", "precision", "transfer", "flip_ratio", "damping_rate",
+              "damping_length", "crack_band_length", "contact", "contact_radius", "basis",
               "courant_factor", "strain_limit", "sleep_speed", "sleep_time"});
   v.alias("courant_factor", "step_factor");  // its name up to version 0.1
   v.number("dx", n.dx, "m", allowed::size, "Size of grid cells and voxels");
+  const Scheme before = n.scheme;
+  v.choice("scheme", n.scheme,
+           "Mechanisms that belong together: objective sets transfer affine_flip, damping_rate 380 "
+           "1/s, damping_length and crack_band_length 0.01 m, and contact touch, unless they are "
+           "given; thesis sets what these settings are by default");
+  if (n.scheme != before) n.adopt(n.scheme);  // what is read next may differ from it
   v.choice("precision", n.precision, "Floating-point type of the particles and the grid");
   v.choice("transfer", n.transfer, "Transfer of velocities between particles and grid");
   v.number(
       "flip_ratio", n.flip_ratio, "", fraction,
       "Share of FLIP in FLIP/PIC in each step, so that shorter steps damp more; 0 is pure PIC");
   v.number_instead("damping_rate", n.damping_rate, "flip_ratio", "1/s", non_negative.up_to(1e9),
-                   "In place of flip_ratio: rate of the damping by PIC, whatever the step");
+                   "In place of flip_ratio: rate of the damping, whatever the step");
+  v.number("damping_length", n.damping_length, "m", allowed::size_or_zero,
+           "Length over which velocities are averaged to damp them at the damping rate, whatever "
+           "the grid, with affine_flip; 0: the damping is PIC's, over dx");
+  v.number("crack_band_length", n.crack_band_length, "m", allowed::size_or_zero,
+           "Snow that dilates softens dx over this length as fast as its law says, so that cracks "
+           "take the same energy per area on any grid; 0: the law itself");
+  v.choice("contact", n.contact,
+           "When an obstacle's node acts on snow: once its splines reach the node (kernel), or "
+           "once a particle with weight there touches the obstacle itself (touch)");
+  v.number("contact_radius", n.contact_radius, "", positive.up_to(1.0),
+           "Radius of the particles that touch, over half the spacing of particles");
   v.choice("basis", n.basis, "B-spline of the grid");
   v.number("courant_factor", n.courant_factor, "", positive.up_to(1.0),
            "Time step over the largest stable one");

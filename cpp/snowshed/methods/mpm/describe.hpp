@@ -16,7 +16,20 @@ struct EnumNames<mpm::Precision> {
 template <>
 struct EnumNames<mpm::Transfer> {
   static constexpr Named<mpm::Transfer> list[] = {{mpm::Transfer::flip, "flip"},
-                                                  {mpm::Transfer::apic, "apic"}};
+                                                  {mpm::Transfer::apic, "apic"},
+                                                  {mpm::Transfer::affine_flip, "affine_flip"}};
+};
+
+template <>
+struct EnumNames<mpm::Contacting> {
+  static constexpr Named<mpm::Contacting> list[] = {{mpm::Contacting::kernel, "kernel"},
+                                                    {mpm::Contacting::touch, "touch"}};
+};
+
+template <>
+struct EnumNames<mpm::Scheme> {
+  static constexpr Named<mpm::Scheme> list[] = {{mpm::Scheme::thesis, "thesis"},
+                                                {mpm::Scheme::objective, "objective"}};
 };
 
 template <>

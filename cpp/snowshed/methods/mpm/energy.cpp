@@ -10,11 +10,12 @@ namespace snowshed::mpm {
 template <class T, int D>
 void SolverImpl<T, D>::update_energy_balance() noexcept {
   Progress& p = state_.progress;
-  double kinetic = 0, elastic = 0, plastic = 0;
+  double kinetic = 0, elastic = 0, plastic = 0, damping = 0;
   for (const BlockStats& s : work_.grid.block_stats) {  // of sleeping blocks as they fell asleep
     kinetic += s.kinetic;
     elastic += s.elastic;
     plastic += s.plastic;
+    damping += s.damping;
   }
   double before = 0, after = 0, work = 0, power = 0;
   for (const BlockStats& s : work_.grid.block_stats) power += s.stress_power;
@@ -27,7 +28,8 @@ void SolverImpl<T, D>::update_energy_balance() noexcept {
     p.energy.impact += s.impact;
   }
   // What particles to grid and grid to particles took.
-  p.energy.transfer += (p.energy.kinetic - before) + (after - kinetic);
+  p.energy.transfer += (p.energy.kinetic - before) + (after - kinetic) - damping;
+  p.energy.damping += damping;
   // Velocities are those of half a step ago; taken at the time of the positions, the transfer
   // between two steps acts on velocities that have half of the coming step's force in them.
   p.energy.transfer -= 0.5 * (work - p.stress_power * p.dt);

@@ -48,8 +48,7 @@ double SolverImpl<T, D>::plastic_strain(std::size_t i) const {
 
 template <class T, int D>
 double SolverImpl<T, D>::volume_ratio(std::size_t i) const {
-  return std::exp(elastic_volume(i) + plastic_strain(i) -
-                  state_.material_of(model_, i).initial_plastic_strain);
+  return state_.volume_ratio(model_, i);
 }
 
 template <class T, int D>
@@ -206,7 +205,7 @@ MotionSummary SolverImpl<T, D>::motion(double speed) const {
 
 template <class T, int D>
 std::size_t SolverImpl<T, D>::bytes() const {
-  std::size_t total = work_.grid.bytes();
+  std::size_t total = work_.grid.bytes() + (work_.average ? work_.average->bytes() : 0);
   state_.particles.for_each_array(
       [&total](const char*, const auto& array) { total += bytes_of(array); });
   return total;

@@ -21,7 +21,8 @@ inline constexpr int block_nodes = block_edge<D> * block_edge<D> * (D == 3 ? blo
 
 /// Values per node, one 256-bit load in single precision.
 /// Sums:       mass, momentum (3), force (3), unused.
-/// Velocities: new velocity (3), unused, then its change over the step (FLIP) or itself (APIC).
+/// Velocities: new velocity (3), unused, then its change over the step (FLIP,
+///             affine FLIP) or itself (APIC).
 inline constexpr int node_values = 8;
 
 /// Nodes that a particle touches along one direction.
@@ -54,11 +55,25 @@ template <class T>
 struct ParticleView {
   T* cell[3];
   T* velocity[3];
-  T* affine[9];             // APIC only: C, row by row, 1/s
+  T* affine[9];             // C, row by row, 1/s; not of FLIP
   T* be_minus_identity[6];  // b_e the elastic left Cauchy-Green tensor
   T* plastic;               // volumetric plastic strain; plastic laws only
   T* mass;
   const std::uint8_t* material_id;  // which snow; only with several materials
+};
+
+/// Values per node of the coarse grid over which velocities are averaged: mass and momentum (3), or
+/// something and the mean velocity (3).
+inline constexpr int average_values = 4;
+
+/// That grid as far as the particles of a block reach. Its nodes are `edge` along each direction.
+template <class T>
+struct AverageTile {
+  T* values;
+  int edge;
+  T cell;       // dx over its spacing
+  T origin[3];  // of the block, in spacings from its first node
+  T share;      // of the difference from the average that a particle loses
 };
 
 /// What the kernels need of a snow. C is a scalar, or a SIMD pack: one value for each particle of a
@@ -68,6 +83,7 @@ struct MaterialConstants {
   C lambda, mu, bulk;         // Pa, see Elasticity
   C m2, beta, xi, hardening;  // see CamClay
   C specific_volume;          // m3/kg, before any deformation
+  C softening, band_begin;    // of a crack band, see CamClayLaw
 };
 
 template <class T>
@@ -110,6 +126,7 @@ struct BlockStats {
   std::int32_t unsound = -1;  // a particle strained beyond `elastic_strain_limit`, or not finite
   double elastic_strain = 0;  // of that particle
   double kinetic = 0, elastic = 0, plastic = 0;  // J; with the energy balance only
+  double damping = 0;       // J, kinetic energy that damping towards the average took
   double stress_power = 0;  // W, of the new stresses along the motion just made
 
   /// Of particles of which only this is known.
@@ -152,6 +169,7 @@ struct Contact {
                           // with slip, which holds against any pull, it may be negative
   T next_normal_impulse;  // the same after the step being tried
   Release release;
+  bool acts = true;  // whether snow has come close enough
 };
 
 template <class T>
@@ -161,9 +179,11 @@ struct Kernels {
                   BlockStats&);
   /// One step of a block's particles from the velocities of the 3^D blocks around, and their sums
   /// for the next step. `BlockStats::reach` says where the particles are, before and after it; the
-  /// tile holds nothing beyond.
+  /// tile holds nothing beyond. With an `average` (null: none) velocities are damped towards it.
   void (*g2p2g)(const StepParameters<T>&, const ParticleView<T>&, int first, int count,
-                const T* const* velocities, T* tile, BlockStats&);
+                const T* const* velocities, const AverageTile<T>* average, T* tile, BlockStats&);
+  /// Mass and momentum of a block's particles onto the coarse grid. Null but with affine FLIP.
+  void (*scatter_average)(const ParticleView<T>&, int first, int count, const AverageTile<T>&);
   /// Only the largest |dt grad v| that `g2p2g` would impose, of particles in `BlockStats::reach`.
   void (*probe)(const StepParameters<T>&, const ParticleView<T>&, int first, int count,
                 const T* const* velocities, BlockStats&);
@@ -171,6 +191,10 @@ struct Kernels {
   void (*gather)(const T* const* tiles, T* sums);
   /// Node velocities from the sums: forces, gravity, contact.
   void (*update)(const StepParameters<T>&, const T* sums, T* velocities, Contact<T>* contacts,
+                 int contact_count, const ContactLaw*, NodeStats&);
+  /// The same in two parts, between which other snow may act: forces and gravity; contact.
+  void (*update_free)(const StepParameters<T>&, const T* sums, T* velocities);
+  void (*finish)(const StepParameters<T>&, const T* sums, T* velocities, Contact<T>* contacts,
                  int contact_count, const ContactLaw*, NodeStats&);
   /// What the 3^D blocks of nodes around (null: at rest) would do to the snow on a tile, as far as
   /// its particles reach.
@@ -185,10 +209,14 @@ struct KernelChoice {
   SnowModel model;  // of the only snow
   bool several_materials = false;
   bool energy = false;
+  bool crack_band = false;
 
-  /// Whether the kernels look up each particle's material, of whatever model. With the energy
-  /// balance they always do: it serves checks and does not pay for kernels of each model.
-  bool material_per_particle() const { return several_materials || energy; }
+  /// Whether the kernels are those for checks, which know everything. Without an affine FLIP only
+  /// they know the crack band.
+  bool checks() const { return energy || (crack_band && transfer != Transfer::affine_flip); }
+  /// Whether the kernels look up each particle's material, of whatever model. Those for checks
+  /// always do, which saves kernels of each model.
+  bool material_per_particle() const { return several_materials || checks(); }
 };
 
 /// The best build of the chosen kernels for this machine, or the one that SNOWSHED_KERNELS names.

@@ -6,9 +6,12 @@ namespace snowshed::mpm {
 namespace {
 
 template <class T>
-CamClay<T> law_of(const Snow& s, int dimension) {
-  return CamClay<T>::from(s.youngs_modulus, s.poissons_ratio, s.critical_state_slope, s.cohesion,
-                          s.hardening_factor, dimension);
+BandedCamClay<T> law_of(const Snow& s, int dimension, double softening) {
+  auto law = BandedCamClay<T>::from(s.youngs_modulus, s.poissons_ratio, s.critical_state_slope,
+                                    s.cohesion, s.hardening_factor, dimension);
+  law.softening = T(softening);
+  law.band_begin = T(law.initial_plastic_strain(s.preconsolidation_pressure));
+  return law;
 }
 
 }  // namespace
@@ -19,15 +22,16 @@ Material::Material(const Snow& s, int dimension, const Settings& n)
       elastic_time_step(mpm::elastic_time_step(s.youngs_modulus, s.poissons_ratio, s.density,
                                                dimension, n.dx, n.transfer, n.basis)) {
   if (s.model == SnowModel::elastic) return;
-  law = law_of<double>(s, dimension);
-  initial_plastic_strain = law.initial_plastic_strain(s.preconsolidation_pressure);
+  law = law_of<double>(s, dimension, n.softening());
+  initial_plastic_strain = law.band_begin;
 }
 
 template <class T>
-MaterialConstants<T> material_constants(const Snow& s, int dimension) {
-  const CamClay<T> c = law_of<T>(s, dimension);
+MaterialConstants<T> material_constants(const Snow& s, int dimension, double softening) {
+  const BandedCamClay<T> c = law_of<T>(s, dimension, softening);
   MaterialConstants<T> k{c.elastic.lambda, c.elastic.mu, c.elastic.bulk, c.m2,
-                         c.beta,           c.xi,         c.hardening,    T(1 / s.density)};
+                         c.beta,           c.xi,         c.hardening,    T(1 / s.density),
+                         c.softening,      c.band_begin};
   if (s.model == SnowModel::elastic) {
     k.m2 = 0;
     k.beta = T(-0.5);
@@ -35,7 +39,7 @@ MaterialConstants<T> material_constants(const Snow& s, int dimension) {
   return k;
 }
 
-template MaterialConstants<float> material_constants(const Snow&, int);
-template MaterialConstants<double> material_constants(const Snow&, int);
+template MaterialConstants<float> material_constants(const Snow&, int, double);
+template MaterialConstants<double> material_constants(const Snow&, int, double);
 
 }  // namespace snowshed::mpm

@@ -13,7 +13,7 @@ struct Material {
   Elasticity<double> elastic;
   double density = 0;                 // kg/m3, initial
   double initial_plastic_strain = 0;  // volumetric; elastic snow has none
-  CamClay<double> law;                // all zero for elastic snow
+  BandedCamClay<double> law;          // all zero for elastic snow
   double elastic_time_step = 0;       // s
 
   Material(const Snow&, int dimension, const Settings&);
@@ -21,7 +21,8 @@ struct Material {
 
 /// The constants the kernels take. Those of elastic snow are Cam-Clay's with a yield function that
 /// is zero everywhere (M = 0, beta = -1/2), so that it may stand beside snow that yields.
+/// `softening` is that of the crack band (Settings::softening).
 template <class T>
-MaterialConstants<T> material_constants(const Snow&, int dimension);
+MaterialConstants<T> material_constants(const Snow&, int dimension, double softening = 1);
 
 }  // namespace snowshed::mpm

@@ -1,4 +1,6 @@
 // The material point method, as the rest of the program knows it.
+#include <sstream>
+
 #include "snowshed/core/errors.hpp"
 #include "snowshed/methods/descriptor.hpp"
 #include "snowshed/methods/mpm/boundary.hpp"
@@ -8,6 +10,48 @@
 
 namespace snowshed::mpm {
 namespace {
+
+void check_damping(const Settings& n) {
+  const std::string transfer = "the transfer \"" + std::string(name_of(n.transfer)) + "\"";
+  if (n.damping_rate && n.transfer == Transfer::apic)
+    throw InputError("/numerics/damping_rate", transfer + " has no PIC that damps; leave it out");
+  if (!n.damps_over_length()) return;
+  if (n.transfer != Transfer::affine_flip)
+    throw InputError("/numerics/damping_length",
+                     transfer + " damps by itself, over a cell; it takes \"affine_flip\"");
+  if (!n.damping_rate)
+    throw InputError("/numerics/damping_length",
+                     "says over which length to damp, but not how fast; give damping_rate too");
+}
+
+/// Lengths and rates may differ from those of the scheme, but each of its mechanisms must act.
+void check_scheme(const Settings& n) {
+  if (n.scheme != Scheme::objective) return;
+  const auto require = [](bool acts, const char* key, const std::string& is, const char* must) {
+    if (!acts)
+      throw InputError(std::string("/numerics/") + key,
+                       "is " + is + ", but the scheme \"objective\" takes " + must +
+                           "; leave it or the scheme out");
+  };
+  require(n.transfer == Transfer::affine_flip, "transfer",
+          "\"" + std::string(name_of(n.transfer)) + "\"", "\"affine_flip\"");
+  require(n.contact == Contacting::touch, "contact", "\"" + std::string(name_of(n.contact)) + "\"",
+          "\"touch\"");
+  require(n.damps_over_length(), "damping_length", "0", "a length");
+  require(n.crack_band_length > 0, "crack_band_length", "0", "a length");
+}
+
+/// The law that softens dx over the crack band's length as fast: on finer grids snow would strain
+/// by more than a particle can follow before it has lost its strength; on coarser ones it would
+/// lose it at once.
+void check_crack_band(const Settings& n) {
+  constexpr double least = 0.1, most = 100;
+  if (n.softening() >= least * (1 - 1e-9) && n.softening() <= most) return;
+  std::ostringstream message;
+  message << "is " << 1 / n.softening() << " times dx; it must be " << 1 / most << " to "
+          << 1 / least << " times";
+  throw InputError("/numerics/crack_band_length", message.str());
+}
 
 class Descriptor final : public DescriptorOf<Descriptor, Settings> {
  public:
@@ -39,10 +83,9 @@ class Descriptor final : public DescriptorOf<Descriptor, Settings> {
   }
 
   void validate(const SceneView&) const override {
-    if (settings_.damping_rate && settings_.transfer != Transfer::flip)
-      throw InputError("/numerics/damping_rate", "the transfer \"" +
-                                                     std::string(name_of(settings_.transfer)) +
-                                                     "\" has no PIC that damps; leave it out");
+    check_scheme(settings_);
+    check_damping(settings_);
+    check_crack_band(settings_);
   }
   ThickSolid as_seen(const Shape& shape, int dimension) const override {
     return as_grid_sees(shape, settings_.dx, dimension);
@@ -55,6 +98,7 @@ class Descriptor final : public DescriptorOf<Descriptor, Settings> {
     o.snows = surroundings.snows;
     o.settings = settings_;
     o.obstacles = surroundings.resolved;
+    for (const Obstacle& obstacle : surroundings.obstacles) o.surfaces.push_back(obstacle.shape);
     o.energy = scene.output.energy;
     return make_solver(std::move(o));
   }

@@ -14,6 +14,10 @@ namespace snowshed::mpm {
 /// Fewer particles than this are not worth waking another thread for, twice a step.
 inline constexpr int particles_per_thread = 2000;
 
+/// Nodes so many cells outside an obstacle that acts by touch hold snow, too: on average the nodes
+/// then stand on its surface, wherever that lies between them.
+inline constexpr double touch_margin = 0.5;
+
 template <class T, int D>
 struct Model {
   explicit Model(Options o) : Model(std::move(o), choice_of(o)) {}
@@ -26,7 +30,8 @@ struct Model {
   std::vector<Material> materials;              // of options.snows
   std::vector<MaterialConstants<T>> constants;  // the same for the kernels
 
-  bool has_affine() const { return options.settings.transfer == Transfer::apic; }
+  bool has_affine() const { return options.settings.has_affine(); }
+  bool touches() const { return options.settings.contact == Contacting::touch; }
   bool has_plastic() const {
     return material_per_particle || options.snows.front().model == SnowModel::cam_clay;
   }
@@ -39,8 +44,13 @@ struct Model {
  private:
   static KernelChoice choice_of(const Options& options) {
     const Settings& n = options.settings;
-    return {options.dimension,        n.transfer,    n.basis, options.snows.front().model,
-            options.snows.size() > 1, options.energy};
+    return {options.dimension,
+            n.transfer,
+            n.basis,
+            options.snows.front().model,
+            options.snows.size() > 1,
+            options.energy,
+            n.crack_band_length > 0};
   }
 
   Model(Options&& o, const KernelChoice& choice)
@@ -48,10 +58,11 @@ struct Model {
         material_per_particle(choice.material_per_particle()),
         kernels(select_kernels<T>(choice)),
         max_threads(threads_to_use(options.settings.threads)),
-        boundary(std::move(options.obstacles), options.settings.dx) {
+        boundary(std::move(options.obstacles), options.settings.dx, std::move(options.surfaces),
+                 touches() ? touch_margin * options.settings.dx : 0.0) {
     for (const Snow& snow : options.snows) {
       materials.emplace_back(snow, D, options.settings);
-      constants.push_back(material_constants<T>(snow, D));
+      constants.push_back(material_constants<T>(snow, D, options.settings.softening()));
     }
   }
 };

@@ -26,7 +26,7 @@ struct Particles {
 
   std::array<AlignedVector<T>, D> cell;        // in cells, relative to the block (ParticleView)
   std::array<AlignedVector<T>, D> velocity;    // m/s
-  std::array<AlignedVector<T>, D * D> affine;  // APIC only, 1/s
+  std::array<AlignedVector<T>, D * D> affine;  // not of FLIP, 1/s
   std::array<AlignedVector<T>, strain_size> be_minus_identity;  // b_e - I
   AlignedVector<T> plastic;                                     // plastic laws, several materials
   AlignedVector<T> mass;                                        // kg (per metre of width in 2D)

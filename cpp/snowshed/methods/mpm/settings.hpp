@@ -8,16 +8,23 @@
 namespace snowshed::mpm {
 
 enum class Precision { float32, float64 };
-enum class Transfer { flip, apic };
+enum class Transfer { flip, apic, affine_flip };
 enum class Basis { quadratic, cubic };
+enum class Contacting { kernel, touch };
+enum class Scheme { thesis, objective };
 
 /// Settings of the material point method: grid, transfer, time step, sleep.
 struct Settings {
-  double dx = 0.01;  // m, grid and voxel size
+  Scheme scheme = Scheme::thesis;  // the mechanisms below that belong together, see `adopt`
+  double dx = 0.01;                // m, grid and voxel size
   Precision precision = Precision::float32;
   Transfer transfer = Transfer::flip;
   double flip_ratio = 0.99;            // share of FLIP in each step; PIC has the rest and damps
-  std::optional<double> damping_rate;  // 1/s, of PIC: in place of flip_ratio, whatever the step
+  std::optional<double> damping_rate;  // 1/s, in place of flip_ratio, whatever the step
+  double damping_length = 0;           // m, over which the damping averages; 0: by PIC, over dx
+  double crack_band_length = 0;        // m, see `softening`; 0: none
+  Contacting contact = Contacting::kernel;
+  double contact_radius = 0.6;  // of a particle that touches, over half the particles' spacing
   Basis basis = Basis::quadratic;
   double courant_factor = 0.9;  // time step over the largest stable one
   double strain_limit = 0.2;    // largest |dt grad v| a step may impose on a particle
@@ -25,20 +32,43 @@ struct Settings {
   double sleep_time = 0.04;     // s, for how long it must have been slower
   int threads = 0;              // 0: all
 
+  /// Sets the mechanisms of a scheme, which its name stands for; all else stays. `thesis` is that
+  /// of the thesis; the results of `objective` depend less on the grid.
+  void adopt(Scheme chosen) {
+    const bool objective = chosen == Scheme::objective;
+    scheme = chosen;
+    transfer = objective ? Transfer::affine_flip : Transfer::flip;
+    flip_ratio = 0.99;
+    damping_rate = objective ? std::optional<double>(380.0) : std::nullopt;
+    damping_length = crack_band_length = objective ? 0.01 : 0.0;
+    contact = objective ? Contacting::touch : Contacting::kernel;
+    contact_radius = 0.6;
+  }
+
   /// The size of the smallest thing the method resolves, m.
   double resolution() const { return dx; }
+
+  /// Whether particles carry an affine velocity.
+  bool has_affine() const { return transfer != Transfer::flip; }
+  /// Whether velocities are damped towards their average over a length, not by PIC.
+  bool damps_over_length() const { return damping_length > 0; }
 
   /// FLIP's share in a step of dt seconds. What the grid does not resolve keeps this part of its
   /// velocity, so that exp(-rate t) of it is left after a time t of steps of any length.
   double flip_share(double dt) const {
+    if (damps_over_length()) return 1.0;
     return damping_rate ? std::exp(-*damping_rate * dt) : flip_ratio;
   }
 
-  /// The mean rate (1/s) at which PIC damped over so many steps in so much time (s): -ln(share)/dt.
-  /// Nothing for APIC, which has no such share, for pure PIC, which leaves nothing, and before the
-  /// first step.
+  /// How many times faster than the snow's own law snow softens as it dilates beyond its initial
+  /// volume: cracks are a few cells wide, and so take the same energy per area on any grid.
+  double softening() const { return crack_band_length > 0 ? dx / crack_band_length : 1.0; }
+
+  /// The mean rate (1/s) at which velocities were damped over so many steps in so much time (s), by
+  /// PIC -ln(share)/dt. Nothing for APIC, which has no such share, for pure PIC, which leaves
+  /// nothing, and before the first step.
   std::optional<double> mean_damping_rate(std::int64_t steps, double time) const {
-    if (transfer != Transfer::flip) return std::nullopt;
+    if (transfer == Transfer::apic) return std::nullopt;
     if (damping_rate) return damping_rate;
     if (!(flip_ratio > 0) || steps == 0 || !(time > 0)) return std::nullopt;
     return std::abs(std::log(flip_ratio)) * double(steps) / time;

@@ -25,7 +25,7 @@ template <class T, int D>
 SolverImpl<T, D>::SolverImpl(Options options)
     : model_(std::move(options)),
       state_(model_),
-      work_(model_.options.settings.basis, model_.boundary.laws().size()) {}
+      work_(model_.options.settings, model_.boundary.laws().size()) {}
 
 template <class T, int D>
 StepParameters<T> SolverImpl<T, D>::parameters(double dt) const {
@@ -92,6 +92,7 @@ void SolverImpl<T, D>::record_step(double dt) noexcept {
   p.speed = std::sqrt(speed_squared);
   p.dt = dt;
   if (model_.options.energy) update_energy_balance();
+  record_damping(dt);
   p.time += dt;
   ++p.counters.steps;
   p.counters.particle_updates += state_.sleep.awake_particles();
@@ -113,6 +114,8 @@ void SolverImpl<T, D>::sort() {
 template <class T, int D>
 void SolverImpl<T, D>::scatter() {
   work_.grid.resize(state_.layout);
+  if (work_.average) work_.average->connect(state_.layout);
+  if (model_.touches()) work_.touch.forget(model_, state_);
   const ParticleView<T> view = state_.particles.view();
   const StepParameters<T> step = parameters(state_.progress.dt);
   const std::ptrdiff_t n = std::ptrdiff_t(state_.layout.particle_blocks.size());
@@ -134,6 +137,8 @@ void SolverImpl<T, D>::scatter_block(const StepParameters<T>& step, const Partic
 template <class T, int D>
 void SolverImpl<T, D>::gather_and_update(double dt) {
   state_.contacts.follow(model_.boundary, time(), threads());
+  if (model_.touches())
+    work_.touch.update(model_, state_, state_.progress.speed * state_.progress.dt, threads());
   if (model_.boundary.any_slip()) state_.contacts.find_pushing_shares(work_.pushing);
   const StepParameters<T> step = parameters(dt);
   const std::vector<std::int32_t>& active = state_.sleep.active();
@@ -253,6 +258,8 @@ void SolverImpl<T, D>::g2p2g(double dt) {
   const StepParameters<T> step = parameters(dt);
   const ParticleView<T> view = state_.particles.view();
   const std::vector<std::int32_t>& awake = state_.sleep.awake();
+  const bool damps = damps_next();
+  if (damps) average_velocities(dt);
   parallel_for(std::ptrdiff_t(awake.size()), threads(), 1, [&](std::ptrdiff_t i) {
     const std::int32_t b = awake[i];
     const T* velocities[neighbour_count<D>];
@@ -260,8 +267,33 @@ void SolverImpl<T, D>::g2p2g(double dt) {
     work_.grid.block_stats[b] = BlockStats::reaching(work_.grid.block_stats[b].reach);
     model_.kernels.g2p2g(step, view, state_.layout.first[b],
                          state_.layout.first[b + 1] - state_.layout.first[b], velocities,
-                         work_.grid.tile(b), work_.grid.block_stats[b]);
+                         damps ? &work_.average->tile(b) : nullptr, work_.grid.tile(b),
+                         work_.grid.block_stats[b]);
   });
+}
+
+template <class T, int D>
+bool SolverImpl<T, D>::damps_next() const {
+  return work_.average && state_.progress.undamped_steps + 1 >= steps_between_averages;
+}
+
+/// Averages the velocities that particles have, for a step of dt that damps them for all steps
+/// since the last one that did.
+template <class T, int D>
+void SolverImpl<T, D>::average_velocities(double dt) noexcept {
+  const double rate = model_.options.settings.damping_rate.value_or(0.0);
+  const double share = -std::expm1(-rate * (state_.progress.undamped_time + dt));
+  work_.average->update(model_.kernels, state_.particles.view(), state_.layout, state_.sleep, share,
+                        threads());
+}
+
+template <class T, int D>
+void SolverImpl<T, D>::record_damping(double dt) noexcept {
+  if (!work_.average) return;
+  Progress& p = state_.progress;
+  const bool damped = damps_next();
+  p.undamped_steps = damped ? 0 : p.undamped_steps + 1;
+  p.undamped_time = damped ? 0.0 : p.undamped_time + dt;
 }
 
 /// Throws where a particle is not sound any more. The step cannot be taken back: the particles have

@@ -17,7 +17,9 @@ struct Options {
   std::vector<Snow> snows{Snow()};  // by material_id; at least one, at most `max_materials`
   Settings settings;
   std::vector<Obstacle> obstacles;
-  bool energy = false;  // whether to keep the energy balance
+  std::vector<Shape> surfaces;  // of the obstacles, before thin parts were made
+                                // thicker; or none
+  bool energy = false;          // whether to keep the energy balance
 };
 
 /// MPM as a method, and what only it has.

@@ -1,6 +1,7 @@
 // The solver for one precision and dimension.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "snowshed/material/sym_tensor.hpp"
@@ -8,6 +9,8 @@
 #include "snowshed/methods/mpm/model.hpp"
 #include "snowshed/methods/mpm/solver.hpp"
 #include "snowshed/methods/mpm/state.hpp"
+#include "snowshed/methods/mpm/touch.hpp"
+#include "snowshed/methods/mpm/velocity_average.hpp"
 #include "snowshed/methods/particle_method.hpp"
 
 namespace snowshed::mpm {
@@ -15,10 +18,15 @@ namespace snowshed::mpm {
 /// What can be computed from a state before any sort, and be thrown away then.
 template <class T, int D>
 struct Workspace {
-  Workspace(Basis basis, std::size_t obstacles) : grid(basis), pushing(obstacles) {}
+  Workspace(const Settings& n, std::size_t obstacles)
+      : grid(n.basis), pushing(obstacles), touch(n.basis) {
+    if (n.damps_over_length()) average.emplace(n.damping_length, n.dx, n.basis);
+  }
 
   Grid<T, D> grid;
+  std::optional<VelocityAverage<T, D>> average;
   PushingShares<T> pushing;
+  Touch<T, D> touch;
   std::vector<double> block_strain;  // 1/s, of the step being tried
   bool tiles_valid = false;          // whether the tiles hold the sums of the particles
   int since_sort = 0;                // steps
@@ -70,7 +78,10 @@ class SolverImpl final : public Solver {
   void leave_empty(std::ptrdiff_t block);
   double largest_strain();  ///< largest |dt grad v| any particle would take
   void g2p2g(double dt);
+  bool damps_next() const;  ///< whether the next step damps velocities over a length
+  void average_velocities(double dt) noexcept;
   void record_step(double dt) noexcept;
+  void record_damping(double dt) noexcept;
   void let_sleep() noexcept;
   typename Sleep<D>::BlockProbe block_probe();
   BlockStats probe(const StepParameters<T>& step, const ParticleView<T>& view, std::int32_t block);

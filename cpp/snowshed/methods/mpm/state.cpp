@@ -16,6 +16,9 @@ namespace {
 /// vibration of a slab a few cells thick.
 constexpr double friction_memory_steps = 40;
 
+/// Loose snow is not taken for larger than this, over its initial volume, where it touches.
+constexpr double most_expansion = 1.5;
+
 }  // namespace
 
 template <class T, int D>
@@ -90,6 +93,29 @@ void State<T, D>::arrange(const Model<T, D>& model, std::vector<BlockKey> blocks
   layout = std::move(sort.layout);
   if (relocated) contacts = std::move(*relocated);
   sleep = std::move(sleep_after);
+}
+
+template <class T, int D>
+double State<T, D>::volume_ratio(const Model<T, D>& model, std::size_t i) const {
+  Sym<double, D> a;
+  for (int k = 0; k < a.size; ++k) a.c[k] = double(particles.be_minus_identity[k][i]);
+  const double plastic = particles.has_plastic ? double(particles.plastic[i]) : 0.0;
+  return std::exp(trace(hencky_strain(a)) + plastic - material_of(model, i).initial_plastic_strain);
+}
+
+template <class T, int D>
+double State<T, D>::contact_radius(const Model<T, D>& model, std::size_t i) const {
+  const double volume = double(particles.mass[i]) / material_of(model, i).density *
+                        std::min(volume_ratio(model, i), most_expansion);
+  return 0.5 * model.options.settings.contact_radius * std::pow(volume, 1.0 / D);
+}
+
+template <class T, int D>
+double State<T, D>::largest_contact_radius(const Model<T, D>& model) const {
+  double volume = 0;
+  for (std::size_t i = 0; i < particles.size(); ++i)
+    volume = std::max(volume, double(particles.mass[i]) / material_of(model, i).density);
+  return 0.5 * model.options.settings.contact_radius * std::pow(volume * most_expansion, 1.0 / D);
 }
 
 template <class T, int D>

@@ -20,7 +20,10 @@ struct Progress {
   std::uint32_t next_id = 0;
   StepCounters counters;
   std::int64_t slept_updates = 0;
-  EnergyBalance energy;  // the gravitational part as it was when snow was last added
+  // Since velocities were last damped over a length.
+  std::int64_t undamped_steps = 0;
+  double undamped_time = 0;  // s
+  EnergyBalance energy;      // the gravitational part as it was when snow was last added
 };
 
 template <class T, int D>
@@ -53,6 +56,11 @@ struct State {
   const Material& material_of(const Model<T, D>& model, std::size_t particle) const {
     return model.materials[particles.has_material_id ? particles.material_id[particle] : 0];
   }
+  /// Current over initial volume of a particle.
+  double volume_ratio(const Model<T, D>& model, std::size_t particle) const;
+  /// The radius (m) within which a particle touches; none is larger than that of the second.
+  double contact_radius(const Model<T, D>& model, std::size_t particle) const;
+  double largest_contact_radius(const Model<T, D>& model) const;
   double kinetic_energy(const Model<T, D>& model) const;
   double gravitational_energy(const Model<T, D>& model) const;
   double elastic_energy(const Model<T, D>& model) const;

@@ -27,6 +27,17 @@ TEST(Damping, OfARateIsTheSameOverStepsOfAnyLength) {
   EXPECT_EQ(*s.mean_damping_rate(7, 0.1), 50.0);
   s.transfer = Transfer::apic;
   EXPECT_FALSE(s.mean_damping_rate(7, 0.1));
+  s.transfer = Transfer::affine_flip;
+  EXPECT_EQ(*s.mean_damping_rate(7, 0.1), 50.0);
+}
+
+TEST(Damping, OverALengthLeavesNothingToPic) {
+  Settings s;
+  s.transfer = Transfer::affine_flip;
+  s.damping_rate = 50;
+  EXPECT_LT(s.flip_share(1e-3), 1.0);
+  s.damping_length = 0.01;
+  EXPECT_EQ(s.flip_share(1e-3), 1.0);
 }
 
 /// The part of its spin that a disc of elastic snow, two cells in radius, has left after a while:

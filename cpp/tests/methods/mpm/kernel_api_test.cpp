@@ -84,7 +84,7 @@ void expect_exact_sums(const Way& way, const Spread& spread) {
     return T(low + (high - low) * random.uniform());
   };
   Particles<T, D> particles;
-  particles.has_affine = way.transfer == Transfer::apic;
+  particles.has_affine = way.transfer != Transfer::flip;
   particles.has_plastic = true;
   particles.resize(n);
   double mass = 0, momentum[D] = {}, first_moment[D] = {};

@@ -10,6 +10,7 @@
 #include "snowshed/core/angles.hpp"
 #include "snowshed/core/random.hpp"
 #include "snowshed/geometry/primitives.hpp"
+#include "snowshed/methods/mpm/describe.hpp"
 #include "snowshed/methods/mpm/solver.hpp"
 
 namespace snowshed::mpm {
@@ -24,8 +25,7 @@ struct Way {
   double epsilon() const { return precision == Precision::float32 ? 1.2e-7 : 2.2e-16; }
   std::string name() const {
     return std::to_string(dimension) + "D_" +
-           (precision == Precision::float32 ? "float" : "double") +
-           (transfer == Transfer::flip ? "_flip" : "_apic") +
+           (precision == Precision::float32 ? "float" : "double") + "_" + name_of(transfer) +
            (basis == Basis::quadratic ? "_quadratic" : "_cubic");
   }
 };
@@ -35,7 +35,7 @@ inline std::vector<Way> all_ways() {
   std::vector<Way> ways;
   for (int dimension : {2, 3})
     for (Precision precision : {Precision::float32, Precision::float64})
-      for (Transfer transfer : {Transfer::flip, Transfer::apic})
+      for (Transfer transfer : {Transfer::flip, Transfer::apic, Transfer::affine_flip})
         for (Basis basis : {Basis::quadratic, Basis::cubic})
           ways.push_back({dimension, precision, transfer, basis});
   return ways;

@@ -9,7 +9,7 @@ namespace snowshed::mpm {
 namespace {
 
 TEST(TimeStep, ScalesAsACourantCondition) {
-  for (Transfer transfer : {Transfer::flip, Transfer::apic}) {
+  for (Transfer transfer : {Transfer::flip, Transfer::apic, Transfer::affine_flip}) {
     const auto step = [&](double modulus, double density, int dimension, double dx, Basis basis) {
       return elastic_time_step(modulus, 0.3, density, dimension, dx, transfer, basis);
     };
@@ -76,17 +76,16 @@ double pressure_from_round_off(Transfer transfer, Basis basis, double fraction, 
 }
 
 TEST(TimeStep, StepsWithinTheLimitAreStable) {
-  for (Transfer transfer : {Transfer::flip, Transfer::apic})
+  for (Transfer transfer : {Transfer::flip, Transfer::apic, Transfer::affine_flip})
     for (Basis basis : {Basis::quadratic, Basis::cubic})
       for (double fraction : {1e-3, 0.1, 0.25, 0.5, 0.8})
         EXPECT_LT(pressure_from_round_off(transfer, basis, fraction, 0.95), 1e-10)
-            << (transfer == Transfer::flip ? "FLIP " : "APIC ") << support(basis) << " nodes at "
-            << fraction;
+            << name_of(transfer) << " " << support(basis) << " nodes at " << fraction;
 }
 
 TEST(TimeStep, TheLimitIsNotFarTooSafe) {
   // Just past it, a lone particle blows up at the worst place.
-  for (Transfer transfer : {Transfer::flip, Transfer::apic}) {
+  for (Transfer transfer : {Transfer::flip, Transfer::apic, Transfer::affine_flip}) {
     EXPECT_GT(pressure_from_round_off(transfer, Basis::quadratic, 1e-3, 1.1), 1.0);
     EXPECT_GT(pressure_from_round_off(transfer, Basis::cubic, 0.5, 1.1), 1.0);
   }

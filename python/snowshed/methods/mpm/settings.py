@@ -10,7 +10,9 @@ from snowshed.base.record import Alias
 from snowshed.methods.settings import MethodSettings
 
 Precision = Literal["float", "double"]
-Transfer = Literal["flip", "apic"]
+Transfer = Literal["flip", "apic", "affine_flip"]
+Scheme = Literal["thesis", "objective"]
+Contact = Literal["kernel", "touch"]
 Basis = Literal["quadratic", "cubic"]
 
 
@@ -22,16 +24,33 @@ class MpmSettings(MethodSettings):
     ----------
     dx : float
         Size of grid cells and voxels [m]. 0 < value <= 1e+06; default 0.01.
+    scheme : {"thesis", "objective"}
+        Mechanisms that belong together: objective sets transfer affine_flip, damping_rate 380 1/s,
+        damping_length and crack_band_length 0.01 m, and contact touch, unless they are given;
+        thesis sets what these settings are by default. Default "thesis".
     precision : {"float", "double"}
         Floating-point type of the particles and the grid. Default "float".
-    transfer : {"flip", "apic"}
+    transfer : {"flip", "apic", "affine_flip"}
         Transfer of velocities between particles and grid. Default "flip".
     flip_ratio : float
         Share of FLIP in FLIP/PIC in each step, so that shorter steps damp more; 0 is pure PIC. 0
         <= value <= 1; default 0.99.
     damping_rate : float
-        In place of flip_ratio: rate of the damping by PIC, whatever the step [1/s]. 0 <= value <=
-        1e+09.
+        In place of flip_ratio: rate of the damping, whatever the step [1/s]. 0 <= value <= 1e+09.
+    damping_length : float
+        Length over which velocities are averaged to damp them at the damping rate, whatever the
+        grid, with affine_flip; 0: the damping is PIC's, over dx [m]. 0 <= value <= 1e+06; default
+        0.
+    crack_band_length : float
+        Snow that dilates softens dx over this length as fast as its law says, so that cracks take
+        the same energy per area on any grid; 0: the law itself [m]. 0 <= value <= 1e+06; default
+        0.
+    contact : {"kernel", "touch"}
+        When an obstacle's node acts on snow: once its splines reach the node (kernel), or once a
+        particle with weight there touches the obstacle itself (touch). Default "kernel".
+    contact_radius : float
+        Radius of the particles that touch, over half the spacing of particles. 0 < value <= 1;
+        default 0.6.
     basis : {"quadratic", "cubic"}
         B-spline of the grid. Default "quadratic".
     courant_factor : float
@@ -50,10 +69,15 @@ class MpmSettings(MethodSettings):
     """
 
     dx: Optional[float] = None
+    scheme: Optional[Scheme] = None
     precision: Optional[Precision] = None
     transfer: Optional[Transfer] = None
     flip_ratio: Optional[float] = None
     damping_rate: Optional[float] = None
+    damping_length: Optional[float] = None
+    crack_band_length: Optional[float] = None
+    contact: Optional[Contact] = None
+    contact_radius: Optional[float] = None
     basis: Optional[Basis] = None
     courant_factor: Optional[float] = None
     strain_limit: Optional[float] = None
@@ -65,7 +89,7 @@ class MpmSettings(MethodSettings):
     INSTEAD_OF: ClassVar[Mapping[str, str]] = {"damping_rate": "flip_ratio"}
 
     def damping_text(self, rate: Optional[float] = None) -> str:
-        """Return a caption on the damping by PIC; the settings must be complete.
+        """Return how PIC damps, for captions; the settings must be complete.
 
         Examples
         --------
@@ -73,11 +97,15 @@ class MpmSettings(MethodSettings):
         'damping 188 1/s (FLIP 0.99 a step)'
         >>> MpmSettings(transfer="flip", damping_rate=50).damping_text()
         'damping 50 1/s'
+        >>> settings = MpmSettings(transfer="affine_flip", damping_rate=380, damping_length=0.01)
+        >>> settings.damping_text()
+        'damping 380 1/s over 0.01 m'
         """
         if self.transfer == "apic":
             return "APIC"
         if self.damping_rate is not None:
-            return f"damping {self.damping_rate:g} 1/s"
+            over = f" over {self.damping_length:g} m" if self.damping_length else ""
+            return f"damping {self.damping_rate:g} 1/s{over}"
         share = f"FLIP {self.flip_ratio:g} a step"
         return share if rate is None else f"damping {rate:.3g} 1/s ({share})"
 

@@ -19,9 +19,10 @@ template <class C>
 SNOWSHED_INLINE ChunkMaterial<Elastic, C> elastic_snow(const MaterialConstants<C>& k) {
   return {{{k.lambda, k.mu, k.bulk}}, k.specific_volume};
 }
-template <class C>
-SNOWSHED_INLINE ChunkMaterial<CamClay, C> cam_clay_snow(const MaterialConstants<C>& k) {
-  return {{{k.lambda, k.mu, k.bulk}, k.m2, k.beta, k.xi, k.hardening}, k.specific_volume};
+template <template <class> class Law, class C>
+SNOWSHED_INLINE ChunkMaterial<Law, C> cam_clay_snow(const MaterialConstants<C>& k) {
+  return {{{k.lambda, k.mu, k.bulk}, k.m2, k.beta, k.xi, k.hardening, k.softening, k.band_begin},
+          k.specific_volume};
 }
 
 /// The only snow of a scene.
@@ -31,7 +32,7 @@ struct SingleMaterial {
 
   explicit SingleMaterial(const MaterialConstants<T>* snows) {
     if constexpr (Chunk::plastic)
-      snow = cam_clay_snow(snows[0]);
+      snow = cam_clay_snow<Law>(snows[0]);
     else
       snow = elastic_snow(snows[0]);
   }
@@ -41,11 +42,11 @@ struct SingleMaterial {
   Chunk snow;
 };
 
-/// Several snows, of either law: an elastic one has Cam-Clay constants that never yield (see
-/// material_constants).
-template <class T>
+/// Several snows, of Cam-Clay or elastic: an elastic one has Cam-Clay constants that never yield
+/// (see material_constants).
+template <class T, template <class> class Law>
 struct MaterialPerParticle {
-  using Chunk = ChunkMaterial<CamClay, SimdPack<T>>;
+  using Chunk = ChunkMaterial<Law, SimdPack<T>>;
 
   explicit MaterialPerParticle(const MaterialConstants<T>* snows) : snows(snows) {}
 
@@ -54,11 +55,21 @@ struct MaterialPerParticle {
     const MaterialConstants<T>* own[simd_width<T>];
     for (int l = 0; l < simd_width<T>; ++l) own[l] = &snows[p.material_id[first + (l < n ? l : 0)]];
     using K = MaterialConstants<T>;
-    return cam_clay_snow(MaterialConstants<SimdPack<T>>{
-        gather_constants(own, &K::lambda), gather_constants(own, &K::mu),
-        gather_constants(own, &K::bulk), gather_constants(own, &K::m2),
-        gather_constants(own, &K::beta), gather_constants(own, &K::xi),
-        gather_constants(own, &K::hardening), gather_constants(own, &K::specific_volume)});
+    MaterialConstants<SimdPack<T>> lanes{gather_constants(own, &K::lambda),
+                                         gather_constants(own, &K::mu),
+                                         gather_constants(own, &K::bulk),
+                                         gather_constants(own, &K::m2),
+                                         gather_constants(own, &K::beta),
+                                         gather_constants(own, &K::xi),
+                                         gather_constants(own, &K::hardening),
+                                         gather_constants(own, &K::specific_volume),
+                                         {},
+                                         {}};
+    if constexpr (std::is_same_v<Law<T>, BandedCamClay<T>>) {
+      lanes.softening = gather_constants(own, &K::softening);
+      lanes.band_begin = gather_constants(own, &K::band_begin);
+    }
+    return cam_clay_snow<Law>(lanes);
   }
 
   SNOWSHED_INLINE static SimdPack<T> gather_constants(const MaterialConstants<T>* const* own,

@@ -112,6 +112,18 @@ SNOWSHED_INLINE void add_scaled(Node<T>& sum, const Node<T>& weight, const Node<
   for (int i = first_part<T, halves>; i < end_part<T, halves>; ++i)
     sum.part[i] += weight.part[i] * node.part[i];
 }
+/// The node with its first half in both, where one register holds both halves. Otherwise
+/// `add_scaled_first` takes the first half's registers anyway.
+template <class T>
+SNOWSHED_INLINE Node<T> first_twice(const Node<T>& node) {
+  if constexpr (Node<T>::parts == 1) {
+    Node<T> r;
+    r.part[0] = __builtin_shufflevector(node.part[0], node.part[0], 0, 1, 2, 3, 0, 1, 2, 3);
+    return r;
+  } else {
+    return node;
+  }
+}
 /// sum += weight * node, where either half of the node is its first one.
 template <class T>
 SNOWSHED_INLINE void add_scaled_first(Node<T>& sum, const Node<T>& weight, const Node<T>& node) {

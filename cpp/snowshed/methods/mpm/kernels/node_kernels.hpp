@@ -8,7 +8,7 @@
 
 SNOWSHED_METHOD_VARIANT_BEGIN(mpm)
 
-template <class T, int D, Basis basis, bool flip, bool energy>
+template <class T, int D, Basis basis, bool takes_change, bool energy>
 struct NodeKernels {
   using Half = NodeHalf<T>;
   /// kg. A node that a particle barely touches may have a mass whose inverse overflows.
@@ -29,39 +29,26 @@ struct NodeKernels {
   static void update(const StepParameters<T>& step, const T* sums, T* velocities,
                      Contact<T>* contacts, int contact_count, const ContactLaw* laws,
                      NodeStats& stats) {
-    Half gravity{};
-    gravity[D - 1] = -step.dt * step.gravity;
-    Half low = std::numeric_limits<T>::max() - Half{}, high = -low;
-    for (int k = 0; k < block_nodes<D>; ++k) {
-      const T* sum = sums + k * node_values;
-      T* out = velocities + k * node_values;
-      if (!(sum[0] > least_mass)) {
-        std::memset(out, 0, node_values * sizeof(T));
-        continue;
-      }
-      const Half old = velocity(sum);
-      const Half now = old + load_half(sum + 4) * (step.dt / sum[0]) + gravity;
-      store_velocity(out, now, old);
-      low = now < low ? now : low;
-      high = now > high ? now : high;
-    }
-    for (int c = 0; c < contact_count; ++c) {
-      const T* sum = sums + contacts[c].node * node_values;
-      T* out = velocities + contacts[c].node * node_values;
-      if (sum[0] > least_mass) {
-        Half node = load_half(out);
-        apply(step, contacts[c], laws[contacts[c].obstacle], sum, node, stats);
-        store_velocity(out, node, velocity(sum));
-        low = node < low ? node : low;
-        high = node > high ? node : high;
-      } else {
-        contacts[c].next_normal_impulse = 0;
-      }
-    }
-    for (int d = 0; d < D; ++d) {
-      stats.low[d] = double(low[d]);
-      stats.high[d] = double(high[d]);
-    }
+    Range range;
+    let_free(step, sums, velocities, range);
+    constrain(step, sums, velocities, contacts, contact_count, laws, stats, range);
+    range.store(stats);
+    if constexpr (energy) record_kinetic_energy(step, sums, velocities, stats);
+  }
+
+  static void update_free(const StepParameters<T>& step, const T* sums, T* velocities) {
+    Range range;
+    let_free(step, sums, velocities, range);
+  }
+
+  static void finish(const StepParameters<T>& step, const T* sums, T* velocities,
+                     Contact<T>* contacts, int contact_count, const ContactLaw* laws,
+                     NodeStats& stats) {
+    Range range;
+    for (int k = 0; k < block_nodes<D>; ++k)
+      if (sums[k * node_values] > least_mass) range.add(load_half(velocities + k * node_values));
+    constrain(step, sums, velocities, contacts, contact_count, laws, stats, range);
+    range.store(stats);
     if constexpr (energy) record_kinetic_energy(step, sums, velocities, stats);
   }
 
@@ -89,6 +76,59 @@ struct NodeKernels {
   }
 
  private:
+  /// The least box that holds some velocities.
+  struct Range {
+    Half low = std::numeric_limits<T>::max() - Half{}, high = -low;
+
+    SNOWSHED_INLINE void add(const Half& v) {
+      low = v < low ? v : low;
+      high = v > high ? v : high;
+    }
+    void store(NodeStats& stats) const {
+      for (int d = 0; d < D; ++d) {
+        stats.low[d] = double(low[d]);
+        stats.high[d] = double(high[d]);
+      }
+    }
+  };
+
+  /// What forces and gravity do.
+  static SNOWSHED_INLINE void let_free(const StepParameters<T>& step, const T* sums, T* velocities,
+                                       Range& range) {
+    Half gravity{};
+    gravity[D - 1] = -step.dt * step.gravity;
+    for (int k = 0; k < block_nodes<D>; ++k) {
+      const T* sum = sums + k * node_values;
+      T* out = velocities + k * node_values;
+      if (!(sum[0] > least_mass)) {
+        std::memset(out, 0, node_values * sizeof(T));
+        continue;
+      }
+      const Half old = velocity(sum);
+      const Half now = old + load_half(sum + 4) * (step.dt / sum[0]) + gravity;
+      store_velocity(out, now, old);
+      range.add(now);
+    }
+  }
+
+  /// What obstacles do.
+  static SNOWSHED_INLINE void constrain(const StepParameters<T>& step, const T* sums, T* velocities,
+                                        Contact<T>* contacts, int contact_count,
+                                        const ContactLaw* laws, NodeStats& stats, Range& range) {
+    for (int c = 0; c < contact_count; ++c) {
+      const T* sum = sums + contacts[c].node * node_values;
+      T* out = velocities + contacts[c].node * node_values;
+      if (sum[0] > least_mass && contacts[c].acts) {
+        Half node = load_half(out);
+        apply(step, contacts[c], laws[contacts[c].obstacle], sum, node, stats);
+        store_velocity(out, node, velocity(sum));
+        range.add(node);
+      } else {
+        contacts[c].next_normal_impulse = 0;
+      }
+    }
+  }
+
   /// Velocity before the step; the fourth value is zero.
   static SNOWSHED_INLINE Half velocity(const T* sum) {
     const Half momentum = __builtin_shufflevector(load_half(sum), Half{}, 1, 2, 3, 4);
@@ -97,7 +137,7 @@ struct NodeKernels {
   /// What the particles' velocities take from the node goes into its second half.
   static SNOWSHED_INLINE void store_velocity(T* node, const Half& now, const Half& old) {
     store_half(node, now);
-    store_half(node + 4, flip ? Half(now - old) : now);
+    store_half(node + 4, takes_change ? Half(now - old) : now);
   }
 
   static void record_kinetic_energy(const StepParameters<T>& step, const T* sums,

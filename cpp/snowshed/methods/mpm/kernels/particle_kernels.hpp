@@ -6,6 +6,7 @@
 #pragma once
 
 #include "snowshed/material/sym_tensor.hpp"
+#include "snowshed/methods/mpm/kernels/average_stencil.hpp"
 #include "snowshed/methods/mpm/kernels/material_lookup.hpp"
 #include "snowshed/methods/mpm/kernels/tile.hpp"
 #include "snowshed/methods/mpm/kernels/transfer_rules.hpp"
@@ -137,6 +138,34 @@ struct ParticleKernels {
   SNOWSHED_INLINE void move(State& s, const Motion& m) const {
     for (int d = 0; d < D; ++d) s.cell[d] += m.pic[d] * (step.dt / step.dx);
     m.taken.move(s.velocity, s.carried, m.pic, step.flip_ratio);
+  }
+
+  /// The velocities at the coarse grid's nodes, averaged where the particles are: the change of
+  /// velocity towards them. Particles have not moved yet. (The sum of mass times change is zero, as
+  /// the average is with the same weights.)
+  SNOWSHED_INLINE void damp(const State& s, const AverageTile<T>& average, int n,
+                            V (&change)[D]) const {
+    const AverageStencil<T, D, basis> stencil(average, s.cell);
+    SNOWSHED_UNROLL
+    for (int d = 0; d < D; ++d) change[d] = s.velocity[d];
+    for (int l = 0; l < n; ++l) {
+      const auto mean = stencil.sum(l);
+      SNOWSHED_UNROLL
+      for (int d = 0; d < D; ++d) change[d][l] = mean[1 + d];
+    }
+    SNOWSHED_UNROLL
+    for (int d = 0; d < D; ++d) change[d] = average.share * (change[d] - s.velocity[d]);
+  }
+
+  /// Adds a change of velocity; the energy it takes is noted.
+  SNOWSHED_INLINE void add_velocity(State& s, const V (&change)[D], int n) const {
+    for (int d = 0; d < D; ++d) {
+      if constexpr (energy)
+        for (int l = 0; l < n; ++l)
+          stats.damping -= double(s.mass[l]) * double(change[d][l]) *
+                           (double(s.velocity[d][l]) + 0.5 * double(change[d][l]));
+      s.velocity[d] += change[d];
+    }
   }
 
   /// b <- (I + G) b (I + G)^T with G = dt grad v (1.2.14), on b - I: with H = G b,
@@ -305,7 +334,8 @@ struct ParticleKernels {
     stats.reach = int(bits_in(reach));
   }
 
-  void g2p2g_block(int first, int count, const T* velocities, Tile& tile) const {
+  void g2p2g_block(int first, int count, const T* velocities, const AverageTile<T>* average,
+                   Tile& tile) const {
     V speed = broadcast<V>(T(0));
     SimdMask<T> reach{};
     for_each_chunk(first, count, [&](int at, int n) SNOWSHED_INLINE_LAMBDA {
@@ -313,7 +343,12 @@ struct ParticleKernels {
       read(s, at, n);
       Motion m;
       interpolate(Stencil<T, D, basis>(s.cell), velocities, n, m);
+      V damped[D];
+      if constexpr (Rule::averages)
+        if (average) damp(s, *average, n, damped);
       move(s, m);
+      if constexpr (Rule::averages)
+        if (average) add_velocity(s, damped, n);
       update_left_cauchy_green(s, m);
       const Snow& snow = snows.of(p, at, n);
       const auto [tau, strain_squared] = stress(s, snow, n, false);
@@ -366,11 +401,12 @@ struct ParticleKernels {
     ParticleKernels(step, p, stats).scatter_block(first, count, tile);
   }
   static void g2p2g(const StepParameters<T>& step, const ParticleView<T>& p, int first, int count,
-                    const T* const* velocities, T* values, BlockStats& stats) {
+                    const T* const* velocities, const AverageTile<T>* average, T* values,
+                    BlockStats& stats) {
     alignas(64) T around[tile_size];
     load_velocities(velocities, stats.reach, around);
     Tile tile(values, stats.reach);
-    ParticleKernels(step, p, stats).g2p2g_block(first, count, around, tile);
+    ParticleKernels(step, p, stats).g2p2g_block(first, count, around, average, tile);
   }
   static void probe(const StepParameters<T>& step, const ParticleView<T>& p, int first, int count,
                     const T* const* velocities, BlockStats& stats) {

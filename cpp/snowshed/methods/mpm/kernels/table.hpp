@@ -11,18 +11,31 @@ Kernels<T> kernels_for() {
   using P = ParticleKernels<T, D, transfer, basis, Snows, energy>;
   using Motion =
       ParticleKernels<T, D, transfer, basis, SingleMaterial<T, Elastic>, false>;  // of any snow
-  using G = NodeKernels<T, D, basis, transfer == Transfer::flip, energy>;
-  return {&P::scatter, &P::g2p2g, &Motion::probe, &G::gather, &G::update, &G::carried_motion};
+  using G = NodeKernels<T, D, basis, transfer != Transfer::apic, energy>;
+  Kernels<T> kernels{&P::scatter, &P::g2p2g,       nullptr,    &Motion::probe,    &G::gather,
+                     &G::update,  &G::update_free, &G::finish, &G::carried_motion};
+  if constexpr (TransferRule<T, D, transfer, basis>::averages)
+    kernels.scatter_average = &scatter_average<T, D, basis>;
+  return kernels;
 }
 
+/// `Law` is the Cam-Clay law that the kernels not for checks know.
+template <class T, int D, Transfer transfer, Basis basis, template <class> class Law>
+Kernels<T> with_law(const KernelChoice& c) {
+  if (c.checks())
+    return kernels_for<T, D, transfer, basis, MaterialPerParticle<T, BandedCamClay>, true>();
+  if (c.material_per_particle())
+    return kernels_for<T, D, transfer, basis, MaterialPerParticle<T, Law>, false>();
+  return c.model == SnowModel::cam_clay
+             ? kernels_for<T, D, transfer, basis, SingleMaterial<T, Law>, false>()
+             : kernels_for<T, D, transfer, basis, SingleMaterial<T, Elastic>, false>();
+}
 template <class T, int D, Transfer transfer, Basis basis>
 Kernels<T> with_snow(const KernelChoice& c) {
-  if (c.energy) return kernels_for<T, D, transfer, basis, MaterialPerParticle<T>, true>();
-  if (c.material_per_particle())
-    return kernels_for<T, D, transfer, basis, MaterialPerParticle<T>, false>();
-  return c.model == SnowModel::cam_clay
-             ? kernels_for<T, D, transfer, basis, SingleMaterial<T, CamClay>, false>()
-             : kernels_for<T, D, transfer, basis, SingleMaterial<T, Elastic>, false>();
+  if constexpr (transfer == Transfer::affine_flip)
+    return with_law<T, D, transfer, basis, BandedCamClay>(c);
+  else
+    return with_law<T, D, transfer, basis, CamClay>(c);
 }
 template <class T, int D, Transfer transfer>
 Kernels<T> with_basis(const KernelChoice& c) {
@@ -31,8 +44,15 @@ Kernels<T> with_basis(const KernelChoice& c) {
 }
 template <class T, int D>
 Kernels<T> table(const KernelChoice& c) {
-  return c.transfer == Transfer::flip ? with_basis<T, D, Transfer::flip>(c)
-                                      : with_basis<T, D, Transfer::apic>(c);
+  switch (c.transfer) {
+    case Transfer::flip:
+      return with_basis<T, D, Transfer::flip>(c);
+    case Transfer::apic:
+      return with_basis<T, D, Transfer::apic>(c);
+    case Transfer::affine_flip:
+      break;
+  }
+  return with_basis<T, D, Transfer::affine_flip>(c);
 }
 
 Kernels<float> float_2d(const KernelChoice&);

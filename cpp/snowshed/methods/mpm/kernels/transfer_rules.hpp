@@ -4,6 +4,8 @@
 // FLIP: a node holds its velocity and the change of it; particles take the change, and a share of
 // the velocity (thesis 1.2.26). APIC: both halves of a node hold the velocity; particles take an
 // affine velocity C too, from the sums weighted with the distance of a node (Jiang et al. 2015).
+// Affine FLIP: nodes as FLIP's; particles take the change of velocity as in FLIP, and C of the
+// velocity as in APIC.
 #pragma once
 
 #include "snowshed/methods/mpm/kernels/bspline.hpp"
@@ -19,6 +21,8 @@ template <class T, int D, Basis basis>
 struct FlipRule {
   using V = SimdPack<T>;
   static constexpr int S = support(basis);
+  /// Whether velocities may be damped towards their average on a coarse grid.
+  static constexpr bool averages = false;
   /// The halves of nodes that particles take.
   static constexpr Halves taken = Halves::both;
   /// The halves that count of the sums with a weight's derivative.
@@ -111,6 +115,7 @@ struct ApicRule {
   using V = SimdPack<T>;
   static constexpr int S = support(basis);
   static constexpr T inverse_inertia = T(apic_inverse_inertia(basis));
+  static constexpr bool averages = false;
   static constexpr Halves taken = Halves::first;  // the second one is the same
   static constexpr Halves interpolated = Halves::both;
   static constexpr Halves scattered = Halves::both;
@@ -226,8 +231,61 @@ struct ApicRule {
   }
 };
 
+template <class T, int D, Basis basis>
+struct AffineFlipRule : ApicRule<T, D, basis> {
+  using V = SimdPack<T>;
+  using Apic = ApicRule<T, D, basis>;
+  using Flip = FlipRule<T, D, basis>;
+  using Carried = typename Apic::Carried;
+  static constexpr bool averages = true;
+  static constexpr Halves taken = Flip::taken;
+
+  struct Interpolation : Apic::Interpolation {
+    using Apic::Interpolation::Interpolation;
+    /// The gradient in the first half, the moment in the second, both of the velocity.
+    template <class Nodes>
+    SNOWSHED_INLINE Node<T> derivative(const Nodes& line, int d, int lane) const {
+      Node<T> sum{};
+      for (int k = 0; k < Apic::S - 1; ++k)
+        add_scaled_first(sum, Node<T>::of_halves(this->slope(d, k, lane), this->moment(d, k, lane)),
+                         first_twice(line.step[k]));
+      return sum;
+    }
+  };
+
+  struct Taken {
+    typename Flip::Taken change;
+    typename Apic::Taken affine;
+    SNOWSHED_INLINE void read(const V* value, const V* along, T dx) {
+      change.read(value, along, dx);
+      affine.read(value, along, dx);
+    }
+    SNOWSHED_INLINE void move(V (&velocity)[D], Carried& carried, const V (&pic)[D],
+                              T flip_ratio) const {
+      typename Flip::Carried nothing;
+      change.move(velocity, nothing, pic, flip_ratio);
+      SNOWSHED_UNROLL
+      for (int k = 0; k < D * D; ++k) carried.affine[k] = affine.affine[k];
+    }
+  };
+};
+
 template <class T, int D, Transfer transfer, Basis basis>
-using TransferRule =
-    std::conditional_t<transfer == Transfer::flip, FlipRule<T, D, basis>, ApicRule<T, D, basis>>;
+struct RuleOf;
+template <class T, int D, Basis basis>
+struct RuleOf<T, D, Transfer::flip, basis> {
+  using type = FlipRule<T, D, basis>;
+};
+template <class T, int D, Basis basis>
+struct RuleOf<T, D, Transfer::apic, basis> {
+  using type = ApicRule<T, D, basis>;
+};
+template <class T, int D, Basis basis>
+struct RuleOf<T, D, Transfer::affine_flip, basis> {
+  using type = AffineFlipRule<T, D, basis>;
+};
+
+template <class T, int D, Transfer transfer, Basis basis>
+using TransferRule = typename RuleOf<T, D, transfer, basis>::type;
 
 SNOWSHED_METHOD_VARIANT_END

@@ -14,7 +14,7 @@ struct SumsCase {
   using Scalar = T;
   static constexpr int D = dimension;
   static constexpr Basis basis = b;
-  static constexpr bool apic = transfer == Transfer::apic;
+  static constexpr bool affine = transfer != Transfer::flip;
   using Rule = TransferRule<T, dimension, transfer, b>;
 };
 
@@ -77,7 +77,10 @@ using SumsCases = testing::Types<SumsCase<float, 2, Transfer::flip, Basis::quadr
                                  SumsCase<float, 3, Transfer::apic, Basis::quadratic>,
                                  SumsCase<double, 3, Transfer::apic, Basis::quadratic>,
                                  SumsCase<float, 2, Transfer::apic, Basis::cubic>,
-                                 SumsCase<double, 3, Transfer::apic, Basis::cubic>>;
+                                 SumsCase<double, 3, Transfer::apic, Basis::cubic>,
+                                 SumsCase<float, 2, Transfer::affine_flip, Basis::quadratic>,
+                                 SumsCase<float, 3, Transfer::affine_flip, Basis::quadratic>,
+                                 SumsCase<double, 3, Transfer::affine_flip, Basis::cubic>>;
 TYPED_TEST_SUITE(NodeSumsOfChunk, SumsCases);
 
 TYPED_TEST(NodeSumsOfChunk, AreThoseOverTheNodesOneByOne) {
@@ -96,7 +99,8 @@ TYPED_TEST(NodeSumsOfChunk, AreThoseOverTheNodesOneByOne) {
                           for (int i = 0; i < node_values; ++i) {
                             value[i] += w * node[i];
                             for (int d = 0; d < D; ++d)
-                              along[d][i] += (i < half_node ? gradient[d] : w * arm[d]) * node[i];
+                              along[d][i] +=
+                                  (i < half_node ? gradient[d] : w * arm[d]) * node[i % half_node];
                           }
                         });
     T got[node_values];
@@ -150,7 +154,7 @@ TYPED_TEST(NodeSumsOfChunk, AreGivenToTheNodesOneByOne) {
                             node[i] += w * row[i];
                             for (int d = 0; d < D; ++d) {
                               node[half_node + i] += gradient[d] * row[half_node * (1 + d) + i];
-                              if (TypeParam::apic)
+                              if (TypeParam::affine)
                                 node[i] += w * arm[d] * row[half_node * (1 + D + d) + i];
                             }
                           }

@@ -1,0 +1,134 @@
+#include "snowshed/methods/mpm/touch.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "snowshed/core/parallel.hpp"
+#include "snowshed/geometry/bounds.hpp"
+
+namespace snowshed::mpm {
+namespace {
+
+/// Part of a cell that snow may move before particles that touch are measured again.
+constexpr double tolerance = 0.02;
+
+static_assert(block_nodes<2> == 64 && block_nodes<3> == 64,
+              "a block's nodes are the bits of a word");
+
+/// The nodes of a block that lie in a box of nodes.
+template <int D>
+std::uint64_t nodes_in_box(const int (&begin)[D], int size) {
+  constexpr int B = block_edge<D>;
+  int low[D], high[D];
+  for (int d = 0; d < D; ++d) {
+    low[d] = std::max(begin[d], 0);
+    high[d] = std::min(begin[d] + size, B);
+    if (low[d] >= high[d]) return 0;
+  }
+  const std::uint64_t row = ((std::uint64_t(1) << (high[D - 1] - low[D - 1])) - 1) << low[D - 1];
+  std::uint64_t nodes = 0;
+  for (int i = low[0]; i < high[0]; ++i) {
+    if constexpr (D == 2)
+      nodes |= row << (i * B);
+    else
+      for (int j = low[1]; j < high[1]; ++j) nodes |= row << ((i * B + j) * B);
+  }
+  return nodes;
+}
+
+}  // namespace
+
+template <class T, int D>
+void Touch<T, D>::forget(const Model<T, D>& model, const State<T, D>& state) {
+  measured_ = false;
+  travel_ = 0;
+  largest_radius_ = state.largest_contact_radius(model);
+  blocks_.resize(state.layout.particle_blocks.size());
+}
+
+template <class T, int D>
+void Touch<T, D>::update(const Model<T, D>& model, State<T, D>& state, double moved, int threads) {
+  travel_ += moved;
+  const bool all = !measured_ || model.boundary.any_motion();
+  std::vector<std::int32_t> due;
+  for (std::size_t b = 0; b < blocks_.size(); ++b)
+    if (all || (travel_ >= blocks_[b].next && !state.sleep.states()[b].asleep))
+      due.push_back(std::int32_t(b));
+  if (due.empty()) return;
+  measured_ = false;  // until all has gone well
+  parallel_for(std::ptrdiff_t(due.size()), threads, 4,
+               [&](std::ptrdiff_t i) { measure(model, state, due[i]); });
+  parallel_for(std::ptrdiff_t(state.layout.grid_blocks.size()), threads, 16,
+               [&](std::ptrdiff_t g) { mark(state, std::int32_t(g)); });
+  measured_ = true;
+}
+
+template <class T, int D>
+void Touch<T, D>::measure(const Model<T, D>& model, const State<T, D>& state, std::int32_t b) {
+  const Settings& n = model.options.settings;
+  const BlockKey key = state.layout.particle_blocks[b];
+  Block& block = blocks_[b];
+  block.touchers.clear();
+  // Around the block's centre, with the cell by which particles may stray.
+  const double reach = (0.5 * block_edge<D> + 1) * std::sqrt(double(D)) * n.dx;
+  VecD<D> centre;
+  for (int d = 0; d < D; ++d)
+    centre[d] = ((block_coord<D>(key)[d] + 0.5) * block_edge<D> + base_offset(n.basis)) * n.dx;
+  double nearest = infinity;  // gap that has not closed yet
+  for (std::int32_t o = 0; o < std::int32_t(model.boundary.size()); ++o) {
+    const auto surface = model.boundary.surface(o, state.progress.time);
+    const double around = surface.distance(embed(centre)) - reach - largest_radius_;
+    if (around > 0) {
+      nearest = std::min(nearest, around);
+      continue;
+    }
+    for (std::int32_t i = state.layout.first[b]; i < state.layout.first[b + 1]; ++i) {
+      const VecD<D> x = position_of(state.particles, std::size_t(i), key, n.dx, n.basis);
+      const double distance = surface.distance(embed(x));
+      double gap = distance - largest_radius_;
+      if (gap <= 0) gap = distance - state.contact_radius(model, std::size_t(i));
+      if (gap <= 0)
+        block.touchers.push_back({i, o});
+      else
+        nearest = std::min(nearest, gap);
+    }
+  }
+  // What touches may cease to, but that matters little sooner or later.
+  block.next = travel_ + std::max(nearest, tolerance * n.dx);
+  if (!block.touchers.empty()) block.next = travel_ + tolerance * n.dx;
+}
+
+template <class T, int D>
+void Touch<T, D>::mark(State<T, D>& state, std::int32_t g) const {
+  Contact<T>* contacts = state.contacts.of_block(std::size_t(g));
+  const int count = state.contacts.count(std::size_t(g));
+  const BlockCoord<D> place = block_coord<D>(state.layout.grid_blocks[g]);
+  std::int32_t obstacle = -1;
+  std::uint64_t nodes = 0;
+  for (int c = 0; c < count; ++c) {
+    if (contacts[c].obstacle != obstacle) {  // contacts are in the order of obstacles
+      obstacle = contacts[c].obstacle;
+      nodes = 0;
+      for (const std::int32_t b : state.layout.around_nodes[g]) {
+        if (b < 0) continue;
+        const BlockCoord<D> from = block_coord<D>(state.layout.particle_blocks[b]);
+        for (const Toucher& t : blocks_[b].touchers) {
+          if (t.obstacle != obstacle) continue;
+          int begin[D];
+          for (int d = 0; d < D; ++d)
+            begin[d] = int(std::floor(state.particles.cell[d][t.particle])) +
+                       (from[d] - place[d]) * block_edge<D>;
+          nodes |= nodes_in_box<D>(begin, support_);
+        }
+      }
+    }
+    contacts[c].acts = (nodes >> contacts[c].node & 1) != 0;
+  }
+}
+
+template class Touch<float, 2>;
+template class Touch<float, 3>;
+template class Touch<double, 2>;
+template class Touch<double, 3>;
+
+}  // namespace snowshed::mpm

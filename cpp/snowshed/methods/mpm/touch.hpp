@@ -1,0 +1,48 @@
+// Contact by touch: an obstacle holds a node only once the surface of a particle with weight there
+// has come to the obstacle as it is, not as the grid sees it. Without it the snow whose splines
+// reach the obstacle's nodes is held already, a cell before it is there, or past the obstacle's
+// edge.
+//
+// Particles are measured again once they may have moved so far that another one touches.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "snowshed/methods/mpm/state.hpp"
+
+namespace snowshed::mpm {
+
+template <class T, int D>
+class Touch {
+ public:
+  explicit Touch(Basis basis) : support_(support(basis)) {}
+
+  /// After a change of the layout or of the order of the particles: nothing is known any more.
+  void forget(const Model<T, D>& model, const State<T, D>& state);
+
+  /// Says of each contact whether it acts. `moved` is how far (m) the fastest snow has come since
+  /// the last call.
+  void update(const Model<T, D>& model, State<T, D>& state, double moved, int threads);
+
+ private:
+  /// A particle that touches an obstacle.
+  struct Toucher {
+    std::int32_t particle, obstacle;
+  };
+  struct Block {
+    std::vector<Toucher> touchers;  // by obstacle
+    double next = 0;                // m, of travel, when to measure again
+  };
+
+  void measure(const Model<T, D>& model, const State<T, D>& state, std::int32_t block);
+  void mark(State<T, D>& state, std::int32_t grid_block) const;
+
+  int support_;
+  std::vector<Block> blocks_;  // of particles
+  double largest_radius_ = 0;  // m, of any particle
+  double travel_ = 0;          // m, of the fastest snow since `forget`
+  bool measured_ = false;
+};
+
+}  // namespace snowshed::mpm

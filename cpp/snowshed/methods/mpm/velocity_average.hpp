@@ -1,0 +1,71 @@
+// Velocities averaged over a length, towards which they are damped: sums of mass and momentum on a
+// coarse grid whose spacing is that length, whatever the cells. The grid's own PIC damps over dx.
+//
+// As the sums of a step, those of a block's particles go to a tile of its own; the coarse grid, in
+// blocks, gathers the tiles in fixed order; the mean velocities come back to the tiles. Nothing of
+// it outlives a step but the tiles of sleeping blocks, which do not change.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "snowshed/core/aligned_vector.hpp"
+#include "snowshed/methods/mpm/block_layout.hpp"
+#include "snowshed/methods/mpm/sleep.hpp"
+
+namespace snowshed::mpm {
+
+/// Steps from one damping to the next, which then counts for all of them. In a step snow moves by a
+/// fraction of a cell, so that little changes; and the average costs as much as a third of a step.
+inline constexpr int steps_between_averages = 4;
+
+template <class T, int D>
+class VelocityAverage {
+ public:
+  /// The coarse grid over `length` (m). No finer than half a cell: on a coarser grid a smaller
+  /// share of velocities is averaged instead, so that it diffuses them as fast.
+  VelocityAverage(double length, double dx, Basis basis);
+
+  /// Follows a change of the layout or of the order of the particles.
+  void connect(const BlockLayout<D>& layout);
+
+  /// Averages the velocities of all particles. `share` is the part of the difference from the
+  /// average that they lose. No other call may come between this and the `tile`s.
+  void update(const Kernels<T>& kernels, const ParticleView<T>& view, const BlockLayout<D>& layout,
+              const Sleep<D>& sleep, double share, int threads) noexcept;
+
+  /// The averages around a block that is awake.
+  const AverageTile<T>& tile(std::int32_t block);
+
+  std::size_t bytes() const { return (tiles_.capacity() + sums_.capacity()) * sizeof(T); }
+
+ private:
+  static constexpr int edge = 4;  // nodes along each direction of a block of the coarse grid
+  static constexpr int block_size = (D == 3 ? edge * edge * edge : edge * edge) * average_values;
+  using Coord = std::array<std::int32_t, D>;
+
+  void find_blocks(const BlockLayout<D>& layout);
+  void scatter(const Kernels<T>& kernels, const ParticleView<T>& view, const BlockLayout<D>& layout,
+               std::int32_t block) noexcept;
+  void gather(std::int32_t coarse_block) noexcept;
+  template <class Row>
+  void for_each_shared_row(std::int32_t coarse_block, std::int32_t block, Row row) const;
+
+  double spacing_, per_cell_, share_of_length_;
+  double slack_;  // cells from the block's first node down to its lowest particle
+  int tile_edge_, tile_size_;
+  std::vector<BlockKey> keys_;            // of the particle blocks that all below belongs to
+  std::vector<AverageTile<T>> tiles_of_;  // by particle block
+  std::vector<Coord> first_nodes_;        // of the tiles, by particle block
+  std::vector<std::uint8_t> settled_;     // by particle block: the tile holds sums that stay
+  int around_size_;
+  std::vector<std::int32_t> around_;  // the coarse blocks of each particle block
+  std::vector<Coord> coarse_blocks_;
+  std::vector<std::int32_t> sharing_first_, sharing_;  // the particle blocks of each coarse block
+  std::vector<std::int32_t> needed_;
+  std::vector<std::uint8_t> is_needed_;
+  AlignedVector<T> tiles_, sums_;
+};
+
+}  // namespace snowshed::mpm

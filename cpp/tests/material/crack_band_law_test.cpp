@@ -1,0 +1,108 @@
+// The law of snow with a crack band: how it softens, and its return mapping.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "material/cam_clay_testing.hpp"
+#include "snowshed/core/random.hpp"
+
+namespace snowshed {
+namespace {
+
+using namespace cam_clay_testing;
+
+constexpr double strength = 7e3;  // Pa, initial p0
+
+template <class T>
+BandedCamClay<T> banded(double softening, const LawConstants& s = calibrated, int dimension = 3) {
+  auto law = BandedCamClay<T>::from(s.youngs_modulus, s.poissons_ratio, s.slope, s.cohesion,
+                                    s.hardening, dimension);
+  law.softening = T(softening);
+  law.band_begin = T(law.initial_plastic_strain(strength));
+  return law;
+}
+
+TEST(CrackBandLaw, SoftensSoManyTimesFasterOnceSnowHasDilated) {
+  const double begin = material<double>(calibrated).initial_plastic_strain(strength);
+  for (const double s : {0.25, 0.5, 1.0, 4.0}) {
+    const auto law = banded<double>(s);
+    for (const double ev : {-2.0, -0.2, begin})  // compacted: (1.2.7)
+      EXPECT_DOUBLE_EQ(law.preconsolidation(ev), material<double>(calibrated).preconsolidation(ev));
+    for (const double part : {0.1, 0.5, 0.9})  // of the way to the loss of strength, -e_0/s
+      EXPECT_NEAR(law.preconsolidation(begin - part * begin / s),
+                  material<double>(calibrated).preconsolidation(begin - part * begin),
+                  1e-9 * strength);
+    EXPECT_EQ(law.preconsolidation(begin - 1.001 * begin / s), 0.0);
+    double slope;
+    const double at = begin - 0.3 * begin / s, h = 1e-6;
+    law.preconsolidation(at, slope);
+    EXPECT_NEAR(slope, (law.preconsolidation(at + h) - law.preconsolidation(at - h)) / (2 * h),
+                1e-6 * std::abs(slope));
+  }
+}
+
+/// A return of random trials satisfies the yield condition, the volume balance and the flow rule.
+template <class T>
+void expect_sound_returns() {
+  const double eps = std::numeric_limits<T>::epsilon();
+  Random random(17);
+  int yielded = 0, dilated = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const double softening = std::pow(10.0, 3 * random.uniform() - 1);  // 0.1 to 100
+    const auto law = banded<T>(softening, calibrated, random.uniform() < 0.5 ? 2 : 3);
+    const double begin = double(law.band_begin);
+    const double end = begin - begin / softening;  // of strength
+    const T ev_old = T(begin + (random.uniform() - 0.5) * 2.2 * std::abs(begin / softening));
+    const double scale = 3e4 * std::pow(10.0, -2 * random.uniform());
+    PQ<T> s{T(scale * (2 * random.uniform() - 1)), T(scale * random.uniform())};
+    const PQ<T> trial = s;
+    T ev = ev_old;
+    if (!law.return_map(s, ev)) continue;
+    ++yielded;
+    const double bulk = double(law.elastic.bulk), m2 = double(law.m2), a = 1 + 2 * 0.2;
+    const double p0 = double(law.preconsolidation(ev)), p = double(s.p), q = double(s.q);
+    const double d = double(ev) - double(ev_old);
+    dilated += d > 0;
+    const double slope = 0.1 * 833e3 * softening;
+    const double stress = scale + p0 + (bulk + slope) * (std::abs(double(ev)) + std::abs(d));
+    const double tolerance = 32 * eps * stress;
+    ASSERT_TRUE(std::isfinite(p) && std::isfinite(q) && std::isfinite(double(ev)));
+    ASSERT_NEAR(p, double(trial.p) + bulk * d, tolerance);
+    ASSERT_LE(q, double(trial.q));
+    if (double(ev) >= end + 1e-6) {
+      ASSERT_NEAR(p, 0, tolerance);
+      ASSERT_NEAR(q, 0, tolerance + std::sqrt(tolerance * (p0 + tolerance)));
+      continue;
+    }
+    const double size = m2 * (std::abs(p) + 1.2 * p0) + tolerance;
+    const double y = a * q * q + m2 * (p + 0.2 * p0) * (p - p0);
+    ASSERT_NEAR(y, 0, 16 * tolerance * size)
+        << "s " << softening << " trial " << trial.p << " " << trial.q << " e_v " << ev_old;
+  }
+  EXPECT_GT(yielded, 5000);
+  EXPECT_GT(dilated, 2000);
+}
+
+TEST(CrackBandLaw, ReturnsAreSound) {
+  expect_sound_returns<double>();
+  expect_sound_returns<float>();
+}
+
+TEST(CrackBandLaw, OfOneIsCamClayBitForBit) {
+  Random random(5);
+  const auto plain = material<float>(calibrated);
+  const auto law = banded<float>(1.0);
+  for (int i = 0; i < 20000; ++i) {
+    PQ<float> a{float(4e4 * (random.uniform() - 0.5)), float(3e4 * random.uniform())}, b = a;
+    float ev = float(-0.2 * random.uniform() + 0.02), ev_of_law = ev;
+    plain.return_map(a, ev);
+    law.return_map(b, ev_of_law);
+    ASSERT_EQ(a.p, b.p);
+    ASSERT_EQ(a.q, b.q);
+    ASSERT_EQ(ev, ev_of_law);
+  }
+}
+
+}  // namespace
+}  // namespace snowshed

@@ -1,0 +1,158 @@
+// Contact by touch: snow rests on obstacles, not above them, and past their edges nothing holds it.
+#include "snowshed/methods/mpm/touch.hpp"
+
+#include <gtest/gtest.h>
+
+#include "io/temporary_folder.hpp"
+#include "methods/mpm/solver_testing.hpp"
+#include "snowshed/io/binary_archive.hpp"
+
+namespace snowshed::mpm {
+namespace {
+
+Options touching_options(const Way& way, double dx = 0.01) {
+  Options o = options_for(way, dx);
+  o.settings.transfer = Transfer::affine_flip;
+  o.settings.damping_length = 0.01;
+  o.settings.damping_rate = 380;
+  o.settings.contact = Contacting::touch;
+  return o;
+}
+
+double lowest(const ParticleState& s) {
+  double z = 1e9;
+  for (const Vec3& x : s.positions) z = std::min(z, x.z());
+  return z;
+}
+
+/// Height of the snow's surface over the ground, in cells, of a slab that came down on it.
+double resting_gap(const Way& way, double dx, Contacting contact, const Obstacle& ground,
+                   double surface) {
+  Options o = touching_options(way, dx);
+  o.settings.contact = contact;
+  const auto solver = make_solver(o, {ground});
+  const double spacing = dx / 2.5, thickness = 2 * dx;
+  solver->add(filled_box(way.dimension, Vec3(0, 0, surface + 2.3 * dx),
+                         Vec3(6 * dx, 4 * dx, surface + 2.3 * dx + thickness), spacing));
+  run_until(*solver, std::sqrt(6 * dx / 9.81) + 0.08);
+  return (lowest(solver->state()) - 0.5 * spacing - surface) / dx;
+}
+
+class RestingGap : public testing::TestWithParam<Condition> {};
+INSTANTIATE_TEST_SUITE_P(Touch, RestingGap,
+                         testing::Values(Condition::sticky, Condition::slip, Condition::separate));
+
+/// Wherever the surface lies between the nodes, and of a plate thinner than a cell, too.
+TEST_P(RestingGap, IsLessThanATenthOfACell) {
+  const Condition condition = GetParam();
+  for (const double dx : {0.02, 0.005})
+    for (const double surface : {0.0, 0.37 * dx, 0.81 * dx}) {
+      const Obstacle ground = fixed(make_plane(Vec3(0, 0, surface), Vec3::UnitZ()), condition, 0.3);
+      const Obstacle plate =
+          fixed(make_box(Vec3(0, 0, surface - dx / 4), Vec3(2, 2, dx / 2)), condition, 0.3);
+      const Way way{2, Precision::float32};
+      for (const Obstacle& obstacle : {ground, plate})
+        EXPECT_NEAR(resting_gap(way, dx, Contacting::touch, obstacle, surface), 0, 0.11)
+            << dx << " m, " << surface;
+      if (surface == 0) EXPECT_GT(resting_gap(way, dx, Contacting::kernel, ground, surface), 0.8);
+    }
+}
+
+TEST_P(RestingGap, IsAsSmallInThreeDimensions) {
+  const Condition condition = GetParam();
+  const Obstacle ground = fixed(make_plane(Vec3(0, 0, 0.002), Vec3::UnitZ()), condition, 0.3);
+  EXPECT_NEAR(resting_gap({3, Precision::float32}, 0.01, Contacting::touch, ground, 0.002), 0,
+              0.11);
+}
+
+/// Speed along z (m/s) of a small chunk that falls beside the edge of a plate.
+double speed_beside_edge(Contacting contact, double clearance) {
+  Options o = touching_options({2, Precision::float64});
+  o.settings.contact = contact;
+  const auto solver = make_solver(
+      o, {fixed(make_box(Vec3(-0.5, 0, -0.02), Vec3(1, 1, 0.04)), Condition::separate)});
+  solver->add(filled_box(2, Vec3(clearance, 0, 0.01), Vec3(clearance + 0.02, 0, 0.02), 0.004));
+  run_until(*solver, 0.06);
+  return mean_velocity(*solver).z();
+}
+
+TEST(Touch, SnowPastAnEdgeIsNotCarried) {
+  const double free_fall = -9.81 * 0.06;
+  EXPECT_NEAR(speed_beside_edge(Contacting::touch, 0.001), free_fall, 0.01);
+  EXPECT_GT(speed_beside_edge(Contacting::kernel, 0.001),
+            0.8 * free_fall);  // the grid carries it
+}
+
+TEST(Touch, FrictionIsCoulombs) {
+  constexpr double tilt = radians(40);
+  const Vec3 normal(std::sin(tilt), 0, std::cos(tilt)), slope(std::cos(tilt), 0, -std::sin(tilt));
+  for (const Condition condition : {Condition::slip, Condition::separate})
+    for (const double friction : {0.0, 0.3, 0.6}) {
+      const auto solver =
+          make_solver(touching_options({2, Precision::float32}),
+                      {fixed(make_plane(Vec3::Zero(), normal), condition, friction)});
+      ParticleBatch slab = filled_box(2, Vec3::Zero(), Vec3(0.25, 0, 0.03), 0.004);
+      for (Vec3& x : slab.positions) x = x.x() * slope + x.z() * normal;
+      solver->add(slab);
+      run_until(*solver, 0.1);
+      const double time = solver->time(), speed = mean_velocity(*solver).dot(slope);
+      run_until(*solver, 0.3);
+      const double by_coulomb = 9.81 * (std::sin(tilt) - friction * std::cos(tilt));
+      EXPECT_NEAR((mean_velocity(*solver).dot(slope) - speed) / (solver->time() - time), by_coulomb,
+                  0.02 * by_coulomb)
+          << friction;
+    }
+}
+
+TEST(Touch, AMovingObstaclePushesOnceItTouches) {
+  Options o = touching_options({2, Precision::float64});
+  o.gravity = 0;
+  Obstacle wall = fixed(make_box(Vec3(-0.05, 0, 0), Vec3(0.1, 1, 1)), Condition::separate);
+  MotionSpec motion;
+  motion.velocity = Vec3(0.5, 0, 0);
+  wall.motion.emplace(motion);
+  const auto solver = make_solver(o, {wall});
+  solver->add(filled_box(2, Vec3(0.02, 0, 0), Vec3(0.06, 0, 0.04), 0.004));
+  run_until(*solver,
+            0.036);  // it has come 1.8 cm: its nodes hold the snow for some time
+  EXPECT_EQ(mean_velocity(*solver).norm(), 0.0);
+  run_until(*solver, 0.08);
+  EXPECT_GT(mean_velocity(*solver).x(), 0.45);
+}
+
+class TouchFiles : public TemporaryFolder {};
+
+std::unique_ptr<Solver> landing_snow(int threads) {
+  Options o = touching_options({2, Precision::float32});
+  o.settings.threads = threads;
+  o.settings.sleep_speed = 0.02;
+  auto solver =
+      make_solver(o, {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::separate, 0.5),
+                      fixed(make_box(Vec3(0, 0, 0.02), Vec3(0.05, 1, 0.04)), Condition::slip)});
+  ParticleBatch below = filled_box(2, Vec3(-0.3, 0, 0.001), Vec3(-0.05, 0, 0.04), 0.004);
+  ParticleBatch above = filled_box(2, Vec3(-0.1, 0, 0.06), Vec3(0.3, 0, 0.09), 0.004);
+  above.velocity = Vec3(-0.5, 0, -1);
+  solver->add(below);
+  solver->add(above);
+  return solver;
+}
+
+TEST_F(TouchFiles, GivesTheSameBitsOnAnyNumberOfThreadsAndFromACheckpoint) {
+  const auto one = landing_snow(1), many = landing_snow(3);
+  for (Solver* solver : {one.get(), many.get()}) {
+    run_steps(*solver, 900);
+    while (!solver->at_safe_point()) solver->step();
+  }
+  expect_same_bits(many->state(), one->state());
+  BinaryWriter out;
+  one->save(out);
+  out.save(path("state"));
+  const auto resumed = landing_snow(1);
+  resumed->load(BinaryReader::load(path("state")));
+  run_steps(*one, 300);
+  run_steps(*resumed, 300);
+  expect_same_bits(resumed->state(), one->state());
+}
+
+}  // namespace
+}  // namespace snowshed::mpm

@@ -1,0 +1,247 @@
+// Damping over a length: the same on any grid, for any number of threads, and balanced.
+#include "snowshed/methods/mpm/velocity_average.hpp"
+
+#include <gtest/gtest.h>
+
+#include "io/temporary_folder.hpp"
+#include "methods/mpm/solver_testing.hpp"
+#include "snowshed/io/binary_archive.hpp"
+
+namespace snowshed::mpm {
+namespace {
+
+constexpr double length = 0.01, rate = 380;  // m, 1/s
+
+Options damped_options(const Way& way, double dx = 0.01) {
+  Options o = options_for(way, dx);
+  o.settings.transfer = Transfer::affine_flip;
+  o.settings.damping_length = length;
+  o.settings.damping_rate = rate;
+  o.gravity = 0;
+  return o;
+}
+
+/// A chunk of snow, w by w/2 in the x-z plane (and w/2 along y), that turns about y.
+void add_turning_chunk(Method& solver, int dimension, double w, double spacing, double angle,
+                       double spin) {
+  const Vec3 half(w / 2, w / 4, w / 4);
+  const ParticleBatch box = filled_box(dimension, -half, half, spacing);
+  const Mat3 turn = Eigen::AngleAxisd(angle, Vec3::UnitY()).toRotationMatrix();
+  for (const Vec3& place : box.positions) {
+    ParticleBatch one;
+    const Vec3 x = turn * place;
+    one.positions = {x + Vec3(0.003, 0, 0.302)};
+    one.velocity = spin * Vec3::UnitY().cross(x);
+    one.mass = box.mass;
+    solver.add(one);
+  }
+}
+
+/// About y and the centre of mass; affine velocities carry their own (inertia dx^2/4).
+double spin_momentum(const Method& solver, double dx) {
+  const ParticleState s = solver.state();
+  const Vec3 x = weighted_mean(s, s.positions), v = weighted_mean(s, s.velocities);
+  double sum = 0;
+  for (std::size_t i = 0; i < s.masses.size(); ++i) {
+    sum += s.masses[i] * (s.positions[i] - x).cross(s.velocities[i] - v).y();
+    sum += s.masses[i] * dx * dx / 4 * (s.affine[i](0, 2) - s.affine[i](2, 0));
+  }
+  return sum;
+}
+
+/// Mean rate, 1/s, at which a chunk turns ever more slowly, over some orientations.
+double decay_rate(int dimension, double w, double dx) {
+  double sum = 0;
+  const double angles[] = {0.4, 1.1, 2.0};
+  for (const double angle : angles) {
+    const auto solver = make_solver(damped_options({dimension, Precision::float32}, dx), {});
+    add_turning_chunk(*solver, dimension, w, dx / std::sqrt(6.0), angle, 10);
+    run_until(*solver, 0.01);
+    const double before = spin_momentum(*solver, dx), begin = solver->time();
+    run_until(*solver, 0.03);
+    sum += std::log(before / spin_momentum(*solver, dx)) / (solver->time() - begin);
+  }
+  return sum / 3;
+}
+
+/// The same of a rigid body of points, without any grid of cells: what the average takes of its
+/// angular momentum. The coarse grid is laid at random.
+double exact_decay_rate(double w) {
+  constexpr int n = 48;
+  Random random(3);
+  double sum = 0;
+  for (int sample = 0; sample < 8; ++sample) {
+    const double angle = 6.3 * random.uniform();
+    const Vec3 shift = random_vector(random, 2, 1.0);
+    const auto weights = [&](const Vec3& x, const auto& visit) {
+      const Vec3 at = x / length + shift + Vec3(20, 0, 20);
+      const int low_i = int(at.x()) - 1, low_k = int(at.z()) - 1;
+      for (int i = low_i; i < low_i + 4; ++i)
+        for (int k = low_k; k < low_k + 4; ++k) {
+          const auto spline = [](double d) {
+            const double a = std::abs(d);
+            return a < 0.5 ? 0.75 - a * a : a < 1.5 ? 0.5 * (1.5 - a) * (1.5 - a) : 0.0;
+          };
+          const double weight = spline(at.x() - i) * spline(at.z() - k);
+          if (weight > 0) visit(i * 40 + k, weight);
+        }
+    };
+    std::vector<Vec3> points, momentum(1600, Vec3::Zero());
+    std::vector<double> mass(1600, 0.0);
+    const Mat3 turn = Eigen::AngleAxisd(angle, Vec3::UnitY()).toRotationMatrix();
+    for (int i = 0; i < n; ++i)
+      for (int k = 0; k < n / 2; ++k)
+        points.push_back(turn * Vec3((i + 0.5) / n - 0.5, 0, (k + 0.5) / n - 0.25) * w);
+    const auto velocity = [](const Vec3& x) { return Vec3(Vec3::UnitY().cross(x)); };
+    for (const Vec3& x : points)
+      weights(x, [&](int node, double weight) {
+        mass[node] += weight;
+        momentum[node] += weight * velocity(x);
+      });
+    double whole = 0, left = 0;
+    for (const Vec3& x : points) {
+      whole += x.cross(velocity(x)).y();
+      weights(x, [&](int node, double weight) {
+        left += weight * x.cross(Vec3(momentum[node] / mass[node])).y();
+      });
+    }
+    sum += rate * (1 - left / whole);
+  }
+  return sum / 8;
+}
+
+TEST(VelocityAverage, AChunkStopsTurningAsFastOnAnyGrid) {
+  for (const double w : {0.02, 0.04, 0.08}) {
+    double least = 1e9, most = 0;
+    for (const double dx : {0.02, 0.01, 0.007, 0.005, 0.0025}) {
+      // Of a cell by half a cell, three particles: their affine velocities hold five sixths of the
+      // angular momentum, and the average knows nothing of these.
+      if (w < 1.5 * dx || w > 16 * dx) continue;
+      const double found = decay_rate(2, w, dx);
+      least = std::min(least, found);
+      most = std::max(most, found);
+      if (w == 16 * dx || w == 8 * dx) EXPECT_NEAR(found, exact_decay_rate(w), 0.08 * found) << w;
+    }
+    EXPECT_LT(most / least, 1.1 / 0.9) << w << " m: " << least << " to " << most << " 1/s";
+  }
+}
+
+TEST(VelocityAverage, AChunkStopsTurningAsFastInThreeDimensions) {
+  const double coarse = decay_rate(3, 0.04, 0.01), fine = decay_rate(3, 0.04, 0.005);
+  EXPECT_NEAR(coarse / fine, 1.0, 0.1) << coarse << " and " << fine << " 1/s";
+}
+
+TEST(VelocityAverage, IsNotOfTheStep) {
+  const auto left = [](double courant_factor) {
+    Options o = damped_options({2, Precision::float64});
+    o.settings.courant_factor = courant_factor;
+    const auto solver = make_solver(o, {});
+    add_turning_chunk(*solver, 2, 0.04, 0.004, 0.4, 10);
+    run_until(*solver, 0.01);
+    const double before = spin_momentum(*solver, 0.01), begin = solver->time();
+    run_until(*solver, 0.03);
+    return std::log(before / spin_momentum(*solver, 0.01)) / (solver->time() - begin);
+  };
+  const double expected = left(0.9);
+  for (const double courant_factor : {0.45, 0.2})
+    EXPECT_NEAR(left(courant_factor), expected, 0.06 * expected) << courant_factor;
+}
+
+/// Particles at random places with random velocities.
+ParticleBatch swarm_particle(Random& random, int dimension) {
+  ParticleBatch one;
+  one.positions = {random_vector(random, dimension, 0.03)};
+  one.velocity = random_vector(random, dimension, 1.0);
+  one.mass = 1e-3 * (0.5 + random.uniform());
+  return one;
+}
+
+TEST(VelocityAverage, KeepsMomentumAndTakesEnergyThatIsBalanced) {
+  for (const Way& way : {Way{2, Precision::float32}, Way{2, Precision::float64},
+                         Way{3, Precision::float32}, Way{3, Precision::float64}}) {
+    for (const double dx : {0.004, 0.01, 0.03}) {
+      Options o = damped_options(way, dx);
+      o.energy = true;
+      const auto solver = make_solver(o, {});
+      Random random(7);
+      double speeds = 0;
+      for (int i = 0; i < 120; ++i) {
+        const ParticleBatch one = swarm_particle(random, way.dimension);
+        solver->add(one);
+        speeds += one.mass * one.velocity.norm();
+      }
+      const Vec3 before = momentum(solver->state());
+      const EnergyBalance start = solver->energy();
+      run_steps(*solver, 80);
+      const Vec3 change = momentum(solver->state()) - before;
+      EXPECT_LT(change.norm(), 80 * way.epsilon() * speeds) << way.name() << " " << dx;
+      const EnergyBalance end = solver->energy();
+      EXPECT_GT(end.damping, 0.01 * start.kinetic) << way.name() << " " << dx;
+      EXPECT_NEAR(end.residual(), 0, 0.02 * start.kinetic) << way.name() << " " << dx;
+    }
+  }
+}
+
+TEST(VelocityAverage, BooksOfATurningChunkClose) {
+  Options o = damped_options({2, Precision::float64});
+  o.energy = true;
+  o.snows[0].model = SnowModel::elastic;
+  const auto solver = make_solver(o, {});
+  add_turning_chunk(*solver, 2, 0.04, 0.004, 0.4, 10);
+  run_until(*solver, 0.02);
+  const EnergyBalance e = solver->energy();
+  EXPECT_GT(e.damping, 0.5 * e.added);  // what the average took, not the transfer
+  EXPECT_NEAR(e.residual(), 0, 0.01 * e.added);
+}
+
+TEST(VelocityAverage, LeavesWhatMovesAsOneAlone) {
+  Options o = damped_options({2, Precision::float64});
+  const auto solver = make_solver(o, {});
+  ParticleBatch batch = filled_box(2, Vec3(0, 0, 0), Vec3(0.05, 0, 0.05), 0.005);
+  batch.velocity = Vec3(1, 0, -2);
+  solver->add(batch);
+  run_steps(*solver, 100);
+  for (const Vec3& v : solver->state().velocities) ASSERT_LT((v - batch.velocity).norm(), 1e-11);
+}
+
+class VelocityAverageFiles : public TemporaryFolder {};
+
+std::unique_ptr<Solver> thrown_chunk(int threads) {
+  Options o = damped_options({2, Precision::float32});
+  o.gravity = 9.81;
+  o.settings.threads = threads;
+  o.settings.sleep_speed = 0.02;
+  auto solver = make_solver(o, {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::sticky)});
+  ParticleBatch below = filled_box(2, Vec3(-0.3, 0, 0), Vec3(0.3, 0, 0.04), 0.004);
+  ParticleBatch above = filled_box(2, Vec3(-0.1, 0, 0.06), Vec3(0.1, 0, 0.1), 0.004);
+  above.velocity = Vec3(1, 0, -1);
+  solver->add(below);
+  solver->add(above);
+  return solver;
+}
+
+TEST_F(VelocityAverageFiles, GivesTheSameBitsOnAnyNumberOfThreadsAndFromACheckpoint) {
+  const auto one = thrown_chunk(1), many = thrown_chunk(3);
+  const auto go_on = [](Method& solver) {
+    run_steps(solver, 1201);
+    solver.add_velocity(std::vector<Vec3>(solver.size(), Vec3(0, 0, 1e-3)));  // a safe point
+    run_steps(solver, 2);
+  };
+  go_on(*one);
+  go_on(*many);
+  expect_same_bits(many->state(), one->state());
+  EXPECT_GT(one->slept_updates(), 0);
+  one->add_velocity(std::vector<Vec3>(one->size(), Vec3::Zero()));  // a safe point
+  ASSERT_NE(one->counters().steps % steps_between_averages, 0);  // a part of a damping is pending
+  BinaryWriter out;
+  one->save(out);
+  out.save(path("state"));
+  const auto resumed = thrown_chunk(1);
+  resumed->load(BinaryReader::load(path("state")));
+  run_steps(*one, 300);
+  run_steps(*resumed, 300);
+  expect_same_bits(resumed->state(), one->state());
+}
+
+}  // namespace
+}  // namespace snowshed::mpm
