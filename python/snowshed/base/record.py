@@ -82,6 +82,9 @@ class Record(metaclass=_RecordClass):
     #: Fields, and those in whose place they stand: of the two one is given, and setting one of
     #: them unsets the other.
     INSTEAD_OF: ClassVar[Mapping[str, str]] = {}
+    #: Fields that name a choice of several others. A new choice unsets these, because it decides
+    #: them; what is set after it, or with it, stands.
+    ADOPTS: ClassVar[Mapping[str, tuple[str, ...]]] = {}
 
     def __init_subclass__(cls) -> None:
         """Give subclasses this text, which `dataclass` would replace by one of all fields."""
@@ -124,9 +127,14 @@ class Record(metaclass=_RecordClass):
         record = cls()
         check_once({key: cls.field_of(key, path) for key in data}, path)
         check_instead(cls, [cls.field_of(k, path) for k in data if data[k] is not None], path)
-        for key, value in data.items():
+        for key, value in sorted(data.items(), key=lambda item: not cls.adopts(item[0])):
             record.assign(key, value, path)
         return record
+
+    @classmethod
+    def adopts(cls, key: str) -> bool:
+        """Return whether a JSON key names a choice of several other fields."""
+        return {**cls.keys(), **cls.aliases()}.get(key) in cls.ADOPTS
 
     def to_data(self, path: str = "", depth: int = 0) -> JsonObject:
         """Return the fields that were given, as a JSON object that stands `depth` deep at `path`.
@@ -171,8 +179,11 @@ class Record(metaclass=_RecordClass):
 
     def _keep(self, name: str, value: object, where: str) -> None:
         converted = _own(convert(value, _hints(type(self))[name], where))
+        is_new = converted != vars(self).get(name)
         object.__setattr__(self, name, converted)
         if converted is not None:
+            for decided in self.ADOPTS.get(name, ()) if is_new else ():
+                object.__setattr__(self, decided, None)
             for pair in self.INSTEAD_OF.items():
                 if name in pair:
                     object.__setattr__(self, pair[1 - pair.index(name)], None)

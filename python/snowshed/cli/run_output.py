@@ -8,7 +8,7 @@ from typing import Any, Optional
 
 from rich.table import Table
 
-from snowshed.analysis.accuracy.stack_errors import stack_error
+from snowshed.analysis.accuracy.stack_errors import error_sentence
 from snowshed.cli.terminal import PlainConsole, plain_table, wide_console
 from snowshed.io.json_file import read_object
 from snowshed.methods.registry import method_of, settings_of
@@ -41,9 +41,8 @@ def print_events(results: Results) -> None:
         events.add_row(*(form.format(row[name]) for name, form in EVENT_TABLE.values()))
     wide_console(120).print(events)
     console = PlainConsole()
-    error = stack_error(results.scene)
-    if error is not None:
-        console.print(error.sentence)
+    if error := error_sentence(results.scene):
+        console.print(error)
     console.print(contacts_and_damping(results.scene.data, mean_damping_rate(table)))
     residual = energy_residual(folder)
     if residual is not None:

@@ -346,7 +346,9 @@ class Scene(Record):
         self, values: Mapping[str, object], names: dict[int, dict[str, str]], prefix: str = ""
     ) -> None:
         """Set values; `names` collects the fields that were set, by record and name."""
-        for path, value in values.items():
+        for path, value in sorted(
+            values.items(), key=lambda item: not self._adopts(prefix + item[0])
+        ):
             with locate(self, prefix + path) as (record, key, where):
                 field = record.field_of(key, where)
                 if isinstance(value, Mapping) and record.record_type(key):
@@ -358,6 +360,11 @@ class Scene(Record):
                         check_once(set_so_far, where)
                         check_instead(type(record), list(set_so_far.values()), where)
                     record.assign(key, value, where)
+
+    def _adopts(self, path: str) -> bool:
+        """Return whether a path names a choice of several others, which must come before them."""
+        with locate(self, path) as (record, key, _):
+            return record.adopts(key)
 
     def resolve(self) -> ResolvedScene:
         """Validate the scene and fill its defaults, in the core.

@@ -132,6 +132,29 @@ def stack_error(
     )
 
 
+def error_sentence(scene: ResolvedScene) -> str:
+    """Return what is recorded of the error of a scene's stack; empty if it builds none on a grid.
+
+    Examples
+    --------
+    >>> lab = Scene.preset("lab-50")
+    >>> error_sentence(lab.resolve()).startswith("error of the stack in recorded runs (lab-50")
+    True
+    >>> error_sentence(lab.with_({"numerics.scheme": "objective"}).resolve())
+    'error of the stack: no runs are recorded for transfer affine_flip; --check measures it'
+    """
+    error = stack_error(scene)
+    if error is not None:
+        return error.sentence
+    settings = settings_of(scene.data)
+    if slab_thickness(scene.data) is None or not isinstance(settings, MpmSettings):
+        return ""
+    return (
+        f"error of the stack: no runs are recorded for transfer {settings.transfer}; "
+        "--check measures it"
+    )
+
+
 def recorded_bias(dimension: int, events: int, transfer: str = "flip") -> Optional[str]:
     """Return by how much recorded stacks were too high, over all grids that resolve the slab.
 
