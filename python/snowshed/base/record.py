@@ -83,6 +83,9 @@ class Record(metaclass=_RecordClass):
     #: them unsets the other.
     INSTEAD_OF: ClassVar[Mapping[str, str]] = {}
 
+    #: Fields that stand for several others, which come after them: setting one unsets these.
+    STANDS_FOR: ClassVar[Mapping[str, tuple[str, ...]]] = {}
+
     def __init_subclass__(cls) -> None:
         """Give subclasses this text, which `dataclass` would replace by one of all fields."""
         if "__repr__" not in vars(cls):
@@ -176,6 +179,8 @@ class Record(metaclass=_RecordClass):
             for pair in self.INSTEAD_OF.items():
                 if name in pair:
                     object.__setattr__(self, pair[1 - pair.index(name)], None)
+            for other in self.STANDS_FOR.get(name, ()):
+                object.__setattr__(self, other, None)
 
     @classmethod
     def _unknown(cls, name: str) -> UnknownFieldError:

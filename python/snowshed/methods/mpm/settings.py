@@ -96,6 +96,19 @@ class MpmSettings(MethodSettings):
 
     RESOLUTION: ClassVar[str] = "dx"
     INSTEAD_OF: ClassVar[Mapping[str, str]] = {"damping_rate": "flip_ratio"}
+    STANDS_FOR: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        "scheme": (
+            "transfer",
+            "flip_ratio",
+            "damping_rate",
+            "damping_length",
+            "crack_band_length",
+            "contact",
+            "contact_radius",
+            "fields",
+            "event_friction",
+        )
+    }
 
     def damping_text(self, rate: Optional[float] = None) -> str:
         """Return how PIC damps, for captions; the settings must be complete.
