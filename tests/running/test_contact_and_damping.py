@@ -120,3 +120,14 @@ def test_a_share_in_each_step_is_a_mean_rate_over_all_steps(tmp_path):
     facts = json.loads((tmp_path / "run" / "run.json").read_text())
     whole = -math.log(0.99) * table.steps.sum() / table.sim_time_s.sum()
     assert facts["damping_rate_per_s"] == pytest.approx(whole, rel=1e-6)
+
+
+def test_a_scheme_stands_for_its_mechanisms() -> None:
+    scene = Scene.preset("lab-50").set("numerics.scheme", "objective")
+    numerics = scene.resolve().data["numerics"]
+    assert numerics["transfer"] == "affine_flip"
+    assert (numerics["damping_rate"], numerics["damping_length"]) == (380.0, 0.01)
+    assert (numerics["contact"], numerics["fields"]) == ("touch", "events")
+    slower = scene.set("numerics.damping_rate", 190.0).resolve().data["numerics"]
+    assert slower["damping_rate"] == 190.0
+    assert slower["transfer"] == "affine_flip"

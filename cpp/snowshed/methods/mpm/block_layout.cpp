@@ -1,6 +1,7 @@
 #include "snowshed/methods/mpm/block_layout.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "snowshed/core/parallel.hpp"
 
@@ -15,16 +16,16 @@ void for_each_neighbour(BlockKey key, F f) {
     BlockCoord<D> o = c;
     int rest = n;
     for (int d = D - 1; d >= 0; --d, rest /= 3) o[d] += rest % 3 - 1;
-    f(n, block_key<D>(o));
+    f(n, block_key<D>(o, field_of(key)));
   }
 }
 
-std::int32_t find(const std::vector<BlockKey>& sorted, BlockKey key) {
+}  // namespace
+
+std::int32_t find_block(const std::vector<BlockKey>& sorted, BlockKey key) {
   const auto at = std::lower_bound(sorted.begin(), sorted.end(), key);
   return at != sorted.end() && *at == key ? std::int32_t(at - sorted.begin()) : -1;
 }
-
-}  // namespace
 
 template <int D>
 BlockLayout<D> BlockLayout<D>::of(std::vector<BlockKey> blocks, std::vector<std::int32_t> starts,
@@ -57,14 +58,36 @@ void BlockLayout<D>::connect(int threads) {
   around_nodes.resize(grid_blocks.size());
   parallel_for(std::ptrdiff_t(particle_blocks.size()), threads, 64, [this](std::ptrdiff_t i) {
     for_each_neighbour<D>(particle_blocks[i], [this, i](int n, BlockKey k) {
-      around_particles[i][n] = find(grid_blocks, k);
+      around_particles[i][n] = find_block(grid_blocks, k);
     });
   });
   parallel_for(std::ptrdiff_t(grid_blocks.size()), threads, 64, [this](std::ptrdiff_t i) {
     for_each_neighbour<D>(grid_blocks[i], [this, i](int n, BlockKey k) {
-      around_nodes[i][n] = find(particle_blocks, k);
+      around_nodes[i][n] = find_block(particle_blocks, k);
     });
   });
+  find_meetings();
+}
+
+template <int D>
+void BlockLayout<D>::find_meetings() {
+  if (grid_blocks.empty() || field_of(grid_blocks.back()) == 0) return;  // one field
+  std::vector<std::pair<BlockCoord<D>, std::int32_t>> by_place;
+  for (std::size_t g = 0; g < grid_blocks.size(); ++g)
+    by_place.push_back({block_coord<D>(grid_blocks[g]), std::int32_t(g)});
+  std::sort(by_place.begin(), by_place.end());
+  meets.assign(grid_blocks.size(), 0);
+  for (std::size_t i = 0, end; i < by_place.size(); i = end) {
+    end = i + 1;
+    while (end < by_place.size() && by_place[end].first == by_place[i].first) ++end;
+    if (end - i < 2) continue;
+    for (std::size_t k = i; k < end; ++k) {
+      meeting_blocks.push_back(by_place[k].second);
+      meets[by_place[k].second] = 1;
+    }
+    meeting_first.push_back(std::int32_t(meeting_blocks.size()));
+  }
+  if (meeting_blocks.empty()) meets.clear();
 }
 
 template struct BlockLayout<2>;

@@ -14,25 +14,41 @@ namespace snowshed::mpm {
 template <int D>
 using BlockCoord = std::array<std::int32_t, D>;
 
-/// A block's coordinates in one sortable number, 21 bits each.
+/// A block's coordinates and its velocity field in one sortable number: 21 bits for each coordinate
+/// in the field 0, the only one of most runs; otherwise the highest bit, 6 bits for the field, and
+/// 19 bits for each coordinate. Blocks at one place with different fields are different blocks, and
+/// neighbours have the same field.
 using BlockKey = std::uint64_t;
 
-inline constexpr std::int32_t block_coord_limit = (1 << 20) - 2;
+inline constexpr int most_fields = 64;
+
+/// Bits of a coordinate.
+constexpr int coord_bits(int field) { return field == 0 ? 21 : 19; }
+
+/// Coordinates are no larger than this.
+constexpr std::int32_t block_coord_limit(int field) { return (1 << (coord_bits(field) - 1)) - 2; }
+
+constexpr int field_of(BlockKey key) { return key >> 63 ? int(key >> 57 & (most_fields - 1)) : 0; }
 
 template <int D>
-BlockKey block_key(const BlockCoord<D>& c) {
+BlockKey block_key(const BlockCoord<D>& c, int field = 0) {
+  const int bits = coord_bits(field);
   BlockKey key = 0;
-  for (int d = 0; d < D; ++d) key = key << 21 | BlockKey(c[d] + (1 << 20));
-  return key;
+  for (int d = 0; d < D; ++d) key = key << bits | BlockKey(c[d] + (1 << (bits - 1)));
+  return field == 0 ? key : key | BlockKey(most_fields + field) << 57;
 }
 
 template <int D>
 BlockCoord<D> block_coord(BlockKey key) {
+  const int bits = coord_bits(field_of(key));
   BlockCoord<D> c;
-  for (int d = D - 1; d >= 0; --d, key >>= 21)
-    c[d] = std::int32_t(key & ((1 << 21) - 1)) - (1 << 20);
+  for (int d = D - 1; d >= 0; --d, key >>= bits)
+    c[d] = std::int32_t(key & ((BlockKey(1) << bits) - 1)) - (1 << (bits - 1));
   return c;
 }
+
+/// The place of a block in a sorted list, or -1.
+std::int32_t find_block(const std::vector<BlockKey>& sorted, BlockKey key);
 
 template <int D>
 struct BlockLayout {
@@ -52,6 +68,12 @@ struct BlockLayout {
   /// For each grid block, the particle blocks around it, or -1.
   std::vector<Neighbours> around_nodes;
 
+  /// Places where several fields have blocks of nodes: the place i has the grid blocks
+  /// meeting_blocks[k], meeting_first[i] <= k < meeting_first[i + 1]. By grid block whether it is
+  /// one of these; empty where there is no such place.
+  std::vector<std::int32_t> meeting_first{0}, meeting_blocks;
+  std::vector<std::uint8_t> meets;
+
   /// The layout of other particle blocks.
   static BlockLayout of(std::vector<BlockKey> blocks, std::vector<std::int32_t> starts,
                         int threads);
@@ -62,6 +84,7 @@ struct BlockLayout {
 
  private:
   void connect(int threads);
+  void find_meetings();
 };
 
 }  // namespace snowshed::mpm

@@ -14,6 +14,7 @@ template <class T, int D>
 struct Stored {
   std::vector<typename Contacts<T, D>::StoredImpulse> impulses;
   std::vector<typename Sleep<D>::State> sleep;
+  std::vector<FieldContact<T>> meetings;
 };
 
 /// Arrays that a solver with one snow may do without, and one with several has.
@@ -57,6 +58,12 @@ void visit_rest(Archive& archive, Layout& layout, Stored<T, D>& stored, Progress
   archive.numbers("clock", p.time, p.dt, p.speed, c.smallest_dt, p.stress_power);
   archive.counts("counters", c.steps, c.rejected, c.sorts, c.particle_updates, p.slept_updates,
                  p.next_id);
+  if (settings.fields == Fields::events) {
+    using Meeting = FieldContact<T>;
+    archive.columns(stored.meetings, column("met/first", &Meeting::first_key),
+                    column("met/second", &Meeting::second_key), column("met/node", &Meeting::node),
+                    column("met/amount", &Meeting::next_impulse));
+  }
   if (settings.damps_over_length()) {
     archive.numbers("damping", p.undamped_time, e.damping);
     archive.counts("damping_steps", p.undamped_steps);
@@ -70,7 +77,7 @@ bool are_sound(const std::vector<BlockKey>& keys, const std::vector<std::int32_t
   bool sound = first.front() == 0 && std::size_t(first.back()) == particles;
   for (std::size_t i = 0; i < keys.size(); ++i)
     sound = sound && first[i] < first[i + 1] && (i == 0 || keys[i - 1] < keys[i]) &&
-            block_key<D>(block_coord<D>(keys[i])) == keys[i];
+            block_key<D>(block_coord<D>(keys[i]), field_of(keys[i])) == keys[i];
   return sound;
 }
 
@@ -107,7 +114,8 @@ template <class T, int D>
 void SolverImpl<T, D>::save(BinaryWriter& out) const {
   soundness_.require();
   StateWriter archive(out);
-  Stored<T, D> stored{state_.contacts.stored_impulses(), state_.sleep.states()};
+  Stored<T, D> stored{state_.contacts.stored_impulses(), state_.sleep.states(),
+                      state_.field_contacts};
   visit_particles(archive, state_.particles, model_.materials.size());
   visit_rest<T, D>(archive, state_.layout, stored, state_.progress, model_.options.settings);
 }
@@ -127,6 +135,8 @@ State<T, D> SolverImpl<T, D>::read_state(const BinaryReader& in) const {
       next.contacts.relocated(model_.boundary, next.layout.grid_blocks, next.progress.time);
   next.contacts.restore(stored.impulses);
   next.sleep = next.sleep.restored(next.layout, std::move(stored.sleep));
+  next.field_contacts = std::move(stored.meetings);
+  next.find_event_fields();
   return next;
 }
 

@@ -134,6 +134,7 @@ std::vector<Feature> features_of(const Settings& n, const SceneView& scene,
       {"damping over a length", n.damps_over_length()},
       {"crack band", n.crack_band_length > 0},
       {"contact by touch", n.contact == Contacting::touch},
+      {"fields of events", n.fields == Fields::events},
       {"cubic B-splines", n.basis == Basis::cubic}};
   for (const auto& [condition, name] : EnumNames<Condition>::list) {
     const bool of_domain = condition == Condition::sticky && outline.has_domain;

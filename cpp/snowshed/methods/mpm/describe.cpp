@@ -6,14 +6,16 @@ namespace snowshed::mpm {
 
 void describe(SettingsVisitor& v, Settings& n) {
   v.accuracy({"dx", "scheme", "precision", "transfer", "flip_ratio", "damping_rate",
-              "damping_length", "crack_band_length", "contact", "contact_radius", "basis",
-              "courant_factor", "strain_limit", "sleep_speed", "sleep_time"});
+              "damping_length", "crack_band_length", "contact", "contact_radius", "fields",
+              "event_friction", "basis", "courant_factor", "strain_limit", "sleep_speed",
+              "sleep_time"});
   v.alias("courant_factor", "step_factor");  // its name up to version 0.1
   v.number("dx", n.dx, "m", allowed::size, "Size of grid cells and voxels");
   const Scheme before = n.scheme;
   v.choice("scheme", n.scheme,
            "Mechanisms that belong together: objective sets transfer affine_flip, damping_rate 380 "
-           "1/s, damping_length and crack_band_length 0.01 m, and contact touch, unless they are "
+           "1/s, damping_length and crack_band_length 0.01 m, contact touch and fields of events, "
+           "unless they are "
            "given; thesis sets what these settings are by default");
   if (n.scheme != before) n.adopt(n.scheme);  // what is read next may differ from it
   v.choice("precision", n.precision, "Floating-point type of the particles and the grid");
@@ -34,6 +36,13 @@ void describe(SettingsVisitor& v, Settings& n) {
            "once a particle with weight there touches the obstacle itself (touch)");
   v.number("contact_radius", n.contact_radius, "", positive.up_to(1.0),
            "Radius of the particles that touch, over half the spacing of particles");
+  v.choice(
+      "fields", n.fields,
+      "Velocity fields of the grid: one for all snow, which sticks together where it meets, or "
+      "one for the snow of each event, which touches, slides and separates");
+  v.number("event_friction", n.event_friction, "", allowed::coefficient,
+           "Friction between the snow of different events, with fields of events, over that of the "
+           "snow itself at the critical state, M/sqrt(3)");
   v.choice("basis", n.basis, "B-spline of the grid");
   v.number("courant_factor", n.courant_factor, "", positive.up_to(1.0),
            "Time step over the largest stable one");

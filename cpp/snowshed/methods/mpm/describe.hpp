@@ -27,6 +27,12 @@ struct EnumNames<mpm::Contacting> {
 };
 
 template <>
+struct EnumNames<mpm::Fields> {
+  static constexpr Named<mpm::Fields> list[] = {{mpm::Fields::one, "one"},
+                                                {mpm::Fields::events, "events"}};
+};
+
+template <>
 struct EnumNames<mpm::Scheme> {
   static constexpr Named<mpm::Scheme> list[] = {{mpm::Scheme::thesis, "thesis"},
                                                 {mpm::Scheme::objective, "objective"}};

@@ -97,7 +97,7 @@ void SolverImpl<T, D>::settle(const std::vector<double>& drops,
     const std::size_t i = at[k];
     VecD<D> x = position_of(next.particles, i, blocks[i], n.dx, n.basis);
     x[D - 1] -= drops[k];
-    blocks[i] = next.put(model_, i, x);
+    blocks[i] = next.put(model_, i, x, field_of(blocks[i]));
     if (next.particles.has_plastic) next.particles.plastic[i] += T(plastic_changes[k]);
   }
   next.arrange(model_, std::move(blocks));

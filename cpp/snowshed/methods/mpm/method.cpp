@@ -37,6 +37,7 @@ void check_scheme(const Settings& n) {
           "\"" + std::string(name_of(n.transfer)) + "\"", "\"affine_flip\"");
   require(n.contact == Contacting::touch, "contact", "\"" + std::string(name_of(n.contact)) + "\"",
           "\"touch\"");
+  require(n.fields == Fields::events, "fields", "\"one\"", "\"events\"");
   require(n.damps_over_length(), "damping_length", "0", "a length");
   require(n.crack_band_length > 0, "crack_band_length", "0", "a length");
 }

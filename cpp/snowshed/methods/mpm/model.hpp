@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "snowshed/core/parallel.hpp"
@@ -29,6 +30,13 @@ struct Model {
   Boundary<T, D> boundary;
   std::vector<Material> materials;              // of options.snows
   std::vector<MaterialConstants<T>> constants;  // the same for the kernels
+
+  /// Coulomb's coefficient between the fields of events: of the snow that has least.
+  double event_friction() const {
+    double slope = options.snows.front().critical_state_slope;
+    for (const Snow& snow : options.snows) slope = std::min(slope, snow.critical_state_slope);
+    return options.settings.event_friction * slope / std::sqrt(3.0);
+  }
 
   bool has_affine() const { return options.settings.has_affine(); }
   bool touches() const { return options.settings.contact == Contacting::touch; }

@@ -11,12 +11,12 @@
 namespace snowshed::mpm {
 
 template <int D>
-Placement<D> Placement<D>::of(const VecD<D>& position, double dx, Basis basis) {
+Placement<D> Placement<D>::of(const VecD<D>& position, double dx, Basis basis, int field) {
   Placement p;
   for (int d = 0; d < D; ++d) {
     const double x = position[d] / dx - base_offset(basis);
     const double block = std::floor(x / block_edge<D>);
-    if (!(std::abs(block) < block_coord_limit))
+    if (!(std::abs(block) < block_coord_limit(field)))
       throw SimulationError(
           "a particle lies outside the addressable grid: " + std::to_string(position[d]) + " m");
     p.block[d] = std::int32_t(block);
@@ -43,17 +43,18 @@ template <class T, int D>
 std::optional<BlockKey> block_it_is_in(const Particles<T, D>& particles, std::size_t i,
                                        BlockKey block) {
   BlockCoord<D> c = block_coord<D>(block);
+  const int field = field_of(block);
   bool moved = false;
   for (int d = 0; d < D; ++d) {
     const T x = particles.cell[d][i];
     if (lies_within<T, D>(x)) continue;
     const double beyond = blocks_beyond<T, D>(x);
-    if (!(std::abs(beyond) < block_coord_limit)) return std::nullopt;
+    if (!(std::abs(beyond) < block_coord_limit(field))) return std::nullopt;
     c[d] += std::int32_t(beyond);
-    if (std::abs(c[d]) > block_coord_limit) return std::nullopt;
+    if (std::abs(c[d]) > block_coord_limit(field)) return std::nullopt;
     moved = true;
   }
-  return moved ? block_key<D>(c) : block;
+  return moved ? block_key<D>(c, field) : block;
 }
 
 /// Makes a particle's `cell` refer to the block it is in.

@@ -13,7 +13,7 @@ struct Placement {
   BlockCoord<D> block;
   std::array<double, D> cell;
 
-  static Placement of(const VecD<D>& position, double dx, Basis basis);
+  static Placement of(const VecD<D>& position, double dx, Basis basis, int field = 0);
 };
 
 /// The position (metres) of cell coordinates in a block.

@@ -12,6 +12,7 @@ enum class Transfer { flip, apic, affine_flip };
 enum class Basis { quadratic, cubic };
 enum class Contacting { kernel, touch };
 enum class Scheme { thesis, objective };
+enum class Fields { one, events };
 
 /// Settings of the material point method: grid, transfer, time step, sleep.
 struct Settings {
@@ -25,6 +26,8 @@ struct Settings {
   double crack_band_length = 0;        // m, see `softening`; 0: none
   Contacting contact = Contacting::kernel;
   double contact_radius = 0.6;  // of a particle that touches, over half the particles' spacing
+  Fields fields = Fields::one;
+  double event_friction = 1;  // between the fields of events, over M/sqrt(3) of the snow
   Basis basis = Basis::quadratic;
   double courant_factor = 0.9;  // time step over the largest stable one
   double strain_limit = 0.2;    // largest |dt grad v| a step may impose on a particle
@@ -43,6 +46,8 @@ struct Settings {
     damping_length = crack_band_length = objective ? 0.01 : 0.0;
     contact = objective ? Contacting::touch : Contacting::kernel;
     contact_radius = 0.6;
+    fields = objective ? Fields::events : Fields::one;
+    event_friction = 1;
   }
 
   /// The size of the smallest thing the method resolves, m.

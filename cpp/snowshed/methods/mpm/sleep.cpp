@@ -158,6 +158,13 @@ void Sleep<D>::list_blocks(const BlockLayout<D>& layout) noexcept {
   std::fill(touched_.begin(), touched_.end(), false);
   for (std::int32_t b : awake_)
     for (std::int32_t g : layout.around_particles[b]) touched_[g] = true;
+  // Snow of one field feels that of another at the same place.
+  for (std::size_t i = 0; i + 1 < layout.meeting_first.size(); ++i) {
+    const auto begin = layout.meeting_blocks.begin() + layout.meeting_first[i];
+    const auto end = layout.meeting_blocks.begin() + layout.meeting_first[i + 1];
+    if (std::any_of(begin, end, [&](std::int32_t g) { return touched_[g]; }))
+      std::for_each(begin, end, [&](std::int32_t g) { touched_[g] = true; });
+  }
   active_.clear();
   idle_.clear();
   for (std::size_t g = 0; g < touched_.size(); ++g)

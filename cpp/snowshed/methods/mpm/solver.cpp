@@ -74,6 +74,7 @@ double SolverImpl<T, D>::try_step() {
     g2p2g(dt);
   } catch (...) {
     for (std::int32_t g : state_.sleep.active()) state_.contacts.reject(g);
+    for (FieldContact<T>& c : state_.field_contacts) c.next_impulse = c.impulse;
     throw;
   }
   return dt;
@@ -116,6 +117,7 @@ void SolverImpl<T, D>::scatter() {
   work_.grid.resize(state_.layout);
   if (work_.average) work_.average->connect(state_.layout);
   if (model_.touches()) work_.touch.forget(model_, state_);
+  work_.meetings.forget(model_, state_, threads());
   const ParticleView<T> view = state_.particles.view();
   const StepParameters<T> step = parameters(state_.progress.dt);
   const std::ptrdiff_t n = std::ptrdiff_t(state_.layout.particle_blocks.size());
@@ -146,26 +148,54 @@ void SolverImpl<T, D>::gather_and_update(double dt) {
     const std::int32_t g = active[i];
     state_.contacts.commit(g);
     const T* tiles[neighbour_count<D>];
-    bool touched = false;
-    for (int k = 0; k < neighbour_count<D>; ++k) {
-      const std::int32_t block = state_.layout.around_nodes[g][k];
-      constexpr int last = neighbour_count<D> - 1;  // seen from there, the neighbour opposite
-      const bool reached = block >= 0 && reaches<D>(work_.grid.block_stats[block].reach, last - k);
-      tiles[k] = reached ? work_.grid.tile(block) : nullptr;
-      touched = touched || reached;
-    }
+    const bool touched = work_.grid.tiles_reaching(state_.layout, g, tiles);
     work_.grid.touched[g] = touched;
     if (touched) model_.kernels.gather(tiles, work_.grid.sum(g));
-    update_block(step, g);
+    if (!meets(g)) update_block(step, g);
   });
+  if (state_.layout.meets.empty()) return;
+  for (FieldContact<T>& c : state_.field_contacts) c.impulse = c.next_impulse;
+  work_.meetings.update(model_, state_, work_.grid, state_.progress.speed * state_.progress.dt,
+                        threads());
+  update_meetings(step);
 }
 
 template <class T, int D>
 void SolverImpl<T, D>::update(double dt) {
   const StepParameters<T> step = parameters(dt);
   const std::vector<std::int32_t>& active = state_.sleep.active();
-  parallel_for(std::ptrdiff_t(active.size()), threads(), 8,
-               [&](std::ptrdiff_t i) { update_block(step, active[i]); });
+  parallel_for(std::ptrdiff_t(active.size()), threads(), 8, [&](std::ptrdiff_t i) {
+    if (!meets(active[i])) update_block(step, active[i]);
+  });
+  if (!state_.layout.meets.empty()) update_meetings(step);
+}
+
+/// Where the fields of several events meet, they act on each other between the forces and the
+/// contact with obstacles.
+template <class T, int D>
+void SolverImpl<T, D>::update_meetings(const StepParameters<T>& step) {
+  parallel_for(work_.meetings.places(state_.layout), threads(), 2,
+               [&](std::ptrdiff_t place) { update_meeting(step, place); });
+}
+
+template <class T, int D>
+void SolverImpl<T, D>::update_meeting(const StepParameters<T>& step, std::ptrdiff_t place) {
+  const auto begin = state_.layout.meeting_blocks.begin() + state_.layout.meeting_first[place];
+  const auto end = state_.layout.meeting_blocks.begin() + state_.layout.meeting_first[place + 1];
+  if (!state_.sleep.is_active(*begin)) return;
+  for (auto g = begin; g != end; ++g) {
+    work_.grid.node_stats[*g] = {};
+    if (work_.grid.touched[*g])
+      model_.kernels.update_free(step, work_.grid.sum(*g), work_.grid.velocity(*g));
+    else
+      leave_empty(*g);
+  }
+  work_.meetings.exchange(step, model_.event_friction(), state_, work_.grid, place);
+  for (auto g = begin; g != end; ++g)
+    if (work_.grid.touched[*g])
+      model_.kernels.finish(step, work_.grid.sum(*g), work_.grid.velocity(*g),
+                            state_.contacts.of_block(*g), state_.contacts.count(*g),
+                            model_.boundary.laws().data(), work_.grid.node_stats[*g]);
 }
 
 template <class T, int D>

@@ -6,6 +6,7 @@
 
 #include "snowshed/material/sym_tensor.hpp"
 #include "snowshed/methods/mpm/grid.hpp"
+#include "snowshed/methods/mpm/meetings.hpp"
 #include "snowshed/methods/mpm/model.hpp"
 #include "snowshed/methods/mpm/solver.hpp"
 #include "snowshed/methods/mpm/state.hpp"
@@ -19,7 +20,7 @@ namespace snowshed::mpm {
 template <class T, int D>
 struct Workspace {
   Workspace(const Settings& n, std::size_t obstacles)
-      : grid(n.basis), pushing(obstacles), touch(n.basis) {
+      : grid(n.basis), pushing(obstacles), touch(n.basis), meetings(n.basis) {
     if (n.damps_over_length()) average.emplace(n.damping_length, n.dx, n.basis);
   }
 
@@ -27,6 +28,7 @@ struct Workspace {
   std::optional<VelocityAverage<T, D>> average;
   PushingShares<T> pushing;
   Touch<T, D> touch;
+  Meetings<T, D> meetings;
   std::vector<double> block_strain;  // 1/s, of the step being tried
   bool tiles_valid = false;          // whether the tiles hold the sums of the particles
   int since_sort = 0;                // steps
@@ -76,6 +78,11 @@ class SolverImpl final : public Solver {
   void update(double dt);
   void update_block(const StepParameters<T>& step, std::ptrdiff_t block);
   void leave_empty(std::ptrdiff_t block);
+  bool meets(std::int32_t grid_block) const {
+    return !state_.layout.meets.empty() && state_.layout.meets[grid_block];
+  }
+  void update_meetings(const StepParameters<T>& step);
+  void update_meeting(const StepParameters<T>& step, std::ptrdiff_t place);
   double largest_strain();  ///< largest |dt grad v| any particle would take
   void g2p2g(double dt);
   bool damps_next() const;  ///< whether the next step damps velocities over a length

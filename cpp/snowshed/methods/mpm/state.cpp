@@ -19,6 +19,9 @@ constexpr double friction_memory_steps = 40;
 /// Loose snow is not taken for larger than this, over its initial volume, where it touches.
 constexpr double most_expansion = 1.5;
 
+/// Velocity fields of events at once; with more events the oldest share one.
+constexpr int fields_at_once = 8;
+
 }  // namespace
 
 template <class T, int D>
@@ -57,11 +60,13 @@ void State<T, D>::append(const Model<T, D>& model, const ParticleBatch& batch,
     using Value = typename std::remove_reference_t<decltype(array)>::value_type;
     std::fill(array.begin() + std::ptrdiff_t(old), array.end(), Value(0));
   });
+  const int field =
+      model.options.settings.fields == Fields::events ? field_of_event(batch.event, blocks) : 0;
   const VecD<D> velocity = section<D>(batch.velocity);
   const T plastic = T(model.materials[std::size_t(batch.material_id)].initial_plastic_strain);
   for (std::size_t k = 0; k < batch.positions.size(); ++k) {
     const std::size_t i = old + k;
-    blocks.push_back(put(model, i, section<D>(batch.positions[k])));
+    blocks.push_back(put(model, i, section<D>(batch.positions[k]), field));
     for (int d = 0; d < D; ++d) particles.velocity[d][i] = T(velocity[d]);
     if (particles.has_plastic) particles.plastic[i] = plastic;
     particles.mass[i] = T(batch.mass_of(k));
@@ -73,11 +78,45 @@ void State<T, D>::append(const Model<T, D>& model, const ParticleBatch& batch,
 }
 
 template <class T, int D>
-BlockKey State<T, D>::put(const Model<T, D>& model, std::size_t particle, const VecD<D>& position) {
+BlockKey State<T, D>::put(const Model<T, D>& model, std::size_t particle, const VecD<D>& position,
+                          int field) {
   const Settings& n = model.options.settings;
-  const auto place = Placement<D>::of(position, n.dx, n.basis);
+  const auto place = Placement<D>::of(position, n.dx, n.basis, field);
   for (int d = 0; d < D; ++d) particles.cell[d][particle] = T(place.cell[d]);
-  return block_key<D>(place.block);
+  return block_key<D>(place.block, field);
+}
+
+template <class T, int D>
+int State<T, D>::field_of_event(int event, std::vector<BlockKey>& blocks) {
+  const auto known = event_fields.find(event);
+  if (known != event_fields.end()) return known->second;
+  const auto is_taken = [&](int field) {
+    return std::any_of(event_fields.begin(), event_fields.end(),
+                       [&](const auto& of_event) { return of_event.second == field; });
+  };
+  int field = 0;
+  while (field < fields_at_once && is_taken(field)) ++field;
+  if (field == fields_at_once) {
+    // The two oldest fields become one.
+    const int kept = event_fields.begin()->second;
+    const auto other = std::find_if(event_fields.begin(), event_fields.end(),
+                                    [&](const auto& of_event) { return of_event.second != kept; });
+    field = other->second;
+    for (auto& of_event : event_fields)
+      if (of_event.second == field) of_event.second = kept;
+    for (BlockKey& key : blocks)
+      if (field_of(key) == field) key = block_key<D>(block_coord<D>(key), kept);
+  }
+  event_fields[event] = field;
+  return field;
+}
+
+template <class T, int D>
+void State<T, D>::find_event_fields() {
+  event_fields.clear();
+  for (std::size_t b = 0; b < layout.particle_blocks.size(); ++b)
+    for (std::int32_t i = layout.first[b]; i < layout.first[b + 1]; ++i)
+      event_fields[particles.event[i]] = field_of(layout.particle_blocks[b]);
 }
 
 template <class T, int D>

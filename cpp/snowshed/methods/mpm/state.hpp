@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <vector>
 
 #include "snowshed/methods/method.hpp"
 #include "snowshed/methods/mpm/boundary.hpp"
+#include "snowshed/methods/mpm/field_contact.hpp"
 #include "snowshed/methods/mpm/model.hpp"
 #include "snowshed/methods/mpm/particle_sort.hpp"
 #include "snowshed/methods/mpm/sleep.hpp"
@@ -33,8 +35,11 @@ struct State {
   Particles<T, D> particles;
   BlockLayout<D> layout;
   Contacts<T, D> contacts;
+  std::vector<FieldContact<T>> field_contacts;  // of the layout, once Meetings has updated them
   Sleep<D> sleep;
   Progress progress;
+
+  std::map<int, int> event_fields;  // by event
 
   // What the snows that particles are of, or all while there are none, allow.
   double elastic_limit = 0;    // s, time step of the stiffest
@@ -45,13 +50,19 @@ struct State {
   void append(const Model<T, D>& model, const ParticleBatch& batch, std::vector<BlockKey>& blocks);
 
   /// Puts a particle at a position (m); returns the block it is in.
-  BlockKey put(const Model<T, D>& model, std::size_t particle, const VecD<D>& position);
+  BlockKey put(const Model<T, D>& model, std::size_t particle, const VecD<D>& position, int field);
 
   /// Sorts the particles, which lie in `blocks`, into the layout, and makes contacts and sleep
   /// follow. All or nothing.
   void arrange(const Model<T, D>& model, std::vector<BlockKey> blocks);
 
   void find_elastic_limits(const Model<T, D>& model);
+
+  /// The velocity field of an event's snow: its own as long as there are enough, else that of older
+  /// events, which are joined. `blocks` are those of the particles.
+  int field_of_event(int event, std::vector<BlockKey>& blocks);
+  /// Finds the fields of the events from the layout.
+  void find_event_fields();
 
   const Material& material_of(const Model<T, D>& model, std::size_t particle) const {
     return model.materials[particles.has_material_id ? particles.material_id[particle] : 0];

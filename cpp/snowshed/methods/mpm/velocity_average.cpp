@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "snowshed/core/parallel.hpp"
 
@@ -44,7 +45,14 @@ void VelocityAverage<T, D>::find_blocks(const BlockLayout<D>& layout) {
   tiles_of_.resize(blocks);
   first_nodes_.resize(blocks);
   settled_.resize(blocks);
-  std::vector<std::pair<Coord, std::int32_t>> pairs;  // coarse block, particle block
+  struct Sharing {  // of a coarse block, which each velocity field has of its own
+    int field;
+    Coord coarse;
+    std::int32_t block;
+    auto name() const { return std::tie(field, coarse, block); }
+    bool operator<(const Sharing& other) const { return name() < other.name(); }
+  };
+  std::vector<Sharing> pairs;
   for (std::size_t b = 0; b < blocks; ++b) {
     const BlockCoord<D> c = block_coord<D>(keys_[b]);
     AverageTile<T>& tile = tiles_of_[b];
@@ -60,7 +68,7 @@ void VelocityAverage<T, D>::find_blocks(const BlockLayout<D>& layout) {
     }
     Coord at = begin;
     while (true) {
-      pairs.push_back({at, std::int32_t(b)});
+      pairs.push_back({field_of(keys_[b]), at, std::int32_t(b)});
       int d = D - 1;
       while (d >= 0 && ++at[d] == end[d]) at[d] = begin[d], --d;
       if (d < 0) break;
@@ -72,8 +80,10 @@ void VelocityAverage<T, D>::find_blocks(const BlockLayout<D>& layout) {
   sharing_first_.clear();
   around_.assign(blocks * std::size_t(around_size_), -1);
   std::vector<int> count(blocks, 0);
-  for (const auto& [coarse, block] : pairs) {
-    if (coarse_blocks_.empty() || coarse_blocks_.back() != coarse) {
+  int last_field = -1;
+  for (const auto& [field, coarse, block] : pairs) {
+    if (field != last_field || coarse_blocks_.back() != coarse) {
+      last_field = field;
       coarse_blocks_.push_back(coarse);
       sharing_first_.push_back(std::int32_t(sharing_.size()));
     }

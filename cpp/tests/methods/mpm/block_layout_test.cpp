@@ -11,9 +11,10 @@ namespace snowshed::mpm {
 namespace {
 
 TEST(BlockKey, OrdersAndRestoresCoordinates) {
-  const BlockCoord<3> some[] = {{0, 0, 0}, {-1, 2, -3}, {block_coord_limit, -block_coord_limit, 7}};
+  const BlockCoord<3> some[] = {
+      {0, 0, 0}, {-1, 2, -3}, {block_coord_limit(0), -block_coord_limit(0), 7}};
   for (const auto& c : some) EXPECT_EQ(block_coord<3>(block_key<3>(c)), c);
-  const BlockCoord<2> flat{-block_coord_limit, block_coord_limit};
+  const BlockCoord<2> flat{-block_coord_limit(0), block_coord_limit(0)};
   EXPECT_EQ(block_coord<2>(block_key<2>(flat)), flat);
   EXPECT_LT(block_key<3>({-1, 5, 5}), block_key<3>({0, -5, -5}));  // lexicographic
   EXPECT_LT(block_key<3>({0, 0, -1}), block_key<3>({0, 0, 0}));

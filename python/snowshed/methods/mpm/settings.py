@@ -13,6 +13,7 @@ Precision = Literal["float", "double"]
 Transfer = Literal["flip", "apic", "affine_flip"]
 Scheme = Literal["thesis", "objective"]
 Contact = Literal["kernel", "touch"]
+Fields = Literal["one", "events"]
 Basis = Literal["quadratic", "cubic"]
 
 
@@ -26,8 +27,8 @@ class MpmSettings(MethodSettings):
         Size of grid cells and voxels [m]. 0 < value <= 1e+06; default 0.01.
     scheme : {"thesis", "objective"}
         Mechanisms that belong together: objective sets transfer affine_flip, damping_rate 380 1/s,
-        damping_length and crack_band_length 0.01 m, and contact touch, unless they are given;
-        thesis sets what these settings are by default. Default "thesis".
+        damping_length and crack_band_length 0.01 m, contact touch and fields of events, unless
+        they are given; thesis sets what these settings are by default. Default "thesis".
     precision : {"float", "double"}
         Floating-point type of the particles and the grid. Default "float".
     transfer : {"flip", "apic", "affine_flip"}
@@ -51,6 +52,12 @@ class MpmSettings(MethodSettings):
     contact_radius : float
         Radius of the particles that touch, over half the spacing of particles. 0 < value <= 1;
         default 0.6.
+    fields : {"one", "events"}
+        Velocity fields of the grid: one for all snow, which sticks together where it meets, or one
+        for the snow of each event, which touches, slides and separates. Default "one".
+    event_friction : float
+        Friction between the snow of different events, with fields of events, over that of the snow
+        itself at the critical state, M/sqrt(3). 0 <= value <= 100; default 1.
     basis : {"quadratic", "cubic"}
         B-spline of the grid. Default "quadratic".
     courant_factor : float
@@ -78,6 +85,8 @@ class MpmSettings(MethodSettings):
     crack_band_length: Optional[float] = None
     contact: Optional[Contact] = None
     contact_radius: Optional[float] = None
+    fields: Optional[Fields] = None
+    event_friction: Optional[float] = None
     basis: Optional[Basis] = None
     courant_factor: Optional[float] = None
     strain_limit: Optional[float] = None
@@ -96,6 +105,8 @@ class MpmSettings(MethodSettings):
             "crack_band_length",
             "contact",
             "contact_radius",
+            "fields",
+            "event_friction",
         )
     }
 

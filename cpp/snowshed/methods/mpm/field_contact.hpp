@@ -1,0 +1,23 @@
+// A node at which the snow of two events touches.
+#pragma once
+
+#include <cstdint>
+#include <tuple>
+
+#include "snowshed/methods/mpm/block_layout.hpp"
+
+namespace snowshed::mpm {
+
+template <class T>
+struct FieldContact {
+  BlockKey first_key, second_key;  // of the blocks of nodes, the first in the order of keys
+  std::int32_t node;
+  std::int32_t first, second;  // the blocks' places in the layout
+  T normal[3];                 // from the first field to the second
+  T impulse;       // stored normal impulse, N s, that friction has yet to be charged for
+  T next_impulse;  // the same after the step being tried
+
+  auto name() const { return std::tie(first_key, second_key, node); }
+};
+
+}  // namespace snowshed::mpm

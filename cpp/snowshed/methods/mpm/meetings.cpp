@@ -1,0 +1,311 @@
+#include "snowshed/methods/mpm/meetings.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "snowshed/core/parallel.hpp"
+#include "snowshed/geometry/bounds.hpp"
+
+namespace snowshed::mpm {
+namespace {
+
+/// Part of a cell that snow may move before contacts are found anew.
+constexpr double tolerance = 0.02;
+
+/// kg. Nodes that a field barely reaches tell nothing of its surface.
+constexpr double least_shared_mass = 1e-12;
+
+/// Calls f(index) for all indices from `begin` to before `end` along each direction.
+template <int D, class F>
+void for_each_index(const std::array<int, D>& begin, const std::array<int, D>& end, F f) {
+  for (int d = 0; d < D; ++d)
+    if (begin[d] >= end[d]) return;
+  std::array<int, D> at = begin;
+  while (true) {
+    f(at);
+    int d = D - 1;
+    while (d >= 0 && ++at[d] == end[d]) {
+      at[d] = begin[d];
+      --d;
+    }
+    if (d < 0) return;
+  }
+}
+
+template <int D>
+std::array<int, D> all(int value) {
+  std::array<int, D> index;
+  index.fill(value);
+  return index;
+}
+
+/// Place of an index in an array of `edge` elements along each direction, the first at `low`.
+template <int D>
+int place_in(const std::array<int, D>& index, int edge, int low = 0) {
+  int place = 0;
+  for (int d = 0; d < D; ++d) place = place * edge + index[d] - low;
+  return place;
+}
+
+}  // namespace
+
+template <class T, int D>
+void Meetings<T, D>::forget(const Model<T, D>& model, const State<T, D>& state, int threads) {
+  measured_ = false;
+  radius_.clear();
+  if (places(state.layout) == 0) return;
+  radius_.resize(state.particles.size());
+  const double dx = model.options.settings.dx;
+  parallel_for_each(std::ptrdiff_t(radius_.size()), threads, [&](std::ptrdiff_t i) {
+    radius_[i] = T(state.contact_radius(model, std::size_t(i)) / dx);
+  });
+}
+
+template <class T, int D>
+void Meetings<T, D>::update(const Model<T, D>& model, State<T, D>& state, Grid<T, D>& grid,
+                            double moved, int threads) {
+  since_measured_ += moved;
+  if (measured_ && since_measured_ < tolerance * model.options.settings.dx) return;
+  const std::vector<FieldContact<T>>& before = state.field_contacts;
+  std::vector<std::vector<FieldContact<T>>> found(places(state.layout));
+  parallel_for(places(state.layout), threads, 1, [&](std::ptrdiff_t place) {
+    const std::int32_t one = state.layout.meeting_blocks[state.layout.meeting_first[place]];
+    if (measured_ && !state.sleep.is_active(one))  // nothing has moved there
+      found[place].assign(before.begin() + first_[place], before.begin() + first_[place + 1]);
+    else
+      measure(model, state, grid, place, found[place]);
+  });
+  std::vector<const FieldContact<T>*> known;
+  for (const FieldContact<T>& c : before) known.push_back(&c);
+  const auto by_name = [](const auto* a, const auto* b) { return a->name() < b->name(); };
+  std::sort(known.begin(), known.end(), by_name);
+  std::vector<FieldContact<T>> next;
+  std::vector<std::int32_t> first{0};
+  for (const auto& contacts : found) {
+    for (FieldContact<T> c : contacts) {
+      const auto old = std::lower_bound(known.begin(), known.end(), &c, by_name);
+      const bool is_known = old != known.end() && (*old)->name() == c.name();
+      c.impulse = c.next_impulse = is_known ? (*old)->next_impulse : T(0);
+      next.push_back(c);
+    }
+    first.push_back(std::int32_t(next.size()));
+  }
+  state.field_contacts = std::move(next);
+  first_ = std::move(first);
+  since_measured_ = 0;
+  measured_ = true;
+}
+
+/// Sums of a block of nodes, which `room` holds where the block takes no part in the step; null
+/// where no snow reaches it.
+template <class T, int D>
+const T* Meetings<T, D>::sums_of(const State<T, D>& state, Grid<T, D>& grid,
+                                 const Kernels<T>& kernels, std::int32_t g,
+                                 std::vector<T>& room) const {
+  if (state.sleep.is_active(g)) return grid.touched[g] ? grid.sum(g) : nullptr;
+  const T* tiles[neighbour_count<D>];
+  if (!grid.tiles_reaching(state.layout, g, tiles)) return nullptr;
+  room.resize(Grid<T, D>::block_size);
+  kernels.gather(tiles, room.data());
+  return room.data();
+}
+
+template <class T, int D>
+typename Meetings<T, D>::Masses Meetings<T, D>::masses_of(const State<T, D>& state,
+                                                          Grid<T, D>& grid,
+                                                          const Kernels<T>& kernels,
+                                                          std::int32_t g) const {
+  Masses masses(padded_nodes, T(0));
+  std::vector<T> room;
+  const BlockKey key = state.layout.grid_blocks[g];
+  for_each_index<D>(all<D>(-1), all<D>(2), [&](const std::array<int, D>& offset) {
+    BlockCoord<D> coord = block_coord<D>(key);
+    std::array<int, D> begin, end;
+    for (int d = 0; d < D; ++d) {
+      coord[d] += offset[d];
+      begin[d] = offset[d] < 0 ? B - margin : 0;
+      end[d] = offset[d] > 0 ? margin : B;
+    }
+    const std::int32_t block =
+        find_block(state.layout.grid_blocks, block_key<D>(coord, field_of(key)));
+    if (block < 0) return;
+    const T* sums = sums_of(state, grid, kernels, block, room);
+    if (!sums) return;
+    for_each_index<D>(begin, end, [&](const std::array<int, D>& node) {
+      std::array<int, D> padded;
+      for (int d = 0; d < D; ++d) padded[d] = node[d] + offset[d] * B;
+      masses[place_in<D>(padded, padded_edge, -margin)] = sums[place_in<D>(node, B) * node_values];
+    });
+  });
+  return masses;
+}
+
+/// The normal of a node is that of the difference of the two masses, smoothed over the nodes around
+/// it. A raw one points anywhere at the corners of a body, where it would push it forward.
+template <class T, int D>
+void Meetings<T, D>::find_normals(const Masses& a, const Masses& b, Nodes& nodes) {
+  constexpr int edge = B + 2 * smoothing;
+  std::vector<VecD<D>> raw(std::size_t(edge * edge * (D == 3 ? edge : 1)), VecD<D>::Zero());
+  const auto shared = [&](int place) {
+    return double(a[place]) > least_shared_mass && double(b[place]) > least_shared_mass;
+  };
+  for_each_index<D>(all<D>(-smoothing), all<D>(B + smoothing), [&](const std::array<int, D>& node) {
+    const int place = place_in<D>(node, padded_edge, -margin);
+    if (!shared(place)) return;
+    VecD<D> gradient;
+    for (int d = D - 1, stride = 1; d >= 0; --d, stride *= padded_edge)
+      gradient[d] = (double(b[place + stride]) - double(b[place - stride])) -
+                    (double(a[place + stride]) - double(a[place - stride]));
+    const double length = gradient.norm();
+    if (length > 0)
+      raw[place_in<D>(node, edge, -smoothing)] =
+          double(a[place]) * double(b[place]) / length * gradient;
+  });
+  for_each_index<D>(all<D>(0), all<D>(B), [&](const std::array<int, D>& node) {
+    if (!shared(place_in<D>(node, padded_edge, -margin))) return;
+    VecD<D> sum = VecD<D>::Zero();
+    for_each_index<D>(all<D>(-smoothing), all<D>(margin), [&](const std::array<int, D>& offset) {
+      std::array<int, D> at;
+      double tent = 1;
+      for (int d = 0; d < D; ++d) {
+        at[d] = node[d] + offset[d];
+        tent *= margin - std::abs(offset[d]);
+      }
+      sum += tent * raw[place_in<D>(at, edge, -smoothing)];
+    });
+    const double length = sum.norm();
+    if (!(length > 0)) return;
+    const int k = place_in<D>(node, B);
+    nodes.shared |= std::uint64_t(1) << k;
+    for (int d = 0; d < D; ++d) nodes.normal[k][d] = T(sum[d] / length);
+    nodes.first[k] = T(-1e9);
+    nodes.second[k] = T(1e9);
+  });
+}
+
+/// How far the particles of a field reach, with their radius, that have weight at the nodes.
+template <class T, int D>
+void Meetings<T, D>::find_reach(const Model<T, D>& model, const State<T, D>& state, std::int32_t g,
+                                bool first, Nodes& nodes) const {
+  const Particles<T, D>& p = state.particles;
+  const BlockCoord<D> place = block_coord<D>(state.layout.grid_blocks[g]);
+  const T offset = T(base_offset(model.options.settings.basis));
+  for (const std::int32_t b : state.layout.around_nodes[g]) {
+    if (b < 0) continue;
+    const BlockCoord<D> from = block_coord<D>(state.layout.particle_blocks[b]);
+    for (std::int32_t i = state.layout.first[b]; i < state.layout.first[b + 1]; ++i) {
+      T x[D];
+      std::array<int, D> begin, end;
+      bool near = true;
+      for (int d = 0; d < D; ++d) {
+        const T cell = p.cell[d][i] + T((from[d] - place[d]) * B);
+        const int lowest = int(std::floor(cell));
+        x[d] = cell + offset;
+        begin[d] = std::max(lowest, 0);
+        end[d] = std::min(lowest + support_, B);
+        near = near && begin[d] < end[d];
+      }
+      if (!near) continue;
+      for_each_index<D>(begin, end, [&](const std::array<int, D>& node) {
+        const int k = place_in<D>(node, B);
+        if (!(nodes.shared >> k & 1)) return;
+        T along = 0;
+        for (int d = 0; d < D; ++d) along += x[d] * nodes.normal[k][d];
+        if (first)
+          nodes.first[k] = std::max(nodes.first[k], along + radius_[i]);
+        else
+          nodes.second[k] = std::min(nodes.second[k], along - radius_[i]);
+      });
+    }
+  }
+}
+
+template <class T, int D>
+void Meetings<T, D>::measure(const Model<T, D>& model, const State<T, D>& state, Grid<T, D>& grid,
+                             std::ptrdiff_t place, std::vector<FieldContact<T>>& found) const {
+  const auto begin = state.layout.meeting_blocks.begin() + state.layout.meeting_first[place];
+  const auto end = state.layout.meeting_blocks.begin() + state.layout.meeting_first[place + 1];
+  std::vector<T> room;
+  std::vector<std::int32_t> reached;
+  for (auto g = begin; g != end; ++g)
+    if (sums_of(state, grid, model.kernels, *g, room)) reached.push_back(*g);
+  if (reached.size() < 2) return;
+  std::vector<Masses> masses;
+  for (const std::int32_t g : reached) masses.push_back(masses_of(state, grid, model.kernels, g));
+  for (std::size_t a = 0; a < reached.size(); ++a)
+    for (std::size_t b = a + 1; b < reached.size(); ++b) {
+      Nodes nodes;
+      find_normals(masses[a], masses[b], nodes);
+      if (!nodes.shared) continue;
+      find_reach(model, state, reached[a], true, nodes);
+      find_reach(model, state, reached[b], false, nodes);
+      for (int k = 0; k < block_nodes<D>; ++k) {
+        if (!(nodes.shared >> k & 1) || nodes.first[k] < nodes.second[k]) continue;
+        FieldContact<T> c{state.layout.grid_blocks[reached[a]],
+                          state.layout.grid_blocks[reached[b]],
+                          k,
+                          reached[a],
+                          reached[b],
+                          {},
+                          0,
+                          0};
+        for (int d = 0; d < D; ++d) c.normal[d] = nodes.normal[k][d];
+        found.push_back(c);
+      }
+    }
+}
+
+template <class T, int D>
+void Meetings<T, D>::exchange(const StepParameters<T>& step, double friction, State<T, D>& state,
+                              Grid<T, D>& grid, std::ptrdiff_t place) const {
+  for (std::int32_t i = first_[place]; i < first_[place + 1]; ++i) {
+    FieldContact<T>& c = state.field_contacts[i];
+    const T* sums[2] = {grid.sum(c.first) + c.node * node_values,
+                        grid.sum(c.second) + c.node * node_values};
+    T* nodes[2] = {grid.velocity(c.first) + c.node * node_values,
+                   grid.velocity(c.second) + c.node * node_values};
+    const bool both = grid.touched[c.first] && grid.touched[c.second] &&
+                      double(sums[0][0]) > least_shared_mass &&
+                      double(sums[1][0]) > least_shared_mass;
+    if (!both) {
+      c.next_impulse = 0;
+      continue;
+    }
+    const T reduced = sums[0][0] * (sums[1][0] / (sums[0][0] + sums[1][0]));
+    T slip[D], along = 0, squared = 0;
+    for (int d = 0; d < D; ++d) along += (nodes[0][d] - nodes[1][d]) * c.normal[d];
+    for (int d = 0; d < D; ++d) {
+      slip[d] = nodes[0][d] - nodes[1][d] - along * c.normal[d];
+      squared += slip[d] * slip[d];
+    }
+    const T speed = std::sqrt(squared);
+    const T rate =
+        std::min(T(1), std::max(step.friction_rate, step.friction_rate_per_speed * speed));
+    const T drained = c.impulse * rate, left = c.impulse - drained;
+    const T push = std::max(reduced * along, -left);
+    c.next_impulse = left + push;
+    const T stops = reduced * speed, most = T(friction) * drained;
+    const T lost = stops > most ? most / stops : T(1);
+    NodeStats& stats = grid.node_stats[c.first];
+    for (int field = 0; field < 2; ++field) {
+      const T sign = field == 0 ? T(-1) : T(1), per_mass = sign / sums[field][0];
+      for (int d = 0; d < D; ++d) {
+        const T pushed = per_mass * push * c.normal[d],
+                rubbed = per_mass * reduced * lost * slip[d];
+        const double before = double(sums[field][1 + d]) / double(sums[field][0]);
+        const double mean = 0.5 * (before + double(nodes[field][d] + pushed + rubbed));
+        stats.impact -= double(sums[field][0]) * double(pushed) * mean;
+        stats.friction -= double(sums[field][0]) * double(rubbed) * mean;
+        nodes[field][d] += pushed + rubbed;
+        nodes[field][node_values / 2 + d] += pushed + rubbed;
+      }
+    }
+  }
+}
+
+template class Meetings<float, 2>;
+template class Meetings<float, 3>;
+template class Meetings<double, 2>;
+template class Meetings<double, 3>;
+
+}  // namespace snowshed::mpm

@@ -1,0 +1,214 @@
+// The snow of different events, each with a velocity field of its own.
+#include "snowshed/methods/mpm/meetings.hpp"
+
+#include <gtest/gtest.h>
+
+#include "io/temporary_folder.hpp"
+#include "methods/mpm/solver_testing.hpp"
+#include "snowshed/io/binary_archive.hpp"
+
+namespace snowshed::mpm {
+namespace {
+
+Options event_options(const Way& way, double dx = 0.01) {
+  Options o = options_for(way, dx);
+  o.settings.adopt(Scheme::objective);
+  o.settings.fields = Fields::events;
+  return o;
+}
+
+Obstacle ground() { return fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::sticky); }
+
+ParticleBatch slab(int dimension, int event, const Vec3& low, const Vec3& high, double spacing) {
+  ParticleBatch batch = filled_box(dimension, low, high, spacing);
+  Random random(static_cast<std::uint64_t>(event));
+  for (Vec3& x : batch.positions) x += random_vector(random, dimension, 0.35 * spacing);
+  batch.event = event;
+  return batch;
+}
+
+double top_of(const ParticleState& s) {
+  double z = -1e9;
+  for (const Vec3& x : s.positions) z = std::max(z, x.z());
+  return z;
+}
+
+Vec3 momentum_of(const ParticleState& s, int event) {
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t i = 0; i < s.positions.size(); ++i)
+    if (s.events[i] == event) sum += s.masses[i] * s.velocities[i];
+  return sum;
+}
+
+/// Height of the centre of mass of an event's snow, m.
+double height_of(const ParticleState& s, int event) {
+  double mass = 0, sum = 0;
+  for (std::size_t i = 0; i < s.positions.size(); ++i) {
+    if (s.events[i] != event) continue;
+    mass += s.masses[i];
+    sum += s.masses[i] * s.positions[i].z();
+  }
+  return sum / mass;
+}
+
+/// Mean height of a slab of five of 2 cm that come down one after the other, m.
+double height_of_slab(const Way& way, double dx, Fields fields, int slabs) {
+  Options o = event_options(way, dx);
+  o.settings.scheme = Scheme::thesis;
+  o.settings.fields = fields;
+  const auto solver = make_solver(o, {ground()});
+  const double spacing = dx / std::sqrt(6.0);
+  double top = 0;
+  for (int event = 1; event <= slabs; ++event) {
+    solver->add(slab(way.dimension, event, Vec3(-0.05, 0, top + 0.01), Vec3(0.05, 0.03, top + 0.03),
+                     spacing));
+    run_until(*solver, solver->time() + 0.12);
+    top = top_of(solver->state());
+  }
+  const ParticleState s = solver->state();
+  return (height_of(s, slabs) - height_of(s, 1)) / (slabs - 1);
+}
+
+TEST(Meetings, SlabsRestOnEachOther) {
+  const Way way{2, Precision::float32};
+  for (const double dx : {0.01, 0.005}) {
+    const double height = height_of_slab(way, dx, Fields::events, 5);
+    EXPECT_NEAR(height, 0.02, 0.03 * 0.02) << dx;
+    EXPECT_LT(height - 0.02, 0.11 * dx) << dx;
+  }
+  EXPECT_GT(height_of_slab(way, 0.01, Fields::one, 3), 0.027);  // two cells apart
+}
+
+TEST(Meetings, SlabsRestOnEachOtherInThreeDimensions) {
+  EXPECT_NEAR(height_of_slab({3, Precision::float32}, 0.01, Fields::events, 2), 0.02, 0.06 * 0.02);
+}
+
+TEST(Meetings, SnowOfDifferentEventsDoesNotStick) {
+  const auto speed_of_lower = [](Fields fields) {
+    Options o = event_options({2, Precision::float64});
+    o.settings.scheme = Scheme::thesis;
+    o.settings.fields = fields;
+    o.gravity = 0;
+    const auto solver = make_solver(o, {});
+    solver->add(slab(2, 1, Vec3(0, 0, 0), Vec3(0.06, 0, 0.03), 0.004));
+    ParticleBatch upper = slab(2, 2, Vec3(0, 0, 0.03), Vec3(0.06, 0, 0.06), 0.004);
+    upper.velocity.z() = 0.2;
+    solver->add(upper);
+    run_until(*solver, 0.02);
+    return momentum_of(solver->state(), 1).z() / (0.06 * 0.03 * 210);
+  };
+  EXPECT_NEAR(speed_of_lower(Fields::events), 0, 0.002);
+  EXPECT_GT(speed_of_lower(Fields::one), 0.02);
+}
+
+/// Mean deceleration (over g) of a block at 1 m/s on a layer of snow, once friction has set in.
+double deceleration(int dimension, double dx, double event_friction) {
+  Options o = event_options({dimension, Precision::float32}, dx);
+  o.settings.event_friction = event_friction;
+  const auto solver = make_solver(o, {ground()});
+  const double spacing = dx / std::sqrt(6.0);
+  solver->add(slab(dimension, 1, Vec3(-0.04, 0, 0), Vec3(0.2, 0.03, 0.03), spacing));
+  run_until(*solver, 0.05);
+  const double top = top_of(solver->state()) + spacing / 2;
+  ParticleBatch block = slab(dimension, 2, Vec3(0, 0, top), Vec3(0.06, 0.03, top + 0.02), spacing);
+  block.velocity.x() = 1;
+  solver->add(block);
+  const double landed = solver->time() + 0.02;
+  run_until(*solver, landed);
+  const double before = momentum_of(solver->state(), 2).x(), begin = solver->time();
+  run_until(*solver, landed + 0.08);
+  const double after = momentum_of(solver->state(), 2).x();
+  return (before - after) / block.total_mass() / (solver->time() - begin) / 9.81;
+}
+
+TEST(Meetings, ABlockFeelsItsFriction) {
+  const double coefficient = 0.5 / std::sqrt(3.0);
+  EXPECT_NEAR(deceleration(2, 0.01, 1), coefficient, 0.15 * coefficient);
+  EXPECT_LT(deceleration(2, 0.01, 0), 0.08);  // it ploughs a little
+  EXPECT_NEAR(deceleration(2, 0.01, 2), 2 * coefficient, 0.3 * coefficient);
+}
+
+TEST(Meetings, KeepMomentumInPairsAndInThrees) {
+  for (const Way& way : {Way{2, Precision::float32}, Way{2, Precision::float64},
+                         Way{3, Precision::float32}, Way{3, Precision::float64}}) {
+    Options o = event_options(way);
+    o.gravity = 0;
+    o.energy = true;
+    const auto solver = make_solver(o, {});
+    const double velocities[3][3] = {{1, 0, 0.2}, {-1, 0.3, 0}, {0.1, -0.2, -2}};
+    double speeds = 0;
+    for (int event = 1; event <= 3; ++event) {
+      const double x = event == 2 ? 0.032 : 0.0, z = event == 3 ? 0.032 : 0.0;
+      ParticleBatch block =
+          slab(way.dimension, event, Vec3(x, 0, z), Vec3(x + 0.03, 0.03, z + 0.03), 0.005);
+      block.velocity = Eigen::Map<const Vec3>(velocities[event - 1]);
+      if (way.dimension == 2) block.velocity.y() = 0;
+      speeds += block.total_mass() * block.velocity.norm();
+      solver->add(block);
+    }
+    const Vec3 before = momentum(solver->state()), of_first = momentum_of(solver->state(), 1);
+    run_steps(*solver, 120);
+    const ParticleState s = solver->state();
+    EXPECT_LT((momentum(s) - before).norm(), 120 * way.epsilon() * speeds) << way.name();
+    EXPECT_GT((momentum_of(s, 1) - of_first).norm(), 0.1 * of_first.norm()) << way.name();
+    const EnergyBalance e = solver->energy();
+    EXPECT_GT(e.impact, 0.01 * e.added) << way.name();
+    EXPECT_GE(e.friction, 0) << way.name();
+    EXPECT_NEAR(e.residual(), 0, 0.05 * e.added) << way.name();
+  }
+}
+
+class MeetingsFiles : public TemporaryFolder {};
+
+std::unique_ptr<Solver> falling_slabs(int threads, int events) {
+  Options o = event_options({2, Precision::float32});
+  o.settings.threads = threads;
+  o.settings.sleep_speed = 0.02;
+  auto solver = make_solver(o, {ground()});
+  for (int event = 1; event <= events; ++event)
+    solver->add(
+        slab(2, event, Vec3(-0.15, 0, 0.032 * event), Vec3(0.15, 0, 0.032 * event + 0.02), 0.004));
+  return solver;
+}
+
+TEST_F(MeetingsFiles, GiveTheSameBitsOnAnyNumberOfThreadsAndFromACheckpoint) {
+  const auto one = falling_slabs(1, 3), many = falling_slabs(3, 3);
+  for (Solver* solver : {one.get(), many.get()}) {
+    run_steps(*solver, 4500);
+    while (!solver->at_safe_point()) solver->step();
+  }
+  expect_same_bits(many->state(), one->state());
+  EXPECT_GT(one->slept_updates(), 0);
+  BinaryWriter out;
+  one->save(out);
+  out.save(path("state"));
+  const auto resumed = falling_slabs(1, 3);
+  resumed->load(BinaryReader::load(path("state")));
+  run_steps(*one, 200);
+  run_steps(*resumed, 200);
+  expect_same_bits(resumed->state(), one->state());
+}
+
+/// More than there are fields: the oldest share one.
+TEST(Meetings, AnyNumberOfEventsMayMeet) {
+  const auto solver = falling_slabs(1, 12);
+  run_steps(*solver, 300);
+  for (const Vec3& x : solver->state().positions) ASSERT_TRUE(x.allFinite());
+  EXPECT_EQ(solver->state().events.back(), 12);
+}
+
+TEST(Meetings, KeysOfBlocksHoldTheirField) {
+  for (const int field : {0, 1, 7, most_fields - 1}) {
+    const std::int32_t limit = block_coord_limit(field);
+    for (const BlockCoord<3>& c :
+         {BlockCoord<3>{0, 0, 0}, BlockCoord<3>{limit, -limit, 5}, BlockCoord<3>{-1, 2, -limit}}) {
+      const BlockKey key = block_key<3>(c, field);
+      EXPECT_EQ(field_of(key), field);
+      EXPECT_EQ(block_coord<3>(key), c);
+    }
+    EXPECT_EQ(block_coord<2>(block_key<2>({limit, -limit}, field)), (BlockCoord<2>{limit, -limit}));
+  }
+}
+
+}  // namespace
+}  // namespace snowshed::mpm
