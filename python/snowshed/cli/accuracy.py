@@ -103,10 +103,10 @@ def choose(
     from snowshed.analysis.accuracy.recorded import load_recorded
     from snowshed.analysis.accuracy.recorded_stacks import (
         CASE,
+        PRESET_THICKNESS,
         circumstances,
         nearest,
         recorded_stacks,
-        recorded_thickness,
         slab_thickness,
     )
     from snowshed.analysis.accuracy.solutions import quickest
@@ -128,7 +128,7 @@ def choose(
     stack = stacks[quickest(costs, errors, wanted)]
     path = resolution_path(data)
     name = path.rpartition(".")[2]
-    share = float(stack.settings[name]) / recorded_thickness()
+    share = float(stack.settings[name]) / PRESET_THICKNESS
     # A recorded run used the defaults of unnamed settings, so they must be defaults here, too.
     values = {where: stack.settings.get(key) for key, where in ACCURACY.items()}
     size = float(f"{share * thickness:.3g}")

@@ -34,6 +34,17 @@ FILES = ("file", "thickness_file")
 #: Settings are hashed under the name of the first version, so that runs of that version are
 #: recognised; for the same reason a scene of the default method does not name it.
 HASHED_AS = {"courant_factor": "step_factor"}
+#: Settings that do not decide a result by themselves: a scheme is a name for others.
+SETTINGS_WITHOUT_EFFECT = ("threads", "scheme")
+#: Settings that came later, with the values for what was done before: these are left out.
+FORMER_BEHAVIOUR: Mapping[str, object] = {
+    "damping_length": 0.0,
+    "crack_band_length": 0.0,
+    "contact": "kernel",
+    "contact_radius": 0.6,
+    "fields": "one",
+    "event_friction": 1.0,
+}
 #: The same for contact conditions: "separate" was called "slip" in version 1 of scenes.
 CONDITION_HASHED_AS = {"separate": "slip", "slip": "slip of version 2"}
 
@@ -113,7 +124,10 @@ def content_hash(scene: Mapping[str, Any]) -> str:
     if scene.get("snowshed") != 1:
         content = _as_version_1(content)
     content["numerics"] = {
-        HASHED_AS.get(k, k): v for k, v in scene["numerics"].items() if k != "threads"
+        HASHED_AS.get(key, key): value
+        for key, value in scene["numerics"].items()
+        if key not in SETTINGS_WITHOUT_EFFECT
+        and not (key in FORMER_BEHAVIOUR and value == FORMER_BEHAVIOUR[key])
     }
     if content.get("terrain"):
         terrain = content["terrain"].items()

@@ -3,7 +3,7 @@ import pytest
 from snowshed import Scene
 from snowshed.analysis.accuracy.measurements import Measured, Measurement
 from snowshed.analysis.accuracy.recorded import load_recorded
-from snowshed.analysis.accuracy.recorded_stacks import CASE
+from snowshed.analysis.accuracy.recorded_stacks import CASE, PRESET, PRESET_THICKNESS
 from snowshed.analysis.accuracy.stack_errors import recorded_bias, stack_error
 from snowshed.scene import example_slide
 
@@ -72,3 +72,7 @@ def test_the_bias_of_all_resolved_grids():
         "% too high with 2 to 4 cells in the slab, against the finest recorded grid"
     )
     assert recorded_bias(2, 5, transfer="none") is None
+
+
+def test_the_thickness_of_the_recorded_slab_is_that_of_the_preset():
+    assert Scene.preset(PRESET).slab.thickness == PRESET_THICKNESS

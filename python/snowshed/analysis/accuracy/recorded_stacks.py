@@ -13,11 +13,11 @@ from typing import Any, Optional
 from snowshed.analysis.accuracy.measurements import Measurement, Settings, Value, to_table
 from snowshed.analysis.accuracy.solutions import assured_errors, key_of, rows_of, solutions
 from snowshed.methods.mpm.settings import MpmSettings
-from snowshed.scene.scene import Scene
 
 CASE = "stack_convergence"
 QUANTITIES = ("height", "length")
 PRESET = "lab-50"  # whose slab the case's stacks are made of
+PRESET_THICKNESS = 0.02  # of that slab, m
 ORDER_IN = MpmSettings.RESOLUTION  # the case is one of the material point method
 
 
@@ -81,13 +81,6 @@ def _biases(measurements: Iterable[Measurement]) -> dict[Hashable, dict[str, flo
         }
         for measurement in measurements
     }
-
-
-def recorded_thickness() -> float:
-    """Return the thickness of the slab in the recorded runs, m."""
-    thickness = slab_thickness(Scene.preset(PRESET).resolve().data)
-    assert thickness is not None
-    return thickness
 
 
 def slab_thickness(data: Mapping[str, Any]) -> Optional[float]:

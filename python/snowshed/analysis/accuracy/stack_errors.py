@@ -16,12 +16,12 @@ from snowshed.analysis.accuracy.recorded import load_recorded
 from snowshed.analysis.accuracy.recorded_stacks import (
     ORDER_IN,
     PRESET,
+    PRESET_THICKNESS,
     QUANTITIES,
     RecordedStack,
     circumstances,
     nearest,
     recorded_stacks,
-    recorded_thickness,
     slab_thickness,
 )
 from snowshed.base.formatting import number
@@ -118,7 +118,7 @@ def stack_error(
     stacks = _plain_stacks(
         load_recorded() if measurements is None else measurements, data["numerics"]["transfer"]
     )
-    wanted = {**circumstances(data), ORDER_IN: recorded_thickness() / cells}
+    wanted = {**circumstances(data), ORDER_IN: PRESET_THICKNESS / cells}
     chosen = nearest(stacks, wanted)
     if not chosen:
         return None
@@ -127,7 +127,7 @@ def stack_error(
         bias=dict(zip(QUANTITIES, stack.biases)),
         scatter=dict(zip(QUANTITIES, stack.spreads)),
         cells=round(cells, 3),
-        recorded_cells=round(recorded_thickness() / float(stack.settings[ORDER_IN]), 3),
+        recorded_cells=round(PRESET_THICKNESS / float(stack.settings[ORDER_IN]), 3),
         settings=stack.settings,
     )
 
@@ -180,12 +180,13 @@ def recorded_bias(dimension: int, events: int, transfer: str = "flip") -> Option
     >>> recorded_bias(2, 5).startswith("stacks of lab-50 were ")
     True
     """
-    thickness = recorded_thickness()
     stacks = nearest(
         _plain_stacks(load_recorded(), transfer),
         {"dimension": dimension, "events": events},
     )
-    cells = {thickness / float(stack.settings[ORDER_IN]): stack.biases[0] for stack in stacks}
+    cells = {
+        PRESET_THICKNESS / float(stack.settings[ORDER_IN]): stack.biases[0] for stack in stacks
+    }
     resolved = {n: bias for n, bias in cells.items() if n > LEAST_CELLS - 1e-9}
     if not resolved:
         return None
