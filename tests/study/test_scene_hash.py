@@ -12,7 +12,7 @@ from study_helpers import tiny_scene
 from snowshed import InputError, Obstacle, Scene, Shape, _core
 from snowshed.scene.schema import scene_parameters
 from snowshed.study import Run
-from snowshed.study.scene_hash import content_hash
+from snowshed.study.scene_hash import SETTINGS_WITHOUT_EFFECT, content_hash
 
 
 def run_of(scene: Scene) -> Run:
@@ -61,12 +61,21 @@ def test_every_other_parameter_is_in_the_hash():
     for parameter in scene_parameters():
         section, _, key = parameter.path.rpartition(".")
         holder = data.get(section, data)
-        if section in ("output", "domain") or key in ("title", "threads", "obstacles", "bodies"):
+        if section in ("output", "domain") or key in ("title", "obstacles", "bodies"):
+            continue
+        if key in SETTINGS_WITHOUT_EFFECT:
             continue
         changed = {**holder, key: "something else"}
         hashes.add(content_hash({**data, section: changed} if section else changed))
         varied += 1
     assert varied > 30 and len(hashes) == varied + 1
+
+
+def test_a_scheme_counts_by_the_settings_that_it_stands_for():
+    named = tiny_scene().set("numerics.scheme", "objective")
+    settings = json.loads(run_of(named).scene)["numerics"]
+    listed = tiny_scene().update({f"numerics.{k}": v for k, v in settings.items() if k != "scheme"})
+    assert run_of(named).hash == run_of(listed).hash != run_of(tiny_scene()).hash
 
 
 def test_runs_are_found_that_were_stored_when_settings_had_other_names():
