@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "snowshed/core/kernel_variant.hpp"
+#include "snowshed/core/variant.hpp"
 #include "snowshed/material/snow.hpp"
 #include "snowshed/methods/contact_law.hpp"
 #include "snowshed/methods/mpm/settings.hpp"
@@ -95,6 +96,14 @@ struct StepParameters {
   const T* pushing;  // by obstacle: part of the friction of pushed nodes that remains, see
                      // Contacts::find_pushing_shares
 };
+
+/// The part of its stored normal impulse that a contact is charged for in a step, where snow slides
+/// at `speed` (m/s); see NodeKernels::apply.
+template <class T>
+SNOWSHED_INLINE T drain_rate(const StepParameters<T>& step, T speed) {
+  const T rate = step.friction_rate_per_speed * speed;
+  return rate < step.friction_rate ? step.friction_rate : rate < T(1) ? rate : T(1);
+}
 
 /// Largest norm of the elastic Hencky strain that single precision still resolves: compression to
 /// a twentieth or stretching by twenty. Snow yields long before; only bodies much too soft for

@@ -5,32 +5,13 @@
 
 #include "snowshed/core/parallel.hpp"
 #include "snowshed/geometry/bounds.hpp"
+#include "snowshed/methods/mpm/index_box.hpp"
 
 namespace snowshed::mpm {
 namespace {
 
-/// Part of a cell that snow may move before contacts are found anew.
-constexpr double tolerance = 0.02;
-
 /// kg. Nodes that a field barely reaches tell nothing of its surface.
 constexpr double least_shared_mass = 1e-12;
-
-/// Calls f(index) for all indices from `begin` to before `end` along each direction.
-template <int D, class F>
-void for_each_index(const std::array<int, D>& begin, const std::array<int, D>& end, F f) {
-  for (int d = 0; d < D; ++d)
-    if (begin[d] >= end[d]) return;
-  std::array<int, D> at = begin;
-  while (true) {
-    f(at);
-    int d = D - 1;
-    while (d >= 0 && ++at[d] == end[d]) {
-      at[d] = begin[d];
-      --d;
-    }
-    if (d < 0) return;
-  }
-}
 
 template <int D>
 std::array<int, D> all(int value) {
@@ -65,15 +46,15 @@ template <class T, int D>
 void Meetings<T, D>::update(const Model<T, D>& model, State<T, D>& state, Grid<T, D>& grid,
                             double moved, int threads) {
   since_measured_ += moved;
-  if (measured_ && since_measured_ < tolerance * model.options.settings.dx) return;
+  if (measured_ && since_measured_ < contact_tolerance * model.options.settings.dx) return;
   const std::vector<FieldContact<T>>& before = state.field_contacts;
-  std::vector<std::vector<FieldContact<T>>> found(places(state.layout));
+  std::vector<std::vector<FieldContact<T>>> by_place(places(state.layout));
   parallel_for(places(state.layout), threads, 1, [&](std::ptrdiff_t place) {
-    const std::int32_t one = state.layout.meeting_blocks[state.layout.meeting_first[place]];
-    if (measured_ && !state.sleep.is_active(one))  // nothing has moved there
-      found[place].assign(before.begin() + first_[place], before.begin() + first_[place + 1]);
+    const std::int32_t block = state.layout.meeting_blocks[state.layout.meeting_first[place]];
+    if (measured_ && !state.sleep.is_active(block))  // nothing has moved there
+      by_place[place].assign(before.begin() + first_[place], before.begin() + first_[place + 1]);
     else
-      measure(model, state, grid, place, found[place]);
+      measure(model, state, grid, place, by_place[place]);
   });
   std::vector<const FieldContact<T>*> known;
   for (const FieldContact<T>& c : before) known.push_back(&c);
@@ -81,7 +62,7 @@ void Meetings<T, D>::update(const Model<T, D>& model, State<T, D>& state, Grid<T
   std::sort(known.begin(), known.end(), by_name);
   std::vector<FieldContact<T>> next;
   std::vector<std::int32_t> first{0};
-  for (const auto& contacts : found) {
+  for (const auto& contacts : by_place) {
     for (FieldContact<T> c : contacts) {
       const auto old = std::lower_bound(known.begin(), known.end(), &c, by_name);
       const bool is_known = old != known.end() && (*old)->name() == c.name();
@@ -118,7 +99,7 @@ typename Meetings<T, D>::Masses Meetings<T, D>::masses_of(const State<T, D>& sta
   Masses masses(padded_nodes, T(0));
   std::vector<T> room;
   const BlockKey key = state.layout.grid_blocks[g];
-  for_each_index<D>(all<D>(-1), all<D>(2), [&](const std::array<int, D>& offset) {
+  for_each_index(all<D>(-1), all<D>(2), [&](const std::array<int, D>& offset) {
     BlockCoord<D> coord = block_coord<D>(key);
     std::array<int, D> begin, end;
     for (int d = 0; d < D; ++d) {
@@ -131,7 +112,7 @@ typename Meetings<T, D>::Masses Meetings<T, D>::masses_of(const State<T, D>& sta
     if (block < 0) return;
     const T* sums = sums_of(state, grid, kernels, block, room);
     if (!sums) return;
-    for_each_index<D>(begin, end, [&](const std::array<int, D>& node) {
+    for_each_index(begin, end, [&](const std::array<int, D>& node) {
       std::array<int, D> padded;
       for (int d = 0; d < D; ++d) padded[d] = node[d] + offset[d] * B;
       masses[place_in<D>(padded, padded_edge, -margin)] = sums[place_in<D>(node, B) * node_values];
@@ -149,7 +130,7 @@ void Meetings<T, D>::find_normals(const Masses& a, const Masses& b, Nodes& nodes
   const auto shared = [&](int place) {
     return double(a[place]) > least_shared_mass && double(b[place]) > least_shared_mass;
   };
-  for_each_index<D>(all<D>(-smoothing), all<D>(B + smoothing), [&](const std::array<int, D>& node) {
+  for_each_index(all<D>(-smoothing), all<D>(B + smoothing), [&](const std::array<int, D>& node) {
     const int place = place_in<D>(node, padded_edge, -margin);
     if (!shared(place)) return;
     VecD<D> gradient;
@@ -161,10 +142,10 @@ void Meetings<T, D>::find_normals(const Masses& a, const Masses& b, Nodes& nodes
       raw[place_in<D>(node, edge, -smoothing)] =
           double(a[place]) * double(b[place]) / length * gradient;
   });
-  for_each_index<D>(all<D>(0), all<D>(B), [&](const std::array<int, D>& node) {
+  for_each_index(all<D>(0), all<D>(B), [&](const std::array<int, D>& node) {
     if (!shared(place_in<D>(node, padded_edge, -margin))) return;
     VecD<D> sum = VecD<D>::Zero();
-    for_each_index<D>(all<D>(-smoothing), all<D>(margin), [&](const std::array<int, D>& offset) {
+    for_each_index(all<D>(-smoothing), all<D>(margin), [&](const std::array<int, D>& offset) {
       std::array<int, D> at;
       double tent = 1;
       for (int d = 0; d < D; ++d) {
@@ -206,7 +187,7 @@ void Meetings<T, D>::find_reach(const Model<T, D>& model, const State<T, D>& sta
         near = near && begin[d] < end[d];
       }
       if (!near) continue;
-      for_each_index<D>(begin, end, [&](const std::array<int, D>& node) {
+      for_each_index(begin, end, [&](const std::array<int, D>& node) {
         const int k = place_in<D>(node, B);
         if (!(nodes.shared >> k & 1)) return;
         T along = 0;
@@ -222,7 +203,7 @@ void Meetings<T, D>::find_reach(const Model<T, D>& model, const State<T, D>& sta
 
 template <class T, int D>
 void Meetings<T, D>::measure(const Model<T, D>& model, const State<T, D>& state, Grid<T, D>& grid,
-                             std::ptrdiff_t place, std::vector<FieldContact<T>>& found) const {
+                             std::ptrdiff_t place, std::vector<FieldContact<T>>& contacts) const {
   const auto begin = state.layout.meeting_blocks.begin() + state.layout.meeting_first[place];
   const auto end = state.layout.meeting_blocks.begin() + state.layout.meeting_first[place + 1];
   std::vector<T> room;
@@ -250,7 +231,7 @@ void Meetings<T, D>::measure(const Model<T, D>& model, const State<T, D>& state,
                           0,
                           0};
         for (int d = 0; d < D; ++d) c.normal[d] = nodes.normal[k][d];
-        found.push_back(c);
+        contacts.push_back(c);
       }
     }
 }
@@ -279,9 +260,7 @@ void Meetings<T, D>::exchange(const StepParameters<T>& step, double friction, St
       squared += slip[d] * slip[d];
     }
     const T speed = std::sqrt(squared);
-    const T rate =
-        std::min(T(1), std::max(step.friction_rate, step.friction_rate_per_speed * speed));
-    const T drained = c.impulse * rate, left = c.impulse - drained;
+    const T drained = c.impulse * drain_rate(step, speed), left = c.impulse - drained;
     const T push = std::max(reduced * along, -left);
     c.next_impulse = left + push;
     const T stops = reduced * speed, most = T(friction) * drained;

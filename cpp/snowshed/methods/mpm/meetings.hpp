@@ -58,7 +58,7 @@ class Meetings {
   void find_reach(const Model<T, D>& model, const State<T, D>& state, std::int32_t block,
                   bool first, Nodes& nodes) const;
   void measure(const Model<T, D>& model, const State<T, D>& state, Grid<T, D>& grid,
-               std::ptrdiff_t place, std::vector<FieldContact<T>>& found) const;
+               std::ptrdiff_t place, std::vector<FieldContact<T>>& contacts) const;
 
   int support_;
   std::vector<T> radius_;               // of each particle, cells

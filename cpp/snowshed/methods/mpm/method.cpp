@@ -1,7 +1,6 @@
 // The material point method, as the rest of the program knows it.
-#include <sstream>
-
 #include "snowshed/core/errors.hpp"
+#include "snowshed/core/message_format.hpp"
 #include "snowshed/methods/descriptor.hpp"
 #include "snowshed/methods/mpm/boundary.hpp"
 #include "snowshed/methods/mpm/cost.hpp"
@@ -48,10 +47,9 @@ void check_scheme(const Settings& n) {
 void check_crack_band(const Settings& n) {
   constexpr double least = 0.1, most = 100;
   if (n.softening() >= least * (1 - 1e-9) && n.softening() <= most) return;
-  std::ostringstream message;
-  message << "is " << 1 / n.softening() << " times dx; it must be " << 1 / most << " to "
-          << 1 / least << " times";
-  throw InputError("/numerics/crack_band_length", message.str());
+  throw InputError("/numerics/crack_band_length",
+                   "is " + show_rounded(1 / n.softening()) + " times dx; it must be " +
+                       show_rounded(1 / most) + " to " + show_rounded(1 / least) + " times");
 }
 
 class Descriptor final : public DescriptorOf<Descriptor, Settings> {

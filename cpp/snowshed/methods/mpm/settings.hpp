@@ -38,16 +38,23 @@ struct Settings {
   /// Sets the mechanisms of a scheme, which its name stands for; all else stays. `thesis` is that
   /// of the thesis; the results of `objective` depend less on the grid.
   void adopt(Scheme chosen) {
-    const bool objective = chosen == Scheme::objective;
+    const Settings thesis;
     scheme = chosen;
-    transfer = objective ? Transfer::affine_flip : Transfer::flip;
-    flip_ratio = 0.99;
-    damping_rate = objective ? std::optional<double>(380.0) : std::nullopt;
-    damping_length = crack_band_length = objective ? 0.01 : 0.0;
-    contact = objective ? Contacting::touch : Contacting::kernel;
-    contact_radius = 0.6;
-    fields = objective ? Fields::events : Fields::one;
-    event_friction = 1;
+    transfer = thesis.transfer;
+    flip_ratio = thesis.flip_ratio;
+    damping_rate = thesis.damping_rate;
+    damping_length = thesis.damping_length;
+    crack_band_length = thesis.crack_band_length;
+    contact = thesis.contact;
+    contact_radius = thesis.contact_radius;
+    fields = thesis.fields;
+    event_friction = thesis.event_friction;
+    if (chosen == Scheme::thesis) return;
+    transfer = Transfer::affine_flip;
+    damping_rate = 380.0;
+    damping_length = crack_band_length = 0.01;
+    contact = Contacting::touch;
+    fields = Fields::events;
   }
 
   /// The size of the smallest thing the method resolves, m.

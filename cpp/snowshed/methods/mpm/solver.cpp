@@ -307,8 +307,8 @@ bool SolverImpl<T, D>::damps_next() const {
   return work_.average && state_.progress.undamped_steps + 1 >= steps_between_averages;
 }
 
-/// Averages the velocities that particles have, for a step of dt that damps them for all steps
-/// since the last one that did.
+/// Averages the particles' velocities. The step of dt that follows damps them, and makes up for the
+/// steps since the last damping.
 template <class T, int D>
 void SolverImpl<T, D>::average_velocities(double dt) noexcept {
   const double rate = model_.options.settings.damping_rate.value_or(0.0);

@@ -14,6 +14,9 @@
 
 namespace snowshed::mpm {
 
+/// Part of a cell that snow may move before its contacts by touch are found anew.
+inline constexpr double contact_tolerance = 0.02;
+
 /// The numbers of a state, cheap to copy: a step that fails puts them back.
 struct Progress {
   double time = 0, dt = 0;  // s; dt: of the last step

@@ -9,9 +9,6 @@
 namespace snowshed::mpm {
 namespace {
 
-/// Part of a cell that snow may move before particles that touch are measured again.
-constexpr double tolerance = 0.02;
-
 static_assert(block_nodes<2> == 64 && block_nodes<3> == 64,
               "a block's nodes are the bits of a word");
 
@@ -94,8 +91,8 @@ void Touch<T, D>::measure(const Model<T, D>& model, const State<T, D>& state, st
     }
   }
   // What touches may cease to, but that matters little sooner or later.
-  block.next = travel_ + std::max(nearest, tolerance * n.dx);
-  if (!block.touchers.empty()) block.next = travel_ + tolerance * n.dx;
+  block.next = travel_ + std::max(nearest, contact_tolerance * n.dx);
+  if (!block.touchers.empty()) block.next = travel_ + contact_tolerance * n.dx;
 }
 
 template <class T, int D>

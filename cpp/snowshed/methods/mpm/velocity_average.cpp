@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "snowshed/core/parallel.hpp"
+#include "snowshed/methods/mpm/index_box.hpp"
 
 namespace snowshed::mpm {
 namespace {
@@ -66,13 +67,9 @@ void VelocityAverage<T, D>::find_blocks(const BlockLayout<D>& layout) {
       begin[d] = std::int32_t(std::floor(lowest / edge));
       end[d] = std::int32_t(std::floor((lowest + tile_edge_ - 1) / edge)) + 1;
     }
-    Coord at = begin;
-    while (true) {
+    for_each_index(begin, end, [&](const Coord& at) {
       pairs.push_back({field_of(keys_[b]), at, std::int32_t(b)});
-      int d = D - 1;
-      while (d >= 0 && ++at[d] == end[d]) at[d] = begin[d], --d;
-      if (d < 0) break;
-    }
+    });
   }
   std::sort(pairs.begin(), pairs.end());
   coarse_blocks_.clear();

@@ -5,7 +5,6 @@
 
 #include "io/temporary_folder.hpp"
 #include "methods/mpm/solver_testing.hpp"
-#include "snowshed/io/binary_archive.hpp"
 
 namespace snowshed::mpm {
 namespace {
@@ -179,14 +178,7 @@ TEST_F(MeetingsFiles, GiveTheSameBitsOnAnyNumberOfThreadsAndFromACheckpoint) {
   }
   expect_same_bits(many->state(), one->state());
   EXPECT_GT(one->slept_updates(), 0);
-  BinaryWriter out;
-  one->save(out);
-  out.save(path("state"));
-  const auto resumed = falling_slabs(1, 3);
-  resumed->load(BinaryReader::load(path("state")));
-  run_steps(*one, 200);
-  run_steps(*resumed, 200);
-  expect_same_bits(resumed->state(), one->state());
+  expect_resumes(*one, *falling_slabs(1, 3), path("state"), 200);
 }
 
 /// More than there are fields: the oldest share one.

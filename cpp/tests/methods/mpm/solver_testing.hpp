@@ -10,6 +10,7 @@
 #include "snowshed/core/angles.hpp"
 #include "snowshed/core/random.hpp"
 #include "snowshed/geometry/primitives.hpp"
+#include "snowshed/io/binary_archive.hpp"
 #include "snowshed/methods/mpm/describe.hpp"
 #include "snowshed/methods/mpm/solver.hpp"
 
@@ -153,6 +154,17 @@ inline void expect_same_bits(const ParticleState& a, const ParticleState& b) {
   EXPECT_EQ(a.pressures, b.pressures);
   EXPECT_EQ(a.plastic_strains, b.plastic_strains);
   EXPECT_EQ(a.ids, b.ids);
+}
+
+/// Expects a fresh solver that loads what another one saves into `file` to go on as that one does.
+inline void expect_resumes(Solver& solver, Solver& fresh, const std::string& file, int steps) {
+  BinaryWriter out;
+  solver.save(out);
+  out.save(file);
+  fresh.load(BinaryReader::load(file));
+  run_steps(solver, steps);
+  run_steps(fresh, steps);
+  expect_same_bits(fresh.state(), solver.state());
 }
 
 inline Vec3 momentum(const ParticleState& s) {

@@ -5,7 +5,6 @@
 
 #include "io/temporary_folder.hpp"
 #include "methods/mpm/solver_testing.hpp"
-#include "snowshed/io/binary_archive.hpp"
 
 namespace snowshed::mpm {
 namespace {
@@ -144,14 +143,7 @@ TEST_F(TouchFiles, GivesTheSameBitsOnAnyNumberOfThreadsAndFromACheckpoint) {
     while (!solver->at_safe_point()) solver->step();
   }
   expect_same_bits(many->state(), one->state());
-  BinaryWriter out;
-  one->save(out);
-  out.save(path("state"));
-  const auto resumed = landing_snow(1);
-  resumed->load(BinaryReader::load(path("state")));
-  run_steps(*one, 300);
-  run_steps(*resumed, 300);
-  expect_same_bits(resumed->state(), one->state());
+  expect_resumes(*one, *landing_snow(1), path("state"), 300);
 }
 
 }  // namespace

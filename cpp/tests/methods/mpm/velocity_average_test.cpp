@@ -5,7 +5,6 @@
 
 #include "io/temporary_folder.hpp"
 #include "methods/mpm/solver_testing.hpp"
-#include "snowshed/io/binary_archive.hpp"
 
 namespace snowshed::mpm {
 namespace {
@@ -233,14 +232,7 @@ TEST_F(VelocityAverageFiles, GivesTheSameBitsOnAnyNumberOfThreadsAndFromACheckpo
   EXPECT_GT(one->slept_updates(), 0);
   one->add_velocity(std::vector<Vec3>(one->size(), Vec3::Zero()));  // a safe point
   ASSERT_NE(one->counters().steps % steps_between_averages, 0);  // a part of a damping is pending
-  BinaryWriter out;
-  one->save(out);
-  out.save(path("state"));
-  const auto resumed = thrown_chunk(1);
-  resumed->load(BinaryReader::load(path("state")));
-  run_steps(*one, 300);
-  run_steps(*resumed, 300);
-  expect_same_bits(resumed->state(), one->state());
+  expect_resumes(*one, *thrown_chunk(1), path("state"), 300);
 }
 
 }  // namespace

@@ -206,16 +206,14 @@ struct NodeKernels {
     }
   };
 
-  /// The part of its store of normal impulse that a contact is charged for in this step.
-  static T drain_rate(const StepParameters<T>& step, const Contact<T>& c, T normal_speed,
-                      const T (&free)[D]) {
+  /// The speed at which snow slides along a contact.
+  static T sliding_speed(const Contact<T>& c, T normal_speed, const T (&free)[D]) {
     T squared = 0;
     for (int d = 0; d < D; ++d) {
       const T sliding = free[d] - c.velocity[d] - normal_speed * c.normal[d];
       squared += sliding * sliding;
     }
-    const T rate = step.friction_rate_per_speed * std::sqrt(squared);
-    return rate < step.friction_rate ? step.friction_rate : rate < T(1) ? rate : T(1);
+    return std::sqrt(squared);
   }
 
   /// The pull that a contact cancels in a step, as a negative push (N s); more is let go. `stored`
@@ -255,7 +253,7 @@ struct NodeKernels {
       }
       return;
     }
-    const T drained = c.normal_impulse * drain_rate(step, c, normal_speed, free);
+    const T drained = c.normal_impulse * drain_rate(step, sliding_speed(c, normal_speed, free));
     const T left = c.normal_impulse - drained;
     const T least = least_push(c, left);
     T push = -mass * normal_speed;
