@@ -1,6 +1,8 @@
+import json
+
 import pytest
 
-from snowshed import InputError, MpmSettings, Scene
+from snowshed import InputError, MpmSettings, Scene, Study
 from snowshed.cli.main import main
 
 
@@ -28,6 +30,14 @@ def test_settings_that_are_given_with_a_scheme_stand_in_any_order(order):
     data = {"scheme": "objective", "damping_length": 0.02}
     settings = MpmSettings.from_data(dict(list(data.items())[::order]))
     assert settings == MpmSettings(damping_length=0.02, scheme="objective")
+
+
+@pytest.mark.parametrize("order", [1, -1])
+def test_factors_of_a_study_stand_beside_a_scheme_in_any_order(order):
+    factors = {"numerics.scheme": ["objective"], "numerics.damping_length": [0.02]}
+    study = Study.product(Scene.preset("lab-50"), dict(list(factors.items())[::order]))
+    (run,) = study.runs()
+    assert json.loads(run.scene)["numerics"]["damping_length"] == 0.02
 
 
 def test_the_same_scheme_again_changes_nothing():

@@ -8,14 +8,26 @@ from pathlib import Path
 
 import click
 
+from snowshed._core import InputError
 from snowshed.cli.compute_study import outcome_as_exit_code, study_progress
 from snowshed.cli.terminal import say
+from snowshed.scene.scene import ResolvedScene
 
 check_option = click.option(
     "--check",
     is_flag=True,
     help="Measure the error of the stack with nine more runs: three grids, three seeds each.",
 )
+
+
+def check_can_be_measured(scene: ResolvedScene) -> None:
+    """Raise InputError, before anything is run, if the error of a scene cannot be measured."""
+    from snowshed.analysis.accuracy.companions import check_has_companions
+
+    try:
+        check_has_companions(scene)
+    except InputError as error:
+        raise InputError(f"--check: {error}") from None
 
 
 def check_run(folder: Path, quiet: bool) -> None:

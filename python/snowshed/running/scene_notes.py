@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from snowshed.scene.scene import ResolvedScene
 
-FEW = 2.0  # cells; a thinner slab is coarse
+FEW_CELLS = 2.0  # across a slab; with fewer its stack is coarse
 ALL_STAYS = 0.98  # of the snow
 MOST_SEEDED = 100_000  # particles; these take two seconds
 #: Parts of a scene, besides a panel, on which snow can land.
@@ -46,11 +46,11 @@ def notes_before(scene: Mapping[str, Any]) -> list[str]:
         )
     size = resolution_of(scene)
     thickness = _slab_thickness(scene)
-    if thickness is not None and thickness < FEW * size:
+    if thickness is not None and thickness < FEW_CELLS * size:
         notes.append(
             f"the slab is {1000 * thickness:.3g} mm thick, less than two "
             f"{method.settings.ELEMENTS} of {1000 * size:.3g} mm: its stack is coarse; try "
-            f"{method.settings.RESOLUTION} = {thickness / FEW:.2g} m"
+            f"{method.settings.RESOLUTION} = {thickness / FEW_CELLS:.2g} m"
         )
     return notes
 

@@ -44,7 +44,7 @@ FORMER_NAMES: Mapping[str, str] = {
 
 
 def accuracy_of(scene: Mapping[str, JsonValue]) -> Mapping[str, str]:
-    """Return the path of each of these settings in a scene, for the scene's method.
+    """Return the accuracy settings of a scene's method, each with its path in the scene.
 
     Examples
     --------

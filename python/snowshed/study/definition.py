@@ -313,11 +313,8 @@ class Study:
                 yield {path: value for point in points for path, value in point.items()}
 
     def _run(self, point: Mapping[str, object]) -> Run:
-        scene = self.scene.copy()
         try:
-            for path, value in point.items():
-                scene.set(path, value)
-            ready = scene.resolve()
+            ready = self.scene.with_(point).resolve()
             return Run.of(ready) if self.season is None else self.season.run(ready)
         except InputError as error:
             values = ", ".join(f"{path} = {value}" for path, value in point.items())

@@ -44,6 +44,14 @@ def test_scenes_without_a_slab_are_refused(tmp_path):
         companions(example_slide(tmp_path))
 
 
+def test_the_command_refuses_such_scenes_before_it_runs_them(tmp_path, capsys):
+    scene = tmp_path / "slide.json"
+    example_slide(tmp_path).resolve().save(scene)
+    assert main(["run", str(scene), "--check", "-o", str(tmp_path / "out")]) == 2
+    assert "--check: the error is measured for slabs" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
 def test_the_command_measures_prints_and_stores(tmp_path, capsys):
     coarse = ["--dim", "2", "--dx", "0.02", "--events", "1", "--friction", "0.3"]
     out = tmp_path / "out"

@@ -16,7 +16,9 @@ import numpy as np
 from snowshed._core import InputError
 from snowshed.base.paths import PathLike
 from snowshed.base.progress import Reporter
-from snowshed.scene.scene import Scene
+from snowshed.methods.mpm.settings import MpmSettings
+from snowshed.methods.registry import settings_of
+from snowshed.scene.scene import ResolvedScene, Scene
 from snowshed.study.definition import Study
 
 if TYPE_CHECKING:
@@ -84,23 +86,28 @@ class MeasuredError:
         )
 
 
+def check_has_companions(scene: ResolvedScene) -> None:
+    """Raise InputError unless the scene lays slabs and is one of the material point method."""
+    if not isinstance(settings_of(scene.data), MpmSettings) or scene.data.get("slab") is None:
+        raise InputError("the error is measured for slabs of the material point method only")
+
+
 def companions(scene: Scene) -> Study:
     """Return the study of a scene on its own and on coarser grids, with several seeds.
 
     Raises
     ------
     InputError
-        If the scene is not one of the material point method.
+        If the scene lays no slabs, or is not one of the material point method.
 
     Examples
     --------
     >>> len(companions(Scene.preset("lab-50")).runs())
     9
     """
-    data = scene.resolve().data
-    if "dx" not in data["numerics"] or data.get("slab") is None:
-        raise InputError("the error is measured for slabs of the material point method only")
-    sizes = [float(f"{width * data['numerics']['dx']:.6g}") for width in WIDTHS]
+    resolved = scene.resolve()
+    check_has_companions(resolved)
+    sizes = [float(f"{width * resolved.data['numerics']['dx']:.6g}") for width in WIDTHS]
     return Study.product(scene, {"numerics.dx": sizes}, name="check", seeds=SEEDS)
 
 

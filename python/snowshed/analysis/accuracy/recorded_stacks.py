@@ -11,7 +11,13 @@ from dataclasses import dataclass
 from typing import Any, Optional
 
 from snowshed.analysis.accuracy.measurements import Measurement, Settings, Value, to_table
-from snowshed.analysis.accuracy.solutions import assured_errors, key_of, rows_of, solutions
+from snowshed.analysis.accuracy.solutions import (
+    SAMPLING,
+    assured_errors,
+    key_of,
+    rows_of,
+    solutions,
+)
 from snowshed.methods.mpm.settings import MpmSettings
 
 CASE = "stack_convergence"
@@ -76,7 +82,7 @@ def recorded_stacks(measurements: Iterable[Measurement]) -> list[RecordedStack]:
 
 def _biases(measurements: Iterable[Measurement]) -> dict[Hashable, dict[str, float]]:
     return {
-        key_of(measurement.settings, without=("seed", "seedings")): {
+        key_of(measurement.settings, without=SAMPLING): {
             m.quantity: m.value / m.exact - 1 for m in measurement.measured if m.exact
         }
         for measurement in measurements

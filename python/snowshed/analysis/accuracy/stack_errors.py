@@ -27,10 +27,9 @@ from snowshed.analysis.accuracy.recorded_stacks import (
 from snowshed.base.formatting import number
 from snowshed.methods.mpm.settings import MpmSettings
 from snowshed.methods.registry import settings_of
+from snowshed.running.scene_notes import FEW_CELLS
 from snowshed.scene.scene import ResolvedScene, Scene
 
-#: Cells across a slab that a grid needs at least to resolve it.
-LEAST_CELLS = 2
 #: Settings of recorded runs with the default scheme.
 _PLAIN = {"dimension", "between", "events", "transfer", ORDER_IN}
 
@@ -187,7 +186,7 @@ def recorded_bias(dimension: int, events: int, transfer: str = "flip") -> Option
     cells = {
         PRESET_THICKNESS / float(stack.settings[ORDER_IN]): stack.biases[0] for stack in stacks
     }
-    resolved = {n: bias for n, bias in cells.items() if n > LEAST_CELLS - 1e-9}
+    resolved = {n: bias for n, bias in cells.items() if n > FEW_CELLS - 1e-9}
     if not resolved:
         return None
     low, high = 100 * min(resolved.values()), 100 * max(resolved.values())

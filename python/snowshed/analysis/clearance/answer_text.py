@@ -11,7 +11,8 @@ from snowshed.base.formatting import plural
 from snowshed.season.record import percent
 
 FIRST_PROBABILITY = 0.9  # of the answer's first sentence
-TYPICAL_SLIDE_OFFS = 5  # in a winter, for the recorded error
+#: The error of the grid is quoted from recorded runs of so many slide-offs, as a winter may have.
+TYPICAL_SLIDE_OFFS = 5
 CHANCE = "chance: positions of particles, and interactions of causes"
 
 

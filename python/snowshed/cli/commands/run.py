@@ -8,7 +8,7 @@ from typing import Optional
 import click
 
 from snowshed.cli.accuracy import accuracy_option
-from snowshed.cli.check import check_option, check_run
+from snowshed.cli.check import check_can_be_measured, check_option, check_run
 from snowshed.cli.common_options import PATH, run_options
 from snowshed.cli.dry_run import print_cost
 from snowshed.cli.resolve_options import with_accuracy
@@ -38,6 +38,8 @@ def run(
       snowshed run scene.json -o results
     """  # noqa: D301 - click wants the control character
     resolved = _resolved(scene, accuracy, quiet=quiet)
+    if check:
+        check_can_be_measured(resolved)
     if dry_run:
         print_cost(resolved)
     else:

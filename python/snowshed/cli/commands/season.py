@@ -185,7 +185,7 @@ def season(
         return
     result = _run(season_files, scene, folder, settings, reading, resume=resume, quiet=quiet)
     if not quiet:
-        print_season(result, folder)
+        print_season(result, folder, int(scene.data["dimension"]))
 
 
 def none_or(name: Optional[str]) -> Optional[str]:
@@ -211,9 +211,7 @@ def _scene(
     if scene.slab is not None:
         scene.slab.layers = None
     try:
-        for path, value in {**DETERMINED, **given}.items():
-            scene.set(path, value)
-        return scene.resolve()
+        return scene.update({**DETERMINED, **given}).resolve()
     except InputError as error:
         if file is not None and path_of(error) not in given:
             raise InputError(f"{file}: {error}") from None
@@ -271,7 +269,7 @@ def _print_cost(
         print_cost(plan.slides)
 
 
-def print_season(result: SeasonResult, folder: Path) -> None:
+def print_season(result: SeasonResult, folder: Path, dimension: int) -> None:
     """Print the table, the event that buries the panel, and notes on the limits of the results."""
     from snowshed.analysis.accuracy.stack_errors import recorded_bias
     from snowshed.season.driver import verdict
@@ -292,7 +290,7 @@ def print_season(result: SeasonResult, folder: Path) -> None:
     for line in (verdict(result), *(f"note: {note}" for note in result.notes)):
         console.print(line)
     console.print(f"season.csv and season.png in {folder}")
-    bias = recorded_bias(2, max(len(rows), 1)) if result.simulated else None
+    bias = recorded_bias(dimension, max(len(rows), 1)) if result.simulated else None
     if bias is not None:
         console.print(f"error of the grid: {bias}")
     if result.simulated:
