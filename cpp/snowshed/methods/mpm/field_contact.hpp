@@ -1,4 +1,4 @@
-// A node at which the snow of two events touches.
+// A node at which the snow of two events touches, or has just come off.
 #pragma once
 
 #include <cstdint>
@@ -13,6 +13,7 @@ struct FieldContact {
   BlockKey first_key, second_key;  // of the blocks of nodes, the first in the order of keys
   std::int32_t node;
   std::int32_t first, second;  // the blocks' places in the layout
+  bool touches;                // else it has come off since, and only owes friction
   T normal[3];                 // from the first field to the second
   T impulse;       // stored normal impulse, N s, that friction has yet to be charged for
   T next_impulse;  // the same after the step being tried

@@ -13,19 +13,17 @@ namespace {
 /// kg. Nodes that a field barely reaches tell nothing of its surface.
 constexpr double least_shared_mass = 1e-12;
 
-template <int D>
-std::array<int, D> all(int value) {
-  std::array<int, D> index;
-  index.fill(value);
-  return index;
-}
-
 /// Place of an index in an array of `edge` elements along each direction, the first at `low`.
 template <int D>
 int place_in(const std::array<int, D>& index, int edge, int low = 0) {
   int place = 0;
   for (int d = 0; d < D; ++d) place = place * edge + index[d] - low;
   return place;
+}
+
+template <class T>
+bool by_name(const FieldContact<T>* a, const FieldContact<T>* b) {
+  return a->name() < b->name();
 }
 
 }  // namespace
@@ -48,27 +46,21 @@ void Meetings<T, D>::update(const Model<T, D>& model, State<T, D>& state, Grid<T
   since_measured_ += moved;
   if (measured_ && since_measured_ < contact_tolerance * model.options.settings.dx) return;
   const std::vector<FieldContact<T>>& before = state.field_contacts;
+  Stores stores;
+  for (const FieldContact<T>& c : before) stores.push_back(&c);
+  std::sort(stores.begin(), stores.end(), by_name<T>);
   std::vector<std::vector<FieldContact<T>>> by_place(places(state.layout));
   parallel_for(places(state.layout), threads, 1, [&](std::ptrdiff_t place) {
     const std::int32_t block = state.layout.meeting_blocks[state.layout.meeting_first[place]];
     if (measured_ && !state.sleep.is_active(block))  // nothing has moved there
       by_place[place].assign(before.begin() + first_[place], before.begin() + first_[place + 1]);
     else
-      measure(model, state, grid, place, by_place[place]);
+      measure(model, state, grid, stores, place, by_place[place]);
   });
-  std::vector<const FieldContact<T>*> known;
-  for (const FieldContact<T>& c : before) known.push_back(&c);
-  const auto by_name = [](const auto* a, const auto* b) { return a->name() < b->name(); };
-  std::sort(known.begin(), known.end(), by_name);
   std::vector<FieldContact<T>> next;
   std::vector<std::int32_t> first{0};
   for (const auto& contacts : by_place) {
-    for (FieldContact<T> c : contacts) {
-      const auto old = std::lower_bound(known.begin(), known.end(), &c, by_name);
-      const bool is_known = old != known.end() && (*old)->name() == c.name();
-      c.impulse = c.next_impulse = is_known ? (*old)->next_impulse : T(0);
-      next.push_back(c);
-    }
+    next.insert(next.end(), contacts.begin(), contacts.end());
     first.push_back(std::int32_t(next.size()));
   }
   state.field_contacts = std::move(next);
@@ -99,7 +91,7 @@ typename Meetings<T, D>::Masses Meetings<T, D>::masses_of(const State<T, D>& sta
   Masses masses(padded_nodes, T(0));
   std::vector<T> room;
   const BlockKey key = state.layout.grid_blocks[g];
-  for_each_index(all<D>(-1), all<D>(2), [&](const std::array<int, D>& offset) {
+  for_each_index(filled(-1), filled(2), [&](const std::array<int, D>& offset) {
     BlockCoord<D> coord = block_coord<D>(key);
     std::array<int, D> begin, end;
     for (int d = 0; d < D; ++d) {
@@ -125,12 +117,15 @@ typename Meetings<T, D>::Masses Meetings<T, D>::masses_of(const State<T, D>& sta
 /// it. A raw one points anywhere at the corners of a body, where it would push it forward.
 template <class T, int D>
 void Meetings<T, D>::find_normals(const Masses& a, const Masses& b, Nodes& nodes) {
-  constexpr int edge = B + 2 * smoothing;
-  std::vector<VecD<D>> raw(std::size_t(edge * edge * (D == 3 ? edge : 1)), VecD<D>::Zero());
+  struct Raw {
+    std::array<int, D> node;
+    VecD<D> normal;  // times the masses, kg2
+  };
+  std::vector<Raw> around;
   const auto shared = [&](int place) {
     return double(a[place]) > least_shared_mass && double(b[place]) > least_shared_mass;
   };
-  for_each_index(all<D>(-smoothing), all<D>(B + smoothing), [&](const std::array<int, D>& node) {
+  for_each_index(filled(-smoothing), filled(B + smoothing), [&](const std::array<int, D>& node) {
     const int place = place_in<D>(node, padded_edge, -margin);
     if (!shared(place)) return;
     VecD<D> gradient;
@@ -139,26 +134,26 @@ void Meetings<T, D>::find_normals(const Masses& a, const Masses& b, Nodes& nodes
                     (double(a[place + stride]) - double(a[place - stride]));
     const double length = gradient.norm();
     if (length > 0)
-      raw[place_in<D>(node, edge, -smoothing)] =
-          double(a[place]) * double(b[place]) / length * gradient;
+      around.push_back({node, double(a[place]) * double(b[place]) / length * gradient});
   });
-  for_each_index(all<D>(0), all<D>(B), [&](const std::array<int, D>& node) {
+  if (around.empty()) return;
+  for_each_index(filled(0), filled(B), [&](const std::array<int, D>& node) {
     if (!shared(place_in<D>(node, padded_edge, -margin))) return;
     VecD<D> sum = VecD<D>::Zero();
-    for_each_index(all<D>(-smoothing), all<D>(margin), [&](const std::array<int, D>& offset) {
-      std::array<int, D> at;
-      double tent = 1;
-      for (int d = 0; d < D; ++d) {
-        at[d] = node[d] + offset[d];
-        tent *= margin - std::abs(offset[d]);
-      }
-      sum += tent * raw[place_in<D>(at, edge, -smoothing)];
-    });
+    for (const Raw& raw : around) {
+      int tent = 1;
+      for (int d = 0; d < D; ++d) tent *= std::max(margin - std::abs(raw.node[d] - node[d]), 0);
+      if (tent > 0) sum += double(tent) * raw.normal;
+    }
     const double length = sum.norm();
     if (!(length > 0)) return;
     const int k = place_in<D>(node, B);
     nodes.shared |= std::uint64_t(1) << k;
-    for (int d = 0; d < D; ++d) nodes.normal[k][d] = T(sum[d] / length);
+    for (int d = 0; d < D; ++d) {
+      nodes.normal[k][d] = T(sum[d] / length);
+      nodes.begin[d] = std::min(nodes.begin[d], node[d]);
+      nodes.end[d] = std::max(nodes.end[d], node[d] + 1);
+    }
     nodes.first[k] = T(-1e9);
     nodes.second[k] = T(1e9);
   });
@@ -182,8 +177,8 @@ void Meetings<T, D>::find_reach(const Model<T, D>& model, const State<T, D>& sta
         const T cell = p.cell[d][i] + T((from[d] - place[d]) * B);
         const int lowest = int(std::floor(cell));
         x[d] = cell + offset;
-        begin[d] = std::max(lowest, 0);
-        end[d] = std::min(lowest + support_, B);
+        begin[d] = std::max(lowest, nodes.begin[d]);
+        end[d] = std::min(lowest + support_, nodes.end[d]);
         near = near && begin[d] < end[d];
       }
       if (!near) continue;
@@ -201,9 +196,12 @@ void Meetings<T, D>::find_reach(const Model<T, D>& model, const State<T, D>& sta
   }
 }
 
+/// The contacts of a place, with the impulses they had in store before. Nodes that have come off
+/// stay until friction has been charged for theirs.
 template <class T, int D>
 void Meetings<T, D>::measure(const Model<T, D>& model, const State<T, D>& state, Grid<T, D>& grid,
-                             std::ptrdiff_t place, std::vector<FieldContact<T>>& contacts) const {
+                             const Stores& before, std::ptrdiff_t place,
+                             std::vector<FieldContact<T>>& contacts) const {
   const auto begin = state.layout.meeting_blocks.begin() + state.layout.meeting_first[place];
   const auto end = state.layout.meeting_blocks.begin() + state.layout.meeting_first[place + 1];
   std::vector<T> room;
@@ -221,17 +219,21 @@ void Meetings<T, D>::measure(const Model<T, D>& model, const State<T, D>& state,
       find_reach(model, state, reached[a], true, nodes);
       find_reach(model, state, reached[b], false, nodes);
       for (int k = 0; k < block_nodes<D>; ++k) {
-        if (!(nodes.shared >> k & 1) || nodes.first[k] < nodes.second[k]) continue;
+        if (!(nodes.shared >> k & 1)) continue;
         FieldContact<T> c{state.layout.grid_blocks[reached[a]],
                           state.layout.grid_blocks[reached[b]],
                           k,
                           reached[a],
                           reached[b],
+                          nodes.first[k] >= nodes.second[k],
                           {},
                           0,
                           0};
         for (int d = 0; d < D; ++d) c.normal[d] = nodes.normal[k][d];
-        contacts.push_back(c);
+        const auto old = std::lower_bound(before.begin(), before.end(), &c, by_name<T>);
+        if (old != before.end() && (*old)->name() == c.name())
+          c.impulse = c.next_impulse = (*old)->next_impulse;
+        if (c.touches || c.impulse > T(0)) contacts.push_back(c);
       }
     }
 }
@@ -239,47 +241,90 @@ void Meetings<T, D>::measure(const Model<T, D>& model, const State<T, D>& state,
 template <class T, int D>
 void Meetings<T, D>::exchange(const StepParameters<T>& step, double friction, State<T, D>& state,
                               Grid<T, D>& grid, std::ptrdiff_t place) const {
-  for (std::int32_t i = first_[place]; i < first_[place + 1]; ++i) {
-    FieldContact<T>& c = state.field_contacts[i];
-    const T* sums[2] = {grid.sum(c.first) + c.node * node_values,
-                        grid.sum(c.second) + c.node * node_values};
-    T* nodes[2] = {grid.velocity(c.first) + c.node * node_values,
-                   grid.velocity(c.second) + c.node * node_values};
-    const bool both = grid.touched[c.first] && grid.touched[c.second] &&
-                      double(sums[0][0]) > least_shared_mass &&
-                      double(sums[1][0]) > least_shared_mass;
-    if (!both) {
-      c.next_impulse = 0;
-      continue;
-    }
-    const T reduced = sums[0][0] * (sums[1][0] / (sums[0][0] + sums[1][0]));
-    T slip[D], along = 0, squared = 0;
-    for (int d = 0; d < D; ++d) along += (nodes[0][d] - nodes[1][d]) * c.normal[d];
-    for (int d = 0; d < D; ++d) {
-      slip[d] = nodes[0][d] - nodes[1][d] - along * c.normal[d];
-      squared += slip[d] * slip[d];
-    }
-    const T speed = std::sqrt(squared);
-    const T drained = c.impulse * drain_rate(step, speed), left = c.impulse - drained;
-    const T push = std::max(reduced * along, -left);
-    c.next_impulse = left + push;
-    const T stops = reduced * speed, most = T(friction) * drained;
-    const T lost = stops > most ? most / stops : T(1);
-    NodeStats& stats = grid.node_stats[c.first];
+  FieldContact<T>* const end = state.field_contacts.data() + first_[place + 1];
+  for (FieldContact<T>* begin = state.field_contacts.data() + first_[place]; begin != end;) {
+    FieldContact<T>* const next = std::find_if(begin, end, [&](const FieldContact<T>& c) {
+      return c.first != begin->first || c.second != begin->second;
+    });
+    exchange(step, T(friction), grid, begin, next);
+    begin = next;
+  }
+}
+
+/// The same between two fields. Friction that is due at a node beyond what stops it there, because
+/// little snow moves with the node, slows the nodes around it that still slide.
+template <class T, int D>
+void Meetings<T, D>::exchange(const StepParameters<T>& step, T friction, Grid<T, D>& grid,
+                              FieldContact<T>* begin, FieldContact<T>* end) const {
+  if (!grid.touched[begin->first] || !grid.touched[begin->second]) {
+    for (FieldContact<T>* c = begin; c != end; ++c) c->next_impulse = 0;
+    return;
+  }
+  const T* const sums[2] = {grid.sum(begin->first), grid.sum(begin->second)};
+  T* const velocities[2] = {grid.velocity(begin->first), grid.velocity(begin->second)};
+  Impulses impulses[block_nodes<D>];
+  T beyond = 0, room = 0;  // N s
+  for (FieldContact<T>* c = begin; c != end; ++c) {
+    Impulses& i = impulses[c - begin];
+    i = impulses_at(step, friction, sums, velocities, *c);
+    beyond += std::max(i.friction - i.stopping, T(0));
+    room += std::max(i.stopping - i.friction, T(0));
+  }
+  const T taken = beyond > 0 && room > 0 ? std::min(beyond / room, T(1)) : T(0);
+  NodeStats& stats = grid.node_stats[begin->first];
+  for (const FieldContact<T>* c = begin; c != end; ++c) {
+    const Impulses& i = impulses[c - begin];
+    if (i.push == T(0) && i.stopping == T(0)) continue;
+    const T rubbing =
+        i.friction < i.stopping ? i.friction + taken * (i.stopping - i.friction) : i.stopping;
     for (int field = 0; field < 2; ++field) {
-      const T sign = field == 0 ? T(-1) : T(1), per_mass = sign / sums[field][0];
+      const T* const sum = sums[field] + c->node * node_values;
+      T* const node = velocities[field] + c->node * node_values;
+      const T per_mass = (field == 0 ? T(-1) : T(1)) / sum[0];
       for (int d = 0; d < D; ++d) {
-        const T pushed = per_mass * push * c.normal[d],
-                rubbed = per_mass * reduced * lost * slip[d];
-        const double before = double(sums[field][1 + d]) / double(sums[field][0]);
-        const double mean = 0.5 * (before + double(nodes[field][d] + pushed + rubbed));
-        stats.impact -= double(sums[field][0]) * double(pushed) * mean;
-        stats.friction -= double(sums[field][0]) * double(rubbed) * mean;
-        nodes[field][d] += pushed + rubbed;
-        nodes[field][node_values / 2 + d] += pushed + rubbed;
+        const T pushed = per_mass * i.push * c->normal[d], rubbed = per_mass * rubbing * i.slip[d];
+        const double mean =
+            0.5 * (double(sum[1 + d]) / double(sum[0]) + double(node[d] + pushed + rubbed));
+        stats.impact -= double(sum[0]) * double(pushed) * mean;
+        stats.friction -= double(sum[0]) * double(rubbed) * mean;
+        node[d] += pushed + rubbed;
+        node[node_values / 2 + d] += pushed + rubbed;
       }
     }
   }
+}
+
+template <class T, int D>
+typename Meetings<T, D>::Impulses Meetings<T, D>::impulses_at(const StepParameters<T>& step,
+                                                              T friction, const T* const (&sums)[2],
+                                                              T* const (&velocities)[2],
+                                                              FieldContact<T>& c) const {
+  Impulses i{};
+  const int at = c.node * node_values;
+  const T first = sums[0][at], second = sums[1][at];
+  if (!(double(first) > least_shared_mass && double(second) > least_shared_mass)) {
+    c.next_impulse = 0;
+    return i;
+  }
+  const T reduced = first * (second / (first + second));
+  T difference[D], along = 0, squared = 0;
+  for (int d = 0; d < D; ++d) {
+    difference[d] = velocities[0][at + d] - velocities[1][at + d];
+    along += difference[d] * c.normal[d];
+  }
+  for (int d = 0; d < D; ++d) {
+    i.slip[d] = difference[d] - along * c.normal[d];
+    squared += i.slip[d] * i.slip[d];
+  }
+  const T speed = std::sqrt(squared);
+  for (T& component : i.slip) component = speed > T(0) ? component / speed : T(0);
+  const T drained = c.touches ? c.impulse * drain_rate(step, speed) : c.impulse;
+  const T left = c.impulse - drained;
+  i.push = c.touches ? std::max(reduced * along, -left) : T(0);
+  i.friction = friction * drained;
+  i.stopping = reduced * speed;
+  c.next_impulse = left + i.push;
+  return i;
 }
 
 template class Meetings<float, 2>;

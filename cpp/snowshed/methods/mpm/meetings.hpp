@@ -39,16 +39,32 @@ class Meetings {
 
  private:
   static constexpr int B = block_edge<D>;
-  static constexpr int smoothing = 2;  // nodes on either side, over which normals are smoothed
+  /// Nodes on either side over which normals are smoothed. With fewer, snow that slides is braked
+  /// by the roughness of two layers of particles; in three dimensions there are more of them.
+  static constexpr int smoothing = D == 2 ? 6 : 3;
   static constexpr int margin = smoothing + 1;  // nodes around a block whose masses are needed
   static constexpr int padded_edge = B + 2 * margin;
   static constexpr int padded_nodes = padded_edge * padded_edge * (D == 3 ? padded_edge : 1);
   using Masses = std::vector<T>;  // of a field at the nodes of a place and around it
-  struct Nodes {                  // of a block, that two fields share
-    std::uint64_t shared = 0;     // a bit for each node
-    T normal[64][3];              // from the first field to the second
-    T first[64], second[64];      // how far along it the fields reach, towards each other, cells
+  static std::array<int, D> filled(int value) {
+    std::array<int, D> index;
+    index.fill(value);
+    return index;
+  }
+  struct Nodes {                                            // of a block, that two fields share
+    std::uint64_t shared = 0;                               // a bit for each node
+    std::array<int, D> begin = filled(B), end = filled(0);  // of the box around these
+    T normal[64][3];                                        // from the first field to the second
+    T first[64], second[64];  // how far along it the fields reach, towards each other, cells
   };
+
+  struct Impulses {  // of a step at a node, N s
+    T push;          // from the first field to the second, along the normal
+    T friction;      // due
+    T stopping;      // that ends the slip
+    T slip[D];       // its direction
+  };
+  using Stores = std::vector<const FieldContact<T>*>;  // in the order of names
 
   const T* sums_of(const State<T, D>& state, Grid<T, D>& grid, const Kernels<T>& kernels,
                    std::int32_t block, std::vector<T>& room) const;
@@ -58,7 +74,12 @@ class Meetings {
   void find_reach(const Model<T, D>& model, const State<T, D>& state, std::int32_t block,
                   bool first, Nodes& nodes) const;
   void measure(const Model<T, D>& model, const State<T, D>& state, Grid<T, D>& grid,
-               std::ptrdiff_t place, std::vector<FieldContact<T>>& contacts) const;
+               const Stores& before, std::ptrdiff_t place,
+               std::vector<FieldContact<T>>& contacts) const;
+  void exchange(const StepParameters<T>& step, T friction, Grid<T, D>& grid, FieldContact<T>* begin,
+                FieldContact<T>* end) const;
+  Impulses impulses_at(const StepParameters<T>& step, T friction, const T* const (&sums)[2],
+                       T* const (&velocities)[2], FieldContact<T>& contact) const;
 
   int support_;
   std::vector<T> radius_;               // of each particle, cells

@@ -118,7 +118,8 @@ struct NodeKernels {
     for (int c = 0; c < contact_count; ++c) {
       const T* sum = sums + contacts[c].node * node_values;
       T* out = velocities + contacts[c].node * node_values;
-      if (sum[0] > least_mass && contacts[c].acts) {
+      const bool acts = contacts[c].acts || contacts[c].normal_impulse > T(0);
+      if (sum[0] > least_mass && acts) {
         Half node = load_half(out);
         apply(step, contacts[c], laws[contacts[c].obstacle], sum, node, stats);
         store_velocity(out, node, velocity(sum));
@@ -216,6 +217,11 @@ struct NodeKernels {
     return std::sqrt(squared);
   }
 
+  /// The part of its store that a contact is charged for in a step: all once snow has come off.
+  static T drained_share(const StepParameters<T>& step, const Contact<T>& c, T sliding_speed) {
+    return c.acts ? drain_rate(step, sliding_speed) : T(1);
+  }
+
   /// The pull that a contact cancels in a step, as a negative push (N s); more is let go. `stored`
   /// is what is left of the push before.
   static T least_push(const Contact<T>& c, T stored) {
@@ -234,7 +240,7 @@ struct NodeKernels {
   ///
   /// The store stays at the node while the snow moves on, so fast snow must be charged before it
   /// has left: the store drains at least in the time that the snow takes to slide over a given part
-  /// of a cell.
+  /// of a cell, and at once where snow comes off that was touching.
   static void apply(const StepParameters<T>& step, Contact<T>& c, const ContactLaw& law,
                     const T* sum, Half& node, NodeStats& stats) {
     const T mass = sum[0];
@@ -253,11 +259,12 @@ struct NodeKernels {
       }
       return;
     }
-    const T drained = c.normal_impulse * drain_rate(step, sliding_speed(c, normal_speed, free));
+    const T drained =
+        c.normal_impulse * drained_share(step, c, sliding_speed(c, normal_speed, free));
     const T left = c.normal_impulse - drained;
-    const T least = least_push(c, left);
-    T push = -mass * normal_speed;
-    const bool lets_go = push < least;
+    const T least = c.acts ? least_push(c, left) : T(0);
+    T push = c.acts ? -mass * normal_speed : T(0);
+    const bool lets_go = !c.acts || push < least;
     if (lets_go) push = least;
     c.next_normal_impulse = left + push;
 
