@@ -79,12 +79,10 @@ void Boundary<T, D>::find(BlockKey key, double time, bool moving,
       c.node = node;
       c.obstacle = std::int32_t(o);
       for (int d = 0; d < D; ++d) {
-        c.normal[d] = T(n[d]);
+        c.normal[d] = c.outward[d] = T(n[d]);
         c.velocity[d] = T(v[d]);
       }
-      c.release = obstacle.law.condition == Condition::slip ? Release::never
-                  : n[D - 1] > 0.0                          ? Release::after_push
-                                                            : Release::at_once;
+      c.release = release(obstacle.law.condition, n[D - 1]);
       found.push_back(c);
     }
   }

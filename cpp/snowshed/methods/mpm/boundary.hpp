@@ -23,6 +23,12 @@ namespace snowshed::mpm {
 ThickSolid as_grid_sees(Shape shape, double dx, int dimension);
 Obstacle thick_enough(Obstacle obstacle, double dx, int dimension);
 
+/// When an obstacle lets go of snow, where its outward normal rises by `upward`.
+inline Release release(Condition condition, double upward) {
+  if (condition == Condition::slip) return Release::never;
+  return upward > 0 ? Release::after_push : Release::at_once;
+}
+
 /// The obstacles as the grid sees them. It never changes.
 template <class T, int D>
 class Boundary {
@@ -51,6 +57,10 @@ class Boundary {
     }
     /// Signed, m.
     double distance(const Vec3& x) const { return shape_.distance(pose_ ? pose_->to_body(x) : x); }
+    /// Outward.
+    Vec3 normal(const Vec3& x) const {
+      return pose_ ? pose_->normal_to_world(shape_.normal(pose_->to_body(x))) : shape_.normal(x);
+    }
 
    private:
     const LevelSet& shape_;

@@ -172,7 +172,8 @@ template <class T>
 struct Contact {
   std::int32_t node;
   std::int32_t obstacle;
-  T normal[3];
+  T normal[3];            // of the face that snow touches, else as `outward`
+  T outward[3];           // normal of the obstacle at the node
   T velocity[3];          // of the obstacle at the node
   T normal_impulse;       // stored normal impulse, N s, that friction has yet to be charged for;
                           // with slip, which holds against any pull, it may be negative

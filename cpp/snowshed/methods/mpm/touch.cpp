@@ -33,6 +33,19 @@ std::uint64_t nodes_in_box(const int (&begin)[D], int size) {
   return nodes;
 }
 
+/// A node within a thin plate works for the side that it lies on, except where so many times more
+/// particles touch the other one: the few have crossed the middle.
+constexpr int crossed = 10;
+/// Faces that look as much the same way count as one.
+constexpr double cosine_of_one_face = 0.99;
+
+template <class T, int D, int size>
+T cosine(const T (&a)[D], const T (&b)[size]) {
+  T sum = 0;
+  for (int d = 0; d < D; ++d) sum += a[d] * b[d];
+  return sum;
+}
+
 }  // namespace
 
 template <class T, int D>
@@ -56,7 +69,7 @@ void Touch<T, D>::update(const Model<T, D>& model, State<T, D>& state, double mo
   parallel_for(std::ptrdiff_t(due.size()), threads, 4,
                [&](std::ptrdiff_t i) { measure(model, state, due[i]); });
   parallel_for(std::ptrdiff_t(state.layout.grid_blocks.size()), threads, 16,
-               [&](std::ptrdiff_t g) { mark(state, std::int32_t(g)); });
+               [&](std::ptrdiff_t g) { mark(model, state, std::int32_t(g)); });
   measured_ = true;
 }
 
@@ -85,7 +98,7 @@ void Touch<T, D>::measure(const Model<T, D>& model, const State<T, D>& state, st
       double gap = distance - largest_radius_;
       if (gap <= 0) gap = distance - state.contact_radius(model, std::size_t(i));
       if (gap <= 0)
-        block.touchers.push_back({i, o});
+        block.touchers.push_back(toucher(surface.normal(embed(x)), i, o));
       else
         nearest = std::min(nearest, gap);
     }
@@ -96,31 +109,74 @@ void Touch<T, D>::measure(const Model<T, D>& model, const State<T, D>& state, st
 }
 
 template <class T, int D>
-void Touch<T, D>::mark(State<T, D>& state, std::int32_t g) const {
+typename Touch<T, D>::Toucher Touch<T, D>::toucher(const Vec3& normal, std::int32_t particle,
+                                                   std::int32_t obstacle) {
+  Toucher t{particle, obstacle, {}};
+  const VecD<D> n = section<D>(normal);
+  const double length = n.norm();
+  for (int d = 0; d < D; ++d) t.normal[d] = length > 1e-9 ? T(n[d] / length) : T(d == D - 1);
+  return t;
+}
+
+template <class T, int D>
+void Touch<T, D>::mark(const Model<T, D>& model, State<T, D>& state, std::int32_t g) const {
   Contact<T>* contacts = state.contacts.of_block(std::size_t(g));
   const int count = state.contacts.count(std::size_t(g));
-  const BlockCoord<D> place = block_coord<D>(state.layout.grid_blocks[g]);
   std::int32_t obstacle = -1;
-  std::uint64_t nodes = 0;
-  for (int c = 0; c < count; ++c) {
-    if (contacts[c].obstacle != obstacle) {  // contacts are in the order of obstacles
-      obstacle = contacts[c].obstacle;
-      nodes = 0;
-      for (const std::int32_t b : state.layout.around_nodes[g]) {
-        if (b < 0) continue;
-        const BlockCoord<D> from = block_coord<D>(state.layout.particle_blocks[b]);
-        for (const Toucher& t : blocks_[b].touchers) {
-          if (t.obstacle != obstacle) continue;
-          int begin[D];
-          for (int d = 0; d < D; ++d)
-            begin[d] = int(std::floor(state.particles.cell[d][t.particle])) +
-                       (from[d] - place[d]) * block_edge<D>;
-          nodes |= nodes_in_box<D>(begin, support_);
-        }
-      }
+  std::vector<Face> touched;
+  for (int k = 0; k < count; ++k) {
+    Contact<T>& c = contacts[k];
+    if (c.obstacle != obstacle) {  // contacts are in the order of obstacles
+      obstacle = c.obstacle;
+      touched = faces(state, g, obstacle);
     }
-    contacts[c].acts = (nodes >> contacts[c].node & 1) != 0;
+    VecD<D> near = VecD<D>::Zero(), far = VecD<D>::Zero();  // sums of normals over particles
+    std::int32_t at_near = 0, at_far = 0;
+    for (const Face& face : touched) {
+      if (!(face.nodes >> c.node & 1)) continue;
+      const bool is_near = cosine(face.normal, c.outward) >= T(0);
+      (is_near ? at_near : at_far) += face.particles;
+      for (int d = 0; d < D; ++d)
+        (is_near ? near : far)[d] += face.particles * double(face.normal[d]);
+    }
+    const VecD<D> normal = at_far > crossed * at_near ? far : near;
+    const double length = normal.norm();
+    c.acts = length > 1e-6;
+    if (!c.acts) continue;
+    for (int d = 0; d < D; ++d) c.normal[d] = T(normal[d] / length);
+    c.release = release(model.boundary.laws()[obstacle].condition, normal[D - 1]);
   }
+}
+
+template <class T, int D>
+std::vector<typename Touch<T, D>::Face> Touch<T, D>::faces(const State<T, D>& state, std::int32_t g,
+                                                           std::int32_t obstacle) const {
+  const BlockCoord<D> place = block_coord<D>(state.layout.grid_blocks[g]);
+  std::vector<Face> touched;
+  for (const std::int32_t b : state.layout.around_nodes[g]) {
+    if (b < 0) continue;
+    const BlockCoord<D> from = block_coord<D>(state.layout.particle_blocks[b]);
+    for (const Toucher& t : blocks_[b].touchers) {
+      if (t.obstacle != obstacle) continue;
+      int begin[D];
+      for (int d = 0; d < D; ++d)
+        begin[d] = int(std::floor(state.particles.cell[d][t.particle])) +
+                   (from[d] - place[d]) * block_edge<D>;
+      const std::uint64_t nodes = nodes_in_box<D>(begin, support_);
+      if (nodes == 0) continue;
+      auto face = std::find_if(touched.begin(), touched.end(), [&](const Face& f) {
+        return cosine(f.normal, t.normal) > T(cosine_of_one_face);
+      });
+      if (face == touched.end()) {
+        touched.push_back({});
+        face = touched.end() - 1;
+        std::copy_n(t.normal, D, face->normal);
+      }
+      face->nodes |= nodes;
+      ++face->particles;
+    }
+  }
+  return touched;
 }
 
 template class Touch<float, 2>;

@@ -1,7 +1,8 @@
 // Contact by touch: an obstacle holds a node only once the surface of a particle with weight there
 // has come to the obstacle as it is, not as the grid sees it. Without it the snow whose splines
 // reach the obstacle's nodes is held already, a cell before it is there, or past the obstacle's
-// edge.
+// edge. The node pushes along the normal of the face that is touched: at the end of a plate its own
+// looks along the plate, against snow that starts to slide.
 //
 // Particles are measured again once they may have moved so far that another one touches.
 #pragma once
@@ -29,14 +30,24 @@ class Touch {
   /// A particle that touches an obstacle.
   struct Toucher {
     std::int32_t particle, obstacle;
+    T normal[D];  // of the obstacle where it touches
+  };
+  struct Face {  // of an obstacle, that some particles touch
+    T normal[D];
+    std::uint64_t nodes;  // a bit for each node where they have weight
+    std::int32_t particles;
   };
   struct Block {
     std::vector<Toucher> touchers;  // by obstacle
     double next = 0;                // m, of travel, when to measure again
   };
 
+  static Toucher toucher(const Vec3& normal, std::int32_t particle, std::int32_t obstacle);
   void measure(const Model<T, D>& model, const State<T, D>& state, std::int32_t block);
-  void mark(State<T, D>& state, std::int32_t grid_block) const;
+  void mark(const Model<T, D>& model, State<T, D>& state, std::int32_t grid_block) const;
+  /// The faces of an obstacle that particles touch which have weight in a block of nodes.
+  std::vector<Face> faces(const State<T, D>& state, std::int32_t grid_block,
+                          std::int32_t obstacle) const;
 
   int support_;
   std::vector<Block> blocks_;  // of particles

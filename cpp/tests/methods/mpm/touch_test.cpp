@@ -103,6 +103,36 @@ TEST(Touch, FrictionIsCoulombs) {
     }
 }
 
+/// Acceleration over Coulomb's of a slab that covers a tilted plate from end to end, once at rest.
+double acceleration_on_plate(double dx, double along, double thickness, Condition condition) {
+  constexpr double tilt = radians(50), friction = 0.6, length = 0.245;
+  const Vec3 normal(std::sin(tilt), 0, std::cos(tilt)), slope(std::cos(tilt), 0, -std::sin(tilt));
+  Mat3 axes;
+  axes << slope, Vec3::UnitY(), normal;
+  const OrientedBox plate{(0.5 * length + along) * slope - 0.5 * thickness * normal, axes,
+                          Vec3(0.5 * length, 0.5, 0.5 * thickness)};
+  const auto solver = make_solver(touching_options({2, Precision::float32}, dx),
+                                  {fixed(make_box(plate), condition, friction)});
+  ParticleBatch slab = filled_box(2, Vec3::Zero(), Vec3(length, 0, 0.02), dx / 2.5);
+  for (Vec3& x : slab.positions) x = (x.x() + along) * slope + x.z() * normal;
+  solver->add(slab);
+  run_until(*solver, 0.06);
+  const double time = solver->time(), speed = mean_velocity(*solver).dot(slope);
+  run_until(*solver, 0.1);
+  return (mean_velocity(*solver).dot(slope) - speed) / (solver->time() - time) / 9.81 /
+         (std::sin(tilt) - friction * std::cos(tilt));
+}
+
+/// Nothing holds snow at the ends of a plate.
+TEST(Touch, SnowStartsToSlideFromAWholePlate) {
+  for (const double dx : {0.02, 0.01})
+    for (const double along : {0.0, 0.3 * dx, 0.7 * dx})
+      for (const double thickness : {0.5 * dx, 3 * dx})
+        for (const Condition condition : {Condition::slip, Condition::separate})
+          EXPECT_NEAR(acceleration_on_plate(dx, along, thickness, condition), 1, 0.06)
+              << dx << " m, " << along << ", " << thickness << ", " << int(condition);
+}
+
 TEST(Touch, AMovingObstaclePushesOnceItTouches) {
   Options o = touching_options({2, Precision::float64});
   o.gravity = 0;
