@@ -9,7 +9,7 @@ if(SNOWSHED_SANITIZE)
   set(snowshed_default_variants baseline)  # all variants come from the same templates
 elseif(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64|amd64")
   set(snowshed_default_variants baseline avx2 avx512)
-  set(SNOWSHED_KERNEL_FLAGS_baseline -O2)  # builds in half the time; for processors without AVX2
+  set(SNOWSHED_KERNEL_FLAGS_baseline -O1)  # builds in half the time; for processors without AVX2
 else()
   set(snowshed_default_variants baseline)
 endif()

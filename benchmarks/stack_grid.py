@@ -1,0 +1,176 @@
+"""Compare the laboratory's stacks on several grids, with both schemes of the MPM.
+
+Usage: python benchmarks/stack_grid.py run FOLDER [--seeds 12] [--cells 0.02 0.01 0.005]
+       python benchmarks/stack_grid.py time [--cells 0.02 0.01 0.005 0.0025]
+       python benchmarks/stack_grid.py draw
+
+`run` makes the stacks of the record (hours on 0.25 cm cells) and appends them to
+benchmarks/results/stack-grid.csv. `time` runs each grid once, scheme after scheme on one thread,
+and keeps the times in stack-grid-times.csv; nothing else should run on the machine meanwhile.
+`draw` draws error over time into docs/images/stack-grid.png, and prints the deviations.
+"""
+
+from __future__ import annotations
+
+import argparse
+import datetime
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+
+import pandas as pd
+from matplotlib.axes import Axes
+
+from snowshed.base.machine import cpu_name
+from snowshed.plot import INK, blank_figure, save_figure
+from snowshed.scene.scene import Scene
+from snowshed.study import Study
+
+RESULTS = Path(__file__).parent / "results"
+STACKS = RESULTS / "stack-grid.csv"
+TIMES = RESULTS / "stack-grid-times.csv"
+PICTURE = Path(__file__).parents[1] / "docs" / "images" / "stack-grid.png"
+
+SCHEMES = ("thesis", "objective")
+COLOURS = {"thesis": INK, "objective": "tab:blue"}
+QUANTITIES = {
+    "height_m": "height",
+    "length_m": "length",
+    "centre_height_m": "height of the centre of mass",
+}
+#: Cells whose mean stacks count as exact, m.
+FINEST = 0.0025
+
+
+def laboratory(scheme: str, cells: float, tilt: float = 50.0, friction: float = 0.3) -> Scene:
+    """Return five slide-offs of the laboratory in 2D."""
+    return Scene.preset("lab-50").with_(
+        {
+            "dimension": 2,
+            "numerics.scheme": scheme,
+            "numerics.dx": cells,
+            "panel.tilt": tilt,
+            "panel.friction": friction,
+        }
+    )
+
+
+def run(folder: Path, seeds: int, all_cells: Sequence[float]) -> None:
+    """Make the stacks and append them to the record."""
+    for scheme in SCHEMES:
+        for cells in all_cells:
+            study = Study.product(
+                laboratory(scheme, cells),
+                {"panel.tilt": [50.0, 40.0], "panel.friction": [0.3, 0.6]},
+                seeds=range(1, seeds + 1),
+            )
+            rows = study.run(folder / f"{scheme}-{cells}", threads=1).assign(
+                case="lab2d", scheme=scheme, dx=cells, machine=cpu_name(), date=_today()
+            )
+            rows = rows.rename(columns={"panel.tilt": "tilt", "panel.friction": "friction"})
+            _append(rows, STACKS)
+
+
+def measure_times(all_cells: Sequence[float]) -> None:
+    """Run each grid with each scheme in turn, and keep the times."""
+    rows = []
+    for cells in all_cells:
+        for scheme in SCHEMES:
+            with tempfile.TemporaryDirectory() as folder:
+                table = Study.product(laboratory(scheme, cells), {"panel.tilt": [50.0]}).run(
+                    folder, threads=1
+                )
+            wall = float(table["wall_s"].sum())
+            print(f"{scheme} {cells} m: {wall:.2f} s", flush=True)
+            rows.append({"scheme": scheme, "dx": cells, "wall_s": wall})
+    _append(pd.DataFrame(rows).assign(machine=cpu_name(), date=_today()), TIMES)
+
+
+def deviations() -> pd.DataFrame:
+    """Return by how much mean stacks deviate from those on the finest grid of their scheme.
+
+    Returns
+    -------
+    pandas.DataFrame
+        A row for each case, scheme, tilt, friction, event and size of cells, with the number of
+        seeds `n`, means in m, their standard errors (`_sem`) and relative deviations (`_off`).
+    """
+    circumstances = ["case", "scheme", "tilt", "friction", "event"]
+    groups = pd.read_csv(STACKS).groupby([*circumstances, "dx"])
+    table = groups[list(QUANTITIES)].mean()
+    table["n"] = groups["seed"].count()
+    for name in QUANTITIES:
+        table[f"{name}_sem"] = groups[name].sem()
+        finest = table[name].groupby(level=circumstances).transform("first")
+        table[f"{name}_off"] = table[name] / finest - 1
+    return table.reset_index()
+
+
+def draw() -> None:
+    """Draw the error of stacks over the time of a run."""
+    table = deviations()
+    print(table.round(4).to_string(index=False))
+    lab = table[(table["case"] == "lab2d") & (table["tilt"] == 50) & (table["friction"] == 0.3)]
+    times = pd.read_csv(TIMES).groupby(["scheme", "dx"])["wall_s"].last()
+    figure = blank_figure(9.0, 3.4)
+    for k, (name, label) in enumerate(QUANTITIES.items()):
+        _draw_errors(figure.add_subplot(1, 3, k + 1), lab, times, name, label)
+    save_figure(figure, PICTURE)
+
+
+def _draw_errors(axes: Axes, lab: pd.DataFrame, times: pd.Series, name: str, label: str) -> None:
+    coarse = lab[lab["dx"] > FINEST]
+    errors = coarse.assign(square=coarse[f"{name}_off"] ** 2).groupby(["scheme", "dx"])["square"]
+    error = 100 * errors.mean() ** 0.5
+    for scheme in SCHEMES:
+        mine = error[scheme]
+        axes.loglog(times[scheme][mine.index], mine, "o-", color=COLOURS[scheme], label=scheme)
+        for cells, value in mine.items():
+            axes.annotate(
+                f"{100 * cells:g} cm",
+                (times[scheme][cells], value),
+                textcoords="offset points",
+                xytext=(4, 5),
+                fontsize=8,
+            )
+    axes.set_xlabel("time of five slide-offs, s")
+    axes.set_title(f"{label}: deviation, %", fontsize=9)
+    ticks = [2, 5, 10, 20, 50, 100]
+    axes.set_yticks(ticks, [str(tick) for tick in ticks])
+    axes.set_ylim(2, 120)
+    axes.minorticks_off()
+    axes.legend(fontsize=8, frameon=False)
+
+
+def _append(rows: pd.DataFrame, file: Path) -> None:
+    if file.exists():
+        rows = pd.concat([pd.read_csv(file), rows], ignore_index=True)
+    rows.to_csv(file, index=False, float_format="%.6g")
+
+
+def _today() -> str:
+    return datetime.date.today().isoformat()
+
+
+def main() -> None:
+    """Read the command line."""
+    parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
+    commands = parser.add_subparsers(dest="command", required=True)
+    running = commands.add_parser("run")
+    running.add_argument("folder", type=Path)
+    running.add_argument("--seeds", type=int, default=12)
+    running.add_argument("--cells", type=float, nargs="+", default=[0.02, 0.01, 0.005])
+    timing = commands.add_parser("time")
+    timing.add_argument("--cells", type=float, nargs="+", default=[0.02, 0.01, 0.005, FINEST])
+    commands.add_parser("draw")
+    chosen = parser.parse_args()
+    if chosen.command == "run":
+        run(chosen.folder, chosen.seeds, chosen.cells)
+    elif chosen.command == "time":
+        measure_times(chosen.cells)
+    else:
+        draw()
+
+
+if __name__ == "__main__":
+    main()
