@@ -68,6 +68,7 @@ def run(folder: Path, seeds: int, all_cells: Sequence[float]) -> None:
                 case="lab2d", scheme=scheme, dx=cells, machine=cpu_name(), date=_today()
             )
             rows = rows.rename(columns={"panel.tilt": "tilt", "panel.friction": "friction"})
+            rows = rows.assign(panel_length=0.245)
             _append(rows, STACKS)
 
 
@@ -92,10 +93,10 @@ def deviations() -> pd.DataFrame:
     Returns
     -------
     pandas.DataFrame
-        A row for each case, scheme, tilt, friction, event and size of cells, with the number of
+        A row for each case, scheme, panel, event and size of cells, with the number of
         seeds `n`, means in m, their standard errors (`_sem`) and relative deviations (`_off`).
     """
-    circumstances = ["case", "scheme", "tilt", "friction", "event"]
+    circumstances = ["case", "scheme", "tilt", "panel_length", "friction", "event"]
     groups = pd.read_csv(STACKS).groupby([*circumstances, "dx"])
     table = groups[list(QUANTITIES)].mean()
     table["n"] = groups["seed"].count()
