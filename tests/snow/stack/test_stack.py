@@ -199,3 +199,10 @@ def test_errors_name_the_argument(given, message):
     }
     with pytest.raises(InputError, match=message):
         measure_stack(**{**sound, **given})
+
+
+def test_a_measured_stack_prints_on_one_line():
+    heap = np.random.default_rng(1).uniform(0, 0.1, (500, 3))
+    measured = measure_stack(heap, np.ones(500), np.full(500, 210.0), dimension=3, dx=0.02)
+    assert "\n" not in repr(measured)
+    assert f"height {measured.height:.4g} m" in repr(measured)

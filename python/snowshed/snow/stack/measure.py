@@ -41,7 +41,7 @@ from snowshed.snow.stack.trimming import DEFAULT_TRIMMING, TRIMMINGS, check_trim
 CONNECTION_VOXEL = 0.01
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Extent:
     """The extent of snow, m; x from the panel's centre, z from the ground. NaN without snow.
 
@@ -59,8 +59,11 @@ class Extent:
     outline: Floats = field(default_factory=lambda: np.zeros((0, 2)))
     ground: Floats = field(default_factory=lambda: np.zeros(0))
 
+    def __repr__(self) -> str:
+        return f"Extent(height {self.height:.4g} m, length {self.length:.4g} m)"
 
-@dataclass(frozen=True)
+
+@dataclass(frozen=True, repr=False)
 class StackMeasure(Extent):
     """A measured stack; its own extent is that of all snow off the panel, without outliers.
 
@@ -102,6 +105,13 @@ class StackMeasure(Extent):
     on_structures_mass: float = 0.0
     joined: bool = False
     members: Booleans = field(default_factory=lambda: np.zeros(0, dtype=bool))
+
+    def __repr__(self) -> str:
+        return (
+            f"StackMeasure(height {self.height:.4g} m, length {self.length:.4g} m, centre of mass "
+            f"{self.centre_height:.4g} m high, {self.mass:.4g} kg, {self.detached_mass:.4g} kg of "
+            f"it detached, trimmed {self.trimming})"
+        )
 
     @property
     def density(self) -> float:
