@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from validation.laboratory import case_between_events as between_events
 from validation.laboratory.case_between_events import CASE
+from validation.laboratory.lab_records import recorded
 from validation.laboratory.lab_stack import (
     COMPARED,
     Conversion,
     lab_scene,
     measure_of,
-    recorded,
     run_lab,
 )
 
