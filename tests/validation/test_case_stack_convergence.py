@@ -111,6 +111,14 @@ def test_what_is_recorded_is_not_run_again(tmp_path, monkeypatch):
     assert path.read_bytes() == before
 
 
+def test_a_run_without_a_scheme_is_none_of_another_scheme():
+    key = {"dimension": 2, "dx": 0.02, "seed": 1, "sleep_speed": 0.02}
+    other = {**key, "scheme": "objective", "version": "1"}
+    assert not lab_records.is_of(other, key)
+    assert lab_records.is_of({**key, "version": "1"}, key)
+    assert lab_records.is_of(other, {**key, "scheme": "objective"})
+
+
 def test_a_run_has_a_stack_for_each_event_and_all_its_mass():
     run = run_lab({**QUICK, "events": 2})
     assert run.ended == ["rest", "rest"]
