@@ -134,7 +134,8 @@ def choose(
     values = {where: stack.settings.get(key) for key, where in ACCURACY.items()}
     size = float(f"{share * thickness:.3g}")
     values[path] = size
-    what = f"{name} {size:g} m ({share:.3g} of the slab's thickness) with {_way(stack, name)}"
+    scheme = _settings_text(stack, name)
+    what = f"{name} {size:g} m ({share:.3g} of the slab's thickness) with {scheme}"
     reasons = [
         f"--accuracy {percent(wanted)}: {_outcome(stack, wanted, what)}",
         *_scatter(stack),
@@ -172,7 +173,7 @@ def best_of(stacks: Sequence[RecordedStack], wanted: float) -> RecordedStack:
     return stacks[quickest(costs, errors, wanted)]
 
 
-def _way(stack: RecordedStack, name: str) -> str:
+def _settings_text(stack: RecordedStack, name: str) -> str:
     """Return the scheme of a recorded stack, and its further settings except `name`."""
     from snowshed.analysis.accuracy.setting_labels import settings
 
