@@ -10,6 +10,7 @@ import pytest
 from processes import modules_after
 
 from snowshed import InputError, Scene, _core
+from snowshed.cli.commands.season import print_season
 from snowshed.cli.main import main
 from snowshed.scene.panel_edge import panel_edge
 from snowshed.season import SeasonSettings, accumulate, read_season, run_season
@@ -212,6 +213,27 @@ def test_the_command_says_what_came_of_it(season_file, tmp_path, capsys):
     assert "2024-12-24" in shown
     assert (tmp_path / "held" / "season.png").is_file()
     assert not (tmp_path / "held" / "run").exists()
+
+
+@pytest.mark.parametrize(
+    ("values", "text"),
+    [
+        ({}, "stacks of lab-50 in 2D, event 2, scheme thesis were"),
+        (
+            {"numerics.scheme": "objective"},
+            "stacks of lab-50 in 2D, event 2, scheme objective were",
+        ),
+        (
+            {"numerics.transfer": "affine_flip"},
+            "no runs are recorded for scheme thesis with affine",
+        ),
+    ],
+)
+def test_the_error_of_the_grid_is_that_of_the_scheme(finished, capsys, values, text):
+    result, folder = finished
+    print_season(result, folder, panel_scene(**values).resolve())
+    shown = " ".join(capsys.readouterr().out.split())
+    assert f"error of the grid: {text}" in shown
 
 
 def test_the_command_names_bad_files_and_options(season_file, tmp_path, capsys):

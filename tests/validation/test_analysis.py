@@ -11,6 +11,7 @@ from validation.framework.case import Quantity
 from validation.framework.cheapest import by_problem, cheapest, pareto_front
 from validation.framework.convergence import convergences, observed_order, pairwise_orders
 from validation.framework.schemes import varying
+from validation.framework.sections import meant
 
 from snowshed.analysis.accuracy.measurements import Measured, Measurement, to_table
 from snowshed.analysis.accuracy.solutions import (
@@ -179,6 +180,14 @@ def test_a_bar_holds_if_the_worst_it_is_for_is_small_enough():
     assert strict.holds is False
     (other,) = compare(table, [case_with(bar=0.03, bar_for={"basis": "cubic"})])
     assert (other.holds, other.found, other.count) == (None, None, 0)
+
+
+def test_a_bar_may_be_for_several_values_of_a_setting():
+    flip, apic, none = {"transfer": "flip"}, {"transfer": "apic"}, {"scheme": "objective"}
+    table = table_of((flip, 0.01, 1.0), (apic, 0.5, 1.0), (none, 0.02, 1.0))
+    (bar,) = compare(table, [case_with(bar=0.1, bar_for={"transfer": ("flip", None)})])
+    assert (bar.holds, bar.count, bar.found) == (True, 2, 0.02)
+    assert meant(bar) == "flip or transfer default"
 
 
 @pytest.mark.parametrize("error", [nan, inf])

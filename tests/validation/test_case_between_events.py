@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from validation.laboratory import case_between_events as between_events
 from validation.laboratory.case_between_events import CASE
+from validation.laboratory.lab_records import recorded
 from validation.laboratory.lab_stack import (
     COMPARED,
     Conversion,
     lab_scene,
     measure_of,
-    recorded,
     run_lab,
 )
 
@@ -77,7 +77,7 @@ def test_a_chunk_that_vanishes_shortens_the_stack_but_not_its_body():
 def test_space_is_counted_in_particles_of_the_slabs(reseeded, runs):
     """A slab is 0.245 m x 0.02 m, and as densely seeded as the stack."""
     found = [run.conversions[-1].particles_after for run in runs]
-    in_a_slab = [run.particles - count for run, count in zip(runs, found)]
+    in_a_slab = [run.cost.particles - count for run, count in zip(runs, found)]
     assert np.std(in_a_slab) < 1
     assert reseeded["conversion_space"].value == pytest.approx(
         np.mean(found) / np.mean(in_a_slab), rel=0.02

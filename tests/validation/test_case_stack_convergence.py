@@ -4,10 +4,12 @@ import json
 
 import numpy as np
 import pytest
+from validation.framework.case import alternatives
 from validation.laboratory import case_stack_convergence as stack_convergence
-from validation.laboratory import lab_stack
+from validation.laboratory import lab_records
 from validation.laboratory.case_stack_convergence import CASE
-from validation.laboratory.lab_stack import lab_scene, record, recorded, run_lab
+from validation.laboratory.lab_records import REFERENCES, Grid, record, recorded, scheme_of
+from validation.laboratory.lab_stack import COMPARED, lab_scene, run_lab
 
 from snowshed import Scene
 
@@ -16,38 +18,57 @@ QUICK = {"dimension": 2, "dx": 0.02, "events": 1}
 
 @pytest.fixture(scope="module")
 def runs():
-    return json.loads(lab_stack.FILE.read_text(encoding="utf-8"))["runs"]
+    return json.loads(lab_records.FILE.read_text(encoding="utf-8"))["runs"]
 
 
 def test_recorded_runs_say_what_made_them(runs):
     for run in runs:
         assert {"dimension", "dx", "seed", "version", "date", "particles", "steps"} <= set(run)
         assert run["ended"] == ["rest"]
-        for name in lab_stack.COMPARED:
-            assert len(run[name]) == 5
+        for name in COMPARED:
+            assert len(run[name]) == run.get("events", 5)
             assert 0.01 < min(run[name]) <= max(run[name]) < 2.0
-    keys = [(run["dimension"], run["dx"], run["seed"]) for run in runs]
+    keys = [(scheme_of(run), run["dimension"], run["dx"], run["seed"]) for run in runs]
     assert len(set(keys)) == len(keys)
 
 
-def test_all_of_the_reference_was_recorded(runs):
-    for dimension, dx, seedings in lab_stack.RECORDED:
-        seeds = [r["seed"] for r in runs if (r["dimension"], r["dx"]) == (dimension, dx)]
-        assert sorted(seeds) == list(range(1, seedings + 1))
+@pytest.mark.parametrize("scheme", REFERENCES)
+def test_all_of_the_reference_was_recorded(scheme, runs):
+    mine = [run for run in runs if scheme_of(run) == scheme]
+    for grid in REFERENCES[scheme].grids:
+        seeds = [r["seed"] for r in mine if (r["dimension"], r["dx"]) == (grid.dimension, grid.dx)]
+        assert sorted(seeds) == list(range(1, grid.seedings + 1))
+    assert len(mine) == sum(grid.seedings for grid in REFERENCES[scheme].grids)
+    for name, value in REFERENCES[scheme].settings.items():
+        assert {run[name] for run in mine} == {value}
 
 
 def test_mean_and_spread_are_those_of_the_runs(runs):
-    heights = [r["height"][2] for r in runs if (r["dimension"], r["dx"]) == (2, 0.01)]
-    mean = sum(heights) / len(heights)
-    variance = sum((height - mean) ** 2 for height in heights) / (len(heights) - 1)
-    assert recorded(2, 0.01).mean("height", 3) == pytest.approx(mean)
-    assert recorded(2, 0.01).spread("height", 3) == pytest.approx(variance**0.5)
+    for scheme in REFERENCES:
+        mine = [r for r in runs if scheme_of(r) == scheme]
+        heights = [r["height"][2] for r in mine if (r["dimension"], r["dx"]) == (2, 0.01)]
+        mean = sum(heights) / len(heights)
+        variance = sum((height - mean) ** 2 for height in heights) / (len(heights) - 1)
+        there = recorded(2, 0.01, scheme)
+        assert there.mean("height", 3) == pytest.approx(mean)
+        assert there.spread("height", 3) == pytest.approx(variance**0.5)
 
 
+@pytest.mark.parametrize("scheme", REFERENCES)
 @pytest.mark.parametrize("dimension", [2, 3])
-def test_the_reference_is_the_finest_grid(dimension, runs):
-    finest = min(run["dx"] for run in runs if run["dimension"] == dimension)
-    assert recorded(dimension).dx == finest
+def test_the_reference_is_the_finest_grid_of_the_scheme(dimension, scheme, runs):
+    mine = [run for run in runs if run["dimension"] == dimension and scheme_of(run) == scheme]
+    there = recorded(dimension, scheme=scheme)
+    assert there.dx == min(run["dx"] for run in mine)
+    heights = [run["height"][0] for run in mine if run["dx"] == there.dx]
+    assert sorted(there.runs["height"][:, 0]) == sorted(heights)
+
+
+def test_an_event_that_the_reference_has_not_has_no_exact_value():
+    """The finest grid in space has two events; a coarser one is no reference of itself."""
+    there = recorded(3, scheme="objective")
+    assert there.events == 2
+    assert there.mean("height", 2) > 0 and np.isnan(there.mean("height", 3))
 
 
 def test_an_unknown_grid_is_an_error():
@@ -67,23 +88,35 @@ def test_stacks_are_measured_as_the_recorded_ones_were():
     assert {stack.trimming for stack in run.stacks} == {"equal_pace"}
 
 
-def test_recording_reproduces_what_was_recorded(tmp_path):
+@pytest.mark.parametrize("scheme", REFERENCES)
+def test_recording_reproduces_what_was_recorded(tmp_path, scheme):
     """Within four deviations: other processors round differently, and stacks are chaotic."""
     path = tmp_path / "stacks.json"
-    record(path, [(2, 0.02, 1)], events=1)
+    record(path, scheme, [Grid(2, 0.02, 1, events=1)])
     (run,) = json.loads(path.read_text(encoding="utf-8"))["runs"]
-    there = recorded(2, 0.02)
-    for name in lab_stack.COMPARED:
+    assert scheme_of(run) == scheme
+    there = recorded(2, 0.02, scheme)
+    for name in COMPARED:
         assert run[name][0] == pytest.approx(there.mean(name, 1), abs=4 * there.spread(name, 1))
 
 
 def test_what_is_recorded_is_not_run_again(tmp_path, monkeypatch):
     path = tmp_path / "stacks.json"
-    record(path, [(2, 0.02, 1)], events=1)
+    record(path, grids=[Grid(2, 0.02, 1, events=1)])
+    record(path, "objective", [Grid(2, 0.02, 1, events=1)])
     before = path.read_bytes()
-    monkeypatch.setattr(lab_stack, "run_lab", None)
-    record(path, [(2, 0.02, 1)], events=1)
+    monkeypatch.setattr(lab_records, "run_lab", None)
+    record(path, grids=[Grid(2, 0.02, 1, events=1)])
+    record(path, "objective", [Grid(2, 0.02, 1, events=1)])
     assert path.read_bytes() == before
+
+
+def test_a_run_without_a_scheme_is_none_of_another_scheme():
+    key = {"dimension": 2, "dx": 0.02, "seed": 1, "sleep_speed": 0.02}
+    other = {**key, "scheme": "objective", "version": "1"}
+    assert not lab_records.is_of(other, key)
+    assert lab_records.is_of({**key, "version": "1"}, key)
+    assert lab_records.is_of(other, {**key, "scheme": "objective"})
 
 
 def test_a_run_has_a_stack_for_each_event_and_all_its_mass():
@@ -93,7 +126,12 @@ def test_a_run_has_a_stack_for_each_event_and_all_its_mass():
     assert run.series("body_length") == [stack.body.length for stack in run.stacks]
     assert run.brought_mass == pytest.approx(2 * 210 * 0.245 * 0.02)
     assert run.mass == pytest.approx(run.brought_mass, rel=1e-6)
-    assert 0 < run.updates <= run.steps * run.particles
+    first, last = run.costs
+    assert run.cost == last
+    assert first.particles == last.particles / 2
+    assert 0 < first.updates <= first.steps * first.particles
+    assert first.updates < last.updates and first.steps < last.steps
+    assert 0 < first.wall_s < last.wall_s
 
 
 @pytest.mark.parametrize("settings", CASE.matrix(True) + CASE.matrix(False), ids=str)
@@ -102,13 +140,15 @@ def test_every_entry_makes_a_scene_with_a_reference(settings):
     data = lab_scene(rest).resolve().data
     assert data["panel"]["friction"] == 0.3
     assert data["events"]["count"] == settings["events"] <= 5
-    assert recorded(data["dimension"]).mean("height", settings["events"]) > 0
+    assert data["numerics"]["scheme"] == scheme_of(settings)
+    reference = recorded(data["dimension"], scheme=scheme_of(settings))
+    assert reference.mean("height", min(settings["events"], reference.events)) > 0
 
 
 def test_snow_sleeps_as_by_default_but_in_the_reference():
     default = Scene.preset("lab-50").resolve().data["numerics"]["sleep_speed"]
     assert lab_scene(QUICK).resolve().data["numerics"]["sleep_speed"] == default > 0
-    awake = lab_scene({**QUICK, **lab_stack.AWAKE}).resolve()
+    awake = lab_scene({**QUICK, **lab_records.AWAKE}).resolve()
     assert awake.data["numerics"]["sleep_speed"] == 0
 
 
@@ -129,9 +169,19 @@ def test_measure_gives_the_error_of_a_single_run_and_the_spread():
     assert set(found) <= {quantity.name for quantity in CASE.quantities}
 
 
+def test_each_scheme_is_compared_with_its_own_reference():
+    settings = {**QUICK, "scheme": "objective", "seedings": 2}
+    results = {one.quantity: one for one in CASE.measure(settings).measured}
+    assert results["height"].exact == recorded(2, scheme="objective").mean("height", 1)
+    there = recorded(2, 0.02, "objective")
+    departure = (results["height"].value - there.mean("height", 1)) / there.spread("height", 1)
+    assert results["height_noise"].error == pytest.approx(departure)
+    assert abs(departure) < stack_convergence.NOISE_BAR
+
+
 def test_one_seeding_has_no_spread():
     names = {one.quantity for one in CASE.measure(QUICK).measured}
-    assert names == {*lab_stack.COMPARED, "height_noise", "length_noise"}
+    assert names == {*COMPARED, "height_noise", "length_noise"}
 
 
 def test_without_sleep_a_stack_is_like_the_recorded_ones():
@@ -177,10 +227,12 @@ def test_stacks_of_the_default_scheme_are_within_their_bar():
 
 @pytest.mark.parametrize("full", [True, False])
 def test_the_bars_are_for_the_scheme_of_the_recorded_runs(full):
+    wanted = stack_convergence.AS_RECORDED.items()
     meant = [
         one
         for one in CASE.matrix(full)
-        if all(one.get(key) == value for key, value in stack_convergence.DEFAULT_SCHEME.items())
+        if all(one.get(key) in alternatives(value) for key, value in wanted)
     ]
     assert len(meant) >= 4
-    assert not any("flip_ratio" in one or one["transfer"] == "apic" for one in meant)
+    assert not any("flip_ratio" in one or one.get("transfer") == "apic" for one in meant)
+    assert {scheme_of(one) for one in meant} == set(REFERENCES)

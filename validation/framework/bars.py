@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Optional
 
 from snowshed.analysis.accuracy.measurements import Settings
 from snowshed.analysis.accuracy.solutions import records, rows_of, solutions
-from validation.framework.case import Case, Quantity, Wanted
+from validation.framework.case import Case, Quantity, Wanted, alternatives
 from validation.framework.convergence import convergences
 
 if TYPE_CHECKING:
@@ -90,4 +90,4 @@ def _order_bar(case: str, quantity: Quantity, demanded: float, rows: pd.DataFram
 
 
 def _matches(settings: Settings, wanted: Wanted) -> bool:
-    return all(settings.get(name) == value for name, value in wanted.items())
+    return all(settings.get(name) in alternatives(value) for name, value in wanted.items())

@@ -8,13 +8,26 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Optional
+from typing import Optional, Union
 
 from snowshed.analysis.accuracy.measurements import Measured, Settings, Value
 from snowshed.base.formatting import number, percent
 
-#: Settings that are asked for; None: not given.
-Wanted = Mapping[str, Optional[Value]]
+#: Settings that are asked for; None: not given. Of several values in a tuple any will do.
+Wanted = Mapping[str, Union[Value, tuple[Optional[Value], ...], None]]
+
+
+def alternatives(
+    value: Union[Value, tuple[Optional[Value], ...], None],
+) -> tuple[Optional[Value], ...]:
+    """Return the values of a setting that will do.
+
+    Examples
+    --------
+    >>> alternatives("flip"), alternatives(("flip", None))
+    (('flip',), ('flip', None))
+    """
+    return value if isinstance(value, tuple) else (value,)
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from snowshed.base import formatting
 from snowshed.plot.html_page import Grid, Picture
 from validation.framework import figures
 from validation.framework.bars import Bar
-from validation.framework.case import Case, Quantity
+from validation.framework.case import Case, Quantity, alternatives
 from validation.framework.cheapest import Cheapest, by_problem
 from validation.framework.convergence import Convergence, convergences
 from validation.framework.schemes import problem_of, varying
@@ -31,7 +31,7 @@ COSTS: Mapping[str, Callable[[Measurement], str]] = {
     "particles": lambda one: formatting.count(one.particles or None),
     "steps": lambda one: formatting.count(one.steps or None),
     "10⁶ updates/s": lambda one: formatting.number(
-        one.updates / one.wall_s / 1e6 if one.wall_s else None
+        one.updates / one.wall_s / 1e6 if one.wall_s and one.updates else None
     ),
     "memory, MB": lambda one: formatting.number(one.peak_memory_mb),
 }
@@ -178,7 +178,7 @@ def bars_grid(bars: Sequence[Bar], cases: Sequence[Case]) -> Grid:
             {True: "holds", False: "does not hold", None: "not measured"}[bar.holds],
             titles[bar.case],
             bar.quantity.title,
-            setting_labels.settings(bar.meant) or "all settings",
+            meant(bar),
             demanded(bar),
             found(bar),
             setting_labels.settings(bar.settings),
@@ -187,6 +187,15 @@ def bars_grid(bars: Sequence[Bar], cases: Sequence[Case]) -> Grid:
     ]
     head = ("", "case", "quantity", "for", "demanded", "worst", "with")
     return Grid(head, rows, "llllrrl")
+
+
+def meant(bar: Bar) -> str:
+    """Return the settings that a bar is for, in words."""
+    wanted = [
+        " or ".join(setting_labels.setting(name, one) for one in alternatives(value))
+        for name, value in bar.meant.items()
+    ]
+    return ", ".join(wanted) or "all settings"
 
 
 def demanded(bar: Bar) -> str:

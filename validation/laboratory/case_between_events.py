@@ -9,14 +9,12 @@ import numpy as np
 from snowshed.analysis.accuracy.measurements import Measured, Settings
 from validation.framework.case import Case, Outcome, Quantity
 from validation.framework.drive import absolute, relative
+from validation.laboratory.lab_records import AWAKE, noise, recorded
 from validation.laboratory.lab_stack import (
-    AWAKE,
     COMPARED,
     Conversion,
     LabRun,
-    noise,
     outcome_of,
-    recorded,
     run_seedings,
 )
 

@@ -1,34 +1,24 @@
-"""The laboratory's stack, run and measured, and what was recorded of it as a reference.
-
-Stacks have no exact answer. They are compared with the mean over seedings on the finest grid that
-was affordable. Those runs take hours, so they were made once, by `record`, and lie beside this
-module in ``lab_stack.json``, each with its settings, version and date.
-"""
+"""The laboratory's stack, run and measured."""
 
 from __future__ import annotations
 
-import datetime
-import json
 import time
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import lru_cache
-from pathlib import Path
-from typing import Any, Optional
+from typing import Any, Protocol
 
 import numpy as np
 
 from snowshed import _core
-from snowshed.analysis.accuracy.measurements import Measured, Settings, Value
+from snowshed.analysis.accuracy.measurements import Measured, Settings
 from snowshed.base.arrays import Booleans, Floats
-from snowshed.io.atomic import write_text
 from snowshed.results.folder import measured_columns
 from snowshed.running.conversion import outline_difference
 from snowshed.scene.scene import Scene
 from snowshed.snow.stack.measure import StackMeasure, measure_stack
 from snowshed.snow.stack.quantities import MEASURES
 from validation.framework.case import Outcome
-from validation.framework.drive import absolute, apply_settings
+from validation.framework.drive import apply_settings
 
 #: The reading of A.4.2 by which the recorded stacks were measured; others are compared with them.
 TRIMMING = "equal_pace"
@@ -42,21 +32,34 @@ COMPARED: Mapping[str, str] = {
 #: Settings of the events, and where they lie in a scene.
 EVENTS: Mapping[str, str] = {"events": "events.count", "between": "events.between"}
 
-#: What the reference is made with besides the defaults: no snow sleeps.
-AWAKE: Settings = {"sleep_speed": 0.0}
 
-#: The runs of the reference: dimension, dx in m, seedings.
-RECORDED: Sequence[tuple[int, float, int]] = (
-    (2, 0.02, 12),
-    (2, 0.01, 12),
-    (2, 0.005, 6),
-    (2, 0.0025, 4),
-    (3, 0.02, 8),
-    (3, 0.01, 4),
-    (3, 0.005, 1),
-)
+@dataclass(frozen=True)
+class Cost:
+    """Cost of a run up to the end of an event.
 
-FILE = Path(__file__).with_name("lab_stack.json")
+    Attributes
+    ----------
+    wall_s
+        Time of the solution alone, s.
+    updates
+        Particles times steps; 0 if nobody counted them.
+    """
+
+    wall_s: float
+    updates: int
+    steps: int
+    particles: int
+
+
+class Solved(Protocol):
+    """A run whose stacks are known after each event, made now or read from a record."""
+
+    def series(self, name: str) -> Sequence[float]:
+        """Return one of `COMPARED` after each event, m."""
+
+    @property
+    def cost(self) -> Cost:
+        """Cost of all events."""
 
 
 @dataclass(frozen=True)
@@ -113,8 +116,8 @@ class LabRun:
         Of all slabs, from their volume and density, kg.
     particle_mass
         Of a particle of snow at its initial density, as the slabs are seeded, kg.
-    wall_s
-        Time of the solution alone, s.
+    costs
+        Cost up to the end of each event.
     """
 
     stacks: list[StackMeasure] = field(default_factory=list)
@@ -123,10 +126,12 @@ class LabRun:
     mass: float = 0.0
     brought_mass: float = 0.0
     particle_mass: float = 0.0
-    wall_s: float = 0.0
-    updates: int = 0
-    steps: int = 0
-    particles: int = 0
+    costs: list[Cost] = field(default_factory=list)
+
+    @property
+    def cost(self) -> Cost:
+        """Cost of all events."""
+        return self.costs[-1]
 
     def series(self, name: str) -> list[float]:
         """Return one of `COMPARED` after each event, m."""
@@ -171,17 +176,24 @@ def run_lab(settings: Settings) -> LabRun:
     data: dict[str, Any] = ready.data
     tape = _Tape(simulation, data)
     run = LabRun(brought_mass=_brought_mass(data), particle_mass=_particle_mass(data))
+    wall_s = 0.0
     for _ in range(data["events"]["count"]):
         reseeded = simulation.begin_event()
         if reseeded is not None:
             run.conversions.append(tape.measure_conversion(reseeded))
         started = time.perf_counter()
         run.ended.append(simulation.run(lambda info: True))
-        run.wall_s += time.perf_counter() - started
+        wall_s += time.perf_counter() - started
+        run.costs.append(
+            Cost(
+                wall_s,
+                simulation.particle_updates,
+                simulation.total_steps,
+                simulation.particle_count,
+            )
+        )
         run.stacks.append(tape.measure_present())
     run.mass = float(simulation.masses().sum())
-    run.updates, run.steps = simulation.particle_updates, simulation.total_steps
-    run.particles = simulation.particle_count
     return run
 
 
@@ -192,14 +204,16 @@ def run_seedings(settings: Settings) -> list[LabRun]:
     return [run_lab({**rest, "seed": seed}) for seed in range(first, first + count)]
 
 
-def outcome_of(runs: Sequence[LabRun], measured: Sequence[Measured]) -> Outcome:
+def outcome_of(runs: Sequence[Solved], measured: Sequence[Measured]) -> Outcome:
     """Return the outcome of several seedings; the cost is the mean of one run."""
+    costs = [run.cost for run in runs]
+    counted = all(cost.updates for cost in costs)
     return Outcome(
         measured,
-        wall_s=float(np.mean([run.wall_s for run in runs])),
-        updates=round(np.mean([run.updates for run in runs])),
-        steps=round(np.mean([run.steps for run in runs])),
-        particles=round(np.mean([run.particles for run in runs])),
+        wall_s=float(np.mean([cost.wall_s for cost in costs])),
+        updates=round(np.mean([cost.updates for cost in costs])) if counted else 0,
+        steps=round(np.mean([cost.steps for cost in costs])),
+        particles=round(np.mean([cost.particles for cost in costs])),
     )
 
 
@@ -237,16 +251,29 @@ class _Tape:
     def _measure(
         self, positions: Floats, masses: Floats, on_panel: Booleans, density: Floats
     ) -> StackMeasure:
-        dimension = self._simulation.dimension
-        return measure_stack(
-            positions,
-            masses,
-            density,
-            dimension=dimension,
-            dx=self._dx,
-            exclude=on_panel,
-            trimming=TRIMMING,
+        return measure_lab(
+            positions, masses, density, on_panel, self._simulation.dimension, self._dx
         )
+
+
+def measure_lab(
+    positions: Floats,
+    masses: Floats,
+    densities: Floats,
+    on_panel: Booleans,
+    dimension: int,
+    dx: float,
+) -> StackMeasure:
+    """Measure a stack of the laboratory as all that are compared with each other."""
+    return measure_stack(
+        positions,
+        masses,
+        densities,
+        dimension=dimension,
+        dx=dx,
+        exclude=on_panel,
+        trimming=TRIMMING,
+    )
 
 
 def _brought_mass(scene: Mapping[str, Any]) -> float:
@@ -259,131 +286,3 @@ def _brought_mass(scene: Mapping[str, Any]) -> float:
 def _particle_mass(scene: Mapping[str, Any]) -> float:
     voxel = scene["numerics"]["dx"] ** scene["dimension"]
     return float(scene["snow"]["density"] * voxel / scene["seeding"]["particles_per_voxel"])
-
-
-@dataclass(frozen=True)
-class Recorded:
-    """Recorded stacks of one dimension and dx; every series has one value for each event.
-
-    Attributes
-    ----------
-    dx
-        Size of the grid cells, m.
-    runs
-        For each of `COMPARED`, (seedings, events) in m.
-    """
-
-    dx: float
-    runs: Mapping[str, Floats]
-
-    def mean(self, name: str, event: int) -> float:
-        """Return the mean over seedings of a measure after an event, m."""
-        return float(self.runs[name][:, event - 1].mean())
-
-    def spread(self, name: str, event: int) -> float:
-        """Return the standard deviation between seedings of a measure after an event, m."""
-        return float(self.runs[name][:, event - 1].std(ddof=1))
-
-
-def noise(name: str, runs: Sequence[LabRun], settings: Settings) -> Measured:
-    """Compare the mean of the last stacks with the recorded ones on the same grid.
-
-    Parameters
-    ----------
-    name
-        One of `COMPARED`.
-    runs
-        With the settings, each with a seed of its own.
-    settings
-        For `lab_scene`.
-
-    Returns
-    -------
-    Measured
-        Of the quantity ``<name>_noise``: the departure in standard deviations between the recorded
-        seedings.
-    """
-    there, event = recorded(int(settings["dimension"]), float(settings["dx"])), len(runs[0].stacks)
-    value = float(np.mean([run.series(name)[-1] for run in runs]))
-    departure = (value - there.mean(name, event)) / there.spread(name, event)
-    return absolute(f"{name}_noise", departure, 0.0)
-
-
-def recorded(dimension: int, dx: Optional[float] = None) -> Recorded:
-    """Return the recorded stacks on a grid, or on the finest one of that dimension.
-
-    Raises
-    ------
-    LookupError
-        If nothing was recorded on that grid.
-
-    Examples
-    --------
-    >>> recorded(2).dx
-    0.0025
-    """
-    runs = [run for run in _read() if run["dimension"] == dimension]
-    wanted = min(run["dx"] for run in runs) if dx is None else dx
-    chosen = [run for run in runs if np.isclose(run["dx"], wanted)]
-    if not chosen:
-        known = sorted({run["dx"] for run in runs})
-        raise LookupError(f"no stacks recorded in {dimension}D at dx {dx}; there are {known}")
-    series = {name: np.array([run[name] for run in chosen]) for name in COMPARED}
-    return Recorded(float(wanted), series)
-
-
-@lru_cache(maxsize=1)
-def _read() -> list[dict[str, Any]]:
-    runs: list[dict[str, Any]] = json.loads(FILE.read_text(encoding="utf-8"))["runs"]
-    return runs
-
-
-def record(
-    path: Path = FILE, grids: Iterable[tuple[int, float, int]] = RECORDED, **settings: Value
-) -> None:
-    """Make the reference anew: five events on each grid with each seeding, hours in all.
-
-    The file is written after each run. Runs that it holds already, of the same version, are kept.
-
-    Parameters
-    ----------
-    path
-        The file.
-    grids
-        Dimension, dx in m and number of seedings of the runs.
-    settings
-        Further settings for `lab_scene`, such as ``events=1``.
-    """
-    runs = json.loads(path.read_text(encoding="utf-8"))["runs"] if path.exists() else []
-    for dimension, dx, seedings in grids:
-        for seed in range(1, seedings + 1):
-            key = {"dimension": dimension, "dx": dx, "seed": seed, **AWAKE, **settings}
-            held = [run for run in runs if key.items() <= run.items()]
-            if any(run["version"] == _core.version for run in held):
-                continue
-            runs = [run for run in runs if run not in held] + [_recording(key)]
-            write_text(path, _document(runs))
-
-
-def _recording(settings: Settings) -> dict[str, Any]:
-    run = run_lab(settings)
-    return {
-        **settings,
-        "version": _core.version,
-        "date": datetime.date.today().isoformat(),
-        "particles": run.particles,
-        "steps": run.steps,
-        "ended": sorted(set(run.ended)),
-        **{name: [round(value, 5) for value in run.series(name)] for name in COMPARED},
-    }
-
-
-def _document(runs: list[dict[str, Any]]) -> str:
-    """Return the file's text, one run a line."""
-    about = (
-        "Stacks of preset lab-50 after each event, in m, with panel friction 0.3 and the core's "
-        "default numerics but for what each run names. Made by "
-        "validation.laboratory.lab_stack.record()."
-    )
-    lines = ",\n".join(f"    {json.dumps(run)}" for run in runs)
-    return f'{{\n  "about": {json.dumps(about)},\n  "runs": [\n{lines}\n  ]\n}}\n'

@@ -7,15 +7,15 @@ to the thickness of the slab.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from math import nan
+from math import ceil, nan
 from typing import TYPE_CHECKING, Any, Optional
 
 import click
 
 from snowshed._core import InputError
-from snowshed.base.formatting import percent
+from snowshed.base.formatting import duration, percent
 from snowshed.cli.scene_options import option_name
 from snowshed.methods.registry import resolution_path
 from snowshed.scene.accuracy_settings import ACCURACY
@@ -45,11 +45,13 @@ def part(text: str) -> float:
     return value
 
 
+SCHEME = "scheme"
+
 accuracy_option = click.option(
     "--accuracy",
     type=part,
     metavar="PERCENT",
-    help="Choose dx and scheme by how far the height and length of stacks may be off, such as 5%, "
+    help="Choose dx and scheme by how far the height and length of stacks may be off, such as 20%, "
     "from recorded runs.",
 )
 
@@ -78,7 +80,8 @@ def choose(
 ) -> Choice:
     """Choose the quickest settings whose stacks were as accurate as wanted in recorded runs.
 
-    If none was accurate enough, the most accurate settings are chosen, and the reason says so.
+    They include the scheme. If none was accurate enough, the most accurate settings are chosen, and
+    the reason says so.
 
     Parameters
     ----------
@@ -109,7 +112,6 @@ def choose(
         recorded_stacks,
         slab_thickness,
     )
-    from snowshed.analysis.accuracy.solutions import quickest
 
     data = scene.resolve().data
     thickness = slab_thickness(data)
@@ -117,15 +119,14 @@ def choose(
         raise InputError(
             "--accuracy: the scene has no slab, whose thickness determines dx; give --dx"
         )
-    listed = load_recorded() if measurements is None else measurements
-    stacks = nearest(recorded_stacks(listed), circumstances(data))
+    everything = recorded_stacks(load_recorded() if measurements is None else measurements)
+    stacks = nearest(everything, circumstances(data))
     if not stacks:
         raise InputError(
             "--accuracy: nothing is recorded to choose from; in the source of snowshed, "
             f"`python -m validation --full --case {CASE} --record FILE -o DIR` makes it"
         )
-    costs, errors = [stack.wall_s for stack in stacks], [stack.error for stack in stacks]
-    stack = stacks[quickest(costs, errors, wanted)]
+    stack = best_of(stacks, wanted)
     path = resolution_path(data)
     name = path.rpartition(".")[2]
     share = float(stack.settings[name]) / PRESET_THICKNESS
@@ -133,11 +134,15 @@ def choose(
     values = {where: stack.settings.get(key) for key, where in ACCURACY.items()}
     size = float(f"{share * thickness:.3g}")
     values[path] = size
-    what = f"{name} {size:g} m ({share:.3g} of the slab's thickness)"
-    reason = " ".join(
-        [f"--accuracy {percent(wanted)}: {what}", *_reasons(stack, wanted, data, name)]
-    )
-    return Choice(stack.error <= wanted, values, reason)
+    scheme = _settings_text(stack, name)
+    what = f"{name} {size:g} m ({share:.3g} of the slab's thickness) with {scheme}"
+    reasons = [
+        f"--accuracy {percent(wanted)}: {_outcome(stack, wanted, what)}",
+        *_scatter(stack),
+        *_other_schemes(stack, stacks, everything, wanted, name),
+        *_differences(stack, data, thickness),
+    ]
+    return Choice(stack.error <= wanted, values, " ".join(reasons))
 
 
 def check_alone(options: Mapping[str, Any]) -> None:
@@ -160,24 +165,102 @@ def check_alone(options: Mapping[str, Any]) -> None:
             )
 
 
-def _reasons(stack: RecordedStack, wanted: float, data: Mapping[str, Any], name: str) -> list[str]:
-    """Return the end of the first sentence, after the setting `name`, and the further sentences."""
-    from snowshed.analysis.accuracy.recorded_stacks import PRESET, QUANTITIES, circumstances
+def best_of(stacks: Sequence[RecordedStack], wanted: float) -> RecordedStack:
+    """Return the quickest of recorded stacks that is accurate enough, or the most accurate."""
+    from snowshed.analysis.accuracy.solutions import quickest
+
+    costs, errors = [stack.wall_s for stack in stacks], [stack.error for stack in stacks]
+    return stacks[quickest(costs, errors, wanted)]
+
+
+def _settings_text(stack: RecordedStack, name: str) -> str:
+    """Return the scheme of a recorded stack, and its further settings except `name`."""
     from snowshed.analysis.accuracy.setting_labels import settings
 
-    scheme = {k: v for k, v in stack.settings.items() if k in ACCURACY and k != name}
+    further = {k: v for k, v in stack.settings.items() if k in ACCURACY and k not in (name, SCHEME)}
+    return ", ".join(filter(None, [f"scheme {_scheme(stack)}", settings(further)]))
+
+
+def _scheme(stack: RecordedStack) -> str:
+    from snowshed.analysis.accuracy.mechanisms import FIRST_SCHEME
+
+    return str(stack.settings.get(SCHEME, FIRST_SCHEME))
+
+
+def _outcome(stack: RecordedStack, wanted: float, what: str) -> str:
+    """Return the chosen settings and their errors, in sentences."""
+    from snowshed.analysis.accuracy.recorded_stacks import PRESET
+
     height, length = (percent(error, 2) for error in stack.errors)
-    off = f"the height of the stack was off by {height} and its length by {length}"
+    off = (
+        f"the height of the stack was off by {height} and its length by {length}, against the "
+        "finest recorded grid of the scheme."
+    )
     if stack.error <= wanted:
-        why = f"These were the quickest in the recorded runs of {PRESET} to stay within it: {off}."
-    else:
-        why = f"No recorded run of {PRESET} was that accurate. In the best, which this is, {off}."
-    reasons = [f"with {settings(scheme) or 'the default scheme'}.", why]
-    if len(stack.spreads) == len(QUANTITIES):
-        height, length = (percent(spread, 2) for spread in stack.spreads)
-        reasons.append(f"Random seedings alone made them differ by {height} and {length}.")
+        return (
+            f"{what}. These were the quickest in the recorded runs of {PRESET} to stay within it: "
+            f"{off}"
+        )
+    share = ceil(100 * stack.error)
+    return f"no recorded run of {PRESET} was that accurate. The best is {what}: {off}" + (
+        f" It is what --accuracy {share}% takes." if share < 100 else ""
+    )
+
+
+def _scatter(stack: RecordedStack) -> list[str]:
+    from snowshed.analysis.accuracy.recorded_stacks import QUANTITIES
+
+    if len(stack.spreads) != len(QUANTITIES):
+        return []
+    height, length = (percent(spread, 2) for spread in stack.spreads)
+    return [f"Random seedings alone made them differ by {height} and {length}."]
+
+
+def _other_schemes(
+    chosen: RecordedStack,
+    stacks: Sequence[RecordedStack],
+    everything: Sequence[RecordedStack],
+    wanted: float,
+    name: str,
+) -> list[str]:
+    """Return what each scheme that was not chosen reaches, or that it has no such runs."""
+    schemes = dict.fromkeys(map(_scheme, everything))
+    return [
+        _other_scheme(scheme, [s for s in stacks if _scheme(s) == scheme], chosen, wanted, name)
+        for scheme in schemes
+        if scheme != _scheme(chosen)
+    ]
+
+
+def _other_scheme(
+    scheme: str,
+    stacks: Sequence[RecordedStack],
+    chosen: RecordedStack,
+    wanted: float,
+    name: str,
+) -> str:
+    if not stacks:
+        return f"Nothing is recorded of scheme {scheme} for such a scene."
+    best = best_of(stacks, wanted)
+    if best.error > wanted:
+        return f"Scheme {scheme} stays within {percent(best.error, 2)} at best."
+    elsewhere = "" if best.machine == chosen.machine else ", timed on another processor"
+    return (
+        f"Scheme {scheme} needed {name} {float(best.settings[name]):g} m and "
+        f"{duration(best.wall_s)} for it in place of {duration(chosen.wall_s)}{elsewhere}."
+    )
+
+
+def _differences(stack: RecordedStack, data: Mapping[str, Any], thickness: float) -> list[str]:
+    """Return how the scene differs from the recorded one, in sentences."""
+    from snowshed.analysis.accuracy.mechanisms import Mechanisms
+    from snowshed.analysis.accuracy.recorded_stacks import PRESET_THICKNESS, circumstances
+    from snowshed.analysis.accuracy.setting_labels import settings
+
     mine = circumstances(data)
     other = {k: v for k, v in stack.settings.items() if k in mine and v != mine[k]}
-    if other:
-        reasons.append(f"Unlike this scene, those runs were made with {settings(other)}.")
-    return reasons
+    lengths = Mechanisms(_scheme(stack)).lengths_note(PRESET_THICKNESS, thickness)
+    return [
+        *([f"Unlike this scene, those runs were made with {settings(other)}."] if other else []),
+        *([f"{lengths[0].upper()}{lengths[1:]}."] if lengths else []),
+    ]

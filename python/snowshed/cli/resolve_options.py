@@ -32,8 +32,16 @@ def resolve_options(
 
 
 def with_accuracy(scene: Scene, accuracy: float, *, quiet: bool = False) -> Scene:
-    """Return the scene with dx and scheme chosen for an accuracy, and print the choice."""
+    """Return the scene with dx and scheme chosen for an accuracy, and print the choice.
+
+    Raises
+    ------
+    InputError
+        If no recorded run was that accurate; the message says what is recorded.
+    """
     choice = choose(accuracy, scene)
+    if not choice.reached:
+        raise InputError(choice.reason)
     if not quiet:
         say(choice.reason, err=True)
     return scene.update(choice.values)

@@ -2,9 +2,10 @@ import pytest
 
 from snowshed import Scene
 from snowshed.analysis.accuracy.measurements import Measured, Measurement
+from snowshed.analysis.accuracy.mechanisms import Mechanisms
 from snowshed.analysis.accuracy.recorded import load_recorded
 from snowshed.analysis.accuracy.recorded_stacks import CASE, PRESET, PRESET_THICKNESS
-from snowshed.analysis.accuracy.stack_errors import recorded_bias, stack_error
+from snowshed.analysis.accuracy.stack_errors import error_sentence, recorded_bias, stack_error
 from snowshed.scene import example_slide
 
 
@@ -17,6 +18,7 @@ def stack(dx, height, length, **settings):
         Measured("length_spread", 0.06, 0.0, 0.06),
     ]
     settings = {"dimension": 2, "events": 5, "dx": dx, "transfer": "flip", **settings}
+    settings = {name: value for name, value in settings.items() if value is not None}
     return Measurement(CASE, settings, measured)
 
 
@@ -28,6 +30,9 @@ RECORDED = [
     stack(0.01, -0.2, 0.2, dimension=3),
     stack(0.01, 7.0, 7.0, basis="cubic"),
     stack(0.01, 9.0, 9.0, transfer="apic"),
+    stack(0.01, 3.0, 3.0, flip_ratio=0.95),
+    stack(0.01, -0.15, 0.06, transfer=None, scheme="objective"),
+    stack(0.005, 0.02, -0.03, transfer=None, scheme="objective"),
 ]
 
 
@@ -44,6 +49,9 @@ def scene(**values):
         ({"dimension": 3}, -0.2, 0.2),
         ({"slab.thickness": 0.5, "numerics.dx": 0.125}, 0.1, 0.05),  # four cells, as at 0.005 m
         ({"numerics.transfer": "apic"}, 9.0, 9.0),
+        ({"numerics.flip_ratio": 0.95}, 3.0, 3.0),
+        ({"numerics.scheme": "objective"}, -0.15, 0.06),
+        ({"numerics.scheme": "objective", "numerics.dx": 0.005}, 0.02, -0.03),
     ],
 )
 def test_the_error_is_that_of_the_nearest_recorded_runs(values, height, length):
@@ -54,7 +62,9 @@ def test_the_error_is_that_of_the_nearest_recorded_runs(values, height, length):
 
 def test_the_sentence_names_the_recorded_scene_and_the_sign_of_the_error():
     text = stack_error(scene(**{"slab.thickness": 0.015}), RECORDED).sentence
-    assert text.startswith("error of the stack in recorded runs (lab-50 in 2D, event 5, 2 cells")
+    assert text.startswith(
+        "error of the stack in recorded runs (lab-50 in 2D, event 5, scheme thesis, 2 cells"
+    )
     assert "this scene has 1.5" in text
     assert "height 30 % too large, length 10 % too small, against the finest recorded grid" in text
     assert text.endswith("single runs scatter by 4 % and 6 %")
@@ -65,13 +75,46 @@ def test_scenes_without_a_stack_on_a_grid_have_none(tmp_path):
     assert stack_error(scene(), []) is None
 
 
+@pytest.mark.parametrize(
+    "values, label",
+    [
+        ({"transfer": "affine_flip"}, "scheme thesis with affine flip"),
+        ({"flip_ratio": 0.9}, "scheme thesis with flip ratio 0.9"),
+        ({"contact": "touch"}, "scheme thesis with touch"),
+        ({"fields": "events", "transfer": "apic"}, "scheme thesis with apic, events"),
+        ({"scheme": "objective", "damping_length": 0.02}, "scheme objective with damping length"),
+    ],
+)
+def test_nothing_is_recorded_for_other_mechanisms(values, label):
+    other = scene(**{f"numerics.{name}": value for name, value in values.items()}).resolve()
+    assert stack_error(other, RECORDED) is None
+    sentence = error_sentence(other)
+    assert sentence.startswith(f"error of the stack: no runs are recorded for {label}")
+    assert sentence.endswith("; --check measures it")
+    mechanisms = Mechanisms.of_scene(other.data)
+    assert recorded_bias(2, 5, mechanisms).startswith(f"no runs are recorded for {label}")
+
+
+def test_the_sentence_names_the_scheme_and_its_lengths():
+    objective = {"numerics.scheme": "objective"}
+    text = stack_error(scene(**objective), RECORDED).sentence
+    assert "event 5, scheme objective, 2 cells in the slab): height 15 % too small" in text
+    assert text.endswith("single runs scatter by 4 % and 6 %")
+    thick = stack_error(scene(**objective, **{"slab.thickness": 0.04}), RECORDED).sentence
+    assert thick.endswith("the scheme's lengths of 0.01 m are 0.5 of the slab there, 0.25 here")
+
+
 def test_the_bias_of_all_resolved_grids():
     packaged = [m for m in load_recorded() if m.case == CASE]
     assert packaged
-    assert recorded_bias(2, 5).endswith(
-        "% too high with 2 to 4 cells in the slab, against the finest recorded grid"
-    )
-    assert recorded_bias(2, 5, transfer="none") is None
+    end = " cells in the slab, against the finest recorded grid of this scheme"
+    thesis = recorded_bias(2, 5)
+    assert thesis.startswith("stacks of lab-50 in 2D, event 5, scheme thesis were ")
+    assert thesis.endswith(f"% too high with 2 to 4{end}")
+    objective = recorded_bias(2, 5, Mechanisms("objective"))
+    assert objective.startswith("stacks of lab-50 in 2D, event 5, scheme objective were ")
+    assert objective.endswith(f"with 2 to 4{end}")
+    assert "event 2, scheme objective" in recorded_bias(3, 5, Mechanisms("objective"))
 
 
 def test_the_thickness_of_the_recorded_slab_is_that_of_the_preset():

@@ -13,7 +13,7 @@ from station_files import days, elements, ghcn
 
 from snowshed import InputError
 from snowshed.analysis import Design, Ranges, clearance_of, winters_of
-from snowshed.analysis.clearance import statistics
+from snowshed.analysis.clearance import answer_text, statistics
 from snowshed.analysis.clearance.answer import STUDY, forecast
 from snowshed.analysis.clearance.report import write_report
 from snowshed.analysis.clearance.statistics import burial_interval, levels_of, shares_of
@@ -167,6 +167,25 @@ def answer_cases(winters):
     return cases_of(DESIGN, winters, KNOWN.drawn(len(winters)), SeasonSettings(), {})
 
 
+def test_the_error_of_the_grid_is_that_of_the_scheme(answer, winters):
+    """Whatever scheme the seasons were simulated with; one that nobody recorded is named, too."""
+    found, _ = answer
+    for base, text in (
+        ({}, "stacks of lab-50 in 2D, event 5, scheme thesis were"),
+        (
+            {"numerics.scheme": "objective"},
+            "stacks of lab-50 in 2D, event 5, scheme objective were",
+        ),
+        (
+            {"numerics.transfer": "affine_flip"},
+            "no runs are recorded for scheme thesis with affine",
+        ),
+    ):
+        cases = [replace(case, base=base) for case in found.cases]
+        warning = answer_text.warnings([replace(found, cases=cases)])[0]
+        assert warning.startswith(f"the intervals leave out the error of the grid: {text}")
+
+
 # --- statistics ----------------------------------------------------------------------------
 
 
@@ -272,7 +291,7 @@ def test_the_answer_says_from_how_many_winters_it_is(tmp_path, capsys):
     assert main([*asked, *known, "--heights", "0.5,2", "-o", str(out)]) == 0
     shown = " ".join(capsys.readouterr().out.split())
     assert "1 of 3 winters and the uncertain snow parameters, without the error of the" in shown
-    assert "the intervals leave out the error of the grid: stacks of lab-50 were" in shown
+    assert "the intervals leave out the error of the grid: stacks of lab-50 in 2D, event 5" in shown
     assert "left out are the winters" in shown and "2001/02 to 2002/03 (0 %)" in shown
     assert "Where the snow comes from" in shown and "new snow" in shown
     summary = json.loads((out / "clearance.json").read_text())

@@ -130,6 +130,21 @@ def test_a_model_of_before_is_of_the_reading_there_was(model, tmp_path, capsys):
         assert MEASURES[measure].label in shown and "trimming equal_pace" in shown
 
 
+@pytest.mark.parametrize(
+    ("settings", "text"),
+    [
+        ({"dx": "0.025"}, "scheme thesis were"),
+        ({"scheme": "objective", "transfer": "affine_flip"}, "scheme objective were"),
+        ({"transfer": "affine_flip"}, "no runs are recorded for scheme thesis with affine flip"),
+    ],
+)
+def test_the_error_of_the_grid_is_that_of_the_scheme(model, tmp_path, capsys, settings, text):
+    save_model(replace(model, settings=settings), tmp_path / "model.npz")
+    told = predict(height=2, length=2, tilt=40, events=1, model=tmp_path / "model.npz")
+    print_prediction(told, "Stack")
+    assert text in " ".join(capsys.readouterr().out.split())
+
+
 def test_no_answer_is_negative(model):
     """Nor is its interval turned about, where a model falls below zero."""
     ((key, member),) = model.members.items()

@@ -76,7 +76,7 @@ class Measurement:
         All quantities of the case; their numbers are NaN if the measurement failed.
     wall_s, updates, steps, particles
         Time of the solution alone (without seeding, imports or evaluation), s; particles times
-        steps; steps; particles. 0 if the measurement failed.
+        steps; steps; particles. 0 if the measurement failed, or nobody counted them.
     peak_memory_mb
         Largest memory of its process, including Python and its libraries (20 to 100 MB).
     elapsed_s
@@ -191,7 +191,9 @@ def _rows(measurement: Measurement) -> list[dict[str, Any]]:
     facts = asdict(measurement)
     del facts["settings"], facts["measured"]
     facts["updates_per_s"] = (
-        measurement.updates / measurement.wall_s if measurement.wall_s else math.nan
+        measurement.updates / measurement.wall_s
+        if measurement.wall_s and measurement.updates
+        else math.nan
     )
     return [
         {**facts, **measurement.settings, **asdict(measured)} for measured in measurement.measured

@@ -41,6 +41,8 @@ class RecordedStack:
         Standard deviation of each over random seedings, relative to the mean; empty if unknown.
     wall_s
         Time of the solution, s.
+    machine
+        Processor on which it was measured.
     """
 
     settings: Settings
@@ -48,6 +50,7 @@ class RecordedStack:
     biases: Sequence[float]
     spreads: Sequence[float]
     wall_s: float
+    machine: str = ""
 
     @property
     def error(self) -> float:
@@ -67,6 +70,7 @@ def recorded_stacks(measurements: Iterable[Measurement]) -> list[RecordedStack]:
     errors = [by_settings(name, ORDER_IN) for name in QUANTITIES]
     spreads = [by_settings(f"{name}_spread", None) for name in QUANTITIES]
     biases = _biases(mine)
+    machines = {key_of(m.settings, without=SAMPLING): m.machine for m in mine}
     return [
         RecordedStack(
             settings=solution.settings,
@@ -74,6 +78,7 @@ def recorded_stacks(measurements: Iterable[Measurement]) -> list[RecordedStack]:
             biases=[biases[key][name] for name in QUANTITIES],
             spreads=[of_each[key] for of_each in spreads if key in of_each],
             wall_s=solution.wall_s,
+            machine=machines[key],
         )
         for solution in solutions(rows_of(table, CASE, QUANTITIES[0]))
         if all((key := key_of(solution.settings)) in of_each for of_each in errors)

@@ -1,8 +1,9 @@
 """The error of a stack, from recorded runs on several grids.
 
 Height and length of a stack depend on the grid more than on the seed. What recorded runs of the
-laboratory experiment say of it is said beside every stack, with the name of the recorded scene,
-because a scene of another size or another snow may err by more or by less.
+laboratory experiment say of it is said beside every stack, with the name of the recorded scene and
+scheme, because a scene of another size or another snow may err by more or by less. Each scheme has
+runs and a finest grid of its own.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from dataclasses import dataclass
 from typing import Optional, Union
 
 from snowshed.analysis.accuracy.measurements import Measurement, Settings
+from snowshed.analysis.accuracy.mechanisms import DECIDED, SCHEME, Mechanisms
 from snowshed.analysis.accuracy.recorded import load_recorded
 from snowshed.analysis.accuracy.recorded_stacks import (
     ORDER_IN,
@@ -25,13 +27,11 @@ from snowshed.analysis.accuracy.recorded_stacks import (
     slab_thickness,
 )
 from snowshed.base.formatting import number
-from snowshed.methods.mpm.settings import MpmSettings
-from snowshed.methods.registry import settings_of
 from snowshed.running.scene_notes import FEW_CELLS
 from snowshed.scene.scene import ResolvedScene, Scene
 
-#: Settings of recorded runs with the default scheme.
-_PLAIN = {"dimension", "between", "events", "transfer", ORDER_IN}
+#: Settings of recorded runs that differ from the defaults in their mechanisms at most.
+_PLAIN = {"dimension", "between", "events", ORDER_IN, SCHEME, *DECIDED}
 
 
 @dataclass(frozen=True)
@@ -52,6 +52,8 @@ class StackError:
         Cells across the slab of the recorded runs.
     settings
         Settings of the recorded runs.
+    thickness
+        Thickness of the scene's slab, m.
 
     Examples
     --------
@@ -67,22 +69,27 @@ class StackError:
     cells: float
     recorded_cells: float
     settings: Settings
+    thickness: float = PRESET_THICKNESS
 
     @property
     def sentence(self) -> str:
-        """The error in a sentence, with the recorded scene that it comes from."""
+        """The error in a sentence, with the recorded scene and scheme that it comes from."""
         bias = ", ".join(f"{name} {_signed(self.bias[name])}" for name in QUANTITIES)
         scatter = " and ".join(f"{100 * self.scatter[name]:.0f} %" for name in self.scatter)
-        where = f"{PRESET} in {self.settings['dimension']}D, event {self.settings['events']}"
+        cells = f"{number(self.recorded_cells, 2)} cell{'' if self.recorded_cells == 1 else 's'}"
+        mechanisms = Mechanisms.of_settings(self.settings)
+        lengths = mechanisms.lengths_note(PRESET_THICKNESS, self.thickness)
         mine = (
             ""
             if abs(self.cells / self.recorded_cells - 1) < 0.01
             else f"; this scene has {number(self.cells, 2)}"
         )
         return (
-            f"error of the stack in recorded runs ({where}, {number(self.recorded_cells, 2)} cells "
-            f"in the slab{mine}): {bias}, against the finest recorded grid, itself not converged"
+            f"error of the stack in recorded runs ({_where(self.settings)}, {cells} in the "
+            f"slab{mine}): {bias}, against the finest recorded grid of this scheme, itself not "
+            "converged"
             + (f"; single runs scatter by {scatter}" if scatter else "")
+            + (f"; {lengths}" if lengths else "")
         )
 
 
@@ -102,7 +109,8 @@ def stack_error(
     Returns
     -------
     StackError or None
-        None if the scene builds no stack on a grid, or nothing was recorded for its transfer.
+        None if the scene builds no stack on a grid, or nothing was recorded for its mechanisms:
+        its scheme and all settings that the scheme decides.
 
     Examples
     --------
@@ -111,12 +119,11 @@ def stack_error(
     """
     data = (scene.resolve() if isinstance(scene, Scene) else scene).data
     thickness = None if data.get("panel") is None else slab_thickness(data)
-    if thickness is None or not isinstance(settings_of(data), MpmSettings):
+    mechanisms = Mechanisms.of_scene(data)
+    if thickness is None or mechanisms is None:
         return None
     cells = thickness / float(data["numerics"][ORDER_IN])
-    stacks = _plain_stacks(
-        load_recorded() if measurements is None else measurements, data["numerics"]["transfer"]
-    )
+    stacks = _plain_stacks(load_recorded() if measurements is None else measurements, mechanisms)
     wanted = {**circumstances(data), ORDER_IN: PRESET_THICKNESS / cells}
     chosen = nearest(stacks, wanted)
     if not chosen:
@@ -128,6 +135,7 @@ def stack_error(
         cells=round(cells, 3),
         recorded_cells=round(PRESET_THICKNESS / float(stack.settings[ORDER_IN]), 3),
         settings=stack.settings,
+        thickness=thickness,
     )
 
 
@@ -139,22 +147,19 @@ def error_sentence(scene: ResolvedScene) -> str:
     >>> lab = Scene.preset("lab-50")
     >>> error_sentence(lab.resolve()).startswith("error of the stack in recorded runs (lab-50")
     True
-    >>> error_sentence(lab.with_({"numerics.scheme": "objective"}).resolve())
-    'error of the stack: no runs are recorded for transfer affine_flip; --check measures it'
+    >>> error_sentence(lab.with_({"numerics.transfer": "affine_flip"}).resolve())[20:]
+    'no runs are recorded for scheme thesis with affine flip; --check measures it'
     """
     error = stack_error(scene)
     if error is not None:
         return error.sentence
-    settings = settings_of(scene.data)
-    if slab_thickness(scene.data) is None or not isinstance(settings, MpmSettings):
+    mechanisms = Mechanisms.of_scene(scene.data)
+    if slab_thickness(scene.data) is None or mechanisms is None:
         return ""
-    return (
-        f"error of the stack: no runs are recorded for transfer {settings.transfer}; "
-        "--check measures it"
-    )
+    return f"error of the stack: {_nothing(mechanisms)}; --check measures it"
 
 
-def recorded_bias(dimension: int, events: int, transfer: str = "flip") -> Optional[str]:
+def recorded_bias(dimension: int, events: int, mechanisms: Optional[Mechanisms] = None) -> str:
     """Return by how much recorded stacks were too high, over all grids that resolve the slab.
 
     It is for answers that combine slabs of several thicknesses, and for those that name none.
@@ -165,22 +170,23 @@ def recorded_bias(dimension: int, events: int, transfer: str = "flip") -> Option
         2 or 3.
     events
         Number of slide-offs; the nearest recorded one counts.
-    transfer
-        Transfer of velocities between particles and grid.
+    mechanisms
+        Scheme and settings that depart from it; by default the scheme thesis.
 
     Returns
     -------
-    str or None
-        A clause, such as ``stacks of lab-50 were 12 to 42 % too high with 2 to 4 cells in the
-        slab``; None if nothing was recorded.
+    str
+        A clause, such as ``stacks of lab-50 in 2D, event 5, scheme thesis were 12 to 42 % too high
+        with 2 to 4 cells in the slab``, or that nothing was recorded.
 
     Examples
     --------
-    >>> recorded_bias(2, 5).startswith("stacks of lab-50 were ")
+    >>> recorded_bias(2, 5).startswith("stacks of lab-50 in 2D, event 5, scheme thesis were ")
     True
     """
+    mechanisms = mechanisms or Mechanisms()
     stacks = nearest(
-        _plain_stacks(load_recorded(), transfer),
+        _plain_stacks(load_recorded(), mechanisms),
         {"dimension": dimension, "events": events},
     )
     cells = {
@@ -188,21 +194,34 @@ def recorded_bias(dimension: int, events: int, transfer: str = "flip") -> Option
     }
     resolved = {n: bias for n, bias in cells.items() if n > FEW_CELLS - 1e-9}
     if not resolved:
-        return None
+        return _nothing(mechanisms)
     low, high = 100 * min(resolved.values()), 100 * max(resolved.values())
     return (
-        f"stacks of {PRESET} were {_span(low, high)} with {_numbers(min(resolved), max(resolved))} "
-        "cells in the slab, against the finest recorded grid"
+        f"stacks of {_where(stacks[0].settings)} were {_span(low, high)} with "
+        f"{_numbers(min(resolved), max(resolved))} cells in the slab, against the finest recorded "
+        "grid of this scheme"
     )
 
 
-def _plain_stacks(measurements: Iterable[Measurement], transfer: str) -> list[RecordedStack]:
-    """Return the recorded stacks of a transfer with the default scheme."""
+def _plain_stacks(
+    measurements: Iterable[Measurement], mechanisms: Mechanisms
+) -> list[RecordedStack]:
+    """Return the recorded stacks with these mechanisms and all else as by default."""
     return [
         stack
         for stack in recorded_stacks(measurements)
-        if set(stack.settings) <= _PLAIN and stack.settings.get("transfer") == transfer
+        if set(stack.settings) <= _PLAIN and Mechanisms.of_settings(stack.settings) == mechanisms
     ]
+
+
+def _where(settings: Settings) -> str:
+    """Return the recorded scene of settings, with its scheme."""
+    scene = f"{PRESET} in {settings['dimension']}D, event {settings['events']}"
+    return f"{scene}, {Mechanisms.of_settings(settings).label}"
+
+
+def _nothing(mechanisms: Mechanisms) -> str:
+    return f"no runs are recorded for {mechanisms.label}"
 
 
 def _numbers(low: float, high: float) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from snowshed.analysis.accuracy.mechanisms import Mechanisms
 from snowshed.analysis.accuracy.stack_errors import recorded_bias
 from snowshed.analysis.clearance.answer import Answer
 from snowshed.analysis.clearance.design import MEANING, Ranges
@@ -55,7 +56,7 @@ def advice(answer: Answer) -> str:
 
 def warnings(answers: Sequence[Answer]) -> list[str]:
     """Return where the answer is extrapolated or incomplete."""
-    notes = [*_excluded_winters(answers[0]), *_grid_error()]
+    notes = [*_excluded_winters(answers[0]), _grid_error(answers[0])]
     for answer in answers:
         name = f"{answer.design.slope_length:g} m at {answer.design.tilt:g}°"
         for level in answer.levels:
@@ -89,10 +90,11 @@ def _excluded_winters(answer: Answer) -> list[str]:
     ]
 
 
-def _grid_error() -> list[str]:
+def _grid_error(answer: Answer) -> str:
     """Return what recorded runs say of the grid's error, which no interval contains."""
-    bias = recorded_bias(2, TYPICAL_SLIDE_OFFS)
-    return [] if bias is None else [f"the intervals leave out the error of the grid: {bias}"]
+    scene = answer.cases[0].panel(answer.heights[0]).data
+    bias = recorded_bias(2, TYPICAL_SLIDE_OFFS, Mechanisms.of_scene(scene))
+    return f"the intervals leave out the error of the grid: {bias}"
 
 
 def assumptions(answer: Answer) -> list[str]:

@@ -88,6 +88,7 @@ def _input(text: str) -> tuple[str, float]:
 
 def print_prediction(prediction: Prediction, title: str) -> None:
     """Print the answers, one line per event, and mark extrapolated ones."""
+    from snowshed.analysis.accuracy.mechanisms import Mechanisms
     from snowshed.analysis.accuracy.stack_errors import recorded_bias
     from snowshed.analysis.regression.rows import TARGETS
     from snowshed.snow.stack.quantities import measure_named
@@ -109,9 +110,12 @@ def print_prediction(prediction: Prediction, title: str) -> None:
     label = measure_named(prediction.measure).label
     wide_console().print(" 68 % of the stacks lie within ±, 90 % within [ ].")
     wide_console().print(f" The stack is {'; '.join(filter(None, [label, _scene(prediction)]))}.")
-    bias = recorded_bias(int(prediction.settings.get("dimension", 2)), int(rows["event"].max()))
-    if bias is not None:
-        wide_console().print(f" Neither contains the error of the grid: {bias}.")
+    bias = recorded_bias(
+        int(prediction.settings.get("dimension", 2)),
+        int(rows["event"].max()),
+        Mechanisms.of_texts(prediction.settings),
+    )
+    wide_console().print(f" Neither contains the error of the grid: {bias}.")
 
 
 def _scene(prediction: Prediction) -> str:

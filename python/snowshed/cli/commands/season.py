@@ -185,7 +185,7 @@ def season(
         return
     result = _run(season_files, scene, folder, settings, reading, resume=resume, quiet=quiet)
     if not quiet:
-        print_season(result, folder, int(scene.data["dimension"]))
+        print_season(result, folder, scene)
 
 
 def none_or(name: Optional[str]) -> Optional[str]:
@@ -269,8 +269,9 @@ def _print_cost(
         print_cost(plan.slides)
 
 
-def print_season(result: SeasonResult, folder: Path, dimension: int) -> None:
+def print_season(result: SeasonResult, folder: Path, scene: ResolvedScene) -> None:
     """Print the table, the event that buries the panel, and notes on the limits of the results."""
+    from snowshed.analysis.accuracy.mechanisms import Mechanisms
     from snowshed.analysis.accuracy.stack_errors import recorded_bias
     from snowshed.season.driver import verdict
 
@@ -290,8 +291,9 @@ def print_season(result: SeasonResult, folder: Path, dimension: int) -> None:
     for line in (verdict(result), *(f"note: {note}" for note in result.notes)):
         console.print(line)
     console.print(f"season.csv and season.png in {folder}")
-    bias = recorded_bias(dimension, max(len(rows), 1)) if result.simulated else None
-    if bias is not None:
+    mechanisms = Mechanisms.of_scene(scene.data)
+    if result.simulated and mechanisms is not None:
+        bias = recorded_bias(int(scene.data["dimension"]), result.simulated, mechanisms)
         console.print(f"error of the grid: {bias}")
     if result.simulated:
         console.print(f"the snow in motion: snowshed view {folder}")

@@ -1,0 +1,146 @@
+"""Mechanisms of a run: its scheme, and how its settings depart from those of the scheme.
+
+Only runs with equal mechanisms tell of each other's errors.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import lru_cache
+from typing import Any, Optional
+
+from snowshed.analysis.accuracy.measurements import Settings, Value
+from snowshed.analysis.accuracy.recorded_stacks import PRESET
+from snowshed.analysis.accuracy.setting_labels import settings as settings_label
+from snowshed.methods.mpm.settings import MpmSettings
+from snowshed.methods.registry import SETTINGS_KEY, settings_of
+from snowshed.scene.scene import Scene
+
+SCHEME = "scheme"
+#: The scheme of recorded runs that do not name it.
+FIRST_SCHEME = "thesis"
+#: Settings that a scheme decides unless they are given.
+DECIDED = MpmSettings.ADOPTS[SCHEME]
+#: Those that are lengths, whatever the slab is.
+LENGTHS = ("damping_length", "crack_band_length")
+
+
+@dataclass(frozen=True)
+class Mechanisms:
+    """A scheme, and the settings that depart from it.
+
+    Attributes
+    ----------
+    scheme
+        Name of the scheme.
+    departures
+        Settings that the scheme decides, where they have other values.
+    """
+
+    scheme: str = FIRST_SCHEME
+    departures: Mapping[str, Value] = field(default_factory=dict)
+
+    @classmethod
+    def of_scene(cls, scene: Mapping[str, Any]) -> Optional[Mechanisms]:
+        """Return those of a resolved scene; None if its method is another than the MPM.
+
+        Examples
+        --------
+        >>> lab = Scene.preset("lab-50").with_({"numerics.transfer": "affine_flip"})
+        >>> Mechanisms.of_scene(lab.resolve().data).label
+        'scheme thesis with affine flip'
+        """
+        if not isinstance(settings_of(scene), MpmSettings):
+            return None
+        return cls.of_settings(scene[SETTINGS_KEY])
+
+    @classmethod
+    def of_settings(cls, settings: Mapping[str, Any]) -> Mechanisms:
+        """Return those of settings by their names without section; missing ones are defaults.
+
+        Examples
+        --------
+        >>> Mechanisms.of_settings({"dx": 0.01, "transfer": "flip"}).label
+        'scheme thesis'
+        >>> Mechanisms.of_settings({"scheme": "objective", "damping_length": 0.02}).label
+        'scheme objective with damping length 0.02'
+        """
+        scheme = str(settings.get(SCHEME) or FIRST_SCHEME)
+        decided = decided_by(scheme)
+        departures = {
+            name: settings[name]
+            for name in DECIDED
+            if settings.get(name) is not None and settings[name] != decided.get(name)
+        }
+        return cls(scheme, departures)
+
+    @classmethod
+    def of_texts(cls, texts: Mapping[str, str]) -> Mechanisms:
+        """Return those of settings whose values are texts, as in a table of a study.
+
+        Examples
+        --------
+        >>> Mechanisms.of_texts({"transfer": "flip", "flip_ratio": "0.95", "damping_rate": "nan"})
+        Mechanisms(scheme='thesis', departures={'flip_ratio': 0.95})
+        """
+        return cls.of_settings({name: _value(text) for name, text in texts.items()})
+
+    @property
+    def label(self) -> str:
+        """The scheme by name, with what departs from it."""
+        departures = settings_label(self.departures)
+        return f"scheme {self.scheme}" + (f" with {departures}" if departures else "")
+
+    def lengths_note(self, recorded: float, thickness: float) -> str:
+        """Return that the scheme's lengths are other shares of a slab than in recorded runs.
+
+        Parameters
+        ----------
+        recorded, thickness
+            Thickness of the recorded slab and of the other one, m.
+
+        Returns
+        -------
+        str
+            A clause; empty if the scheme has no lengths, or their share is the same.
+
+        Examples
+        --------
+        >>> Mechanisms("objective").lengths_note(0.02, 0.2)
+        "the scheme's lengths of 0.01 m are 0.5 of the slab there, 0.05 here"
+        >>> Mechanisms("objective").lengths_note(0.02, 0.02), Mechanisms().lengths_note(0.02, 0.2)
+        ('', '')
+        """
+        decided = decided_by(self.scheme)
+        length = max(float(decided[name]) for name in LENGTHS)
+        if not length or abs(thickness / recorded - 1) < 0.01:
+            return ""
+        return (
+            f"the scheme's lengths of {length:g} m are {length / recorded:.2g} of the slab there, "
+            f"{length / thickness:.2g} here"
+        )
+
+
+@lru_cache(maxsize=8)
+def decided_by(scheme: str) -> Settings:
+    """Return the settings that a scheme decides.
+
+    Examples
+    --------
+    >>> decided_by("thesis")["transfer"], decided_by("objective")["damping_length"]
+    ('flip', 0.01)
+    """
+    scene = Scene.preset(PRESET).with_({f"{SETTINGS_KEY}.{SCHEME}": scheme})
+    numerics = scene.resolve().data[SETTINGS_KEY]
+    return {name: numerics[name] for name in DECIDED if name in numerics}
+
+
+def _value(text: str) -> Optional[Value]:
+    """Return a number where a text is one; None for what a table has not."""
+    if text in ("", "nan", "None"):
+        return None
+    try:
+        return float(text)
+    except ValueError:
+        return text

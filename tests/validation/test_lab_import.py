@@ -1,0 +1,176 @@
+"""Results folders taken up among the recorded stacks, and measurements from recorded stacks."""
+
+import json
+from dataclasses import astuple
+
+import pytest
+from validation.laboratory import lab_records
+from validation.laboratory.case_stack_convergence import CASE
+from validation.laboratory.lab_import import imported, settings_of
+from validation.laboratory.lab_records import Grid, RecordedRun, recorded_runs, scheme_of
+from validation.laboratory.lab_stack import COMPARED, Cost, lab_scene
+from validation.laboratory.recorded_measurements import SCHEME, measurements_of, renew
+
+from snowshed import InputError
+from snowshed.analysis.accuracy.measurements import Measurement
+from snowshed.analysis.accuracy.recorded import load_recorded, record
+from snowshed.cli.main import main
+
+GRID = Grid(2, 0.02, 1, events=2)
+
+
+@pytest.fixture
+def reference(monkeypatch):
+    """Let the reference of the scheme objective have one small grid."""
+    settings = {"scheme": "objective", "sleep_speed": 0.02}
+    reference = lab_records.Reference(settings, (GRID,))
+    monkeypatch.setitem(lab_records.REFERENCES, "objective", reference)
+    return lab_records.keys_of(GRID, settings)[0]
+
+
+def test_a_folder_gives_the_entry_that_record_makes(reference, tmp_path):
+    """Two ways to one entry: the run in memory, and the particles that a run has stored."""
+    made = tmp_path / "made.json"
+    lab_records.record(made, "objective")
+    (wanted,) = lab_records.read_entries(made)
+    scene = tmp_path / "scene.json"
+    lab_scene(reference).set("output.film", False).resolve().save(scene)
+    out = tmp_path / "out"
+    assert main(["run", str(scene), "-q", "-o", str(out)]) == 0
+    entry = imported(out, "machine", "2026-11-26")
+    assert (entry["machine"], entry["date"]) == ("machine", "2026-11-26")
+    for name in ("dimension", "dx", "seed", "events", "scheme", "sleep_speed", "version"):
+        assert entry[name] == wanted[name]
+    for name in COMPARED:  # particles are stored in single precision
+        assert entry[name] == pytest.approx(wanted[name], abs=2e-5)
+    for mine, other in zip(entry["costs"], wanted["costs"]):
+        assert mine[2:] == other[2:]
+    assert [cost[1] for cost in entry["costs"]] == [0, wanted["costs"][-1][1]]
+    assert 0 < entry["costs"][0][0] < entry["costs"][1][0]
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"panel.friction": 0.6},
+        {"numerics.scheme": "thesis"},
+        {"seeding.seed": 2},
+        {"events.count": 1},
+        {"numerics.sleep_speed": 0.0},
+        {"numerics.damping_length": 0.02},
+    ],
+    ids=str,
+)
+def test_other_scenes_are_not_taken(reference, change):
+    scene = lab_scene(reference)
+    assert settings_of(scene.resolve(), "out") == reference
+    with pytest.raises(InputError, match="out: the scene is that of no recorded run"):
+        settings_of(scene.update(change).resolve(), "out")
+
+
+def test_an_unfinished_run_is_not_taken(reference, tmp_path):
+    (tmp_path / "run.json").write_text(json.dumps({"status": "running"}))
+    with pytest.raises(InputError, match="not finished"):
+        imported(tmp_path, "machine", "2026-11-26")
+
+
+def test_the_package_brings_the_measurements_of_the_recorded_runs():
+    """Nobody typed them: they follow from lab_stack.json but for the last digits of sums."""
+    packaged = [
+        one
+        for one in load_recorded()
+        if one.case == CASE.name and scheme_of(one.settings) == SCHEME
+    ]
+    computed = measurements_of(SCHEME)
+    assert [one.key for one in packaged] == [one.key for one in computed]
+    for one, other in zip(packaged, computed):
+        for name in ("steps", "particles", "updates", "machine", "version", "date"):
+            assert getattr(one, name) == getattr(other, name)
+        assert one.wall_s == pytest.approx(other.wall_s)
+        assert len(one.measured) == len(other.measured)
+        for mine, wanted in zip(one.measured, other.measured):
+            assert mine.quantity == wanted.quantity
+            assert astuple(mine)[1:] == pytest.approx(astuple(wanted)[1:], abs=1e-9)
+    problems = {(one.settings["dimension"], one.settings["events"]) for one in packaged}
+    assert problems == {(2, 1), (2, 2), (2, 3), (2, 5), (3, 1), (3, 2)}
+
+
+def test_measurements_are_those_of_the_runs():
+    """One of them from the numbers of the file: mean, error of a single run, cost."""
+    runs = lab_records.read_entries(lab_records.FILE)
+    mine = [r for r in runs if scheme_of(r) == SCHEME and r["dimension"] == 2]
+    heights = [r["height"][1] for r in mine if r["dx"] == 0.01]
+    finest = [r["height"][1] for r in mine if r["dx"] == 0.0025]
+    exact = sum(finest) / len(finest)
+    squares = [(height / exact - 1) ** 2 for height in heights]
+    costs = [r["costs"] for r in mine if r["dx"] == 0.01]
+    (found,) = [
+        one
+        for one in measurements_of(SCHEME)
+        if (one.settings["dimension"], one.settings["dx"], one.settings["events"]) == (2, 0.01, 2)
+    ]
+    height = found.measured[0]
+    assert height.quantity == "height"
+    assert height.value == pytest.approx(sum(heights) / len(heights))
+    assert height.exact == pytest.approx(exact)
+    assert height.error == pytest.approx((sum(squares) / len(squares)) ** 0.5)
+    assert found.steps == round(sum(cost[1][2] for cost in costs) / len(costs))
+    # All updates at the pace of the quickest run, and of each run the share of two events.
+    quickest = min(cost[-1][0] / cost[-1][1] for cost in costs)
+    times = [cost[-1][1] * quickest * cost[1][0] / cost[-1][0] for cost in costs]
+    assert found.wall_s == pytest.approx(sum(times) / len(times))
+    assert found.updates == 0  # counted for all events only
+    assert found.machine == "AMD EPYC"
+
+
+def test_a_part_of_a_run_ends_with_its_event():
+    run = recorded_runs(2, 0.01, "objective")[0]
+    assert len(run.series("length")) == 5
+    part = run.until(2)
+    assert len(part.series("height")) == len(part.costs) == 2
+    assert part.cost.wall_s < run.cost.wall_s
+    with pytest.raises(LookupError, match="no event 6"):
+        run.until(6)
+    with pytest.raises(LookupError, match="cost of this run was not recorded"):
+        recorded_runs(2, 0.01, "thesis")[0].cost  # noqa: B018
+
+
+def test_new_measurements_take_the_place_of_those_of_the_same_scheme(tmp_path):
+    path = tmp_path / "recorded.json"
+    others = [Measurement("bar", {"dx": 1.0}, []), Measurement(CASE.name, {"dx": 0.01}, [])]
+    record([*others, Measurement(CASE.name, {"dx": 0.5, "scheme": "objective"}, [])], path)
+    new = Measurement(CASE.name, {"dx": 0.25, "scheme": "objective"}, [])
+    renew([new], path)
+    assert [one.key for one in load_recorded(path)] == [one.key for one in (*others, new)]
+
+
+def test_times_of_several_machines_are_not_mixed(monkeypatch):
+    from validation.laboratory import recorded_measurements
+
+    def mixed(dimension, dx, scheme):
+        runs = recorded_runs(dimension, dx, scheme)
+        first = runs[0]
+        other = RecordedRun(first.measures, first.costs, "another", first.version, first.date)
+        return [other, *runs[1:]]
+
+    monkeypatch.setattr(recorded_measurements, "recorded_runs", mixed)
+    with pytest.raises(InputError, match=r"differ in their machine: AMD EPYC, another"):
+        measurements_of(SCHEME)
+
+
+def test_runs_without_a_time_on_one_thread_give_no_measurement(monkeypatch):
+    from validation.laboratory import recorded_measurements
+
+    def timeless(dimension, dx, scheme):
+        runs = recorded_runs(dimension, dx, scheme)
+        return [
+            RecordedRun(
+                run.measures,
+                [Cost(0.0, *(cost.updates, cost.steps, cost.particles)) for cost in run.costs],
+            )
+            for run in runs
+        ]
+
+    monkeypatch.setattr(recorded_measurements, "recorded_runs", timeless)
+    with pytest.raises(InputError, match="time of the runs on one thread was not recorded"):
+        measurements_of(SCHEME)

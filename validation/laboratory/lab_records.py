@@ -1,0 +1,380 @@
+"""Recorded stacks of the laboratory: the references of the stack's convergence.
+
+Stacks have no exact answer. They are compared with the mean over seedings on the finest grid that
+was affordable with the same scheme. Those runs take hours, so they were made once, and lie beside
+this module in ``lab_stack.json``, each with its settings, version and date. `record` makes them.
+"""
+
+from __future__ import annotations
+
+import datetime
+import json
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import lru_cache
+from math import nan
+from pathlib import Path
+from typing import Any, Optional
+
+import numpy as np
+
+from snowshed import _core
+from snowshed.analysis.accuracy.measurements import Measured, Settings, Value
+from snowshed.base.arrays import Floats
+from snowshed.base.machine import cpu_name
+from snowshed.io.atomic import write_text
+from validation.framework.drive import absolute
+from validation.laboratory.lab_stack import COMPARED, Cost, Solved, run_lab
+
+FILE = Path(__file__).with_name("lab_stack.json")
+#: Events of a recorded run that does not name their number.
+EVENTS = 5
+#: The scheme of a run that does not name it.
+FIRST_SCHEME = "thesis"
+
+#: The reference of `FIRST_SCHEME` is made with this besides the defaults: no snow sleeps.
+AWAKE: Settings = {"sleep_speed": 0.0}
+
+
+@dataclass(frozen=True)
+class Grid:
+    """Recorded runs on one grid, with the seeds from 1 on."""
+
+    dimension: int
+    dx: float
+    seedings: int
+    events: int = EVENTS
+
+
+@dataclass(frozen=True)
+class Reference:
+    """The runs that are recorded of a scheme.
+
+    Attributes
+    ----------
+    settings
+        Settings of all of them, for `lab_scene`.
+    grids
+        The grids; the finest of each dimension is what stacks are compared with.
+    """
+
+    settings: Settings
+    grids: Sequence[Grid]
+
+
+REFERENCES: Mapping[str, Reference] = {
+    FIRST_SCHEME: Reference(
+        AWAKE,
+        (
+            Grid(2, 0.02, 12),
+            Grid(2, 0.01, 12),
+            Grid(2, 0.005, 6),
+            Grid(2, 0.0025, 4),
+            Grid(3, 0.02, 8),
+            Grid(3, 0.01, 4),
+            Grid(3, 0.005, 1),
+        ),
+    ),
+    # Its snow sleeps as it does by default.
+    "objective": Reference(
+        {"scheme": "objective", "sleep_speed": 0.02},
+        (
+            Grid(2, 0.02, 12),
+            Grid(2, 0.01, 12),
+            Grid(2, 0.005, 12),
+            Grid(2, 0.0025, 8),
+            Grid(3, 0.02, 8, events=2),
+            Grid(3, 0.01, 4, events=2),
+            Grid(3, 0.005, 4, events=2),
+        ),
+    ),
+}
+
+
+def scheme_of(settings: Mapping[str, Any]) -> str:
+    """Return the scheme of a run's settings.
+
+    Examples
+    --------
+    >>> scheme_of({"dx": 0.01}), scheme_of({"scheme": "objective"})
+    ('thesis', 'objective')
+    """
+    return str(settings.get("scheme", FIRST_SCHEME))
+
+
+@dataclass(frozen=True)
+class RecordedRun:
+    """A recorded run.
+
+    Attributes
+    ----------
+    measures
+        Each of `COMPARED` after each event, m.
+    costs
+        Cost up to the end of each event; empty where it was not recorded.
+    machine, version, date
+        Where and when the run was made; the machine is empty where it was not recorded.
+    """
+
+    measures: Mapping[str, Sequence[float]]
+    costs: Sequence[Cost] = field(default_factory=list)
+    machine: str = ""
+    version: str = ""
+    date: str = ""
+
+    def series(self, name: str) -> Sequence[float]:
+        """Return one of `COMPARED` after each event, m."""
+        return self.measures[name]
+
+    @property
+    def cost(self) -> Cost:
+        """Cost of all events.
+
+        Raises
+        ------
+        LookupError
+            If it was not recorded.
+        """
+        if not self.costs:
+            raise LookupError("the cost of this run was not recorded")
+        return self.costs[-1]
+
+    def until(self, event: int) -> RecordedRun:
+        """Return the part of the run up to the end of an event.
+
+        Raises
+        ------
+        LookupError
+            If the run has not so many events.
+        """
+        measures = {name: values[:event] for name, values in self.measures.items()}
+        if any(len(values) < event for values in measures.values()):
+            raise LookupError(f"no event {event} in this run")
+        return RecordedRun(measures, self.costs[:event], self.machine, self.version, self.date)
+
+
+@dataclass(frozen=True)
+class Recorded:
+    """Recorded stacks of one scheme, dimension and dx; every series has a value for each event.
+
+    Attributes
+    ----------
+    dx
+        Size of the grid cells, m.
+    runs
+        For each of `COMPARED`, (seedings, events) in m.
+    """
+
+    dx: float
+    runs: Mapping[str, Floats]
+
+    @property
+    def events(self) -> int:
+        """Number of recorded events."""
+        return min(values.shape[1] for values in self.runs.values())
+
+    def mean(self, name: str, event: int) -> float:
+        """Return the mean over seedings of a measure after an event, m; NaN: not recorded."""
+        return float(self.runs[name][:, event - 1].mean()) if event <= self.events else nan
+
+    def spread(self, name: str, event: int) -> float:
+        """Return the standard deviation between seedings after an event, m; NaN: not recorded."""
+        return float(self.runs[name][:, event - 1].std(ddof=1)) if event <= self.events else nan
+
+
+def noise(name: str, runs: Sequence[Solved], settings: Settings) -> Measured:
+    """Compare the mean of the last stacks with the recorded ones of its scheme on the same grid.
+
+    Parameters
+    ----------
+    name
+        One of `COMPARED`.
+    runs
+        With the settings, each with a seed of its own.
+    settings
+        For `lab_scene`.
+
+    Returns
+    -------
+    Measured
+        Of the quantity ``<name>_noise``: the departure in standard deviations between the recorded
+        seedings.
+    """
+    there = recorded(int(settings["dimension"]), float(settings["dx"]), scheme_of(settings))
+    last = [run.series(name) for run in runs]
+    event, value = len(last[0]), float(np.mean([series[-1] for series in last]))
+    departure = (value - there.mean(name, event)) / there.spread(name, event)
+    return absolute(f"{name}_noise", departure, 0.0)
+
+
+def recorded(dimension: int, dx: Optional[float] = None, scheme: str = FIRST_SCHEME) -> Recorded:
+    """Return the recorded stacks of a scheme on a grid, or on the finest one of that dimension.
+
+    Raises
+    ------
+    LookupError
+        If nothing was recorded on that grid.
+
+    Examples
+    --------
+    >>> recorded(2).dx
+    0.0025
+    >>> recorded(3, scheme="objective").events
+    2
+    """
+    wanted, runs = _entries(dimension, dx, scheme)
+    return Recorded(wanted, {name: np.array([run[name] for run in runs]) for name in COMPARED})
+
+
+def recorded_runs(dimension: int, dx: float, scheme: str) -> list[RecordedRun]:
+    """Return the recorded runs of a scheme on a grid, by rising seed.
+
+    Raises
+    ------
+    LookupError
+        If nothing was recorded on that grid.
+    """
+    runs = sorted(_entries(dimension, dx, scheme)[1], key=lambda run: run["seed"])
+    return [
+        RecordedRun(
+            {name: run[name] for name in COMPARED},
+            [Cost(*cost) for cost in run.get("costs", ())],
+            run.get("machine", ""),
+            run["version"],
+            run["date"],
+        )
+        for run in runs
+    ]
+
+
+def _entries(
+    dimension: int, dx: Optional[float], scheme: str
+) -> tuple[float, list[dict[str, Any]]]:
+    """Return the size of the cells, m, and the entries of the file on that grid."""
+    runs = [run for run in _read() if run["dimension"] == dimension and scheme_of(run) == scheme]
+    wanted = min((run["dx"] for run in runs), default=nan) if dx is None else dx
+    chosen = [run for run in runs if np.isclose(run["dx"], wanted)]
+    if not chosen:
+        known = sorted({run["dx"] for run in runs})
+        raise LookupError(
+            f"no stacks of {scheme} recorded in {dimension}D at dx {dx}; there are {known}"
+        )
+    return float(wanted), chosen
+
+
+@lru_cache(maxsize=1)
+def _read() -> list[dict[str, Any]]:
+    return read_entries(FILE)
+
+
+def read_entries(path: Path) -> list[dict[str, Any]]:
+    """Return the entries of a file of recorded runs; none without a file."""
+    if not path.exists():
+        return []
+    runs: list[dict[str, Any]] = json.loads(path.read_text(encoding="utf-8"))["runs"]
+    return runs
+
+
+def record(
+    path: Path = FILE,
+    scheme: str = FIRST_SCHEME,
+    grids: Optional[Iterable[Grid]] = None,
+    **settings: Value,
+) -> None:
+    """Make the reference of a scheme anew, hours in all.
+
+    The file is written after each run. Runs that it holds already, of the same version, are kept.
+
+    Parameters
+    ----------
+    path
+        The file.
+    scheme
+        One of `REFERENCES`.
+    grids
+        The grids; by default all of that reference.
+    settings
+        Further settings for `lab_scene`, such as ``events=1``.
+    """
+    reference = REFERENCES[scheme]
+    runs = read_entries(path)
+    for grid in reference.grids if grids is None else grids:
+        for key in keys_of(grid, {**reference.settings, **settings}):
+            held = [run for run in runs if is_of(run, key)]
+            if any(run["version"] == _core.version for run in held):
+                continue
+            runs = [run for run in runs if run not in held] + [_made(key)]
+            write_entries(runs, path)
+
+
+def keys_of(grid: Grid, settings: Settings) -> list[Settings]:
+    """Return the settings of each run on a grid, as they stand in its entry.
+
+    Examples
+    --------
+    >>> keys_of(Grid(3, 0.01, 1, events=2), {"scheme": "objective"})
+    [{'dimension': 3, 'dx': 0.01, 'seed': 1, 'events': 2, 'scheme': 'objective'}]
+    """
+    events: Settings = {} if grid.events == EVENTS else {"events": grid.events}
+    return [
+        {"dimension": grid.dimension, "dx": grid.dx, "seed": seed, **events, **settings}
+        for seed in range(1, grid.seedings + 1)
+    ]
+
+
+def is_of(run: Mapping[str, Any], key: Settings) -> bool:
+    """Return whether an entry is of a run with these settings."""
+    return scheme_of(run) == scheme_of(key) and key.items() <= run.items()
+
+
+def _made(settings: Settings) -> dict[str, Any]:
+    run = run_lab(settings)
+    date = datetime.date.today().isoformat()
+    return entry(settings, run, run.ended, run.costs, (_core.version, date, cpu_name()))
+
+
+def entry(
+    settings: Settings,
+    run: Solved,
+    ended: Iterable[str],
+    costs: Sequence[Cost],
+    origin: tuple[str, str, str],
+) -> dict[str, Any]:
+    """Return what a file holds of a run.
+
+    Parameters
+    ----------
+    settings
+        For `lab_scene`.
+    run
+        The stacks.
+    ended
+        How its events ended.
+    costs
+        Cost up to the end of each event; the times are those of one thread, 0 where it had more.
+    origin
+        Version, date and machine.
+    """
+    return {
+        **settings,
+        **dict(zip(("version", "date", "machine"), origin)),
+        "particles": costs[-1].particles,
+        "steps": costs[-1].steps,
+        "ended": sorted(set(ended)),
+        **{name: [round(value, 5) for value in run.series(name)] for name in COMPARED},
+        "costs": [
+            [round(cost.wall_s, 4), cost.updates, cost.steps, cost.particles] for cost in costs
+        ],
+    }
+
+
+def write_entries(runs: Iterable[Mapping[str, Any]], path: Path) -> None:
+    """Write a file of recorded runs, one a line."""
+    about = (
+        "Stacks of preset lab-50 after each event, in m, with panel friction 0.3 and the core's "
+        "default numerics but for what each run names. Costs are sums up to the end of each event: "
+        "time in s on one thread, particles times steps, steps, particles; 0: not measured. Made "
+        "by validation.laboratory.lab_records.record()."
+    )
+    lines = ",\n".join(f"    {json.dumps(run)}" for run in runs)
+    write_text(path, f'{{\n  "about": {json.dumps(about)},\n  "runs": [\n{lines}\n  ]\n}}\n')
