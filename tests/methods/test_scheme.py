@@ -22,6 +22,11 @@ def test_a_scheme_decides_the_settings_of_a_preset():
     assert numerics(scene.set("numerics.scheme", "thesis")) == numerics(Scene.preset("lab-50"))
 
 
+def test_a_scheme_decides_what_was_set_before_it():
+    slower = Scene.preset("lab-50").set("numerics.damping_rate", 95.0)
+    assert numerics(slower.set("numerics.scheme", "objective"))["damping_rate"] == 380.0
+
+
 @pytest.mark.parametrize("order", [1, -1])
 def test_settings_that_are_given_with_a_scheme_stand_in_any_order(order):
     given = {"numerics.scheme": "objective", "numerics.damping_length": 0.02}

@@ -5,10 +5,11 @@ import subprocess
 import sys
 
 import pytest
-from paths import DOCS, ROOT
+from paths import ROOT
 from tools.mutants import trial
+from tools.mutants.__main__ import PAGES
 from tools.mutants.faults import Fault, FaultError, check_places, read_faults
-from tools.mutants.results import Results, table, with_table
+from tools.mutants.results import Results, fault_list, summary, with_table
 from tools.mutants.sources import SourceCopy, with_faults
 from tools.mutants.trial import BuildError, Workshop
 
@@ -257,11 +258,13 @@ def test_results_are_kept(tmp_path):
     assert again.date["minus"] == results.date["minus"]
 
 
-def test_the_table_counts_and_explains():
+def test_the_tables_count_and_explain():
     faults = [fault(), fault(name="zero", survives="Nobody adds zero.")]
-    text = table(faults, {"minus": "tests/a/test_sum.py::test_it[3]", "zero": ""})
+    caught_by = {"minus": "tests/a/test_sum.py::test_it[3]", "zero": ""}
+    text = summary(faults, caught_by)
     assert "2 faults were injected, and 1 (50.0%) were caught." in text
     assert "| sums | 2 | 1 |" in text
+    text = fault_list(faults, caught_by)
     assert "| sums | Sums are differences. | `test_sum.py::test_it` |" in text
     assert "| survives. Nobody adds zero. |" in text
 
@@ -277,7 +280,7 @@ def test_a_page_without_marks_is_refused():
 
 AREAS = {
     *("material", "transfer", "contact", "time step", "sleep", "seeding", "events"),
-    *("measures", "post-processing"),
+    *("measures", "post-processing", "scheme"),
 }
 
 
@@ -299,6 +302,7 @@ def test_every_fault_has_a_result_and_survivors_a_reason():
     assert len(survivors) <= 0.05 * len(faults)
 
 
-def test_the_page_shows_the_results():
-    page = (DOCS / "trust" / "injected-faults.md").read_text(encoding="utf-8")
-    assert with_table(page, table(read_faults(), Results.read().caught_by)) == page
+@pytest.mark.parametrize("path", PAGES, ids=lambda path: path.stem)
+def test_the_pages_show_the_results(path):
+    page = path.read_text(encoding="utf-8")
+    assert with_table(page, PAGES[path](read_faults(), Results.read().caught_by)) == page

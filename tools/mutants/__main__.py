@@ -9,12 +9,16 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from tools.mutants.faults import Fault, FaultError, check_places, read_faults
-from tools.mutants.results import FILE, Results, table, with_table
+from tools.mutants.results import FILE, Results, fault_list, summary, with_table
 from tools.mutants.sources import SourceCopy
 from tools.mutants.trial import BuildError, Workshop
 
 ROOT = Path(__file__).parents[2]
-PAGE = ROOT / "docs/trust/injected-faults.md"
+#: Pages with tables of the results.
+PAGES = {
+    ROOT / "docs/trust/injected-faults.md": summary,
+    ROOT / "docs/trust/list-of-faults.md": fault_list,
+}
 FOLDER = ROOT / "build/mutants"
 TARGETS = ("snowshed_tests", "_core", "snowshed-run")
 
@@ -34,10 +38,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if not options.table:
             _run(chosen, faults)
             results = Results.read()
-        PAGE.write_text(
-            with_table(PAGE.read_text(encoding="utf-8"), table(faults, results.caught_by)),
-            encoding="utf-8",
-        )
+        for page, table_of in PAGES.items():
+            text = with_table(page.read_text(encoding="utf-8"), table_of(faults, results.caught_by))
+            page.write_text(text, encoding="utf-8")
     except (FaultError, BuildError) as error:
         print(f"error: {error}", file=sys.stderr)
         return 2
@@ -53,7 +56,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--missing", action="store_true", help="only faults without a result")
     parser.add_argument("--survivors", action="store_true", help="only faults that survived")
     parser.add_argument("--list", action="store_true", help="list the faults and stop")
-    parser.add_argument("--table", action="store_true", help="only write the table")
+    parser.add_argument("--table", action="store_true", help="only write the tables")
     return parser
 
 

@@ -1,4 +1,4 @@
-"""What a run found, as a file, and as the table of docs/trust/injected-faults.md."""
+"""What a run found, as a file, and as tables of pages in docs/trust."""
 
 from __future__ import annotations
 
@@ -56,8 +56,8 @@ class Results:
 ABOUT = "Made by `make mutants`: the first test that failed with each fault; empty if none did."
 
 
-def table(faults: Sequence[Fault], caught_by: Mapping[str, str]) -> str:
-    """Return the results as Markdown: how many were caught of each area, then every fault.
+def summary(faults: Sequence[Fault], caught_by: Mapping[str, str]) -> str:
+    """Return as Markdown how many faults of each area were caught.
 
     Parameters
     ----------
@@ -68,9 +68,9 @@ def table(faults: Sequence[Fault], caught_by: Mapping[str, str]) -> str:
     """
     tried = [fault for fault in faults if fault.name in caught_by]
     caught = [fault for fault in tried if caught_by[fault.name]]
-    days = len(caught) / max(len(tried), 1)
+    share = len(caught) / max(len(tried), 1)
     lines = [
-        f"{len(tried)} faults were injected, and {len(caught)} ({days:.1%}) were caught.",
+        f"{len(tried)} faults were injected, and {len(caught)} ({share:.1%}) were caught.",
         "",
         "| area | faults | caught |",
         "| --- | --- | --- |",
@@ -78,8 +78,13 @@ def table(faults: Sequence[Fault], caught_by: Mapping[str, str]) -> str:
     for area in dict.fromkeys(fault.area for fault in tried):
         of_area = [fault for fault in tried if fault.area == area]
         lines.append(f"| {area} | {len(of_area)} | {sum(f in caught for f in of_area)} |")
-    lines += ["", "| area | fault | caught by |", "| --- | --- | --- |"]
-    for fault in tried:
+    return "\n".join(lines)
+
+
+def fault_list(faults: Sequence[Fault], caught_by: Mapping[str, str]) -> str:
+    """Return every fault as Markdown, with the test that caught it; parameters as of `summary`."""
+    lines = ["| area | fault | caught by |", "| --- | --- | --- |"]
+    for fault in (fault for fault in faults if fault.name in caught_by):
         test = caught_by[fault.name]
         found = f"`{_short(test)}`" if test else f"survives. {fault.survives}".strip()
         lines.append(f"| {fault.area} | {fault.why} | {found} |")

@@ -23,12 +23,12 @@ def stack(dx, height, length, **settings):
 
 
 RECORDED = [
+    stack(0.01, 7.0, 7.0, basis="cubic"),
     stack(0.02, 0.8, -0.2),
     stack(0.01, 0.3, -0.1),
     stack(0.005, 0.1, 0.05),
     stack(0.01, 0.5, 0.0, events=1),
     stack(0.01, -0.2, 0.2, dimension=3),
-    stack(0.01, 7.0, 7.0, basis="cubic"),
     stack(0.01, 9.0, 9.0, transfer="apic"),
     stack(0.01, 3.0, 3.0, flip_ratio=0.95),
     stack(0.01, -0.15, 0.06, transfer=None, scheme="objective"),

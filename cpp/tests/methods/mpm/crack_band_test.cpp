@@ -73,26 +73,77 @@ TEST(CrackBand, ActsWithAnyTransfer) {
   EXPECT_NEAR(energy_of_crack(2, 0.005, 0.01, Transfer::flip), coarse, 0.1 * coarse);
 }
 
+/// Two halves of the snows `left` and `right` in a list, of which the right one flies off.
+std::unique_ptr<Solver> broken_snow(const Way& way, double crack_band_length,
+                                    const std::vector<Snow>& snows = {Snow{}}, int left = 0,
+                                    int right = 0, bool energy = true) {
+  Options o = options_for(way);
+  o.gravity = 0;
+  o.energy = energy;
+  o.settings.crack_band_length = crack_band_length;
+  o.snows = snows;
+  auto solver = make_solver(o, {});
+  ParticleBatch stays = filled_box(2, Vec3(0, 0, 0), Vec3(0.04, 0, 0.02), 0.004);
+  ParticleBatch flies = filled_box(2, Vec3(0.04, 0, 0), Vec3(0.08, 0, 0.02), 0.004);
+  stays.material_id = left;
+  flies.material_id = right;
+  flies.velocity.x() = 2;
+  solver->add(stays);
+  solver->add(flies);
+  run_steps(*solver, 200);
+  if (energy) EXPECT_GT(solver->energy().plastic, 0);
+  return solver;
+}
+
 TEST(CrackBand, OfOneCellIsTheLawItself) {
   for (const Transfer transfer : {Transfer::flip, Transfer::affine_flip})
     for (const Precision precision : {Precision::float32, Precision::float64}) {
-      const auto broken = [&](double crack_band_length) {
-        Options o = options_for({2, precision, transfer});
-        o.gravity = 0;
-        o.energy = true;
-        o.settings.crack_band_length = crack_band_length;
-        const auto solver = make_solver(o, {});
-        ParticleBatch left = filled_box(2, Vec3(0, 0, 0), Vec3(0.04, 0, 0.02), 0.004);
-        ParticleBatch right = filled_box(2, Vec3(0.04, 0, 0), Vec3(0.08, 0, 0.02), 0.004);
-        right.velocity.x() = 2;
-        solver->add(left);
-        solver->add(right);
-        run_steps(*solver, 200);
-        EXPECT_GT(solver->energy().plastic, 0);
-        return solver->state();
-      };
-      expect_same_bits(broken(0.01), broken(0.0));
+      const Way way{2, precision, transfer};
+      expect_same_bits(broken_snow(way, 0.01)->state(), broken_snow(way, 0.0)->state());
     }
+}
+
+TEST(CrackBand, TheStrengthThatResultsShowIsThatOfTheBand) {
+  const auto solver = broken_snow({2, Precision::float64, Transfer::affine_flip}, 0.0025);
+  const Snow snow;
+  const double k = snow.youngs_modulus / (3 - 6 * snow.poissons_ratio);
+  const double begin = -std::asinh(snow.preconsolidation_pressure / k) / snow.hardening_factor;
+  const std::vector<double> strains = solver->state().plastic_strains;
+  const FieldView strength = solver->field("preconsolidation_pressure");
+  int weakened = 0;
+  for (std::size_t i = 0; i < strains.size(); ++i) {
+    const double dilated = std::max(strains[i] - begin, 0.0);  // softens four times as fast
+    const double expected =
+        k * std::sinh(snow.hardening_factor * std::max(-(strains[i] + 3 * dilated), 0.0));
+    weakened += dilated > 0 && expected > 0;
+    EXPECT_NEAR(strength.at<double>(solver->order_by_id()[i])[0], expected, 1e-6 * expected);
+  }
+  EXPECT_GT(weakened, 0);
+}
+
+/// The kernels that balance the energy are others.
+TEST(CrackBand, ActsWithoutAnEnergyBalance) {
+  const auto strains = [](double crack_band_length, bool energy) {
+    const Way way{2, Precision::float64, Transfer::flip};
+    const auto solver = broken_snow(way, crack_band_length, {Snow{}}, 0, 0, energy);
+    return solver->state().plastic_strains;
+  };
+  const std::vector<double> with = strains(0.0025, true), without = strains(0.0025, false),
+                            law = strains(0, false);
+  double error = 0, effect = 0;
+  for (std::size_t i = 0; i < law.size(); ++i) {
+    error = std::max(error, std::abs(without[i] - with[i]));
+    effect = std::max(effect, std::abs(law[i] - with[i]));
+  }
+  EXPECT_LT(error, 1e-6 * effect);
+}
+
+TEST(CrackBand, BeginsWhereTheSnowItselfDoes) {
+  Snow weak, strong;
+  weak.preconsolidation_pressure = 3e3;
+  const Way way{2, Precision::float32, Transfer::affine_flip};
+  expect_same_bits(broken_snow(way, 0.0025, {weak, strong}, 0, 1)->state(),
+                   broken_snow(way, 0.0025, {strong, weak}, 1, 0)->state());
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include "io/temporary_folder.hpp"
 #include "methods/mpm/solver_testing.hpp"
+#include "snowshed/methods/mpm/model.hpp"
 
 namespace snowshed::mpm {
 namespace {
@@ -68,36 +69,109 @@ double height_of_slab(const Way& way, double dx, Fields fields, int slabs) {
   return (height_of(s, slabs) - height_of(s, 1)) / (slabs - 1);
 }
 
-TEST(Meetings, SlabsRestOnEachOther) {
-  const Way way{2, Precision::float32};
-  for (const double dx : {0.01, 0.005}) {
-    const double height = height_of_slab(way, dx, Fields::events, 5);
-    EXPECT_NEAR(height, 0.02, 0.03 * 0.02) << dx;
-    EXPECT_LT(height - 0.02, 0.11 * dx) << dx;
-  }
-  EXPECT_GT(height_of_slab(way, 0.01, Fields::one, 3), 0.027);  // two cells apart
+class SlabsOnGrid : public testing::TestWithParam<double> {};
+INSTANTIATE_TEST_SUITE_P(Meetings, SlabsOnGrid, testing::Values(0.01, 0.005));
+
+TEST_P(SlabsOnGrid, RestOnEachOther) {
+  const double dx = GetParam();
+  const double height = height_of_slab({2, Precision::float32}, dx, Fields::events, 5);
+  EXPECT_NEAR(height, 0.02, 0.03 * 0.02);
+  EXPECT_LT(height - 0.02, 0.11 * dx);
+}
+
+TEST(Meetings, SlabsOfOneFieldRestTwoCellsApart) {
+  EXPECT_GT(height_of_slab({2, Precision::float32}, 0.01, Fields::one, 3), 0.027);
 }
 
 TEST(Meetings, SlabsRestOnEachOtherInThreeDimensions) {
   EXPECT_NEAR(height_of_slab({3, Precision::float32}, 0.01, Fields::events, 2), 0.02, 0.06 * 0.02);
 }
 
+std::unique_ptr<Solver> weightless_solver(Fields fields = Fields::events) {
+  Options o = event_options({2, Precision::float64});
+  o.settings.scheme = Scheme::thesis;
+  o.settings.fields = fields;
+  o.gravity = 0;
+  return make_solver(o, {});
+}
+
+ParticleBatch lower_block(int event) {
+  return slab(2, event, Vec3(0, 0, 0), Vec3(0.06, 0, 0.03), 0.004);
+}
+
+/// It touches the lower one and moves away from it.
+ParticleBatch upper_block(int event) {
+  ParticleBatch block = slab(2, event, Vec3(0, 0, 0.03), Vec3(0.06, 0, 0.06), 0.004);
+  block.velocity.z() = 0.2;
+  return block;
+}
+
+/// The speed (m/s) to which the upper block has carried the lower one, of an event, along.
+double speed_carried_along(Solver& solver, int event) {
+  run_until(solver, solver.time() + 0.02);
+  return momentum_of(solver.state(), event).z() / (0.06 * 0.03 * 210);
+}
+
 TEST(Meetings, SnowOfDifferentEventsDoesNotStick) {
   const auto speed_of_lower = [](Fields fields) {
-    Options o = event_options({2, Precision::float64});
-    o.settings.scheme = Scheme::thesis;
-    o.settings.fields = fields;
-    o.gravity = 0;
-    const auto solver = make_solver(o, {});
-    solver->add(slab(2, 1, Vec3(0, 0, 0), Vec3(0.06, 0, 0.03), 0.004));
-    ParticleBatch upper = slab(2, 2, Vec3(0, 0, 0.03), Vec3(0.06, 0, 0.06), 0.004);
-    upper.velocity.z() = 0.2;
-    solver->add(upper);
-    run_until(*solver, 0.02);
-    return momentum_of(solver->state(), 1).z() / (0.06 * 0.03 * 210);
+    const auto solver = weightless_solver(fields);
+    solver->add(lower_block(1));
+    solver->add(upper_block(2));
+    return speed_carried_along(*solver, 1);
   };
   EXPECT_NEAR(speed_of_lower(Fields::events), 0, 0.002);
   EXPECT_GT(speed_of_lower(Fields::one), 0.02);
+}
+
+/// Of ten events the first three share a field.
+TEST(Meetings, TheNewestEventSharesNoField) {
+  for (const int lower : {3, 9}) {
+    const auto solver = weightless_solver();
+    for (int event = 1; event <= 9; ++event) {
+      const double x = 0.3 * event;
+      solver->add(event == lower ? lower_block(event)
+                                 : slab(2, event, Vec3(x, 0, 0), Vec3(x + 0.01, 0, 0.01), 0.005));
+    }
+    solver->add(upper_block(10));
+    EXPECT_NEAR(speed_carried_along(*solver, lower), 0, 0.002) << lower;
+  }
+}
+
+TEST(Meetings, SettlingKeepsTheFields) {
+  const auto solver = weightless_solver();
+  solver->add(lower_block(1));
+  solver->add(upper_block(2));
+  solver->settle(std::vector<double>(solver->size(), 0.0),
+                 std::vector<double>(solver->size(), 0.0));
+  EXPECT_NEAR(speed_carried_along(*solver, 1), 0, 0.002);
+}
+
+TEST(Meetings, FrictionIsThatOfTheWeakestSnow) {
+  Options o = event_options({2, Precision::float64});
+  o.settings.event_friction = 0.5;
+  o.snows = {Snow{}, Snow{}, Snow{}};
+  o.snows[0].critical_state_slope = 1.2;
+  o.snows[1].critical_state_slope = 0.6;
+  const Model<double, 2> model(o);
+  EXPECT_DOUBLE_EQ(model.event_friction(), 0.5 * 0.5 / std::sqrt(3.0));
+}
+
+/// Snow that falls on a layer comes to lie on it, whether the layer sleeps or not.
+TEST(Meetings, SleepingSnowCarriesThatOfAnotherEvent) {
+  const auto height_of_block = [](double sleep_speed) {
+    Options o = event_options({2, Precision::float32});
+    o.settings.sleep_speed = sleep_speed;
+    const auto solver = make_solver(o, {ground()});
+    solver->add(slab(2, 1, Vec3(-0.01, 0, 0), Vec3(0.04, 0, 0.02), 0.004));
+    run_until(*solver, 0.15);
+    EXPECT_EQ(solver->slept_updates() > 0, sleep_speed > 0);
+    ParticleBatch block = slab(2, 2, Vec3(0, 0, 0.025), Vec3(0.03, 0, 0.045), 0.004);
+    block.velocity.z() = -0.5;
+    solver->add(block);
+    run_until(*solver, 0.2);
+    return height_of(solver->state(), 2);
+  };
+  EXPECT_NEAR(height_of_block(0.02), height_of_block(0), 0.0003);
 }
 
 /// Momentum that a block, at 1 m/s at first, loses to a layer of snow over what presses it on.
@@ -129,14 +203,73 @@ double mean_coefficient_felt(int dimension, double dx, double event_friction, in
   return sum / seeds;
 }
 
-TEST(Meetings, ABlockFeelsItsFriction) {
+struct FrictionOnGrid {
+  double dx, event_friction;
+  int seeds;
+};
+
+void PrintTo(const FrictionOnGrid& c, std::ostream* out) {
+  *out << c.dx << " m, friction " << c.event_friction;
+}
+
+class BlockOnSnow : public testing::TestWithParam<FrictionOnGrid> {};
+INSTANTIATE_TEST_SUITE_P(Meetings, BlockOnSnow,
+                         testing::Values(FrictionOnGrid{0.01, 1, 8}, FrictionOnGrid{0.01, 0, 8},
+                                         FrictionOnGrid{0.01, 2, 8}, FrictionOnGrid{0.005, 1, 4},
+                                         FrictionOnGrid{0.005, 0, 4}, FrictionOnGrid{0.005, 2, 4}));
+
+TEST_P(BlockOnSnow, FeelsItsFriction) {
+  const FrictionOnGrid c = GetParam();
   const double coefficient = 0.5 / std::sqrt(3.0);
-  for (const double dx : {0.01, 0.005}) {
-    const int seeds = dx < 0.01 ? 4 : 8;
-    EXPECT_NEAR(mean_coefficient_felt(2, dx, 1, seeds), coefficient, 0.07 * coefficient) << dx;
-    EXPECT_LT(mean_coefficient_felt(2, dx, 0, seeds), 0.02) << dx;  // it ploughs a little
-    EXPECT_NEAR(mean_coefficient_felt(2, dx, 2, seeds), 2 * coefficient, 0.3 * coefficient) << dx;
+  const double felt = mean_coefficient_felt(2, c.dx, c.event_friction, c.seeds);
+  if (c.event_friction == 0)
+    EXPECT_LT(felt, 0.02);  // it ploughs a little
+  else
+    EXPECT_NEAR(felt, c.event_friction * coefficient,
+                (c.event_friction == 1 ? 0.07 : 0.3) * coefficient);
+}
+
+/// A block comes to rest as soon as its friction says, although some of its nodes stop before.
+TEST(Meetings, ABlockStopsInTime) {
+  double left = 0;
+  for (int seed = 2; seed < 10; ++seed) {
+    const auto solver = make_solver(event_options({2, Precision::float32}), {ground()});
+    solver->add(slab(2, 1, Vec3(-0.02, 0, 0), Vec3(0.1, 0, 0.02), 0.004));
+    run_until(*solver, 0.03);
+    const double top = top_of(solver->state()) + 0.002;
+    ParticleBatch block = slab(2, seed, Vec3(0, 0, top), Vec3(0.06, 0, top + 0.02), 0.004);
+    block.event = 2;
+    block.velocity.x() = 0.2;
+    solver->add(block);
+    run_until(*solver, 0.03 + 0.2 / (9.81 * 0.5 / std::sqrt(3.0)));
+    left += momentum_of(solver->state(), 2).x() / block.total_mass() / 8;
   }
+  EXPECT_LT(left, 0.01);
+}
+
+/// Blocks that meet fast do not enter each other.
+TEST(Meetings, FastSnowDoesNotEnterThatOfAnotherEvent) {
+  const auto solver = weightless_solver();
+  ParticleBatch lower = filled_box(2, Vec3(0, 0, 0), Vec3(0.06, 0, 0.03), 0.004);
+  ParticleBatch upper = filled_box(2, Vec3(0, 0, 0.06), Vec3(0.06, 0, 0.09), 0.004);
+  lower.event = 1;
+  upper.event = 2;
+  upper.velocity.z() = -5;
+  solver->add(lower);
+  solver->add(upper);
+  double nearest = 1;  // m, of the two blocks along z
+  while (solver->time() < 0.012) {
+    run_steps(*solver, 4);
+    const ParticleState s = solver->state();
+    double top = -1, bottom = 1;
+    for (std::size_t i = 0; i < s.positions.size(); ++i)
+      if (s.events[i] == 1)
+        top = std::max(top, s.positions[i].z());
+      else
+        bottom = std::min(bottom, s.positions[i].z());
+    nearest = std::min(nearest, bottom - top);
+  }
+  EXPECT_GT(nearest, 0.001);  // they touch at 0.6 of the spacing
 }
 
 TEST(Meetings, ABlockFeelsItsFrictionInThreeDimensions) {
@@ -197,6 +330,28 @@ TEST_F(MeetingsFiles, GiveTheSameBitsOnAnyNumberOfThreadsAndFromACheckpoint) {
   expect_same_bits(many->state(), one->state());
   EXPECT_GT(one->slept_updates(), 0);
   expect_resumes(*one, *falling_slabs(1, 3), path("state"), 200);
+}
+
+TEST_F(MeetingsFiles, SnowAfterACheckpointHasAFieldOfItsOwn) {
+  const auto before = weightless_solver(), solver = weightless_solver();
+  before->add(lower_block(1));
+  BinaryWriter out;
+  before->save(out);
+  out.save(path("state"));
+  solver->load(BinaryReader::load(path("state")));
+  solver->add(upper_block(2));
+  EXPECT_NEAR(speed_carried_along(*solver, 1), 0, 0.002);
+}
+
+TEST_F(MeetingsFiles, SnowThatSlidesGoesOnFromACheckpoint) {
+  const auto solver = falling_slabs(1, 0);
+  solver->add(slab(2, 1, Vec3(-0.02, 0, 0), Vec3(0.1, 0, 0.02), 0.004));
+  ParticleBatch block = slab(2, 2, Vec3(0, 0, 0.02), Vec3(0.06, 0, 0.04), 0.004);
+  block.velocity.x() = 0.5;
+  solver->add(block);
+  run_steps(*solver, 600);
+  while (!solver->at_safe_point()) solver->step();
+  expect_resumes(*solver, *falling_slabs(1, 0), path("state"), 200);
 }
 
 /// More than there are fields: the oldest share one.

@@ -23,6 +23,12 @@ TEST(Placement, FindsBlockAndCell) {
   EXPECT_THROW((Placement<2>::of(VecD<2>(std::nan(""), 0), cell_size, basis)), SimulationError);
 }
 
+TEST(Placement, RefusesPlacesThatTheKeysOfAFieldCannotHold) {
+  const double far = (block_coord_limit(1) + 1.5) * block_edge<2> * cell_size;
+  EXPECT_NO_THROW((Placement<2>::of(VecD<2>(far, 0), cell_size, basis)));
+  EXPECT_THROW((Placement<2>::of(VecD<2>(far, 0), cell_size, basis, 1)), SimulationError);
+}
+
 /// Sorts particles; returns their layout.
 template <class T, int D>
 BlockLayout<D> sorted(Particles<T, D>& particles, const std::vector<BlockKey>& blocks,

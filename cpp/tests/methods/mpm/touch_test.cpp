@@ -82,6 +82,36 @@ TEST(Touch, SnowPastAnEdgeIsNotCarried) {
             0.8 * free_fall);  // the grid carries it
 }
 
+/// Snow that lies on the ground a few cells away does not hold what falls.
+TEST(Touch, SnowBesideSnowThatTouchesFallsFreely) {
+  const auto solver =
+      make_solver(touching_options({2, Precision::float64}),
+                  {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::separate)});
+  solver->add(filled_box(2, Vec3(0.01, 0, -0.001), Vec3(0.03, 0, 0.019), 0.004));
+  ParticleBatch falling = filled_box(2, Vec3(0.06, 0, 0.012), Vec3(0.08, 0, 0.024), 0.004);
+  falling.event = 2;
+  solver->add(falling);
+  run_until(*solver, 0.03);
+  const ParticleState s = solver->state();
+  for (std::size_t i = 0; i < s.events.size(); ++i)
+    if (s.events[i] == 2) EXPECT_NEAR(s.velocities[i].z(), -9.81 * solver->time(), 0.005);
+}
+
+/// The ball lies where the corners of four blocks meet.
+TEST(Touch, ASmallBallHoldsSnowWhereverItIs) {
+  Options o = touching_options({2, Precision::float64});
+  o.gravity = 0;
+  const double corner = (8 + base_offset(Basis::quadratic)) * 0.01;
+  const auto solver =
+      make_solver(o, {fixed(make_sphere(Vec3(corner, 0, corner), 0.004), Condition::sticky)});
+  ParticleBatch chunk = filled_box(2, Vec3(corner - 0.01, 0, corner + 0.01),
+                                   Vec3(corner + 0.01, 0, corner + 0.03), 0.004);
+  chunk.velocity.z() = -0.1;
+  solver->add(chunk);
+  run_until(*solver, 0.2);
+  EXPECT_GT(mean_velocity(*solver).z(), -0.02);
+}
+
 TEST(Touch, FrictionIsCoulombs) {
   constexpr double tilt = radians(40);
   const Vec3 normal(std::sin(tilt), 0, std::cos(tilt)), slope(std::cos(tilt), 0, -std::sin(tilt));
@@ -147,6 +177,32 @@ TEST(Touch, AMovingObstaclePushesOnceItTouches) {
   EXPECT_EQ(mean_velocity(*solver).norm(), 0.0);
   run_until(*solver, 0.08);
   EXPECT_GT(mean_velocity(*solver).x(), 0.45);
+}
+
+template <int D>
+void expect_radius_of_volume() {
+  constexpr double spacing = 0.004, part = 0.8;
+  Options o = touching_options({D, Precision::float64});
+  o.settings.contact_radius = part;
+  const Model<double, D> model(o);
+  State<double, D> state(model);
+  ParticleBatch particle;
+  particle.positions = {Vec3::Zero()};
+  particle.mass = o.snows[0].density * std::pow(spacing, D);
+  std::vector<BlockKey> blocks;
+  state.append(model, particle, blocks);
+  const double initial = state.particles.plastic[0];
+  for (const double ratio : {1.0, 0.5, 1.4, 4.0}) {  // loose snow is no larger than by half
+    state.particles.plastic[0] = initial + std::log(ratio);
+    EXPECT_NEAR(state.contact_radius(model, 0),
+                part * spacing / 2 * std::pow(std::min(ratio, 1.5), 1.0 / D), 1e-9)
+        << D << ", " << ratio;
+  }
+}
+
+TEST(Touch, TheRadiusOfAParticleIsThatOfItsVolume) {
+  expect_radius_of_volume<2>();
+  expect_radius_of_volume<3>();
 }
 
 class TouchFiles : public TemporaryFolder {};

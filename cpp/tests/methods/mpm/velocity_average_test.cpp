@@ -130,6 +130,12 @@ TEST(VelocityAverage, AChunkStopsTurningAsFastInThreeDimensions) {
   EXPECT_NEAR(coarse / fine, 1.0, 0.1) << coarse << " and " << fine << " 1/s";
 }
 
+/// On cells larger than twice the length a smaller share diffuses velocities as fast.
+TEST(VelocityAverage, OnCoarseGridsDampsALargeChunkAsFast) {
+  const double rate_of_fine = decay_rate(2, 0.24, 0.02);
+  EXPECT_NEAR(decay_rate(2, 0.24, 0.04), rate_of_fine, 0.2 * rate_of_fine);
+}
+
 TEST(VelocityAverage, IsNotOfTheStep) {
   const auto left = [](double courant_factor) {
     Options o = damped_options({2, Precision::float64});
@@ -193,6 +199,43 @@ TEST(VelocityAverage, BooksOfATurningChunkClose) {
   EXPECT_NEAR(e.residual(), 0, 0.01 * e.added);
 }
 
+/// Two particles at one place that fly apart; damping so fast leaves them at rest.
+TEST(VelocityAverage, BooksWhatItTakes) {
+  Options o = damped_options({2, Precision::float64});
+  o.energy = true;
+  o.settings.damping_rate = 1e9;
+  const auto solver = make_solver(o, {});
+  for (const double speed : {0.1, -0.1}) {
+    ParticleBatch particle;
+    particle.positions = {Vec3(0.003, 0, 0.302)};
+    particle.velocity = Vec3(speed, 0, 0);
+    particle.mass = 1e-3;
+    solver->add(particle);
+  }
+  run_steps(*solver, steps_between_averages);
+  const EnergyBalance e = solver->energy();
+  EXPECT_NEAR(e.added, 1e-5, 1e-11);
+  EXPECT_NEAR(e.damping, e.added, 1e-6 * e.added);
+  EXPECT_NEAR(e.kinetic, 0, 1e-6 * e.added);
+}
+
+/// Neither the average over a length far below a cell nor PIC.
+TEST(VelocityAverage, OverNoLengthTakesNothing) {
+  Options o = damped_options({2, Precision::float64});
+  o.settings.damping_length = 1e-5;
+  o.energy = true;
+  const auto solver = make_solver(o, {});
+  for (const double speed : {0.1, -0.1}) {
+    ParticleBatch particle;
+    particle.positions = {Vec3(0.003, 0, 0.302)};
+    particle.velocity = Vec3(speed, 0, 0);
+    particle.mass = 1e-3;
+    solver->add(particle);
+  }
+  run_until(*solver, 0.01);
+  EXPECT_NEAR(solver->energy().kinetic, 1e-5, 1e-7);
+}
+
 TEST(VelocityAverage, LeavesWhatMovesAsOneAlone) {
   Options o = damped_options({2, Precision::float64});
   const auto solver = make_solver(o, {});
@@ -233,6 +276,17 @@ TEST_F(VelocityAverageFiles, GivesTheSameBitsOnAnyNumberOfThreadsAndFromACheckpo
   one->add_velocity(std::vector<Vec3>(one->size(), Vec3::Zero()));  // a safe point
   ASSERT_NE(one->counters().steps % steps_between_averages, 0);  // a part of a damping is pending
   expect_resumes(*one, *thrown_chunk(1), path("state"), 300);
+}
+
+/// What sleeping snow adds to the averages is not in a checkpoint.
+TEST_F(VelocityAverageFiles, GoesOnFromACheckpointBesideSnowThatSleeps) {
+  const auto solver = thrown_chunk(1);
+  for (int i = 0; i < 4; ++i) {
+    run_steps(*solver, 300);
+    while (!solver->at_safe_point()) solver->step();
+    expect_resumes(*solver, *thrown_chunk(1), path("state"), 20);
+  }
+  EXPECT_GT(solver->slept_updates(), 0);
 }
 
 }  // namespace
