@@ -63,4 +63,4 @@ def test_the_command_takes_a_scheme(tmp_path, capsys):
     assert main([*asked, "-o", str(tmp_path / "out")]) == 0
     shown = " ".join(capsys.readouterr().out.split())
     assert "damping 380 1/s over 0.01 m" in shown
-    assert "no runs are recorded for transfer affine_flip; --check measures it" in shown
+    assert "lab-50 in 2D, event 1, scheme objective" in shown
