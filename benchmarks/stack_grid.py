@@ -39,6 +39,8 @@ QUANTITIES = {
     "length_m": "length",
     "centre_height_m": "height of the centre of mass",
 }
+#: Distance of a point's label from it, points.
+LABEL_ABOVE = {"thesis": 7, "objective": -15}
 #: Cells whose mean stacks count as exact, m.
 FINEST = 0.0025
 
@@ -132,14 +134,17 @@ def _draw_errors(axes: Axes, lab: pd.DataFrame, times: pd.Series, name: str, lab
                 f"{100 * cells:g} cm",
                 (times[scheme][cells], value),
                 textcoords="offset points",
-                xytext=(4, 5),
+                xytext=(0, LABEL_ABOVE[scheme]),
+                ha="center",
                 fontsize=8,
             )
     axes.set_xlabel("time of five slide-offs, s")
-    axes.set_title(f"{label}: deviation, %", fontsize=9)
-    ticks = [2, 5, 10, 20, 50, 100]
-    axes.set_yticks(ticks, [str(tick) for tick in ticks])
-    axes.set_ylim(2, 120)
+    axes.set_ylabel("deviation, %")
+    axes.set_title(label, fontsize=10)
+    axes.set_xticks([1, 2, 5, 10, 20, 50], ["1", "2", "5", "10", "20", "50"])
+    axes.set_yticks([2, 5, 10, 20, 50, 100], ["2", "5", "10", "20", "50", "100"])
+    axes.set_xlim(0.8, 60)
+    axes.set_ylim(2, 200)
     axes.minorticks_off()
     axes.legend(fontsize=8, frameon=False)
 
