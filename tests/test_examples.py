@@ -20,6 +20,8 @@ ARGUMENTS = {
     "resume.py": ["out", "0.02"],
     "slab_and_bonds.py": ["out", "1.0"],
 }
+#: Scripts that take most of a minute.
+LONG = {"image_to_stack.py"}
 #: On such coarse grids slabs are said to be thin; with the line of the script that runs them.
 NOTE = re.compile(r".*: SnowshedNote: the slab is .* thick, less than two cells .*\n.*\n")
 
@@ -28,7 +30,9 @@ def test_all_scripts_are_run():
     assert set(ARGUMENTS) == {path.name for path in EXAMPLES.glob("*.py")}
 
 
-@pytest.mark.parametrize("name", ARGUMENTS)
+@pytest.mark.parametrize(
+    "name", [pytest.param(n, marks=[pytest.mark.slow] if n in LONG else []) for n in ARGUMENTS]
+)
 def test_script(name, tmp_path):
     command = [sys.executable, EXAMPLES / name, *ARGUMENTS[name]]
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)

@@ -80,7 +80,11 @@ def test_the_same_mass_in_metres_feet_decimetres_and_another_band(tmp_path):
 @pytest.mark.filterwarnings("ignore::snowshed.SnowshedNote")
 @pytest.mark.parametrize(
     ("change", "options"),
-    [(scaled(0.01), ()), (in_unit("cm"), ()), (None, ("--thickness-band", "2"))],
+    [
+        pytest.param(scaled(0.01), (), marks=pytest.mark.slow),
+        (in_unit("cm"), ()),
+        pytest.param(None, ("--thickness-band", "2"), marks=pytest.mark.slow),
+    ],
     ids=["scale", "centimetres", "band"],
 )
 def test_a_raster_of_thickness_is_read_alike(tmp_path, change, options):

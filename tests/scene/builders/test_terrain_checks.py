@@ -81,9 +81,9 @@ def test_slides_and_structures_refuse_the_same(tmp_path, form, message):
 @pytest.mark.parametrize(
     ("bands", "change", "band"),
     [
-        (SLOPE * 100, scaled(0.01), None),
+        pytest.param(SLOPE * 100, scaled(0.01), None, marks=pytest.mark.slow),
         (SLOPE / 0.3048, in_unit("ft"), None),
-        (np.stack([SLOPE * 0, SLOPE]), None, 2),
+        pytest.param(np.stack([SLOPE * 0, SLOPE]), None, 2, marks=pytest.mark.slow),
     ],
 )
 def test_structures_stand_on_the_same_ground_whatever_its_unit(tmp_path, bands, change, band):
