@@ -72,8 +72,7 @@ void Boundary<T, D>::find(BlockKey key, double time, bool moving,
         continue;
       Vec3 normal = obstacle.shape->normal(body);
       if (moving) normal = pose.normal_to_world(normal);
-      VecD<D> n = section<D>(normal);
-      n = n.norm() > 1e-9 ? VecD<D>(n.normalized()) : VecD<D>(VecD<D>::Unit(D - 1));
+      const VecD<D> n = normal_in_section<D>(normal);
       const VecD<D> v = section<D>(moving ? pose.velocity(x) : Vec3::Zero());
       Contact<T> c{};
       c.node = node;

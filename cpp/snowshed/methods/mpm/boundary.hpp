@@ -23,6 +23,13 @@ namespace snowshed::mpm {
 ThickSolid as_grid_sees(Shape shape, double dx, int dimension);
 Obstacle thick_enough(Obstacle obstacle, double dx, int dimension);
 
+/// A normal in the section, of length 1; upwards where the section has none of it.
+template <int D>
+VecD<D> normal_in_section(const Vec3& normal) {
+  const VecD<D> n = section<D>(normal);
+  return n.norm() > 1e-9 ? VecD<D>(n.normalized()) : VecD<D>(VecD<D>::Unit(D - 1));
+}
+
 /// When an obstacle lets go of snow, where its outward normal rises by `upward`.
 inline Release release(Condition condition, double upward) {
   if (condition == Condition::slip) return Release::never;
@@ -57,9 +64,10 @@ class Boundary {
     }
     /// Signed, m.
     double distance(const Vec3& x) const { return shape_.distance(pose_ ? pose_->to_body(x) : x); }
-    /// Outward.
-    Vec3 normal(const Vec3& x) const {
-      return pose_ ? pose_->normal_to_world(shape_.normal(pose_->to_body(x))) : shape_.normal(x);
+    /// Outward, of length 1 in the section.
+    VecD<D> normal(const Vec3& x) const {
+      return normal_in_section<D>(pose_ ? pose_->normal_to_world(shape_.normal(pose_->to_body(x)))
+                                        : shape_.normal(x));
     }
 
    private:

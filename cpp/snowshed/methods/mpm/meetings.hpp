@@ -7,6 +7,7 @@
 // What one field gets the other loses, in pairs also where three or more meet.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 

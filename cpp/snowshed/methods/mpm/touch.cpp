@@ -97,25 +97,19 @@ void Touch<T, D>::measure(const Model<T, D>& model, const State<T, D>& state, st
       const double distance = surface.distance(embed(x));
       double gap = distance - largest_radius_;
       if (gap <= 0) gap = distance - state.contact_radius(model, std::size_t(i));
-      if (gap <= 0)
-        block.touchers.push_back(toucher(surface.normal(embed(x)), i, o));
-      else
+      if (gap > 0) {
         nearest = std::min(nearest, gap);
+        continue;
+      }
+      Toucher toucher{i, o, {}};
+      const VecD<D> normal = surface.normal(embed(x));
+      for (int d = 0; d < D; ++d) toucher.normal[d] = T(normal[d]);
+      block.touchers.push_back(toucher);
     }
   }
   // What touches may cease to, but that matters little sooner or later.
   block.next = travel_ + std::max(nearest, contact_tolerance * n.dx);
   if (!block.touchers.empty()) block.next = travel_ + contact_tolerance * n.dx;
-}
-
-template <class T, int D>
-typename Touch<T, D>::Toucher Touch<T, D>::toucher(const Vec3& normal, std::int32_t particle,
-                                                   std::int32_t obstacle) {
-  Toucher t{particle, obstacle, {}};
-  const VecD<D> n = section<D>(normal);
-  const double length = n.norm();
-  for (int d = 0; d < D; ++d) t.normal[d] = length > 1e-9 ? T(n[d] / length) : T(d == D - 1);
-  return t;
 }
 
 template <class T, int D>

@@ -42,7 +42,6 @@ class Touch {
     double next = 0;                // m, of travel, when to measure again
   };
 
-  static Toucher toucher(const Vec3& normal, std::int32_t particle, std::int32_t obstacle);
   void measure(const Model<T, D>& model, const State<T, D>& state, std::int32_t block);
   void mark(const Model<T, D>& model, State<T, D>& state, std::int32_t grid_block) const;
   /// The faces of an obstacle that particles touch which have weight in a block of nodes.

@@ -199,19 +199,24 @@ TEST(VelocityAverage, BooksOfATurningChunkClose) {
   EXPECT_NEAR(e.residual(), 0, 0.01 * e.added);
 }
 
-/// Two particles at one place that fly apart; damping so fast leaves them at rest.
-TEST(VelocityAverage, BooksWhatItTakes) {
-  Options o = damped_options({2, Precision::float64});
-  o.energy = true;
-  o.settings.damping_rate = 1e9;
-  const auto solver = make_solver(o, {});
+/// Two particles at one place that fly apart with 10 microjoules.
+void add_parting_particles(Solver& solver) {
   for (const double speed : {0.1, -0.1}) {
     ParticleBatch particle;
     particle.positions = {Vec3(0.003, 0, 0.302)};
     particle.velocity = Vec3(speed, 0, 0);
     particle.mass = 1e-3;
-    solver->add(particle);
+    solver.add(particle);
   }
+}
+
+/// Damping so fast leaves them at rest.
+TEST(VelocityAverage, BooksWhatItTakes) {
+  Options o = damped_options({2, Precision::float64});
+  o.energy = true;
+  o.settings.damping_rate = 1e9;
+  const auto solver = make_solver(o, {});
+  add_parting_particles(*solver);
   run_steps(*solver, steps_between_averages);
   const EnergyBalance e = solver->energy();
   EXPECT_NEAR(e.added, 1e-5, 1e-11);
@@ -225,13 +230,7 @@ TEST(VelocityAverage, OverNoLengthTakesNothing) {
   o.settings.damping_length = 1e-5;
   o.energy = true;
   const auto solver = make_solver(o, {});
-  for (const double speed : {0.1, -0.1}) {
-    ParticleBatch particle;
-    particle.positions = {Vec3(0.003, 0, 0.302)};
-    particle.velocity = Vec3(speed, 0, 0);
-    particle.mass = 1e-3;
-    solver->add(particle);
-  }
+  add_parting_particles(*solver);
   run_until(*solver, 0.01);
   EXPECT_NEAR(solver->energy().kinetic, 1e-5, 1e-7);
 }
