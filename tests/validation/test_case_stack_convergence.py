@@ -8,10 +8,11 @@ from validation.framework.case import alternatives
 from validation.laboratory import case_stack_convergence as stack_convergence
 from validation.laboratory import lab_records
 from validation.laboratory.case_stack_convergence import CASE
-from validation.laboratory.lab_records import REFERENCES, Grid, record, recorded, scheme_of
+from validation.laboratory.lab_records import REFERENCES, Grid, record, recorded
 from validation.laboratory.lab_stack import COMPARED, lab_scene, run_lab
 
 from snowshed import Scene
+from snowshed.analysis.accuracy.mechanisms import scheme_of
 
 QUICK = {"dimension": 2, "dx": 0.02, "events": 1}
 

@@ -7,12 +7,13 @@ import pytest
 from validation.laboratory import lab_records
 from validation.laboratory.case_stack_convergence import CASE
 from validation.laboratory.lab_import import imported, settings_of
-from validation.laboratory.lab_records import Grid, RecordedRun, recorded_runs, scheme_of
+from validation.laboratory.lab_records import Grid, RecordedRun, recorded_runs
 from validation.laboratory.lab_stack import COMPARED, Cost, lab_scene
 from validation.laboratory.recorded_measurements import SCHEME, measurements_of, renew
 
 from snowshed import InputError
 from snowshed.analysis.accuracy.measurements import Measurement
+from snowshed.analysis.accuracy.mechanisms import scheme_of
 from snowshed.analysis.accuracy.recorded import load_recorded, record
 from snowshed.cli.main import main
 

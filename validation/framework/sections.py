@@ -30,9 +30,7 @@ COSTS: Mapping[str, Callable[[Measurement], str]] = {
     "time": lambda one: formatting.duration(one.wall_s),
     "particles": lambda one: formatting.count(one.particles or None),
     "steps": lambda one: formatting.count(one.steps or None),
-    "10⁶ updates/s": lambda one: formatting.number(
-        one.updates / one.wall_s / 1e6 if one.wall_s and one.updates else None
-    ),
+    "10⁶ updates/s": lambda one: formatting.number(one.updates_per_s / 1e6),
     "memory, MB": lambda one: formatting.number(one.peak_memory_mb),
 }
 #: Stands for what the cell to the left says.

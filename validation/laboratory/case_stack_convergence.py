@@ -7,9 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from snowshed.analysis.accuracy.measurements import Measured, Settings
+from snowshed.analysis.accuracy.mechanisms import scheme_of
 from validation.framework.case import Case, Outcome, Quantity, Wanted
 from validation.framework.drive import relative
-from validation.laboratory.lab_records import noise, recorded, scheme_of
+from validation.laboratory.lab_records import noise, recorded
 from validation.laboratory.lab_stack import COMPARED, Solved, outcome_of, run_seedings
 
 #: 3D over 2D stack height where height and width are comparable (thesis, 5.1.1).

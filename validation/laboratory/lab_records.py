@@ -20,6 +20,7 @@ import numpy as np
 
 from snowshed import _core
 from snowshed.analysis.accuracy.measurements import Measured, Settings, Value
+from snowshed.analysis.accuracy.mechanisms import FIRST_SCHEME, scheme_of
 from snowshed.base.arrays import Floats
 from snowshed.base.machine import cpu_name
 from snowshed.io.atomic import write_text
@@ -29,8 +30,6 @@ from validation.laboratory.lab_stack import COMPARED, Cost, Solved, run_lab
 FILE = Path(__file__).with_name("lab_stack.json")
 #: Events of a recorded run that does not name their number.
 EVENTS = 5
-#: The scheme of a run that does not name it.
-FIRST_SCHEME = "thesis"
 
 #: The reference of `FIRST_SCHEME` is made with this besides the defaults: no snow sleeps.
 AWAKE: Settings = {"sleep_speed": 0.0}
@@ -89,17 +88,6 @@ REFERENCES: Mapping[str, Reference] = {
         ),
     ),
 }
-
-
-def scheme_of(settings: Mapping[str, Any]) -> str:
-    """Return the scheme of a run's settings.
-
-    Examples
-    --------
-    >>> scheme_of({"dx": 0.01}), scheme_of({"scheme": "objective"})
-    ('thesis', 'objective')
-    """
-    return str(settings.get("scheme", FIRST_SCHEME))
 
 
 @dataclass(frozen=True)

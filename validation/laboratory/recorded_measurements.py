@@ -14,9 +14,10 @@ from pathlib import Path
 
 from snowshed._core import InputError
 from snowshed.analysis.accuracy.measurements import Measurement, Settings
+from snowshed.analysis.accuracy.mechanisms import scheme_of
 from snowshed.analysis.accuracy.recorded import PACKAGED, load_recorded, record
 from validation.laboratory.case_stack_convergence import CASE, compared, matrix
-from validation.laboratory.lab_records import RecordedRun, recorded_runs, scheme_of
+from validation.laboratory.lab_records import RecordedRun, recorded_runs
 
 SCHEME = "objective"
 

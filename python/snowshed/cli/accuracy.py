@@ -45,8 +45,6 @@ def part(text: str) -> float:
     return value
 
 
-SCHEME = "scheme"
-
 accuracy_option = click.option(
     "--accuracy",
     type=part,
@@ -175,6 +173,7 @@ def best_of(stacks: Sequence[RecordedStack], wanted: float) -> RecordedStack:
 
 def _settings_text(stack: RecordedStack, name: str) -> str:
     """Return the scheme of a recorded stack, and its further settings except `name`."""
+    from snowshed.analysis.accuracy.mechanisms import SCHEME
     from snowshed.analysis.accuracy.setting_labels import settings
 
     further = {k: v for k, v in stack.settings.items() if k in ACCURACY and k not in (name, SCHEME)}
@@ -182,9 +181,9 @@ def _settings_text(stack: RecordedStack, name: str) -> str:
 
 
 def _scheme(stack: RecordedStack) -> str:
-    from snowshed.analysis.accuracy.mechanisms import FIRST_SCHEME
+    from snowshed.analysis.accuracy.mechanisms import scheme_of
 
-    return str(stack.settings.get(SCHEME, FIRST_SCHEME))
+    return scheme_of(stack.settings)
 
 
 def _outcome(stack: RecordedStack, wanted: float, what: str) -> str:

@@ -110,6 +110,11 @@ class Measurement:
         """
         return key_of(self.case, self.settings)
 
+    @property
+    def updates_per_s(self) -> float:
+        """Pace of the solution, 1/s; NaN if it was not measured."""
+        return self.updates / self.wall_s if self.wall_s and self.updates else math.nan
+
     def to_json(self) -> dict[str, Any]:
         """Return the measurement as JSON data; numbers that are not finite are null."""
         data = asdict(self)
@@ -190,11 +195,7 @@ def settings_of(table: pd.DataFrame) -> list[str]:
 def _rows(measurement: Measurement) -> list[dict[str, Any]]:
     facts = asdict(measurement)
     del facts["settings"], facts["measured"]
-    facts["updates_per_s"] = (
-        measurement.updates / measurement.wall_s
-        if measurement.wall_s and measurement.updates
-        else math.nan
-    )
+    facts["updates_per_s"] = measurement.updates_per_s
     return [
         {**facts, **measurement.settings, **asdict(measured)} for measured in measurement.measured
     ]

@@ -66,7 +66,7 @@ class Mechanisms:
         >>> Mechanisms.of_settings({"scheme": "objective", "damping_length": 0.02}).label
         'scheme objective with damping length 0.02'
         """
-        scheme = str(settings.get(SCHEME) or FIRST_SCHEME)
+        scheme = scheme_of(settings)
         decided = decided_by(scheme)
         departures = {
             name: settings[name]
@@ -120,6 +120,17 @@ class Mechanisms:
             f"the scheme's lengths of {length:g} m are {length / recorded:.2g} of the slab there, "
             f"{length / thickness:.2g} here"
         )
+
+
+def scheme_of(settings: Mapping[str, Any]) -> str:
+    """Return the scheme of settings, which recorded runs of the first one do not name.
+
+    Examples
+    --------
+    >>> scheme_of({"dx": 0.01}), scheme_of({"scheme": "objective"})
+    ('thesis', 'objective')
+    """
+    return str(settings.get(SCHEME) or FIRST_SCHEME)
 
 
 @lru_cache(maxsize=8)
