@@ -1,6 +1,7 @@
 """Compare the laboratory's stacks on several grids, with both schemes of the MPM.
 
-Usage: python benchmarks/stack_grid.py run FOLDER [--seeds 12] [--cells 0.02 0.01 0.005]
+Usage: python benchmarks/stack_grid.py run FOLDER [--case lab2d] [--seeds 12]
+       [--cells 0.02 0.01 0.005]
        python benchmarks/stack_grid.py time [--cells 0.02 0.01 0.005 0.0025]
        python benchmarks/stack_grid.py draw
 
@@ -15,8 +16,10 @@ from __future__ import annotations
 import argparse
 import datetime
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 from matplotlib.axes import Axes
@@ -41,38 +44,61 @@ QUANTITIES = {
 }
 #: Distance of a point's label from it, points.
 LABEL_ABOVE = {"thesis": 7, "objective": -15}
+#: Columns of the record, and the fields of a panel that they hold.
+PANEL = {"tilt": "tilt", "panel_length": "length", "friction": "friction"}
+COLUMNS = (
+    *("case", "scheme", *PANEL, "dx", "seed", "event", *QUANTITIES),
+    *("spread_m", "steps", "machine", "date"),
+)
+
+
+@dataclass(frozen=True)
+class Case:
+    """Values of a scene, and the factors of its study."""
+
+    values: Mapping[str, Any]
+    factors: Mapping[str, Sequence[float]]
+
+
+CASES = {
+    "lab2d": Case({"dimension": 2}, {"panel.tilt": [50.0, 40.0], "panel.friction": [0.3, 0.6]}),
+    "lab3d": Case({"events.count": 2}, {"panel.tilt": [50.0]}),
+    # Panels of the thesis's chapter 5.
+    "chap5": Case(
+        {"dimension": 2, "panel.height": 2.0, "slab.thickness": 0.05, "events.count": 2},
+        {"panel.tilt": [40.0], "panel.length": [0.5, 2.0, 4.0]},
+    ),
+}
 #: Cells whose mean stacks count as exact, m.
 FINEST = 0.0025
 
 
-def laboratory(scheme: str, cells: float, tilt: float = 50.0, friction: float = 0.3) -> Scene:
-    """Return five slide-offs of the laboratory in 2D."""
+def scene_of(scheme: str, cells: float, case: str = "lab2d") -> Scene:
+    """Return the scene of a case, with the laboratory's panel of 50 degrees and friction 0.3."""
     return Scene.preset("lab-50").with_(
         {
-            "dimension": 2,
+            **CASES[case].values,
             "numerics.scheme": scheme,
             "numerics.dx": cells,
-            "panel.tilt": tilt,
-            "panel.friction": friction,
+            "panel.friction": 0.3,
         }
     )
 
 
-def run(folder: Path, seeds: int, all_cells: Sequence[float]) -> None:
-    """Make the stacks and append them to the record."""
+def run(folder: Path, case: str, seeds: int, all_cells: Sequence[float]) -> None:
+    """Make the stacks of a case and append them to the record."""
     for scheme in SCHEMES:
         for cells in all_cells:
-            study = Study.product(
-                laboratory(scheme, cells),
-                {"panel.tilt": [50.0, 40.0], "panel.friction": [0.3, 0.6]},
-                seeds=range(1, seeds + 1),
-            )
-            rows = study.run(folder / f"{scheme}-{cells}", threads=1).assign(
-                case="lab2d", scheme=scheme, dx=cells, machine=cpu_name(), date=_today()
-            )
-            rows = rows.rename(columns={"panel.tilt": "tilt", "panel.friction": "friction"})
-            rows = rows.assign(panel_length=0.245)
-            _append(rows, STACKS)
+            scene = scene_of(scheme, cells, case)
+            study = Study.product(scene, CASES[case].factors, seeds=range(1, seeds + 1))
+            rows = study.run(folder / f"{case}-{scheme}-{cells}", threads=1)
+            panel = {
+                name: rows.get(f"panel.{field}", getattr(scene.panel, field))
+                for name, field in PANEL.items()
+            }
+            origin = {"machine": cpu_name(), "date": _today()}
+            rows = rows.assign(case=case, scheme=scheme, dx=cells, **panel, **origin)
+            _append(rows[list(COLUMNS)], STACKS)
 
 
 def measure_times(all_cells: Sequence[float]) -> None:
@@ -81,7 +107,7 @@ def measure_times(all_cells: Sequence[float]) -> None:
     for cells in all_cells:
         for scheme in SCHEMES:
             with tempfile.TemporaryDirectory() as folder:
-                Study.product(laboratory(scheme, cells), {"panel.tilt": [50.0]}).run(
+                Study.product(scene_of(scheme, cells), {"panel.tilt": [50.0]}).run(
                     folder, threads=1
                 )
                 wall = float(read_table(folder, timing=True)["run_wall_s"].max())
@@ -165,6 +191,7 @@ def main() -> None:
     commands = parser.add_subparsers(dest="command", required=True)
     running = commands.add_parser("run")
     running.add_argument("folder", type=Path)
+    running.add_argument("--case", choices=CASES, default="lab2d")
     running.add_argument("--seeds", type=int, default=12)
     running.add_argument("--cells", type=float, nargs="+", default=[0.02, 0.01, 0.005])
     timing = commands.add_parser("time")
@@ -172,7 +199,7 @@ def main() -> None:
     commands.add_parser("draw")
     chosen = parser.parse_args()
     if chosen.command == "run":
-        run(chosen.folder, chosen.seeds, chosen.cells)
+        run(chosen.folder, chosen.case, chosen.seeds, chosen.cells)
     elif chosen.command == "time":
         measure_times(chosen.cells)
     else:

@@ -1,4 +1,4 @@
-"""What a run found, as a file, and as tables of pages in docs/trust."""
+"""Results of injected faults: the file that keeps them, and tables of pages in docs/trust."""
 
 from __future__ import annotations
 
