@@ -13,6 +13,7 @@ SANITIZE_TREE := build/sanitize
 FUZZ_TREE := build/fuzz
 DEMO := demo-results
 FUZZ_SECONDS ?= 60
+KERNELS ?= native
 CLANG_FORMAT := 23.1.5
 VALIDATION ?= $(or $(VERIFY),--quick)
 THESIS ?= --quick
@@ -68,11 +69,13 @@ $(VENV)/.build-tools: $(VENV)/.created pyproject.toml tools/build_requirements.p
 	touch $@
 
 # Editable: changes of Python files take effect at once, changes of C++ files after `make build`.
+# KERNELS=all builds for other machines, too.
 $(VENV)/.installed: $(VENV)/.build-tools $(CORE)
 	@echo "Building snowshed in $(TREE)"
 	@mkdir -p build
 	@$(PIP) --verbose --no-build-isolation \
 	  --config-settings=build-dir=$(TREE) \
+	  --config-settings=cmake.define.SNOWSHED_KERNEL_VARIANTS=$(KERNELS) \
 	  --config-settings=build.targets="_core;snowshed-run;snowshed-vdb" \
 	  --editable . 2>&1 | tee build/install.log | awk $(COMPILER_LINES) || { cat build/install.log; exit 1; }
 	touch $@

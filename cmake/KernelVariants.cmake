@@ -5,19 +5,44 @@ set(SNOWSHED_KERNEL_FLAGS_avx2 -mavx2 -mfma -mf16c -mbmi -mbmi2)
 set(SNOWSHED_KERNEL_FLAGS_avx512
   -mavx512f -mavx512dq -mavx512bw -mavx512vl -mfma -mbmi -mbmi2 -mprefer-vector-width=512)
 
+set(snowshed_all_variants baseline)
+set(snowshed_default_variants native)
 if(SNOWSHED_SANITIZE)
   set(snowshed_default_variants baseline)  # all variants come from the same templates
 elseif(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64|amd64")
-  set(snowshed_default_variants baseline avx2 avx512)
+  list(APPEND snowshed_all_variants avx2 avx512)
   set(SNOWSHED_KERNEL_FLAGS_baseline -O1)  # builds in half the time; for processors without AVX2
-else()
-  set(snowshed_default_variants baseline)
 endif()
-set(SNOWSHED_KERNEL_VARIANTS ${snowshed_default_variants} CACHE STRING "instruction sets to build the kernels for")
+set(SNOWSHED_KERNEL_VARIANTS ${snowshed_default_variants} CACHE STRING
+  "instruction sets to build the kernels for: all, native (this machine's), or a list")
+
+# What `native` stands for: the baseline, and the widest set that this machine runs.
+function(snowshed_native_variants result)
+  try_run(runs compiles ${CMAKE_BINARY_DIR}/widest_kernels
+    ${CMAKE_CURRENT_SOURCE_DIR}/cmake/widest_kernels.cpp
+    CMAKE_FLAGS -DINCLUDE_DIRECTORIES=${CMAKE_CURRENT_SOURCE_DIR}/cpp
+    RUN_OUTPUT_VARIABLE widest)
+  if(NOT compiles OR NOT runs EQUAL 0)
+    message(FATAL_ERROR "cmake/widest_kernels.cpp does not run here; "
+      "-DSNOWSHED_KERNEL_VARIANTS=all builds the kernels for every machine")
+  endif()
+  set(variants baseline ${widest})
+  list(REMOVE_DUPLICATES variants)
+  set(${result} ${variants} PARENT_SCOPE)
+endfunction()
+
+if(SNOWSHED_KERNEL_VARIANTS STREQUAL "all")
+  set(snowshed_kernel_variants ${snowshed_all_variants})
+elseif(SNOWSHED_KERNEL_VARIANTS STREQUAL "native")
+  snowshed_native_variants(snowshed_kernel_variants)
+else()
+  set(snowshed_kernel_variants ${SNOWSHED_KERNEL_VARIANTS})
+endif()
+message(STATUS "Kernels: ${snowshed_kernel_variants}")
 
 function(snowshed_add_kernels target)
   file(GLOB kernel_sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/cpp/snowshed/methods/*/kernels/*.cpp)
-  foreach(variant IN LISTS SNOWSHED_KERNEL_VARIANTS)
+  foreach(variant IN LISTS snowshed_kernel_variants)
     set(kernels ${target}_kernels_${variant})
     add_library(${kernels} OBJECT ${kernel_sources})
     target_include_directories(${kernels} PRIVATE cpp)

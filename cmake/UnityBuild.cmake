@@ -9,10 +9,11 @@ else()
 endif()
 option(SNOWSHED_UNITY_BUILD "Compile several sources at a time" ${snowshed_default_batches})
 
-# The arguments behind the target are headers of libraries that most of its sources include.
-function(snowshed_in_batches target)
+# The compiler gets `size` sources at a time. The arguments behind it are headers of libraries that
+# most of the sources include.
+function(snowshed_in_batches target size)
   set_target_properties(${target} PROPERTIES
-    UNITY_BUILD ${SNOWSHED_UNITY_BUILD} UNITY_BUILD_BATCH_SIZE 6)
+    UNITY_BUILD ${SNOWSHED_UNITY_BUILD} UNITY_BUILD_BATCH_SIZE ${size})
   if(SNOWSHED_UNITY_BUILD)
     target_precompile_headers(${target} PRIVATE ${ARGN})
   endif()

@@ -12,8 +12,8 @@ KernelVariant chosen_kernel_variant();
 /// Returns its name.
 const char* kernel_variant();
 
-/// Returns a sentence on what kernels without AVX2 cost, where these are used; else nothing.
-/// (benchmarks/results has the times of all kernels.)
+/// Returns a sentence on what it costs that the kernels are narrower than they could be, because of
+/// the build or of the processor; else nothing. (benchmarks/results has the times of all kernels.)
 const char* slow_kernels_note();
 
 }  // namespace snowshed

@@ -118,13 +118,13 @@ Property parse_property(const TextScanner& scanner) {
   return {std::string(words.back()), *type, count_type};
 }
 
-struct Header {
+struct PlyHeader {
   std::string format;
   std::vector<Element> elements;
 };
 
-Header parse_header(TextScanner& scanner) {
-  Header header;
+PlyHeader parse_header(TextScanner& scanner) {
+  PlyHeader header;
   if (!scanner.next_line() || scanner.words()[0] != "ply") scanner.fail("not a PLY file");
   while (scanner.next_line()) {
     const auto& words = scanner.words();
@@ -231,7 +231,7 @@ class MeshBuilder {
 
 TriangleMesh parse_ply(const std::filesystem::path& path, std::string_view bytes) {
   TextScanner scanner(path, bytes);
-  const Header header = parse_header(scanner);
+  const PlyHeader header = parse_header(scanner);
   const auto rows = open_rows(path, bytes, header.format, scanner);
   MeshBuilder builder(*rows, header.elements, path.string());
   for (const Element& element : header.elements) builder.read(element);

@@ -8,9 +8,9 @@
 namespace snowshed::mpm {
 namespace {
 
-class Fields : public testing::TestWithParam<Way> {
+class ParticleFields : public testing::TestWithParam<Way> {
  protected:
-  Fields() : solver_(make_solver(options_for(GetParam()), {})) {
+  ParticleFields() : solver_(make_solver(options_for(GetParam()), {})) {
     solver_->add(
         filled_box(GetParam().dimension, Vec3(-0.03, -0.03, 1.0), Vec3(0.05, 0.03, 1.1), 0.005));
     shake(0.5);
@@ -30,7 +30,7 @@ class Fields : public testing::TestWithParam<Way> {
 };
 
 /// Every field in the order of ids has the bits of the state, which is in that order.
-TEST_P(Fields, AgreeWithTheState) {
+TEST_P(ParticleFields, AgreeWithTheState) {
   const ParticleState state = solver_->state();
   const auto expect = [&](const char* name, const auto& expected) {
     const FieldView view = solver_->field(name);
@@ -55,7 +55,7 @@ TEST_P(Fields, AgreeWithTheState) {
 }
 
 /// The stresses lie within the yield surface of the law, and some on it.
-TEST_P(Fields, StressesAreThoseOfTheLaw) {
+TEST_P(ParticleFields, StressesAreThoseOfTheLaw) {
   shake(10.0);  // so that snow yields
   const ParticleState state = solver_->state();
   const int dimension = GetParam().dimension;
@@ -76,7 +76,7 @@ TEST_P(Fields, StressesAreThoseOfTheLaw) {
   EXPECT_NEAR(largest, 0.0, 5e-3);  // to rounding in single precision
 }
 
-TEST_P(Fields, AreOfKnownQuantities) {
+TEST_P(ParticleFields, AreOfKnownQuantities) {
   const std::vector<Quantity> all = quantities();
   for (const FieldInfo& info : solver_->fields()) {
     const auto known = [&](const Quantity& q) {
@@ -89,7 +89,7 @@ TEST_P(Fields, AreOfKnownQuantities) {
 }
 
 /// Particles that are added take the last places by id, and the order is known anew.
-TEST_P(Fields, OrderFollowsParticlesThatAreAdded) {
+TEST_P(ParticleFields, OrderFollowsParticlesThatAreAdded) {
   const std::size_t old = solver_->order_by_id().size();
   solver_->add(
       filled_box(GetParam().dimension, Vec3(-0.1, -0.03, 1.0), Vec3(-0.05, 0.03, 1.1), 0.01));
@@ -100,7 +100,7 @@ TEST_P(Fields, OrderFollowsParticlesThatAreAdded) {
     ASSERT_EQ(*ids.at<std::uint32_t>(order[k]), std::uint32_t(k));
 }
 
-INSTANTIATE_TEST_SUITE_P(Ways, Fields, testing::ValuesIn(all_ways()),
+INSTANTIATE_TEST_SUITE_P(Ways, ParticleFields, testing::ValuesIn(all_ways()),
                          [](const auto& info) { return info.param.name(); });
 
 }  // namespace
