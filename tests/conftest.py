@@ -58,6 +58,18 @@ def hide(monkeypatch: pytest.MonkeyPatch) -> Callable[[str], None]:
 
 
 @pytest.fixture
+def drawn() -> None:
+    """Of a test that looks at pictures or pages where the others of its file do not."""
+
+
+@pytest.fixture
+def undrawn(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Leave out the pictures and the page of slides, which take longer than a small slide."""
+    if "drawn" not in request.fixturenames:
+        monkeypatch.setattr("snowshed.methods.slide.run.SlideRun.draw", lambda _: None)
+
+
+@pytest.fixture
 def tiny() -> Scene:
     return tiny_scene()
 

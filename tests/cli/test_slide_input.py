@@ -13,6 +13,8 @@ from snowshed.io.raster.raster import Raster, read_raster, write_ascii_grid
 pytest.importorskip("pyogrio")
 pytest.importorskip("shapely")
 
+pytestmark = pytest.mark.usefixtures("undrawn")
+
 WITHIN = box(10, 10, 30, 30)
 
 

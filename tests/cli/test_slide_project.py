@@ -17,6 +17,9 @@ from snowshed.methods.slide.run import SlideRun
 pytest.importorskip("pyogrio")
 pytest.importorskip("shapely")
 pytest.importorskip("rasterio")
+
+pytestmark = pytest.mark.usefixtures("undrawn")
+
 PROGRAM = [sys.executable, "-m", "snowshed"]
 
 
@@ -58,7 +61,7 @@ def test_the_hint_after_an_interrupt_goes_on_with_all_simulations(tmp_path):
 
 
 def test_an_interrupt_while_pictures_are_drawn_keeps_the_next_slide_from_running(
-    tmp_path, capsys, monkeypatch
+    tmp_path, capsys, monkeypatch, drawn
 ):
     project = write_project(tmp_path / "project", "tEnd = 0.05\n", releases=("a", "b"))
     draw = SlideRun.draw
@@ -90,13 +93,6 @@ def test_settings_that_the_scene_refuses_are_located_in_the_ini(tmp_path, capsys
     assert not (tmp_path / "out").exists()
 
 
-@pytest.fixture
-def undrawn(monkeypatch):
-    """Leave out the pictures, which take most of the time."""
-    monkeypatch.setattr(SlideRun, "draw", lambda *_: None)
-
-
-@pytest.mark.usefixtures("undrawn")
 def test_outputs_that_cannot_be_written_are_no_fault_of_the_input(tmp_path, capsys, monkeypatch):
     from snowshed import InputError
 
@@ -118,7 +114,6 @@ def test_links_are_refused_before_anything_is_written(tmp_path, capsys):
     assert [file.name for file in tmp_path.iterdir()] == ["project"]
 
 
-@pytest.mark.usefixtures("undrawn")
 def test_notes_of_readers_are_quiet_where_asked(tmp_path, capsys):
     """GDAL's own warnings, too, which are notes."""
     pyogrio = pytest.importorskip("pyogrio")
@@ -143,7 +138,6 @@ def test_notes_of_readers_are_quiet_where_asked(tmp_path, capsys):
     assert "note: " in printed.out + printed.err
 
 
-@pytest.mark.usefixtures("undrawn")
 def test_layers_are_chosen_on_the_command_line(tmp_path, capsys):
     pyogrio = pytest.importorskip("pyogrio")
     import numpy as np

@@ -14,6 +14,8 @@ from snowshed.io.raster.raster import Raster, write_ascii_grid
 pytest.importorskip("pyogrio")
 rasterio = pytest.importorskip("rasterio")
 
+pytestmark = pytest.mark.usefixtures("undrawn")
+
 #: m: 33 degrees toward the east.
 STEEP = 900.0 - 0.65 * CELL * np.arange(30)[None, :] * np.ones((30, 1))
 FORM = {"transform": rasterio.Affine(CELL, 0, -CELL / 2, 0, -CELL, 29.5 * CELL)}
@@ -32,7 +34,9 @@ def released(folder):
     return json.loads((folder / "out/slide.json").read_text())["released_kg"]
 
 
-def test_a_note_is_on_the_terminal_in_the_json_on_the_page_and_in_the_scene(tmp_path, capsys):
+def test_a_note_is_on_the_terminal_in_the_json_on_the_page_and_in_the_scene(
+    tmp_path, capsys, drawn
+):
     write_geotiff(tmp_path / "dem.tif", STEEP / 0.3048, change=in_unit("ft"), **FORM)
     assert slide(tmp_path) == 0
     note = "dem.tif: its values were turned into metres; one unit is 0.3048 m"

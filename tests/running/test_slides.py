@@ -18,6 +18,8 @@ from snowshed.running.run import run
 from snowshed.running.slide_history import particles_at
 from snowshed.scene import Area, Events, Scene, Terrain, example_slide
 
+pytestmark = pytest.mark.usefixtures("undrawn")
+
 OUTLINE = [(20.3, 18.3), (44.3, 18.3), (44.3, 42.3), (20.3, 42.3)]
 
 
@@ -88,7 +90,7 @@ def test_the_energy_balance_is_written_and_closes(slope, tmp_path):
     assert event["energy"] == pytest.approx(energy)
 
 
-def test_the_example_draws_its_map(tmp_path):
+def test_the_example_draws_its_map(tmp_path, drawn):
     scene = example_slide(tmp_path).set("events.max_time", 1.0)
     run(scene, tmp_path / "out")
     assert (tmp_path / "out/slide.png").stat().st_size > 10_000
@@ -156,7 +158,7 @@ run(sys.argv[1], sys.argv[2])
 """
 
 
-def test_the_page_of_a_killed_slide_is_whole_when_it_is_resumed(tmp_path, monkeypatch):
+def test_the_page_of_a_killed_slide_is_whole_when_it_is_resumed(tmp_path, monkeypatch, drawn):
     scene = example_slide(tmp_path).set("output.checkpoint_interval", 0.05)
     (tmp_path / "scene.json").write_text(scene.resolve().json)
     drawn = []
@@ -179,7 +181,7 @@ def test_the_page_of_a_killed_slide_is_whole_when_it_is_resumed(tmp_path, monkey
         np.testing.assert_array_equal(one.thickness, other.thickness)
 
 
-def test_a_slide_without_film_has_a_page_without_it(slope, tmp_path):
+def test_a_slide_without_film_has_a_page_without_it(slope, tmp_path, drawn):
     run(slope.set("output.film", False), tmp_path / "out")
     page = (tmp_path / "out/slide.html").read_text()
     assert "Peak values" in page and "Over time" not in page
