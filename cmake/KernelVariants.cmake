@@ -19,11 +19,11 @@ set(SNOWSHED_KERNEL_VARIANTS ${snowshed_default_variants} CACHE STRING
 # What `native` stands for: the baseline, and the widest set that this machine runs.
 function(snowshed_native_variants result)
   try_run(runs compiles ${CMAKE_BINARY_DIR}/widest_kernels
-    ${CMAKE_CURRENT_SOURCE_DIR}/cmake/widest_kernels.cpp
+    ${CMAKE_CURRENT_SOURCE_DIR}/cpp/apps/widest_kernels.cpp
     CMAKE_FLAGS -DINCLUDE_DIRECTORIES=${CMAKE_CURRENT_SOURCE_DIR}/cpp
     RUN_OUTPUT_VARIABLE widest)
   if(NOT compiles OR NOT runs EQUAL 0)
-    message(FATAL_ERROR "cmake/widest_kernels.cpp does not run here; "
+    message(FATAL_ERROR "cpp/apps/widest_kernels.cpp does not run here; "
       "-DSNOWSHED_KERNEL_VARIANTS=all builds the kernels for every machine")
   endif()
   set(variants baseline ${widest})
