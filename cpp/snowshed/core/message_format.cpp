@@ -77,6 +77,12 @@ std::string show_rounded(double number) {
   return text;
 }
 
+std::string show_briefly(double number) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", number);
+  return text;
+}
+
 std::string quote(const std::string& text) {
   constexpr std::size_t longest = 60;
   constexpr auto replace = nlohmann::json::error_handler_t::replace;

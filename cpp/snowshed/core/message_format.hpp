@@ -12,6 +12,9 @@ std::string show(double number);
 /// Returns the number with six digits, for computed values.
 std::string show_rounded(double number);
 
+/// Returns the number with three digits, for sizes.
+std::string show_briefly(double number);
+
 /// Returns the text in quotation marks, as ASCII and shortened, so that any text can be printed.
 std::string quote(const std::string& text);
 

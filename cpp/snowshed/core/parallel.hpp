@@ -20,6 +20,12 @@ namespace snowshed {
 /// is OMP_NUM_THREADS or else all cores.
 inline int threads_to_use(int wanted) { return wanted > 0 ? wanted : omp_get_max_threads(); }
 
+/// The threads for a step: no more than `most`, and fewer where each would get less than `share` of
+/// the items.
+inline int threads_for(std::size_t items, std::size_t share, int most) {
+  return int(std::clamp<std::size_t>(items / share, 1, std::size_t(most)));
+}
+
 /// The exception of the first iteration, by index, of those that threw on any thread. An exception
 /// that left a parallel region would end the process.
 class FirstException {

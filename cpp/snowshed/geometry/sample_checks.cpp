@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "snowshed/core/errors.hpp"
+#include "snowshed/core/message_format.hpp"
 #include "snowshed/geometry/bounds.hpp"
 #include "snowshed/geometry/rebuild_distance.hpp"
 
@@ -134,17 +135,11 @@ Band cut_off(const GridSamples& s) {
   return {level_outside < least ? infinity : *high, level_inside < least ? infinity : -*low};
 }
 
-std::string in_words(double metres) {
-  std::ostringstream text;
-  text << metres << " m";
-  return text.str();
-}
-
 std::string note_on(const Band& band) {
   std::string text = "the distances were cut off at ";
-  if (std::isfinite(band.outside)) text += in_words(band.outside) + " outside";
+  if (std::isfinite(band.outside)) text += show_rounded(band.outside) + " m outside";
   if (std::isfinite(band.outside) && std::isfinite(band.inside)) text += " and ";
-  if (std::isfinite(band.inside)) text += in_words(band.inside) + " inside";
+  if (std::isfinite(band.inside)) text += show_rounded(band.inside) + " m inside";
   return text + " the solid; beyond that they were rebuilt from its surface";
 }
 

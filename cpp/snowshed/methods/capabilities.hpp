@@ -57,16 +57,6 @@ class KeepsEnergy {
   ~KeepsEnergy() = default;
 };
 
-/// It keeps the balance of particles that are elastic and plastic.
-class BalancesEnergy : public KeepsEnergy {
- public:
-  virtual EnergyBalance energy() const = 0;
-  NamedEnergies energies() const override { return named_energies(energy()); }
-
- protected:
-  ~BalancesEnergy() = default;
-};
-
 /// Its snow drops out of the steps while it is at rest.
 class Sleeps {
  public:

@@ -1,4 +1,4 @@
-// What a scene will cost: what is known of it by arithmetic alone, and what a method makes of that.
+// Cost of a scene: its outline by arithmetic, and the method's estimate from it.
 #pragma once
 
 #include <string>
@@ -10,8 +10,6 @@
 #include "snowshed/methods/surroundings.hpp"
 
 namespace snowshed {
-
-class Method;
 
 /// How far and how long the snow of an event moves: a slab slides off the panel and falls, bodies
 /// fall, and the snow settles.
@@ -50,16 +48,6 @@ struct CostEstimate {
   double scattering = 1.0;        // work of an update where snow flies apart, over that at first
   double bytes = 0.0;             // peak memory, particles and grid
   std::vector<std::pair<std::string, double>> parts;  // of the particles, by name, if they have any
-};
-
-/// What a method estimates its cost from. Methods that fill bodies with particles are asked before
-/// anything is built, all others afterwards.
-struct CostRequest {
-  const SceneView& scene;
-  const SceneOutline* outline = nullptr;       // before anything is built
-  std::vector<double> particles;               // new in each event, the same
-  const Surroundings* surroundings = nullptr;  // afterwards
-  const Method* method = nullptr;              // without snow, the same
 };
 
 /// A feature of a method, and whether a scene uses it.

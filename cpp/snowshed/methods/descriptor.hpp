@@ -8,7 +8,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <typeinfo>
 #include <vector>
 
 #include "snowshed/core/stop_request.hpp"
@@ -60,15 +59,13 @@ class MethodDescriptor {
 
   // --- settings --------------------------------------------------------------------------------
 
-  /// The settings, if they are of this type; null otherwise.
-  virtual void* settings(const std::type_info&) = 0;
   /// Shows a visitor each setting in turn.
   virtual void describe(SettingsVisitor&) = 0;
   /// The size of the smallest thing the method resolves, m; 0 where a file decides it.
   virtual double resolution() const = 0;
   /// The threads that the method shall use; 0: all.
-  virtual int& threads() = 0;
-  int threads() const { return const_cast<MethodDescriptor*>(this)->threads(); }
+  virtual int threads() const = 0;
+  virtual void set_threads(int) = 0;
   /// Multiplies the resolution, if it is a setting, so that a small copy of a scene runs fast.
   virtual void coarsen(double /*factor*/) {}
   /// The setting from which the length of a step follows, by its key.
@@ -110,8 +107,13 @@ class MethodDescriptor {
 
   // --- cost ------------------------------------------------------------------------------------
 
+  /// The cost of a scene with so many new particles in each event, before anything is built; of
+  /// methods that take bodies.
+  virtual CostEstimate cost_of_bodies(const SceneView&, const SceneOutline&,
+                                      std::vector<double> particles) const;
+  /// The cost of a scene for which a method was built, before any snow; of all other methods.
   /// Throws InputError where the scene cannot be run.
-  virtual CostEstimate cost(const CostRequest&) const = 0;
+  virtual CostEstimate cost_of_method(const SceneView&, const Surroundings&, const Method&) const;
   /// What the method can do, and which of it the scene uses.
   virtual std::vector<Feature> features(const SceneView&, const SceneOutline&) const = 0;
 };
@@ -126,24 +128,33 @@ void describe_settings(SettingsVisitor& visitor, Settings& settings) {
 
 }  // namespace detail
 
+/// A method with settings of this type, by which scenes find it.
+template <class Settings>
+class SettingsHolder : public MethodDescriptor {
+ public:
+  Settings& settings() { return settings_; }
+  const Settings& settings() const { return settings_; }
+
+ protected:
+  Settings settings_;
+};
+
 /// What all descriptors share: a method's own one, `Self`, derives from this one.
 template <class Self, class Settings>
-class DescriptorOf : public MethodDescriptor {
+class DescriptorOf : public SettingsHolder<Settings> {
  public:
   std::unique_ptr<MethodDescriptor> clone() const override {
     return std::make_unique<Self>(static_cast<const Self&>(*this));
-  }
-  void* settings(const std::type_info& type) override {
-    return type == typeid(Settings) ? &settings_ : nullptr;
   }
   void describe(SettingsVisitor& visitor) override {
     detail::describe_settings(visitor, settings_);
   }
   double resolution() const override { return settings_.resolution(); }
-  int& threads() override { return settings_.threads; }
+  int threads() const override { return settings_.threads; }
+  void set_threads(int threads) override { settings_.threads = threads; }
 
  protected:
-  Settings settings_;
+  using SettingsHolder<Settings>::settings_;
 };
 
 }  // namespace snowshed

@@ -55,6 +55,41 @@ std::vector<double> values_of_each(std::size_t count, int threads, F f) {
   }
 }
 
+/// Shows the fields of a method's particles to `visit(info, view)`, where view() returns the view.
+template <class Visit>
+class FieldSources {
+ public:
+  FieldSources(Visit& visit, std::size_t particles, int threads)
+      : visit_(visit), particles_(particles), threads_(threads) {}
+
+  template <class T>
+  void stored(const FieldInfo& info, const AlignedVector<T>& array) const {
+    visit_(info, [&] { return stored_view(info, array); });
+  }
+  /// An array that holds the quantity of this name.
+  template <class T>
+  void column(const char* name, const AlignedVector<T>& array) const {
+    stored(field_of(quantity(name), field_type<T>(), true), array);
+  }
+  /// The quantity of this name from values(), a vector.
+  template <class Values>
+  void computed(const char* name, Values values) const {
+    using Value = typename std::decay_t<decltype(values())>::value_type;
+    const FieldInfo info = field_of(quantity(name), field_type<Value>(), false);
+    visit_(info, [&] { return computed_view(info, std::vector<Value>(values())); });
+  }
+  /// The quantity of this name from value(particle): a number, vector or matrix.
+  template <class Value>
+  void of_each(const char* name, Value value) const {
+    computed(name, [&] { return values_of_each(particles_, threads_, value); });
+  }
+
+ private:
+  Visit& visit_;
+  std::size_t particles_;
+  int threads_;
+};
+
 /// The fields that `visit_fields` shows: it calls its argument with (info, view) for each of them,
 /// where view() returns the view.
 template <class VisitFields>

@@ -4,9 +4,8 @@
 #include <memory>
 #include <stdexcept>
 #include <type_traits>
-#include <typeinfo>
 
-#include "snowshed/methods/descriptor.hpp"
+#include "snowshed/methods/registry.hpp"
 
 namespace snowshed {
 
@@ -17,7 +16,7 @@ class MethodChoice {
   explicit MethodChoice(const MethodDescriptor& descriptor) : descriptor_(descriptor.clone()) {}
   /// The method with these settings.
   template <class Settings, class = std::enable_if_t<std::is_aggregate_v<Settings>>>
-  MethodChoice(const Settings& settings) : MethodChoice(method_with(typeid(Settings))) {
+  MethodChoice(const Settings& settings) : MethodChoice(method_with<Settings>()) {
     as<Settings>() = settings;
   }
   MethodChoice(const MethodChoice& other) : MethodChoice(*other.descriptor_) {}
@@ -35,21 +34,32 @@ class MethodChoice {
   /// Whether these are the settings of the method.
   template <class Settings>
   bool is() const {
-    return descriptor_->settings(typeid(Settings)) != nullptr;
+    return holder<Settings>(*descriptor_) != nullptr;
   }
   /// The settings, which must be of this type.
   template <class Settings>
   Settings& as() {
-    if (!is<Settings>()) throw std::logic_error("settings of another method");
-    return *static_cast<Settings*>(descriptor_->settings(typeid(Settings)));
+    if (auto* own = dynamic_cast<SettingsHolder<Settings>*>(descriptor_.get()))
+      return own->settings();
+    throw std::logic_error("settings of another method");
   }
   template <class Settings>
   const Settings& as() const {
-    return const_cast<MethodChoice*>(this)->as<Settings>();
+    if (const auto* own = holder<Settings>(*descriptor_)) return own->settings();
+    throw std::logic_error("settings of another method");
   }
 
  private:
-  static const MethodDescriptor& method_with(const std::type_info& settings);
+  template <class Settings>
+  static const SettingsHolder<Settings>* holder(const MethodDescriptor& method) {
+    return dynamic_cast<const SettingsHolder<Settings>*>(&method);
+  }
+  template <class Settings>
+  static const MethodDescriptor& method_with() {
+    for (const MethodDescriptor* method : all_methods())
+      if (holder<Settings>(*method)) return *method;
+    throw std::logic_error("settings of no method");
+  }
 
   std::unique_ptr<MethodDescriptor> descriptor_;
 };

@@ -54,14 +54,18 @@ bool MethodChoice::is_default() const {
   return descriptor_->facts().name == all_methods().front()->facts().name;
 }
 
-const MethodDescriptor& MethodChoice::method_with(const std::type_info& settings) {
-  for (const MethodDescriptor* method : all_methods())
-    if (method->clone()->settings(settings)) return *method;
-  throw std::logic_error("settings of no method");
-}
-
 std::size_t MethodDescriptor::count_particles(const LevelSet&, int) const {
   throw std::logic_error("the method does not fill solids itself");
+}
+
+CostEstimate MethodDescriptor::cost_of_bodies(const SceneView&, const SceneOutline&,
+                                              std::vector<double>) const {
+  throw std::logic_error("the method takes no bodies");
+}
+
+CostEstimate MethodDescriptor::cost_of_method(const SceneView&, const Surroundings&,
+                                              const Method&) const {
+  throw std::logic_error("the method takes bodies, whose cost needs nothing built");
 }
 
 void MethodDescriptor::fill(const LevelSet&, int, const StopRequest&, ParticleBatch&,

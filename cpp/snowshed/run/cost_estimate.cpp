@@ -50,11 +50,7 @@ double height_of(const Scene& scene) {
   return high - low;
 }
 
-std::string gigabytes(double bytes) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g GB", bytes / 1e9);
-  return text;
-}
+std::string gigabytes(double bytes) { return show_briefly(bytes / 1e9) + " GB"; }
 
 /// What the volumes of each event hold.
 std::vector<double> count_particles(const Scene& scene, const SceneOutline& outline) {
@@ -69,8 +65,7 @@ std::vector<double> count_particles(const Scene& scene, const SceneOutline& outl
 
 CostEstimate estimate(const Scene& scene, const SceneOutline& outline,
                       std::vector<double> particles) {
-  const SceneView view = view_of(scene);
-  return scene.numerics->cost({view, &outline, std::move(particles)});
+  return scene.numerics->cost_of_bodies(view_of(scene), outline, std::move(particles));
 }
 
 }  // namespace

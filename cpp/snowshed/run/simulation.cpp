@@ -52,7 +52,7 @@ Simulation::Simulation(const Scene& scene, const std::filesystem::path& base_dir
   solver_ = empty_method();
   if (!takes_bodies) {
     const SceneView view = view_of(scene_);
-    cost_ = scene_.numerics->cost({view, nullptr, {}, &surroundings_, solver_.get()});
+    cost_ = scene_.numerics->cost_of_method(view, surroundings_, *solver_);
     check_cost();
   }
   if (const auto* measured = capability<HasCurve>(std::as_const(*solver_)))

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "snowshed/core/message_format.hpp"
 #include "snowshed/geometry/bounds.hpp"
 #include "snowshed/scene/assemble.hpp"
 #include "snowshed/scene/build_obstacles.hpp"
@@ -61,13 +62,6 @@ std::vector<Solid> solids_of(const Scene& scene, const std::filesystem::path& ba
   return solids;
 }
 
-std::string metres(double value) {
-  std::ostringstream text;
-  text.precision(3);
-  text << value << " m";
-  return text.str();
-}
-
 }  // namespace
 
 void add_notes_on_files(const Scene& scene, const std::filesystem::path& base_dir,
@@ -76,17 +70,19 @@ void add_notes_on_files(const Scene& scene, const std::filesystem::path& base_di
   const double cell = scene.numerics->resolution();
   for (const Solid& solid : solids) {
     if (solid.file.empty() || !std::isfinite(solid.size)) continue;
-    const std::string size = solid.file + ": the solid is " + metres(solid.size) + " large, ";
+    const std::string size =
+        solid.file + ": the solid is " + show_briefly(solid.size) + " m" + " large, ";
     const std::string question = "; if the unit of the file is another, give its \"scale\"";
     double largest = 0;  // of all others
     for (const Solid& other : solids)
       if (&other != &solid && std::isfinite(other.size)) largest = std::max(largest, other.size);
     if (solid.size < cell)
-      notes.push_back(size + "less than a cell of " + metres(cell) + question);
+      notes.push_back(size + "less than a cell of " + show_briefly(cell) + " m" + question);
     else if (largest > 0 && solid.size > too_different * largest)
-      notes.push_back(size + "and everything else at most " + metres(largest) + question);
+      notes.push_back(size + "and everything else at most " + show_briefly(largest) + " m" +
+                      question);
     else if (largest > too_different * solid.size)
-      notes.push_back(size + "and others up to " + metres(largest) + question);
+      notes.push_back(size + "and others up to " + show_briefly(largest) + " m" + question);
   }
 }
 

@@ -124,7 +124,7 @@ std::string write_scene(const Scene& scene) {
 }
 
 Scene with_threads(Scene scene, int threads) {
-  scene.numerics->threads() = threads;
+  scene.numerics->set_threads(threads);
   return scene;
 }
 

@@ -6,6 +6,8 @@
 #include <string>
 
 #include "snowshed/core/errors.hpp"
+#include "snowshed/core/message_format.hpp"
+#include "snowshed/methods/grains/describe.hpp"
 
 namespace snowshed::grains {
 namespace {
@@ -96,6 +98,16 @@ void check_bonds(const Sample& sample) {
   }
 }
 
+void check_stage(const LoadingStage& stage, const std::string& path, const Settings& settings) {
+  const std::string kind = quote(name_of(stage.kind));
+  if (stage.kind == LoadingKind::stretch && !settings.bonded_plates)
+    throw InputError(path + "/kind", kind + " pulls at the plates; set /numerics/bonded_plates");
+  const bool takes_stress = stage.kind != LoadingKind::stretch &&
+                            stage.kind != LoadingKind::penetrate && stage.kind != LoadingKind::hold;
+  if (stage.stress > 0 && !takes_stress)
+    throw InputError(path + "/stress", kind + " takes no stress");
+}
+
 void check_loading(const Options& o) {
   bool penetrated = false;
   for (std::size_t i = 0; i < o.loading.size(); ++i) {
@@ -110,12 +122,9 @@ void check_loading(const Options& o) {
     if (shrinks && stage.strain >= 1) refuse(where + "/strain", stage.strain, "below 1");
     if (!(stage.stress >= 0 && std::isfinite(stage.stress)))
       refuse(where + "/stress", stage.stress, "0 or more");
-    if (stage.kind == LoadingKind::stretch && !o.settings.bonded_plates)
-      throw InputError(where, "snow can be stretched only with bonded plates");
-    if (penetrated && stage.kind != LoadingKind::penetrate && stage.kind != LoadingKind::hold)
-      throw InputError(where, "the top plate is away since the penetration before");
     penetrated = penetrated || stage.kind == LoadingKind::penetrate;
   }
+  check_stages(o.loading, o.settings);
   if (!penetrated) return;
   if (!(o.cone.radius > 0 && std::isfinite(o.cone.radius)))
     refuse("/cone/radius", o.cone.radius, "positive");
@@ -124,6 +133,32 @@ void check_loading(const Options& o) {
 }
 
 }  // namespace
+
+void check_stages(const std::vector<LoadingStage>& stages, const Settings& settings) {
+  constexpr double most_shortening = 0.95;  // or nothing is left between the plates
+  double shortening = 0;
+  bool loaded = false, open = false;
+  for (std::size_t i = 0; i < stages.size(); ++i) {
+    const LoadingStage& stage = stages[i];
+    const std::string path = "/loading/" + std::to_string(i);
+    const bool compresses =
+        stage.kind == LoadingKind::compress || stage.kind == LoadingKind::isotropic;
+    if (compresses) shortening += stage.strain;
+    if (shortening > most_shortening)
+      throw InputError(path + "/strain",
+                       "the sample would be compressed by " + show_rounded(shortening) +
+                           " of its height in all; allowed: up to " + show(most_shortening));
+    if (stage.kind == LoadingKind::unload && !loaded)
+      throw InputError(path + "/kind", "there is nothing to unload; compress the sample before");
+    if (open && stage.kind != LoadingKind::penetrate && stage.kind != LoadingKind::hold)
+      throw InputError(path + "/kind",
+                       "the top plate is away since the stage \"penetrate\"; allowed: penetrate, "
+                       "hold");
+    check_stage(stage, path, settings);
+    loaded = loaded || compresses;
+    open = open || stage.kind == LoadingKind::penetrate;
+  }
+}
 
 void check_grains(const Options& o) {
   check_settings(o.settings);

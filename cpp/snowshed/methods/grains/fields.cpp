@@ -1,6 +1,7 @@
 // What the solver tells of its grains.
 #include <cmath>
 
+#include "snowshed/core/angles.hpp"
 #include "snowshed/methods/field_sources.hpp"
 #include "snowshed/methods/grains/solver_impl.hpp"
 
@@ -9,39 +10,32 @@ namespace snowshed::grains {
 /// Calls visit(info, view) for each field; view() returns its view.
 template <class Visit>
 void SolverImpl::visit_fields(Visit visit) const {
-  const auto of_each = [&](const char* name, auto value) {
-    const FieldInfo info = field_of(quantity(name), FieldType::float64, false);
-    visit(info, [&] { return computed_view(info, values_of_each(size(), model_.threads, value)); });
-  };
-  of_each("position", [this](std::size_t i) { return state_.bodies[i].position; });
-  of_each("velocity", [this](std::size_t i) { return state_.bodies[i].velocity; });
-  of_each("angular_velocity", [this](std::size_t i) {
+  const FieldSources show(visit, size(), model_.threads);
+  show.of_each("position", [this](std::size_t i) { return state_.bodies[i].position; });
+  show.of_each("velocity", [this](std::size_t i) { return state_.bodies[i].velocity; });
+  show.of_each("angular_velocity", [this](std::size_t i) {
     const GrainBody& body = state_.bodies[i];
     return angular_velocity(body.orientation.toRotationMatrix(), body.spin_momentum,
                             model_.grains[i].inertia);
   });
-  of_each("mass",
-          [this](std::size_t i) { return model_.settings.density * model_.grains[i].volume; });
-  of_each("equivalent_radius", [this](std::size_t i) {
-    return std::cbrt(0.75 / 3.14159265358979323846 * model_.grains[i].volume);
-  });
-  const FieldInfo touched = field_of(quantity("coordination"), FieldType::uint32, false);
-  visit(touched, [&] {
+  show.of_each("mass",
+               [this](std::size_t i) { return model_.settings.density * model_.grains[i].volume; });
+  show.of_each("equivalent_radius",
+               [this](std::size_t i) { return std::cbrt(0.75 / pi * model_.grains[i].volume); });
+  show.computed("coordination", [&] {
     std::vector<std::uint32_t> contacts(size());
     for (const GrainContact& contact : grain_contacts()) {
       ++contacts[contact.first];
       ++contacts[contact.second];
     }
-    return computed_view(touched, std::move(contacts));
+    return contacts;
   });
-  const FieldInfo id = field_of(quantity("id"), FieldType::uint32, false);
-  visit(id, [&] {
+  show.computed("id", [&] {
     std::vector<std::uint32_t> ids(size());
     for (std::size_t i = 0; i < size(); ++i) ids[i] = state_.first_id + std::uint32_t(i);
-    return computed_view(id, std::move(ids));
+    return ids;
   });
-  const FieldInfo event = field_of(quantity("event"), FieldType::uint16, false);
-  visit(event, [&] { return computed_view(event, state_.events); });
+  show.computed("event", [&] { return state_.events; });
 }
 
 std::vector<FieldInfo> SolverImpl::fields() const {

@@ -4,50 +4,15 @@
 #include "snowshed/core/errors.hpp"
 #include "snowshed/core/message_format.hpp"
 #include "snowshed/methods/descriptor.hpp"
+#include "snowshed/methods/grains/check_options.hpp"
 #include "snowshed/methods/grains/cost.hpp"
 #include "snowshed/methods/grains/describe.hpp"
+#include "snowshed/methods/grains/energy.hpp"
 #include "snowshed/methods/grains/input.hpp"
 #include "snowshed/methods/grains/solver.hpp"
 
 namespace snowshed::grains {
 namespace {
-
-void check_stage(const LoadingStage& stage, const std::string& path, const Settings& settings) {
-  const std::string kind = quote(name_of(stage.kind));
-  if (stage.kind == LoadingKind::stretch && !settings.bonded_plates)
-    throw InputError(path + "/kind", kind + " pulls at the plates; set /numerics/bonded_plates");
-  const bool takes_stress = stage.kind != LoadingKind::stretch &&
-                            stage.kind != LoadingKind::penetrate && stage.kind != LoadingKind::hold;
-  if (stage.stress > 0 && !takes_stress)
-    throw InputError(path + "/stress", kind + " takes no stress");
-}
-
-/// Stages follow on each other: what a stage undoes must have been done.
-void check_stages(const std::vector<LoadingStage>& stages, const Settings& settings) {
-  constexpr double most_shortening = 0.95;  // or nothing is left between the plates
-  double shortening = 0;
-  bool loaded = false, open = false;
-  for (std::size_t i = 0; i < stages.size(); ++i) {
-    const LoadingStage& stage = stages[i];
-    const std::string path = "/loading/" + std::to_string(i);
-    const bool compresses =
-        stage.kind == LoadingKind::compress || stage.kind == LoadingKind::isotropic;
-    if (compresses) shortening += stage.strain;
-    if (shortening > most_shortening)
-      throw InputError(path + "/strain",
-                       "the sample would be compressed by " + show_rounded(shortening) +
-                           " of its height in all; allowed: up to " + show(most_shortening));
-    if (stage.kind == LoadingKind::unload && !loaded)
-      throw InputError(path + "/kind", "there is nothing to unload; compress the sample before");
-    if (open && stage.kind != LoadingKind::penetrate && stage.kind != LoadingKind::hold)
-      throw InputError(path + "/kind",
-                       "the top plate is away since the stage \"penetrate\"; allowed: penetrate, "
-                       "hold");
-    check_stage(stage, path, settings);
-    loaded = loaded || compresses;
-    open = open || stage.kind == LoadingKind::penetrate;
-  }
-}
 
 class Descriptor final : public DescriptorOf<Descriptor, Settings> {
  public:
@@ -89,16 +54,17 @@ class Descriptor final : public DescriptorOf<Descriptor, Settings> {
     return filled_later(scene, surroundings);
   }
 
-  CostEstimate cost(const CostRequest& request) const override {
-    const Sample& sample = sample_of(*request.surroundings);
-    check_loading_time(request.scene, sample.box.z());
-    const auto grains = filled_later(request.scene, *request.surroundings);
+  CostEstimate cost_of_method(const SceneView& scene, const Surroundings& surroundings,
+                              const Method&) const override {
+    const Sample& sample = sample_of(surroundings);
+    check_loading_time(scene, sample.box.z());
+    const auto grains = filled_later(scene, surroundings);
     try {
       grains->add(grains->seed());            // the first step is not known before
     } catch (const SimulationError& error) {  // it is too short
       throw InputError("/numerics/courant_factor", error.what());
     }
-    return estimate_cost(request.scene, sample, *grains);
+    return estimate_cost(scene, sample, *grains);
   }
   std::vector<Feature> features(const SceneView& scene, const SceneOutline&) const override {
     return features_of(settings_, scene);

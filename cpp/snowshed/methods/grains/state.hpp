@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "snowshed/core/parallel.hpp"
 #include "snowshed/methods/grains/bond_law.hpp"
 #include "snowshed/methods/grains/boundary.hpp"
 #include "snowshed/methods/grains/energy.hpp"
@@ -57,7 +58,7 @@ struct Model {
 
   /// Threads for steps of so many pairs: one that has little to do costs more time than it saves.
   int threads_for(std::size_t pairs) const {
-    return int(std::clamp<std::size_t>(pairs / pairs_per_thread, 1, std::size_t(threads)));
+    return snowshed::threads_for(pairs, pairs_per_thread, threads);
   }
   double area() const { return box.x() * box.y(); }
   LoadedSample loaded() const { return {box, radius, law.normal_stiffness}; }

@@ -97,11 +97,11 @@ double stable_time_step(const Settings& n, const std::vector<Snow>& snows, int d
   return next_time_step(limit, 0.0, n.dx, n.courant_factor);
 }
 
-CostEstimate estimate_cost(const Settings& n, const CostRequest& request) {
-  const int dimension = request.scene.dimension, events = request.scene.events.count;
-  const SceneOutline& outline = *request.outline;
+CostEstimate estimate_cost(const Settings& n, const SceneView& scene, const SceneOutline& outline,
+                           std::vector<double> particles) {
+  const int dimension = scene.dimension, events = scene.events.count;
   CostEstimate estimate;
-  estimate.particles = request.particles;
+  estimate.particles = std::move(particles);
   estimate.total_particles =
       std::accumulate(estimate.particles.begin(), estimate.particles.end(), 0.0);
   estimate.time_step = stable_time_step(n, outline.snows, dimension);

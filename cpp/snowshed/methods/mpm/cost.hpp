@@ -11,7 +11,8 @@ namespace snowshed::mpm {
 /// The first time step of snow at rest, of the stiffest, s.
 double stable_time_step(const Settings&, const std::vector<Snow>&, int dimension);
 
-CostEstimate estimate_cost(const Settings&, const CostRequest&);
+CostEstimate estimate_cost(const Settings&, const SceneView&, const SceneOutline&,
+                           std::vector<double> particles);
 
 std::vector<Feature> features_of(const Settings&, const SceneView&, const SceneOutline&);
 

@@ -103,55 +103,42 @@ std::vector<double> SolverImpl<T, D>::positions() const {
 template <class T, int D>
 template <class Visit>
 void SolverImpl<T, D>::visit_fields(Visit visit) const {
-  const auto stored = [&visit](const FieldInfo& info, const auto& array) {
-    visit(info, [&] { return stored_view(info, array); });
-  };
-  const auto column = [&stored](const char* name, const auto& array) {
-    stored(field_of(quantity(name), field_type<std::decay_t<decltype(array[0])>>(), true), array);
-  };
-  const auto components = [&stored](const char* name, const auto& arrays, auto axes) {
+  const FieldSources show(visit, state_.particles.size(), model_.max_threads);
+  const auto components = [&show](const char* name, const auto& arrays, auto axes) {
     for (int k = 0; k < int(arrays.size()); ++k)
-      stored(component_of(quantity(name), axes(k), field_type<T>()), arrays[k]);
-  };
-  const auto computed = [&visit](const char* name, auto values) {
-    using Value = typename decltype(values())::value_type;
-    const FieldInfo info = field_of(quantity(name), field_type<Value>(), false);
-    visit(info, [&] { return computed_view(info, values()); });
-  };
-  const auto of_each = [&](const char* name, auto value) {
-    computed(name,
-             [&] { return values_of_each(state_.particles.size(), model_.max_threads, value); });
+      show.stored(component_of(quantity(name), axes(k), field_type<T>()), arrays[k]);
   };
 
-  computed("position", [this] { return positions(); });
-  of_each("velocity", [this](std::size_t i) { return velocity(i); });
+  show.computed("position", [this] { return positions(); });
+  show.of_each("velocity", [this](std::size_t i) { return velocity(i); });
   components("velocity", state_.particles.velocity,
              [](int d) { return std::string(1, axis_names<D>()[d]); });
-  column("mass", state_.particles.mass);
-  of_each("density", [this](std::size_t i) {
+  show.column("mass", state_.particles.mass);
+  show.of_each("density", [this](std::size_t i) {
     return state_.material_of(model_, i).density / volume_ratio(i);
   });
-  of_each("volume_ratio", [this](std::size_t i) { return volume_ratio(i); });
-  of_each("pressure", [this](std::size_t i) { return pressure(i); });
-  of_each("deviatoric_stress", [this](std::size_t i) { return deviatoric_stress(i); });
+  show.of_each("volume_ratio", [this](std::size_t i) { return volume_ratio(i); });
+  show.of_each("pressure", [this](std::size_t i) { return pressure(i); });
+  show.of_each("deviatoric_stress", [this](std::size_t i) { return deviatoric_stress(i); });
   if (state_.particles.has_plastic) {
-    of_each("preconsolidation_pressure",
-            [this](std::size_t i) { return preconsolidation_pressure(i); });
-    column("volumetric_plastic_strain", state_.particles.plastic);
+    show.of_each("preconsolidation_pressure",
+                 [this](std::size_t i) { return preconsolidation_pressure(i); });
+    show.column("volumetric_plastic_strain", state_.particles.plastic);
   } else
-    of_each("volumetric_plastic_strain", [](std::size_t) { return 0.0; });
+    show.of_each("volumetric_plastic_strain", [](std::size_t) { return 0.0; });
   components("be_minus_identity", state_.particles.be_minus_identity, symmetric_axes<D>);
   if (state_.particles.has_affine) {
-    of_each("affine", [this](std::size_t i) { return affine(i); });
+    show.of_each("affine", [this](std::size_t i) { return affine(i); });
     components("affine", state_.particles.affine,
                [](int k) { return std::string{axis_names<D>()[k / D], axis_names<D>()[k % D]}; });
   }
-  column("id", state_.particles.id);
-  column("event", state_.particles.event);
+  show.column("id", state_.particles.id);
+  show.column("event", state_.particles.event);
   if (state_.particles.has_material_id)
-    column("material_id", state_.particles.material_id);
+    show.column("material_id", state_.particles.material_id);
   else
-    computed("material_id", [this] { return std::vector<std::uint8_t>(state_.particles.size()); });
+    show.computed("material_id",
+                  [this] { return std::vector<std::uint8_t>(state_.particles.size()); });
 }
 
 template <class T, int D>

@@ -102,8 +102,9 @@ class Descriptor final : public DescriptorOf<Descriptor, Settings> {
     return make_solver(std::move(o));
   }
 
-  CostEstimate cost(const CostRequest& request) const override {
-    return estimate_cost(settings_, request);
+  CostEstimate cost_of_bodies(const SceneView& scene, const SceneOutline& outline,
+                              std::vector<double> particles) const override {
+    return estimate_cost(settings_, scene, outline, std::move(particles));
   }
   std::vector<Feature> features(const SceneView& scene,
                                 const SceneOutline& outline) const override {

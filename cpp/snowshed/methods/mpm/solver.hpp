@@ -23,7 +23,11 @@ struct Options {
 };
 
 /// MPM as a method, and what only it has.
-class Solver : public Method, public Settles, public BalancesEnergy, public Sleeps {};
+class Solver : public Method, public Settles, public KeepsEnergy, public Sleeps {
+ public:
+  virtual EnergyBalance energy() const = 0;
+  NamedEnergies energies() const override { return named_energies(energy()); }
+};
 
 inline constexpr int steps_between_sorts = 64;
 /// Fewer where each particle has more contacts than this: where thousands of obstacles overlap,

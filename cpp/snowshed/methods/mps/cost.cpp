@@ -12,12 +12,12 @@ constexpr double bytes_per_particle[] = {1200, 3000};
 
 }  // namespace
 
-CostEstimate estimate_cost(const Settings& s, const CostRequest& request) {
-  const SceneView& scene = request.scene;
+CostEstimate estimate_cost(const Settings& s, const SceneView& scene, const SceneOutline& outline,
+                           std::vector<double> particles) {
   CostEstimate cost;
-  cost.particles = request.particles;
+  cost.particles = std::move(particles);
   cost.total_particles = std::accumulate(cost.particles.begin(), cost.particles.end(), 0.0);
-  const double speed = std::sqrt(2 * scene.gravity * std::max(request.outline->height, s.spacing));
+  const double speed = std::sqrt(2 * scene.gravity * std::max(outline.height, s.spacing));
   cost.time_step = std::min(s.max_time_step, s.courant_factor * s.spacing / std::max(speed, 1e-9));
   cost.event_time = scene.events.max_time;
   cost.steps = scene.events.count * std::ceil(cost.event_time / cost.time_step);

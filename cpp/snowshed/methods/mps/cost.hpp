@@ -9,7 +9,8 @@
 
 namespace snowshed::mps {
 
-CostEstimate estimate_cost(const Settings&, const CostRequest&);
+CostEstimate estimate_cost(const Settings&, const SceneView&, const SceneOutline&,
+                           std::vector<double> particles);
 
 std::vector<Feature> features_of(const Settings&, const SceneView&);
 

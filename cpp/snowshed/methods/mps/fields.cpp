@@ -11,32 +11,23 @@ template <int D>
 template <class Visit>
 void SolverImpl<D>::visit_fields(Visit visit) const {
   const Particles<D>& p = state_.particles;
-  const auto column = [&](const char* name, const auto& array) {
-    const FieldInfo info =
-        field_of(quantity(name), field_type<std::decay_t<decltype(array[0])>>(), true);
-    visit(info, [&] { return stored_view(info, array); });
-  };
-  const auto of_each = [&](const char* name, auto value) {
-    const FieldInfo info = field_of(quantity(name), FieldType::float64, false);
-    visit(info, [&] { return computed_view(info, values_of_each(size(), model_.threads, value)); });
-  };
-  of_each("position", [&p](std::size_t i) { return embed(p.position[i]); });
-  of_each("velocity", [&p](std::size_t i) { return embed(p.velocity[i]); });
-  column("mass", p.mass);
-  of_each("density",
-          [this, &p](std::size_t i) { return model_.settings().density * p.density[i]; });
-  column("number_density", p.density);
-  column("pressure", p.pressure);
-  column("shear_rate", p.rate);
-  column("apparent_viscosity", p.viscosity);
-  const FieldInfo kind = field_of(quantity("particle_kind"), FieldType::uint8, false);
-  visit(kind, [&] {
+  const FieldSources show(visit, size(), model_.threads);
+  show.of_each("position", [&p](std::size_t i) { return embed(p.position[i]); });
+  show.of_each("velocity", [&p](std::size_t i) { return embed(p.velocity[i]); });
+  show.column("mass", p.mass);
+  show.of_each("density",
+               [this, &p](std::size_t i) { return model_.settings().density * p.density[i]; });
+  show.column("number_density", p.density);
+  show.column("pressure", p.pressure);
+  show.column("shear_rate", p.rate);
+  show.column("apparent_viscosity", p.viscosity);
+  show.computed("particle_kind", [&] {
     std::vector<std::uint8_t> kinds(size());
     for (std::size_t i = 0; i < size(); ++i) kinds[i] = std::uint8_t(p.kind[i]);
-    return computed_view(kind, std::move(kinds));
+    return kinds;
   });
-  column("id", p.id);
-  column("event", p.event);
+  show.column("id", p.id);
+  show.column("event", p.event);
 }
 
 template <int D>
@@ -66,13 +57,13 @@ ParticleState SolverImpl<D>::state() const {
 }
 
 template <int D>
-EnergyBalance SolverImpl<D>::energy() const {
-  if (!model_.options.energy) return {};
+NamedEnergies SolverImpl<D>::energies() const {
+  if (!model_.options.energy) return named_energies(EnergyBalance{});
   EnergyBalance e = state_.energy;
   const EnergyBalance now = stored_energy(model_, state_.particles);
   e.kinetic = now.kinetic;
   e.gravitational = now.gravitational;
-  return e;
+  return named_energies(e);
 }
 
 template <int D>

@@ -45,10 +45,7 @@ class Descriptor final : public DescriptorOf<Descriptor, Settings> {
       throw InputError("/numerics/deposition_speed",
                        show(s.deposition_speed) + " m/s must be less than " +
                            "/numerics/erosion_speed = " + show(s.erosion_speed));
-    if (s.order == Order::published && s.splitting == Splitting::pressure_first)
-      throw InputError("/numerics/splitting",
-                       "with /numerics/order \"published\" particles move before the pressure is "
-                       "known; allowed: viscosity_first");
+    check_order(s);
     if (scene.output.energy && s.order == Order::published)
       throw InputError("/output/energy",
                        "the balance is kept with /numerics/order \"single_move\" only");
@@ -75,8 +72,9 @@ class Descriptor final : public DescriptorOf<Descriptor, Settings> {
     seed_on_lattice(settings_, shape, dimension, stop, batch, notes);
   }
 
-  CostEstimate cost(const CostRequest& request) const override {
-    return estimate_cost(settings_, request);
+  CostEstimate cost_of_bodies(const SceneView& scene, const SceneOutline& outline,
+                              std::vector<double> particles) const override {
+    return estimate_cost(settings_, scene, outline, std::move(particles));
   }
   std::vector<Feature> features(const SceneView& scene, const SceneOutline&) const override {
     return features_of(settings_, scene);

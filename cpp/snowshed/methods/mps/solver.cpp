@@ -55,12 +55,18 @@ void add_solve(const SolveReport& solve, SolveReport& all) {
 
 }  // namespace
 
+void check_order(const Settings& s) {
+  if (s.order == Order::published && s.splitting == Splitting::pressure_first)
+    throw InputError("/numerics/splitting",
+                     "with /numerics/order \"published\" particles move before the pressure is "
+                     "known; allowed: viscosity_first");
+}
+
 std::unique_ptr<Solver> make_solver(Options options) {
   const Settings& s = options.settings;
   if (options.period > 0 && options.period < 3 * s.radius * s.spacing)
     throw InputError("period", show_rounded(options.period) + " m is less than three radii");
-  if (s.order == Order::published && s.splitting == Splitting::pressure_first)
-    throw InputError("splitting", "particles move before the pressure is known (order)");
+  check_order(s);
   if (options.dimension == 2) return std::make_unique<SolverImpl<2>>(std::move(options));
   return std::make_unique<SolverImpl<3>>(std::move(options));
 }

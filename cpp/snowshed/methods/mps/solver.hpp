@@ -31,10 +31,13 @@ struct Report {
 };
 
 /// MPS as a method, and what only it has.
-class Solver : public Method, public BalancesEnergy, public ReportsRun {
+class Solver : public Method, public KeepsEnergy, public ReportsRun {
  public:
   virtual Report report() const = 0;
 };
+
+/// Throws InputError where the parts of a step cannot follow each other as the settings say.
+void check_order(const Settings&);
 
 /// Throws InputError where the settings do not fit each other.
 std::unique_ptr<Solver> make_solver(Options);

@@ -35,7 +35,7 @@ class SolverImpl final : public Solver {
   std::size_t size() const override { return state_.particles.size(); }
   ParticleState state() const override;
   MotionSummary motion(double speed) const override;
-  EnergyBalance energy() const override;
+  NamedEnergies energies() const override;
   std::size_t bytes() const override;
 
   void save(BinaryWriter&) const override;

@@ -6,6 +6,8 @@
 #include <numeric>
 #include <type_traits>
 
+#include "snowshed/core/angles.hpp"
+
 namespace snowshed::slide {
 
 void advance(const Model& model, State& state, Work& work) {
@@ -92,7 +94,7 @@ void split_heavy(const Model& model, State& state, Work& work) {
     if (!(p.mass[i] > p.fresh_mass[i] * model.settings.split_ratio)) continue;
     const double area =
         p.mass[i] / (model.settings.density * std::max(work.thickness[i], least_thickness));
-    const double distance = 0.41 * std::sqrt(area / 3.14159265358979323846);
+    const double distance = 0.41 * std::sqrt(area / pi);
     Vec3 along{p.ux[i], p.uy[i], p.uz[i]};
     const double speed = along.norm();
     along = speed > 0 ? Vec3(along * (distance / speed)) : Vec3(distance, 0, 0);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "snowshed/core/angles.hpp"
 #include "snowshed/methods/slide/state.hpp"
 
 namespace snowshed::slide {
@@ -57,7 +58,7 @@ double raised_integral(double n) {
 /// The potential of the pressure (kernels/surface_pressure.hpp), J: sum_k m_k g n_z h_k / 2, by
 /// which the snow's centre of mass lies above the ground, raised at few neighbours.
 double pressure_energy(const Model& model, const State& state, const Work& work) {
-  const double radius = model.terrain.cell(), pi = 3.14159265358979323846;
+  const double radius = model.terrain.cell();
   const Particles& p = state.particles;
   double sum = 0;
   for (std::uint32_t i = 0; i < p.size(); ++i) {

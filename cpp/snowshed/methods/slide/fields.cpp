@@ -11,31 +11,22 @@ namespace snowshed::slide {
 template <class Visit>
 void SolverImpl::visit_fields(Visit visit) const {
   const Particles& p = state_.particles;
-  const auto stored = [&](const FieldInfo& info, const auto& array) {
-    visit(info, [&] { return stored_view(info, array); });
-  };
-  const auto column = [&](const char* name, const auto& array) {
-    stored(field_of(quantity(name), field_type<std::decay_t<decltype(array[0])>>(), true), array);
-  };
+  const FieldSources show(visit, size(), model_.threads);
   const auto component = [&](const char* axis, const auto& array) {
     const Quantity& v = quantity("velocity");
-    stored({v.name + "_" + axis, v.unit, v.meaning + "; component " + axis, 1, FieldType::float64,
-            true},
-           array);
+    show.stored({v.name + "_" + axis, v.unit, v.meaning + "; component " + axis, 1,
+                 FieldType::float64, true},
+                array);
   };
-  const auto of_each = [&](const char* name, auto value) {
-    const FieldInfo info = field_of(quantity(name), FieldType::float64, false);
-    visit(info, [&] { return computed_view(info, values_of_each(size(), model_.threads, value)); });
-  };
-  of_each("position", [&p](std::size_t i) { return Vec3(p.x[i], p.y[i], p.z[i]); });
-  of_each("velocity", [&p](std::size_t i) { return Vec3(p.ux[i], p.uy[i], p.uz[i]); });
+  show.of_each("position", [&p](std::size_t i) { return Vec3(p.x[i], p.y[i], p.z[i]); });
+  show.of_each("velocity", [&p](std::size_t i) { return Vec3(p.ux[i], p.uy[i], p.uz[i]); });
   component("x", p.ux);
   component("y", p.uy);
   component("z", p.uz);
-  column("mass", p.mass);
-  column("thickness", work_.thickness);
-  column("id", p.id);
-  column("event", p.event);
+  show.column("mass", p.mass);
+  show.column("thickness", work_.thickness);
+  show.column("id", p.id);
+  show.column("event", p.event);
 }
 
 std::vector<FieldInfo> SolverImpl::fields() const {

@@ -47,10 +47,11 @@ class Descriptor final : public DescriptorOf<Descriptor, Settings> {
         {settings_, scene.gravity, input.terrain(), input.areas(), scene.output.energy});
   }
 
-  CostEstimate cost(const CostRequest& request) const override {
-    const auto& input = dynamic_cast<const Input&>(*request.surroundings->input);
-    return estimate_cost(settings_, request.scene, input.areas().release.front(),
-                         dynamic_cast<const Solver&>(*request.method));
+  CostEstimate cost_of_method(const SceneView& scene, const Surroundings& surroundings,
+                              const Method& method) const override {
+    const auto& input = dynamic_cast<const Input&>(*surroundings.input);
+    return estimate_cost(settings_, scene, input.areas().release.front(),
+                         dynamic_cast<const Solver&>(method));
   }
   std::vector<Feature> features(const SceneView& scene, const SceneOutline&) const override {
     return features_of(settings_, scene);

@@ -34,7 +34,7 @@ struct Model {
   bool compatible() const { return settings.mode == Mode::compatible; }
   /// The most threads for a step of so many particles.
   int threads_for(std::size_t particles) const {
-    return int(std::clamp<std::size_t>(particles / particles_per_thread, 1, std::size_t(threads)));
+    return snowshed::threads_for(particles, particles_per_thread, threads);
   }
 
   Settings settings;

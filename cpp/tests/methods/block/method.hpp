@@ -22,12 +22,13 @@ class Descriptor final : public DescriptorOf<Descriptor, Settings> {
   std::unique_ptr<Method> build(const SceneView& scene, const Surroundings&) const override {
     return std::make_unique<Solver>(Model{settings_, scene.gravity});
   }
-  CostEstimate cost(const CostRequest& request) const override {
+  CostEstimate cost_of_method(const SceneView& scene, const Surroundings&,
+                              const Method&) const override {
     CostEstimate cost;
     cost.particles = {1};
     cost.total_particles = 1;
     cost.time_step = settings_.time_step;
-    cost.event_time = request.scene.events.max_time;
+    cost.event_time = scene.events.max_time;
     cost.steps = cost.updates = std::ceil(cost.event_time / cost.time_step);
     return cost;
   }

@@ -4,6 +4,7 @@
 
 #include <type_traits>
 
+#include "snowshed/core/angles.hpp"
 #include "snowshed/methods/slide/kernels/places.hpp"
 
 SNOWSHED_METHOD_VARIANT_BEGIN(slide)
@@ -60,7 +61,6 @@ SNOWSHED_INLINE V spiky_gradient(const V& weight, const V& square, double radius
   return select(s < most, V(weight * gradient), V{});
 }
 SNOWSHED_INLINE double spiky_constant(double radius) {
-  const double pi = 3.14159265358979323846;
   return -30 / (pi * radius * radius * radius * radius * radius);
 }
 
