@@ -96,7 +96,7 @@ class Display : public snowshed::EventObserver {
   bool terminal_ = isatty(STDERR_FILENO) != 0;  // a file or a pipe gets whole lines only
 };
 
-/// What time does to the stack between events is the Python package's to compute.
+/// The Python package computes the effects of time on the stack between events.
 void refuse_ageing(const std::filesystem::path& folder) {
   if (std::filesystem::exists(folder / "ageing.json"))
     throw snowshed::InputError(folder.string(),
@@ -138,7 +138,7 @@ void on_signal(int) {
   interrupted = 1;
   if (!setting_up) return;
   if (::write(STDERR_FILENO, message, sizeof message - 1) < 0) {
-    // Nobody reads it.
+    // It is not read.
   }
   std::_Exit(130);
 }

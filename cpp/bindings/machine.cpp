@@ -1,4 +1,4 @@
-// What the core finds on this machine.
+// Facts of the core about this machine.
 #include "bindings.hpp"
 #include "snowshed/core/kernel_variant.hpp"
 #include "snowshed/core/memory.hpp"

@@ -81,7 +81,7 @@ void bind_scene(py::module_& m) {
   m.def("update_version", &updated, "text"_a,
         "The JSON of a scene, where it is of an earlier version as the present one says the same.");
   m.def("scene_checksum", &scene_checksum, "text"_a,
-        "A checksum of the values in a scene's text, but for the number of threads.");
+        "A checksum of the values in a scene's text without the number of threads.");
   m.def("scene_schema", &scene_schema, "The JSON Schema of a scene.");
   m.def(
       "preset", [](const std::string& name) { return write_scene(preset_scene(name)); }, "name"_a);

@@ -1,4 +1,4 @@
-// What only a simulation of grains tells.
+// Properties of a simulation of grains.
 #include <pybind11/numpy.h>
 
 #include <algorithm>

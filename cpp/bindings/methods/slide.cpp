@@ -1,4 +1,4 @@
-// What only a slide tells.
+// Properties of a simulation of a slide.
 #include <pybind11/numpy.h>
 
 #include "array_copies.hpp"

@@ -35,7 +35,7 @@ class FileError : public std::runtime_error {
   const std::string& file() const { return file_; }
   int code() const { return code_; }
 
-  /// Returns whether the disk is full or broken, which has nothing to do with what was asked for.
+  /// Returns whether the cause is a full or broken disk rather than the request.
   bool is_of_disk() const {
     return code_ == ENOSPC || code_ == EDQUOT || code_ == EIO || code_ == EFBIG;
   }

@@ -1,4 +1,4 @@
-// Which of the instruction sets that kernels are compiled for a process uses.
+// Choice of the instruction set whose kernels a process uses.
 #pragma once
 
 namespace snowshed {

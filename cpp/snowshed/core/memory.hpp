@@ -1,4 +1,4 @@
-// How much memory the process has used and how much the machine has.
+// Memory that the process has used and memory of the machine.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Loops over threads. What an iteration writes is its own, so results never depend on how many
-// threads there are or which of them runs what. Where iterations throw, the loop throws what the
+// Loops over threads. Each iteration writes only its own data, so results never depend on the
+// number of threads or on which of them runs what. Where iterations throw, the loop throws what the
 // first of them (by index) threw; others may have run before it comes to that.
 #pragma once
 

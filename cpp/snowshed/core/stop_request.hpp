@@ -10,7 +10,7 @@ namespace snowshed {
 /// asks.
 using StopRequest = std::function<bool()>;
 
-/// Thrown by work that was given up. What it was to change is as it was.
+/// Thrown by work that was given up. Its data are unchanged.
 class Stopped : public std::runtime_error {
  public:
   Stopped() : std::runtime_error("interrupted") {}
@@ -21,7 +21,7 @@ class StopCheck {
  public:
   explicit StopCheck(const StopRequest& request) : request_(request) {}
 
-  /// Throws `Stopped` where the work is to be given up.
+  /// Throws `Stopped` if the work shall stop.
   void operator()() {
     if (++turns_ % turns_between == 0 && request_ && request_()) throw Stopped();
   }

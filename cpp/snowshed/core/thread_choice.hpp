@@ -1,4 +1,4 @@
-// How many threads take a short step: as many as make it faster, which only a trial can tell.
+// Number of threads for a short step: as many as make it faster, as trials show.
 #pragma once
 
 #include <algorithm>
@@ -44,7 +44,7 @@ class ThreadChoice {
   using Clock = std::chrono::steady_clock;
   // Steps. The first trials are soon repeated: a program that has just begun is slower.
   static constexpr std::size_t first_period = 64, longest_period = 1024, trials = 9;
-  static constexpr double worthwhile = 0.9;  // of the time with one thread
+  static constexpr double worthwhile = 0.9;  // share of the time with one thread
   using Times = std::array<double, trials>;
 
   static double median(Times times) {
@@ -57,7 +57,7 @@ class ThreadChoice {
   bool trial_ = false, many_ = false, gave_up_ = false;
   double with_one_ = 0;  // s
   Clock::time_point begin_;
-  std::array<Times, 2> seconds_{};  // of the trials, s: with one thread and with many
+  std::array<Times, 2> seconds_{};  // times of the trials, s: with one thread and with many
 };
 
 }  // namespace snowshed

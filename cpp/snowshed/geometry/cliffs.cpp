@@ -33,7 +33,7 @@ std::string in_words(const HeightField& f, const HeightStep& s) {
   return text;
 }
 
-/// Returns in words the first step between nodes of a rectangle for which a test holds.
+/// Describes the first step between nodes of a rectangle for which a test holds.
 template <class Test>
 std::string first_step(const HeightField& f, const int (&low)[2], const int (&high)[2], Test test) {
   for (int row = low[1]; row <= high[1]; ++row)

@@ -116,7 +116,7 @@ double total_area(const std::vector<Section>& sections) {
 std::vector<TriangleMesh> sections_at_y0(const std::vector<TriangleMesh>& meshes,
                                          const std::string& where) {
   Bounds bounds = no_bounds();
-  double nearest = infinity;  // of the vertices to the plane
+  double nearest = infinity;  // distance from the vertices to the plane
   for (const TriangleMesh& mesh : meshes)
     for (const Vec3& v : mesh.vertices) {
       bounds = unite(bounds, {v, v});

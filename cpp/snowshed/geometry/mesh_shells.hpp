@@ -10,7 +10,7 @@ namespace snowshed {
 
 /// A solid as the union of meshes, whose triangles face outward.
 struct ShellSolid {
-  std::vector<TriangleMesh> layers;  // of shells that lie apart, each with the cavities within it
+  std::vector<TriangleMesh> layers;  // separate shells, each with its cavities
   std::vector<std::string> notes;    // on what was changed, a sentence each
 };
 

@@ -1,4 +1,4 @@
-// Which way three points of a plane turn, without rounding errors.
+// Exact sense in which three points of a plane turn, without rounding errors.
 #pragma once
 
 #include <array>

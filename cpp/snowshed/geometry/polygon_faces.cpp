@@ -46,7 +46,7 @@ Face without_repetitions(const std::vector<Vec3>& vertices, const Face& face) {
   for (const std::uint32_t corner : face)
     if (kept.empty() || vertices[corner] != vertices[kept.back()]) kept.push_back(corner);
   while (kept.size() > 1 && vertices[kept.back()] == vertices[kept.front()]) kept.pop_back();
-  // So that two faces that coincide and turn opposite ways are cut alike.
+  // Two faces that coincide and turn opposite ways are then cut alike.
   std::rotate(kept.begin(),
               std::min_element(kept.begin(), kept.end(),
                                [&](auto a, auto b) {
@@ -147,7 +147,7 @@ class EarClipper {
     return true;
   }
 
-  /// What has no area keeps the neighbouring faces connected.
+  /// Triangles without area keep the neighbouring faces connected.
   bool fan(std::size_t i, std::vector<Triangle>& triangles) {
     while (left_ > 2) cut(after_[i], triangles);
     return true;

@@ -11,7 +11,7 @@
 namespace snowshed {
 namespace {
 
-constexpr double rounding = 1e-9;  // of the half thickness
+constexpr double rounding = 1e-9;  // share of the half thickness
 
 /// The middles of thin parts as triangles, two for each part.
 TriangleMesh middles_of(const std::vector<ThinPart>& parts) {

@@ -9,7 +9,7 @@
 
 namespace snowshed {
 
-/// What was made thicker.
+/// Parts that were made thicker.
 struct Thickening {
   Vec3 thinnest;     // where the solid is thinnest, m; without meaning if `whole`
   double thickness;  // m, there
@@ -24,7 +24,7 @@ struct ThickSolid {
 };
 
 /// Returns a solid that is nowhere thinner than `2 half` metres, and is as given where that is
-/// thicker. Convex solids are dilated until they are thick enough. Of others the parts that
+/// thicker. Convex solids are dilated until they are thick enough. In other solids the parts that
 /// find_thin_parts finds grow: all points within `half` of their middle are added, which for a
 /// plate is the same. Solids that are thick enough are returned themselves; a second call changes
 /// nothing.

@@ -19,7 +19,7 @@ constexpr double parallel = 0.77;
 
 /// Lengths below are parts of the half thickness that is asked for.
 constexpr double on_surface = 1e-6, shortest_step = 2e-3, thick = 0.999;
-/// So far the middle of a bent part may leave it along its tangent.
+/// The middle of a bent part may leave it along its tangent by this distance.
 constexpr double slack = 0.1;
 
 class ThinPartSearch {
@@ -192,7 +192,7 @@ class ThinPartSearch {
     part.corners[2] = middle + a1 * along + b1 * across;
     part.corners[3] = middle - a0 * along + b1 * across;
     if (dimension_ == 3)
-      for (Vec3& corner : part.corners) {  // which an edge that runs aslant cuts off
+      for (Vec3& corner : part.corners) {  // an edge that runs aslant cuts it off
         const double distance = (corner - middle).norm();
         const Vec3 direction = (corner - middle) / distance;
         corner = middle +
@@ -236,7 +236,7 @@ class ThinPartSearch {
   const LevelSet& shape_;
   const double half_;
   const int dimension_;
-  double edge_ = 0;  // of the present cells, m
+  double edge_ = 0;  // edge of the present cells, m
   Vec3 corner_ = Vec3::Zero();
   std::vector<Vec3> thin_cells_;
 };

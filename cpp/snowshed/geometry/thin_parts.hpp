@@ -9,13 +9,13 @@
 namespace snowshed {
 
 /// A piece of the middle of a thin part: a rectangle between both of its faces. Its edges lie half
-/// the thickness away from those of the part. Of a thin rod it is a line, of a small ball a point,
-/// but for rounding.
+/// the thickness away from those of the part. For a thin rod it is a line, for a small ball a
+/// point, except for rounding.
 struct ThinPart {
   Vec3 middle;      // m
   Vec3 normal;      // across the part, unit
   double half;      // m, half of the thickness
-  Vec3 corners[4];  // of the rectangle, m
+  Vec3 corners[4];  // corners of the rectangle, m
 };
 
 /// Returns pieces of all parts of a solid that are thinner than `2 half`, so near to each other

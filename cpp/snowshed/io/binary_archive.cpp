@@ -20,7 +20,7 @@
 
 namespace snowshed {
 
-/// How an archive begins.
+/// The beginning of an archive.
 struct ArchiveHeader {
   char magic[8];
   std::uint32_t version;

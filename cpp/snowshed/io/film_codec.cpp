@@ -112,7 +112,8 @@ std::vector<std::int64_t> FilmCodec::places_before(const FilmFrame& frame) const
   return before;
 }
 
-/// Positions and values, either way. What is new is foretold to be as the particle before it.
+/// Reads or writes positions and values. A new particle is predicted to be like the particle before
+/// it.
 template <class Stream>
 void FilmCodec::transfer(Stream& stream, FilmFrame& frame) {
   const std::vector<std::int64_t> before = places_before(frame);

@@ -40,7 +40,8 @@ class FilmCodec {
 
   FilmHeader header_;
   FilmFrame last_;
-  std::vector<std::vector<std::int32_t>> steps_;  // by axis, from the frame before the last
+  // One list per axis, from the frame before the last.
+  std::vector<std::vector<std::int32_t>> steps_;
 };
 
 /// Deflated bytes (zlib format, RFC 1950); throws std::bad_alloc for lack of memory.

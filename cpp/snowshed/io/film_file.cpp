@@ -15,13 +15,13 @@ namespace snowshed {
 namespace {
 
 constexpr char film_magic[8] = {'S', 'N', 'O', 'W', 'F', 'I', 'L', 'M'};
-constexpr std::size_t film_text_start = 24;  // of the JSON text
+constexpr std::size_t film_text_start = 24;  // start of the JSON text
 constexpr std::size_t most_header_bytes = 1u << 20;
 constexpr std::size_t header_sum_at = 16;
 constexpr std::uint32_t frame_tag = 0x4d415246;  // "FRAM"
 constexpr std::uint32_t close_tag = 0x53444e45;  // "ENDS"
 constexpr std::size_t record_head = 40, facts_at = 8, content_sum_at = 36;
-// Of a frame; the particles that runs record, with all their quantities, take a twentieth of it.
+// Largest frame. The particles that runs record, with all their quantities, take a twentieth of it.
 constexpr std::size_t most_raw_bytes = std::size_t{1} << 27;
 constexpr std::uint32_t lists_flag = 1;
 
@@ -68,7 +68,7 @@ std::string header_bytes(const FilmHeader& header) {
   return std::string(bytes.begin(), bytes.end()) + text;
 }
 
-/// What the head of a record says beside its checksums.
+/// Contents of the head of a record, without its checksums.
 struct RecordFacts {
   double time;
   std::uint32_t event, flags, particles, raw, packed;
@@ -173,7 +173,7 @@ bool FilmReader::is_cut_off(std::size_t at) const {
   const std::size_t left = bytes_.size() - at;
   if (std::memcmp(bytes_.data() + at, &frame_tag, std::min(left, sizeof frame_tag)) == 0)
     return left < record_head ||
-           read<std::uint32_t>(at + 32) > left - record_head;  // of the packed content
+           read<std::uint32_t>(at + 32) > left - record_head;  // bytes of the packed content
   return left < record_head &&
          std::memcmp(bytes_.data() + at, &close_tag, std::min(left, sizeof close_tag)) == 0;
 }

@@ -16,7 +16,7 @@ namespace snowshed {
 
 inline constexpr std::uint32_t film_version = 2;  // written; version 1 is read, too
 
-/// What is known of a frame without its particles.
+/// Facts about a frame without its particles.
 struct FilmFrameFacts {
   double time = 0;  // s
   std::uint32_t event = 0;
@@ -26,7 +26,7 @@ struct FilmFrameFacts {
 /// Names the header and the first frames of a film, whatever follows them.
 struct FilmMark {
   std::size_t frames = 0;
-  std::uint32_t checksum = 0;  // of the last of them, and so of all before it
+  std::uint32_t checksum = 0;  // checksum of the last of them, which depends on all before it
 };
 
 /// Reads a film. The file is untrusted: sizes are checked before memory is taken for them, and
@@ -121,8 +121,8 @@ class FilmWriter {
   FilmHeader header_;
   FilmCodec codec_;
   std::vector<FilmFrameFacts> facts_;
-  std::uint32_t checksum_ = 0;  // of the last frame, or else of the header
-  std::size_t end_ = 0;         // of the frames that are kept, bytes
+  std::uint32_t checksum_ = 0;  // checksum of the last frame, or of the header if there is none
+  std::size_t end_ = 0;         // size of the frames that are kept, bytes
   bool more_follows_ = false;   // behind them in the file
   bool closed_ = false;
 };

@@ -104,7 +104,7 @@ struct CamClayLaw {
     else
       return ev;
   }
-  /// How it changes while e_v changes by d.
+  /// Change of that strain while e_v changes by d.
   template <class V>
   SNOWSHED_INLINE V softened_by(const V& ev, const V& d) const {
     if constexpr (band) {
@@ -147,7 +147,7 @@ struct CamClayLaw {
     return {k.sinh * cosh_w + k.cosh * sinh_w, k.cosh * cosh_w + k.sinh * sinh_w};
   }
 
-  /// How many times faster than in (1.2.7) snow softens at e_v.
+  /// Factor by which snow at e_v softens faster than in (1.2.7).
   template <class V>
   SNOWSHED_INLINE V softening_at(const V& ev) const {
     return select(ev > band_begin, broadcast<V>(softening), broadcast<V>(T(1)));
@@ -276,7 +276,7 @@ struct CamClayLaw {
       const auto past = (y <= T(0)) | (n * n_trial <= T(0));
       near = select(past, near, d);
       end = select(past, d, end);
-      // Half the second derivative, but for that of p0, which changes too little to matter.
+      // Half the second derivative, without that of p0, which changes too little to matter.
       const V y_curve = (T(1) + T(2) * beta) / m2 *
                             (q_slope * q_slope - T(2) * q * q_slope * (n_slope - c) * per_flow) +
                         (elastic.bulk + beta * p0_slope) * (elastic.bulk - p0_slope);

@@ -26,7 +26,7 @@
 
 namespace snowshed {
 
-/// What an element of an array is stored as, and how many of them.
+/// Type in which an element of an array is stored, and number of values per element.
 template <class T, class = void>
 struct StoredAs {
   using Type = T;
@@ -119,7 +119,7 @@ class StateWriter {
 };
 
 /// Throws InputError where a section is missing, of another type or size, or holds what no state
-/// does. What arrays mean is for the methods to check.
+/// does. The methods check the meaning of arrays.
 class StateReader {
  public:
   static constexpr bool reads = true;

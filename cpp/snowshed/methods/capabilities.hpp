@@ -1,5 +1,5 @@
-// What only some methods can do. A method that can derives from the class too, and whoever needs it
-// asks for it (`capability`).
+// Capabilities that only some methods have. Such a method derives from the class of the capability
+// too, and callers ask for it with `capability`.
 #pragma once
 
 #include <cstdint>

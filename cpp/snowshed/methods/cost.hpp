@@ -1,4 +1,4 @@
-// What a scene will cost: what is known of it by arithmetic alone, and what a method makes of that.
+// Cost of a scene: its outline by arithmetic, and the method's estimate from the outline.
 #pragma once
 
 #include <string>
@@ -13,8 +13,8 @@ namespace snowshed {
 
 class Method;
 
-/// How far and how long the snow of an event moves: a slab slides off the panel and falls, bodies
-/// fall, and the snow settles.
+/// Distance and duration of the motion of an event's snow: a slab slides off the panel and falls,
+/// bodies fall, and the snow settles.
 struct SnowMotion {
   bool slides = false;         // gravity overcomes the panel's friction
   double sliding_time = 0.0;   // s, until the slab's rear leaves the panel
@@ -25,17 +25,17 @@ struct SnowMotion {
   double event_time = 0.0;     // s, sliding, falling and settling; at most events.max_time
 };
 
-/// What a scene's solids and snow add up to, without building them.
+/// Totals of a scene's solids and snow, computed without building them.
 struct SceneOutline {
-  std::vector<Snow> snows;                   // by material_id
+  std::vector<Snow> snows;                   // indexed by material_id
   std::vector<std::vector<double>> volumes;  // m3 (2D: m2) of the bodies of each event
   double particles_per_voxel = 0;
   double height = 0;             // m, of the snow of the first event above z = 0, or of itself
-  std::vector<bool> conditions;  // by Condition: whether an obstacle has it
+  std::vector<bool> conditions;  // indexed by Condition: whether an obstacle has it
   bool has_moving_obstacle = false;
   bool has_domain = false;
-  double obstacles = 0;         // how many
-  double most_overlapping = 0;  // how many of them overlap where most do
+  double obstacles = 0;         // number of obstacles
+  double most_overlapping = 0;  // largest number of obstacles that overlap at a point
   SnowMotion motion;
 };
 
@@ -46,13 +46,14 @@ struct CostEstimate {
   double time_step = 0.0;         // s
   double event_time = 0.0;        // s, of an event; at most events.max_time
   double steps = 0.0;             // all events
-  double updates = 0.0;           // of particles that are awake, all events
+  double updates = 0.0;           // updates of awake particles, all events
   double scattering = 1.0;        // work of an update where snow flies apart, over that at first
   double bytes = 0.0;             // peak memory, particles and grid
-  std::vector<std::pair<std::string, double>> parts;  // of the particles, by name, if they have any
+  // Named parts of the particle count, if there are any.
+  std::vector<std::pair<std::string, double>> parts;
 };
 
-/// What a method estimates its cost from. Methods that fill bodies with particles are asked before
+/// Input of a method's cost estimate. Methods that fill bodies with particles are asked before
 /// anything is built, all others afterwards.
 struct CostRequest {
   const SceneView& scene;

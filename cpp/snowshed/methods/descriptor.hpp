@@ -1,5 +1,5 @@
-// What the program knows of a method: a class for each, and one line in registry.cpp. Scenes, runs
-// and programs ask descriptors, and name no method.
+// The program's knowledge of a method: one class per method, and one line in registry.cpp. Scenes,
+// runs and programs ask descriptors, and name no method.
 #pragma once
 
 #include <cstdint>
@@ -39,14 +39,15 @@ class Parts {
   unsigned bits_ = 0;
 };
 
-/// What never changes of a method.
+/// Constant facts about a method.
 struct MethodFacts {
   const char* name;                     // as scenes give it
   const char* doc;                      // in the schema
-  Parts takes;                          // of a scene
-  const char* length_unit = "cells";    // what `resolution` is the size of, in messages
+  Parts takes;                          // parts of a scene that it takes
+  const char* length_unit = "cells";    // things whose size is `resolution`, in messages
   std::vector<std::string> energies{};  // names with units, in the order of tables
-  std::vector<Quantity> quantities{};   // of its particles, besides those that all methods share
+  // Quantities of its particles besides those that all methods share.
+  std::vector<Quantity> quantities{};
 };
 
 /// A method together with its settings. The registry holds one of each method with the default
@@ -112,7 +113,7 @@ class MethodDescriptor {
 
   /// Throws InputError where the scene cannot be run.
   virtual CostEstimate cost(const CostRequest&) const = 0;
-  /// What the method can do, and which of it the scene uses.
+  /// Features that the method has, and whether the scene uses them.
   virtual std::vector<Feature> features(const SceneView&, const SceneOutline&) const = 0;
 };
 
@@ -126,7 +127,7 @@ void describe_settings(SettingsVisitor& visitor, Settings& settings) {
 
 }  // namespace detail
 
-/// What all descriptors share: a method's own one, `Self`, derives from this one.
+/// Base of all descriptors; a method's descriptor, `Self`, derives from it.
 template <class Self, class Settings>
 class DescriptorOf : public MethodDescriptor {
  public:

@@ -1,15 +1,15 @@
 // The contract between a method and what runs it: particles are added and replaced, steps are
-// taken, fields are read, and the state is saved and restored. What only some methods can do, such
-// as to settle, is in capabilities.hpp.
+// taken, fields are read, and the state is saved and restored. Capabilities of some methods, such
+// as settling, are in capabilities.hpp.
 //
 // What a method promises:
 // - A call that throws leaves the snow, the time, the counters and the energies as they were, so
-//   that the same call may be made again or another instead. What is read back by id is the same;
-//   only the order of the particles in memory may differ. This holds for lack of memory too.
+//   that the same call may be made again or another instead. Data read by id are the same; only
+//   the order of the particles in memory may differ. This holds for lack of memory too.
 // - One exception: `step` can find only afterwards that a particle is no longer sound. Then the
 //   step has been taken and the method has *failed*: it may be looked at, but everything that
-//   would alter, advance or save it throws SimulationError, so that nobody writes a broken state
-//   over a good checkpoint. `load` makes it whole again.
+//   would alter, advance or save it throws SimulationError, so that a broken state never
+//   overwrites a good checkpoint. `load` repairs it.
 // - Errors: InputError for arguments that are not allowed, SimulationError where the simulation
 //   cannot go on, std::bad_alloc for lack of memory.
 // - The results do not depend on the number of threads, to the last bit.
@@ -35,8 +35,8 @@ namespace snowshed {
 class BinaryWriter;
 class BinaryReader;
 
-/// A copy of the particles for the outside, in double, ordered by id. What a method does not know
-/// stays empty.
+/// A copy of the particles for the outside, in double, ordered by id. Fields that a method does not
+/// have are empty.
 struct ParticleState {
   std::vector<Vec3> positions, velocities;  // m, m/s
   std::vector<double> masses;               // kg
@@ -47,10 +47,10 @@ struct ParticleState {
   std::vector<Mat3> affine;                 // C of APIC, 1/s
   std::vector<std::uint32_t> ids;
   std::vector<std::uint16_t> events;
-  std::vector<std::uint8_t> material_ids;  // which of the snows each is, if there are several
+  std::vector<std::uint8_t> material_ids;  // snow of each particle, if there are several
 };
 
-/// How much the snow moves.
+/// Motion of the snow as a whole.
 struct MotionSummary {
   double mass = 0;         // kg
   double rms_speed = 0;    // m/s
@@ -60,11 +60,11 @@ struct MotionSummary {
 /// Counters since the method was made.
 struct StepCounters {
   std::int64_t steps = 0, rejected = 0, sorts = 0;
-  std::int64_t particle_updates = 0;  // of particles that took part in a step
+  std::int64_t particle_updates = 0;  // particles that took part, summed over the steps
   double smallest_dt = 0;             // s
 };
 
-/// What a method is to the rest of the program; see the top of this file for what holds when a call
+/// A method as the rest of the program sees it; the top of this file says what holds when a call
 /// throws. Dimension and precision are chosen once, where the method is made.
 class Method {
  public:
@@ -128,7 +128,7 @@ class Method {
   virtual MotionSummary motion(double speed) const = 0;  ///< m/s, which counts as moving
   virtual std::size_t bytes() const = 0;  ///< held by the particles and what the steps need
 
-  /// What files of particles hold: by default the quantities of `state`, ordered by id.
+  /// Contents of a file of particles: by default the quantities of `state`, ordered by id.
   virtual PointCloud snapshot() const;
 
   // --- checkpoints -----------------------------------------------------------------------------

@@ -32,13 +32,13 @@ struct ResistanceSpec {
 
 /// Ground from a raster of elevations, and what lies on it.
 struct TerrainSpec {
-  std::string file;              // ESRI ASCII grid
-  std::string crs;               // of the raster and the areas, in words; handed on to the results
-  bool single_precision = true;  // of elevations in compatible mode
-  std::string thickness_file;    // of the release, in place of the areas' thickness; an ASCII grid
+  std::string file;  // ESRI ASCII grid
+  std::string crs;   // name of the coordinate reference system of raster and areas, for the results
+  bool single_precision = true;  // rounds elevations in compatible mode
+  std::string thickness_file;    // thickness of the release in place of the areas'; an ASCII grid
   double max_thickness = 10;     // m, of the snow in the areas
   double max_slope = 70;         // degrees, of cliffs under a release
-  std::string notes;             // what was assumed of the files, for the results
+  std::string notes;             // assumptions about the files, for the results
   std::vector<AreaSpec> release, entrainment;
   std::vector<ResistanceSpec> resistance;
 };
@@ -50,7 +50,7 @@ struct SampleSpec {
   bool split_labels = false;  // whether each piece of a label is a grain
 };
 
-/// What moves in a stage. Plates are at the bottom, fixed, and at the top; sides are walls or
+/// Parts that move in a stage. Plates are at the bottom, fixed, and at the top; sides are walls or
 /// periodic. `isotropic` has the speed as that of the height, and as stress the mean over top and
 /// sides. `hold` ends when the kinetic energy has fallen to 1e-4 of its peak in the stage, or after
 /// the time in which the speed would bring about the strain; `unload` ends at the strain, too.
@@ -78,7 +78,7 @@ struct Cone {
   double half_angle = 30;  // degrees
 };
 
-/// How snow is filled with particles.
+/// Arrangement of the particles that fill snow.
 struct Seeding {
   double particles_per_voxel = 0.0;  // 0: 6 in 2D, 8 in 3D
   SeedPattern pattern = SeedPattern::poisson;
@@ -86,7 +86,7 @@ struct Seeding {
   bool allow_sparse = false;  // fewer than 4 (2D) or 6 (3D) per voxel
 };
 
-/// What happens to the stack between two events.
+/// Treatment of the stack between two events.
 enum class Between { carry, reseed };
 
 /// When an event ends.

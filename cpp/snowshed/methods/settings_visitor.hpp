@@ -42,7 +42,7 @@ class Choice {
   std::function<void(std::size_t)> choose_;
 };
 
-/// What looks at settings; scene/describe.hpp says what the calls mean.
+/// A visitor of settings; scene/describe.hpp says what the calls mean.
 class SettingsVisitor {
  public:
   virtual ~SettingsVisitor() = default;

@@ -1,4 +1,4 @@
-// What files of particles hold, of methods that add nothing to it.
+// Contents of files of particles for methods that add nothing to it.
 #include "snowshed/methods/method.hpp"
 
 namespace snowshed {

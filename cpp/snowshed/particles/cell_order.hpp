@@ -61,7 +61,7 @@ class CellOrder {
   void list_cells();
 
   bool periodic_ = false, sorted_ = true;
-  Coordinates counts_{};  // of cells along each axis, with an empty one at either end
+  Coordinates counts_{};  // number of cells along each axis, with an empty one at either end
   std::vector<std::uint64_t> keys_, sorted_keys_, spare_keys_, cell_keys_;
   std::vector<std::uint32_t> order_, spare_order_, begin_;
   std::vector<Coordinates> coordinates_;

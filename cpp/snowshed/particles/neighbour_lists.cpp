@@ -22,7 +22,7 @@ void NeighbourLists<D>::Part::make_room(std::size_t more) {
   if (index.size() < needed) index.resize(2 * needed);
 }
 
-/// What the points of some cells find; `first_` gets the lengths of their lists.
+/// Finds the neighbours of the points of some cells; `first_` gets the lengths of their lists.
 template <int D>
 void NeighbourLists<D>::find(const SearchedPoints<D>& points, const CellOrder<D>& cells,
                              NeighbourSearch<D> search, std::size_t first_cell,

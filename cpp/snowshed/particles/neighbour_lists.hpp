@@ -48,7 +48,7 @@ class NeighbourLists {
   std::size_t bytes() const;
 
  private:
-  /// What a part of the points finds, before it is known where it stands in the whole.
+  /// Neighbours of a part of the points, before their place in the whole is known.
   struct Part {
     std::vector<std::uint32_t> index;
     std::size_t size = 0;

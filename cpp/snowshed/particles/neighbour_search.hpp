@@ -1,5 +1,5 @@
-// What neighbour lists and the kernel that searches for them agree on: nothing here depends on an
-// instruction set.
+// Interface between neighbour lists and the kernel that searches for them: nothing here depends on
+// an instruction set.
 #pragma once
 
 #include <cstddef>

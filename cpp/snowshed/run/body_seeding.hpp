@@ -23,8 +23,8 @@ struct SeededBody {
 /// The slab and the bodies of one event, as particles.
 struct SeededSnow {
   std::vector<ParticleBatch> batches;  // one for each layer of the slab, then for each body
-  std::vector<SeededBody> bodies;      // of the batches; none of a method that seeds its own
-  std::vector<std::string> notes;      // what has become of bodies that particles do not resolve
+  std::vector<SeededBody> bodies;      // bodies of the batches; none if the method seeds its own
+  std::vector<std::string> notes;      // notes on bodies that particles do not resolve
   double mass = 0;                     // kg
   double height_on_panel = 0;          // m along its normal: the slab, and bodies over the panel
 };

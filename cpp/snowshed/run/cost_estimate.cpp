@@ -18,7 +18,8 @@
 namespace snowshed {
 namespace {
 
-/// How many obstacles overlap where most do: their boxes are counted at the middles of some.
+/// Largest number of obstacles that overlap at a point. Boxes are counted at the middles of some
+/// obstacles.
 double most_overlapping(const std::vector<ObstacleSpec>& obstacles) {
   constexpr std::size_t places = 200;
   std::vector<Eigen::AlignedBox3d> boxes;
@@ -56,7 +57,7 @@ std::string gigabytes(double bytes) {
   return text;
 }
 
-/// What the volumes of each event hold.
+/// Particles in the volumes of each event.
 std::vector<double> count_particles(const Scene& scene, const SceneOutline& outline) {
   std::vector<double> counts;
   const double voxel = std::pow(scene.numerics->resolution(), scene.dimension);

@@ -1,4 +1,4 @@
-// What a scene will cost, by arithmetic alone: nothing is seeded or simulated.
+// Cost of a scene by arithmetic alone: nothing is seeded or simulated.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace snowshed {
 
-/// What the solids and the snow of a resolved scene add up to.
+/// Totals of the solids and the snow of a resolved scene.
 SceneOutline outline_of(const Scene& scene);
 
 /// The cost of a scene whose method takes bodies. `particles`, new in each event, replace the

@@ -1,4 +1,4 @@
-// What a scene uses and costs on this machine, before it runs.
+// Features and cost of a scene on this machine, before it runs.
 #pragma once
 
 #include <filesystem>
@@ -10,7 +10,7 @@
 namespace snowshed {
 
 struct CostReport {
-  std::vector<std::string> used, left_out;  // features, in words
+  std::vector<std::string> used, left_out;  // names of features
   CostEstimate cost;
   double updates_per_s = 0;  // particle updates, measured here and now on a small copy
   double wall_time = 0;      // s, expected

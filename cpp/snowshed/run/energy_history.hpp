@@ -16,7 +16,7 @@ class BinaryWriter;
 /// whether the run was resumed.
 class EnergyHistory {
  public:
-  /// Of energies with these names; `interval` is that between rows, s.
+  /// A history of energies with these names, one row per `interval` seconds.
   EnergyHistory(const std::vector<std::string>& energies, double interval);
 
   /// Adds the row that is due, if one is.

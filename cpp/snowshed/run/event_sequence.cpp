@@ -43,7 +43,8 @@ EventSequence::EventSequence(std::unique_ptr<Simulation> sim, ResultsFolder fold
     wall_before_ += facts.wall;
   }
   const int done = sim_->event() - int(sim_->event_running());
-  if (int(record_.finished.size()) < done)  // of the version before, which kept no such record
+  // Checkpoints of the version before have no such record.
+  if (int(record_.finished.size()) < done)
     count_from(sim_->solver().counters().steps, earlier_wall_);
 }
 
@@ -60,7 +61,7 @@ bool EventSequence::run(EventObserver& observer, double report_interval) {
     if (!stopped) try {
         begin_event(observer);  // seeding may take long
         if (sim_->scene().output.film && !std::exchange(films, true))
-          sim_->record_film(folder_.film());  // whose resolution is that of the snow
+          sim_->record_film(folder_.film());  // its resolution depends on the snow
         stopped = observer.stop_requested();
       } catch (const Stopped&) {  // the last checkpoint is of the same snow, before it aged
         return write_record("interrupted"), false;

@@ -23,8 +23,8 @@ class EventObserver {
   virtual void between_events(Simulation&) {}
   /// An event has begun, or is gone on with; `reseeding` tells what became of the stack before it.
   virtual void event_begun(const Simulation&, const std::optional<Reseeding>& /*reseeding*/) {}
-  /// What readers of the results should know of the snow that was just laid, a sentence; run.json
-  /// will have it.
+  /// A note for readers of the results on the snow that was just laid, a sentence; run.json will
+  /// have it.
   virtual void noted(const std::string& /*note*/) {}
   virtual void progress(const Simulation&, const RunReport&) {}
   /// An event has ended and its particles are in the folder, but there is no checkpoint of it yet.
@@ -50,7 +50,7 @@ class EventSequence {
   /// Runs the events that are left, with a report every `report_interval` seconds of wall time and
   /// checkpoints as the scene's output.checkpoint_interval asks, and after each event. Returns
   /// false if the observer stopped it, after a checkpoint; amid seeding the last checkpoint is of
-  /// the same snow. What is thrown by the simulation or the observer comes through.
+  /// the same snow. Exceptions of the simulation or the observer pass through.
   bool run(EventObserver&, double report_interval);
 
   /// Throws InputError where a file that Python wrote has been changed, and forgets all of them:
@@ -89,7 +89,7 @@ class EventSequence {
   ResultsFolder folder_;
   RunRecord record_;
   std::string status_;                 // in run.json, as it was written last
-  std::size_t told_ = 0;               // of the simulation's notes
+  std::size_t told_ = 0;               // number of the simulation's notes that were reported
   std::int64_t steps_before_;          // the present event
   double wall_before_, earlier_wall_;  // s, before the present event and before resuming
   Stopwatch clock_, since_checkpoint_;

@@ -37,7 +37,7 @@ int material_id_of(const ParticleState& particles, std::size_t i) {
 }
 
 /// Shares out the mass of old particles among the new ones that stand for them (`old_of`): each
-/// snow keeps its mass, in equal parts. That of a snow without new particles goes to all.
+/// snow keeps its mass, in equal parts. The mass of a snow without new particles goes to all.
 std::vector<double> share_masses(const ParticleState& old, const std::vector<std::size_t>& old_of,
                                  std::size_t snows) {
   std::vector<double> mass(snows), count(snows);

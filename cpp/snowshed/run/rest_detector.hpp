@@ -13,7 +13,7 @@ class RestDetector {
 
   void start_event(double time) { since_ = time, speed_at_start_ = 0, speed_ = 0, next_ = time; }
 
-  /// Whether the speed is to be told again.
+  /// Returns whether the detector needs the speed again.
   bool due(double time) const { return time >= next_; }
 
   /// Tells the detector the speed (m/s) at a time (s); returns whether the snow rests.
@@ -34,7 +34,7 @@ class RestDetector {
  private:
   double limit_, duration_;
   double since_ = 0;           // start of the present quiet interval
-  double speed_at_start_ = 0;  // of that interval
+  double speed_at_start_ = 0;  // speed at the start of that interval
   double speed_ = 0, next_ = 0;
 };
 

@@ -11,7 +11,7 @@ namespace snowshed {
 
 /// Holds scene.json, run.json (`RunRecord`), checkpoint.bin, particles/event_NNN.vtp,
 /// particles.pvd, film.bin and snapshots/. It is locked: no other run writes into it meanwhile.
-/// What a killed run left half-written is removed when it is opened.
+/// Opening it removes files that a killed run left half-written.
 class ResultsFolder {
  public:
   /// Makes the folder for a scene. Throws InputError where it holds anything.

@@ -113,8 +113,8 @@ SeededSnow Simulation::seed_next_event(double lift, const StopRequest& stop) con
   return seed_event(scene_, base_dir_, panel_, event_ + 1, lift, stop);
 }
 
-/// Returns notes on the new snow; throws InputError where it lies where snow may not be. What the
-/// program lays on a stack that has grown to it is told only: a winter goes on with it.
+/// Returns notes on the new snow; throws InputError where it lies where snow may not be. Snow that
+/// the program lays on a stack that has grown up to it only gives a note: a winter goes on with it.
 std::vector<std::string> Simulation::check_placement_of(
     const SeededSnow& snow, const std::optional<Reseeding>& reseeding) const {
   std::vector<std::string> notes;
@@ -257,10 +257,10 @@ void Simulation::record() {
   if (film_ && film_->due({event_, running_, solver_->time()})) film_->record(*solver_, event_);
 }
 
-/// How the event has ended now, if it has. Its last step is a whole one, which may reach beyond the
-/// time limit; one that misses it by rounding reaches it.
+/// Reason for which the event has ended, or none while it goes on. Its last step is a whole one,
+/// which may reach beyond the time limit; one that misses it by rounding reaches it.
 std::optional<RunEnd> Simulation::event_end() {
-  constexpr double rounding = 1e-6;  // of a step
+  constexpr double rounding = 1e-6;  // share of a step
   const std::optional<bool> own = solver_->at_rest();
   const bool rests = own ? *own : rest_.due(solver_->time()) && is_at_rest();
   if (event_time() <= 0) return std::nullopt;  // nothing rests by not moving for no time

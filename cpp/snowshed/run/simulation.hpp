@@ -27,10 +27,10 @@ class EnergyHistory;
 class FilmRecorder;
 class SnapshotSeries;
 
-/// How `Simulation::run` came back.
+/// Reason for which `Simulation::run` returned.
 enum class RunEnd { rest, time_limit, paused };
 
-/// What an observer is told while an event runs.
+/// Report to an observer while an event runs.
 struct RunReport {
   double time = 0;       // s, in this event
   double time_step = 0;  // s
@@ -74,8 +74,8 @@ class Simulation {
     solver_->add_velocity(velocity_changes);
   }
 
-  /// What time does to the snow between two events, see Settles. Throws InputError while an event
-  /// runs, and where snow of the method does not settle, but should.
+  /// Applies the effects of time on the snow between two events, see Settles. Throws InputError
+  /// while an event runs, and where snow of the method does not settle, but should.
   void settle(const std::vector<double>& drops, const std::vector<double>& plastic_changes);
 
   /// Writes a snapshot to `folder` every `interval` seconds of simulated time from now on.
@@ -105,10 +105,11 @@ class Simulation {
                                                const std::filesystem::path& checkpoint);
 
   const Scene& scene() const { return scene_; }
-  const std::vector<Snow>& snows() const { return surroundings_.snows; }  ///< by material_id
+  /// Indexed by material_id.
+  const std::vector<Snow>& snows() const { return surroundings_.snows; }
   const CostEstimate& cost() const { return cost_; }
   const Method& solver() const { return *solver_; }
-  /// What is measured after each step, so far; null for methods that have no such curve.
+  /// The curve measured after each step so far; null for methods without such a curve.
   const Curve* curve() const { return curve_.get(); }
   /// A remark on the files that the method reads; empty if there is none.
   std::string input_remark() const;
@@ -116,8 +117,8 @@ class Simulation {
   /// and where a curve has them.
   const EnergyHistory& energy_history() const;
   int event() const { return event_; }
-  /// What readers of the results should know of the snow that was laid since this object was made,
-  /// a sentence each.
+  /// Notes for readers of the results on the snow that was laid since this object was made, a
+  /// sentence each.
   const std::vector<std::string>& notes() const { return notes_; }
   bool event_running() const { return running_; }
   double event_time() const { return solver_->time() - event_start_; }
@@ -131,7 +132,7 @@ class Simulation {
     return scene_.numerics->damping_rate(solver_->counters().steps, solver_->time());
   }
 
-  /// How high all snow laid so far would lie on the panel had none of it left, m.
+  /// Height that all snow laid so far would have on the panel if none had left it, m.
   double laid_height() const { return laid_height_; }
 
   /// Returns for each position whether it is that of snow on the panel, now or when the snow laid
@@ -175,9 +176,10 @@ class Simulation {
   RunReport report(double rms_speed) const;
 
   Scene scene_;
-  // As checkpoints hold it, written ahead: lack of memory amid JSON would end the process.
+  // Text for checkpoints, made in advance: the JSON library would end the process if memory ran
+  // out.
   std::string scene_text_;
-  std::vector<std::int64_t> shape_prints_;  // of the files that shapes are read from
+  std::vector<std::int64_t> shape_prints_;  // fingerprints of the files that shapes are read from
   std::filesystem::path base_dir_;
   CostEstimate cost_;
   PanelRegion panel_;
@@ -188,8 +190,8 @@ class Simulation {
   std::unique_ptr<SnapshotSeries> snapshots_;
   std::unique_ptr<FilmRecorder> film_;
   std::optional<FilmMark> film_mark_;        // in the checkpoint that was loaded
-  std::unique_ptr<Curve> curve_;             // of methods that have one
-  std::unique_ptr<EnergyHistory> energies_;  // of all others, with output.energy
+  std::unique_ptr<Curve> curve_;             // for methods that have one
+  std::unique_ptr<EnergyHistory> energies_;  // for all others, with output.energy
   RestDetector rest_;
   std::vector<std::string> notes_;
   int event_ = 0;

@@ -37,7 +37,7 @@ double fall_duration(const Scene& scene, double height, double downward) {
                                : std::numeric_limits<double>::infinity();
 }
 
-/// How fast a velocity brings a point nearer to the ground below it; the height is linear.
+/// Speed at which a velocity brings a point nearer to the ground below it; the height is linear.
 double approach(const Scene& scene, const Vec3& velocity) {
   return -height_above_ground(scene, velocity);
 }

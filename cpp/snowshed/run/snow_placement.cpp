@@ -16,7 +16,7 @@ namespace {
 /// Particles that follow on each other lie near to each other.
 constexpr std::size_t particles_in_box = 64;
 
-constexpr double depth_over_resolution = 1e-3;  // that is rounding of files, not an overlap
+constexpr double depth_over_resolution = 1e-3;  // less is rounding of files, not an overlap
 
 /// Where old snow surrounds a point: within this many particle distances there are ...
 constexpr double reach = 2.2;
@@ -24,8 +24,8 @@ constexpr double least_filled = 0.4;  // ... so many of the particles that whole
 constexpr double most_aside = 0.28;   // and their centre lies so near, over the reach. On a flat
                                       // surface it is at 0.38 (3D) and 0.42 (2D).
 
-constexpr std::size_t most_notes = 10;  // of the bodies of an event
-constexpr std::size_t most_parts = 3;   // of a sentence
+constexpr std::size_t most_notes = 10;  // notes on the bodies of an event
+constexpr std::size_t most_parts = 3;   // parts in a sentence
 
 struct PointBox {
   Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
@@ -128,7 +128,8 @@ class Particles {
 
   const std::vector<Vec3>& positions_;
   const int dimension_;
-  std::vector<std::uint32_t> found_;  // by particle, the last part it is of, from 1; 0: none
+  // One per particle: the last part that it is in, from 1; 0: none.
+  std::vector<std::uint32_t> found_;
   std::vector<PointBox> boxes_;
   PointBox whole_;
   std::vector<Part> parts_;
@@ -181,7 +182,7 @@ std::string place(const Vec3& x, int dimension) {
   return text;
 }
 
-/// The obstacles in words, and where they are.
+/// Texts for the obstacles and their places.
 class Obstacles {
  public:
   Obstacles(const Scene& scene, const OccupiedSpace& space)
@@ -210,7 +211,7 @@ class Obstacles {
     });
   }
 
-  /// Adds what is to be told of particles that lie only where obstacles are made thicker.
+  /// Adds sentences on particles that lie only where obstacles are made thicker.
   void find_in_thickening(const Particles& snow, std::vector<std::string>& sentences) const {
     for_each_near(snow, scene_.numerics->resolution(), [&](std::size_t k, const auto& to_body) {
       const Shape& seen = space_.resolved[k].shape;

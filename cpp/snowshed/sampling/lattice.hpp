@@ -19,11 +19,11 @@ struct LatticeFilling {
 /// as its volume holds cells, to the nearest whole number (`count_lattice`). So the solid and its
 /// particles have the same volume, whatever the spacing.
 ///
-/// In a box the lattice stands along its edges, and its full layers begin at the lowest corner;
-/// what is left of a layer is at the top. Other solids have a lattice along the world axes, which
-/// begins at the lowest corner of their bounds. Cells that the surface cuts have a point in as many
-/// as their parts within the solid make together: every second one along a face that halves them. A
-/// point that would lie outside is moved to the surface.
+/// In a box the lattice stands along its edges. Its full layers begin at the lowest corner, and a
+/// partial layer is at the top. Other solids have a lattice along the world axes, which begins at
+/// the lowest corner of their bounds. Cells that the surface cuts have a point in as many as their
+/// parts within the solid make together: every second one along a face that halves them. A point
+/// that would lie outside is moved to the surface.
 ///
 /// Throws InputError where the solid holds less than half a cell, or more than `max_particles`, and
 /// Stopped on request.

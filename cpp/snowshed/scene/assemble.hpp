@@ -49,7 +49,7 @@ std::vector<BodySpec> assemble_slab(const Scene& scene, int event, double lift =
 /// Its thickness, m.
 double slab_thickness(const Slab& slab, int event);
 
-/// What appears at the start of `event`: the slab, then the scene's bodies of that event.
+/// The bodies that appear at the start of `event`: the slab, then the scene's bodies of that event.
 std::vector<BodySpec> assemble_bodies(const Scene& scene, int event, double lift = 0.0);
 
 /// The different snows of the slab and the bodies, in order of their first appearance.

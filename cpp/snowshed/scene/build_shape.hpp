@@ -10,7 +10,7 @@
 
 namespace snowshed {
 
-/// How deep unions, differences and transforms may nest.
+/// Largest depth to which unions, differences and transforms may nest.
 inline constexpr int max_shape_depth = 32;
 
 /// The solid that `spec` describes, for a scene of `dimension` 2 or 3. Files are sought

@@ -243,7 +243,7 @@ void describe(V& v, TerrainSpec& t) {
          "Areas where forest or the like holds the slide back");
 }
 
-/// Of a loading, so that its curve fits into memory.
+/// Largest number of stages in a loading, so that its curve fits into memory.
 inline constexpr int most_stages = 100;
 
 template <class V>

@@ -78,7 +78,7 @@ void add_notes_on_files(const Scene& scene, const std::filesystem::path& base_di
     if (solid.file.empty() || !std::isfinite(solid.size)) continue;
     const std::string size = solid.file + ": the solid is " + metres(solid.size) + " large, ";
     const std::string question = "; if the unit of the file is another, give its \"scale\"";
-    double largest = 0;  // of all others
+    double largest = 0;  // the largest value of all others
     for (const Solid& other : solids)
       if (&other != &solid && std::isfinite(other.size)) largest = std::max(largest, other.size);
     if (solid.size < cell)

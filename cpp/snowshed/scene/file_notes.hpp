@@ -1,4 +1,4 @@
-// What is odd about the solids that a scene reads from files.
+// Notes on oddities of the solids that a scene reads from files.
 #pragma once
 
 #include <filesystem>

@@ -59,7 +59,7 @@ std::string with_plain_blanks(std::string text) {
   return text;
 }
 
-/// The line in which a key stands, of so many in a text that is right until there.
+/// Line of key `number` in a text that is valid JSON up to that key.
 std::size_t line_of_key(const std::string& text, std::size_t number) {
   std::size_t line = 1, line_of_string = 1;
   bool quoted = false, behind_string = false;
@@ -121,7 +121,7 @@ class ValueBuilder {
   }
 
  private:
-  /// Of the value that comes next.
+  /// Path of the value that comes next.
   std::string path() const {
     std::string path;
     for (std::size_t i = 0; i < open_.size(); ++i) {
@@ -171,7 +171,7 @@ class ValueBuilder {
 
 const std::string seal_begins = ",\n  \"checksum\": \"";
 
-/// How an object ends that begins with a text.
+/// The end of an object that begins with this text.
 std::string seal_of(const std::string& text) {
   Crc32 sum;
   sum.update(text.data(), text.size());

@@ -196,7 +196,7 @@ class Reader : public Checker {
   const json& object_;
   std::vector<std::string> keys_;
   std::vector<std::string> aliases_;
-  std::map<std::string, std::string> given_alias_;  // by the key that it stands for
+  std::map<std::string, std::string> given_alias_;  // alias by the key that it stands for
   std::optional<InputError> missing_;
 };
 

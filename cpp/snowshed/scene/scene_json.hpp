@@ -10,11 +10,11 @@
 
 namespace snowshed {
 
-/// Reads and validates a scene. What the snow of a layer or body leaves out is taken from the
-/// scene's. Throws InputError whose `where` is the JSON pointer of the
-/// offending value ("/snow/density", "/" for the whole), or "name:line:column" when the text
-/// is not JSON. The text need not be trusted: its size, depth and number of values are limited.
-/// Of a scene of an earlier version, `notes` (if any) gets what has another name now.
+/// Reads and validates a scene. Missing values of a layer's or a body's snow are those of the
+/// scene's snow. Throws InputError whose `where` is the JSON pointer of the offending value
+/// ("/snow/density", "/" for the whole), or "name:line:column" when the text is not JSON. The text
+/// need not be trusted: its size, depth and number of values are limited. `notes` (if any) gets the
+/// new names of fields in a scene of an earlier version.
 Scene parse_scene(const std::string& text, const std::string& name = "scene",
                   std::vector<std::string>* notes = nullptr);
 
@@ -30,14 +30,14 @@ std::vector<std::string> shape_files(const Scene& scene);
 Scene load_scene(const std::filesystem::path& file, std::vector<std::string>* notes = nullptr);
 
 /// The complete JSON of a valid scene, defaults included: parse_scene gives back the same scene.
-/// Of a shape only the fields its type uses are written, and in 2D only x and z of a vector.
+/// A shape has only the fields that its type uses, and in 2D only x and z of a vector.
 std::string write_scene(const Scene& scene);
 
 /// The same scene on another number of threads; 0: all.
 Scene with_threads(Scene scene, int threads);
 
-/// A checksum of the values in the text of a scene, but for the number of threads: whatever the
-/// order of keys, and whatever a later version of the program adds.
+/// A checksum of the values in the text of a scene without the number of threads. It depends
+/// neither on the order of keys nor on keys that a later version of the program adds.
 std::string scene_checksum(const std::string& text);
 
 /// The complete JSON of a snow.

@@ -8,7 +8,7 @@
 
 namespace snowshed {
 
-/// What was assumed when a grid was read.
+/// Assumptions made when a grid was read.
 struct AsciiGridFacts {
   std::size_t undeclared_missing = 0;  // values of -9999 where the header has no nodata_value
   std::size_t decimal_commas = 0;      // numbers whose decimals follow a comma

@@ -28,7 +28,7 @@ std::optional<Type> type_named(std::string_view name) {
 struct Property {
   std::string name;
   Type type;
-  std::optional<Type> count_type;  // of a list
+  std::optional<Type> count_type;  // type of a list's length
 };
 
 struct Element {

@@ -50,7 +50,7 @@ std::vector<std::size_t> parse_shape(const std::string& tuple) {
   return shape;
 }
 
-/// What an array may hold, as regular expressions and in words.
+/// Types that an array may have, as a regular expression and as text.
 struct Allowed {
   const char *type, *types, *shape, *shapes;
 };

@@ -20,7 +20,7 @@ struct StoredPair {
   std::uint8_t bonded;
 };
 
-/// What an archive holds besides the state: of the boundaries their flags.
+/// Contents of an archive besides the state: the flags of the boundaries.
 struct Stored {
   std::vector<StoredPair> pairs;
   std::vector<Boundary> now, listed;  // one each
@@ -81,7 +81,7 @@ Boundary checked_boundary(const StateReader& archive, Boundary b, std::int64_t f
   return b;
 }
 
-/// Of bodies and poses.
+/// Checks bodies and poses.
 template <class Poses>
 void check_poses(const StateReader& archive, const Poses& poses, const Model& model) {
   for (const auto& pose : poses) {

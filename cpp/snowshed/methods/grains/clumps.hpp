@@ -31,10 +31,10 @@ struct Sample {
   std::vector<Clump> clumps;
   std::vector<Vec3> spheres;  // m, centres in space
   std::vector<BondedPair> bonds;
-  LabelPieces pieces;  // of the image, if they were counted
+  LabelPieces pieces;  // pieces in the image, if they were counted
 };
 
-/// How large the sample of an image will be, to be told before it is made.
+/// Size of the sample of an image, known before it is made.
 struct SampleSize {
   std::size_t grains = 0, spheres = 0, bonds = 0, bytes = 0;
 };

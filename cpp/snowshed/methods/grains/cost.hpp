@@ -1,4 +1,4 @@
-// What a loading test of grains will cost, by its time and its spheres, and which features it uses.
+// Cost of a loading test of grains, by its time and its spheres, and the features that it uses.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,4 @@
-// What acts on the grains.
+// Forces on the grains.
 #pragma once
 
 #include "snowshed/methods/grains/state.hpp"

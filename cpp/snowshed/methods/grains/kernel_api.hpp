@@ -1,4 +1,4 @@
-// What the solver of grains and its kernels agree on: raw views, and a table of functions. The
+// Interface between the solver of grains and its kernels: raw views, and a table of functions. The
 // kernels are compiled once for each instruction set (cmake/KernelVariants.cmake), so nothing here
 // depends on one.
 #pragma once
@@ -25,7 +25,7 @@ struct PairGroup {
   std::uint32_t begin, end;     // pairs
 };
 
-/// What the pairs of a group do to the two bodies.
+/// Forces of a group's pairs on the two bodies.
 struct GroupForce {
   double force[3];                                 // N, on the first
   double torque_on_first[3], torque_on_second[3];  // N m, about their centres
@@ -36,12 +36,12 @@ struct GroupForce {
 struct View {
   const BodyFrame* bodies;
   const PairGroup* groups;
-  // Of each pair: centres of the spheres in their bodies' frames, m; shear displacement, m;
+  // One value per pair: centres of the spheres in their bodies' frames, m; shear displacement, m;
   // whether there is a bond.
   const double *ax, *ay, *az, *bx, *by, *bz;
   double *ux, *uy, *uz;
   std::uint8_t* bonded;
-  GroupForce* results;  // of each group
+  GroupForce* results;  // one per group
 
   double diameter;          // m, of all spheres
   double time_step;         // s

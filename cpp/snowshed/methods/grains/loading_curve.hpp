@@ -1,4 +1,4 @@
-// What a loading test measures, as a table that grows while the test runs.
+// Measurements of a loading test, as a table that grows while the test runs.
 #pragma once
 
 #include <optional>
@@ -16,9 +16,8 @@ namespace snowshed::grains {
 ///
 /// Each row also has the strains and stresses of the step, since the row before, in which the
 /// sample carried most: the strength is the largest stress of all steps, not that of the rows.
-/// What counts as carried depends on the stage: the smaller stress of the two plates (`compress`,
-/// `isotropic`, `unload`, `hold`; of `stretch` the smaller tension), the shear stress, the force on
-/// the cone.
+/// The load depends on the stage: the smaller stress of the two plates (`compress`, `isotropic`,
+/// `unload`, `hold`; in `stretch` the smaller tension), the shear stress, the force on the cone.
 class LoadingCurve final : public Curve {
  public:
   static constexpr int points = 300;
@@ -45,10 +44,10 @@ class LoadingCurve final : public Curve {
   bool energy_;
   std::vector<std::string> columns_;
   std::vector<double> values_;
-  int stage_ = 0;                        // that is being loaded
+  int stage_ = 0;                        // stage that is being loaded
   double begun_ = 0;                     // s, when it began
-  int points_done_ = -1;                 // of it; before the beginning of the test -1
-  std::optional<LoadingStresses> peak_;  // of the steps since the last row, if there was one
+  int points_done_ = -1;                 // points of the stage; -1 before the beginning of the test
+  std::optional<LoadingStresses> peak_;  // peak of the steps since the last row, if there was one
 };
 
 }  // namespace snowshed::grains

@@ -15,13 +15,13 @@ struct LoadingProgress {
   double peak_kinetic = 0;  // J, the same
 };
 
-/// What a test measures to know when a stage ends.
+/// Measurements that decide when a stage ends.
 struct LoadingGauge {
   double top_stress = 0, mean_stress = 0;  // Pa
   double kinetic = 0;                      // J; only needed while a stage holds
 };
 
-/// What the loading knows of the sample.
+/// State of the sample as the loading sees it.
 struct LoadedSample {
   Vec3 box;                  // m, at the beginning
   double radius;             // m, of the spheres

@@ -1,4 +1,5 @@
-// Which spheres of two bodies are so near that they may touch before the list is made again.
+// Pairs of spheres of two bodies that are so near that they may touch before the list is made
+// again.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +16,7 @@ namespace snowshed::grains {
 /// Spheres as parts of rigid bodies.
 struct SphereBodies {
   std::vector<Vec3> offsets;         // m, in the bodies' frames
-  std::vector<std::uint32_t> grain;  // of each sphere
+  std::vector<std::uint32_t> grain;  // grain of each sphere
 };
 
 struct GrainPose {
@@ -44,8 +45,7 @@ struct PairHistory {
   bool kept = false;  // in the list however far apart the spheres are
 };
 
-/// Groups ordered by bodies, pairs within them by spheres: the order does not tell how they were
-/// found.
+/// Groups ordered by bodies, pairs within them by spheres: the order is independent of the search.
 struct PairList {
   std::vector<PairGroup> groups;
   AlignedVector<double> ax, ay, az, bx, by, bz, ux, uy, uz;  // see View
@@ -65,14 +65,14 @@ struct PairList {
   std::size_t bytes() const;
 };
 
-/// What the search needs to know.
+/// Input of the search.
 struct PairSearch {
   const SphereBodies& spheres;
   std::uint32_t grains;
   double radius, skin;  // m
   bool periodic;
   Cone cone;
-  std::size_t most_pairs;  // that memory is taken for
+  std::size_t most_pairs;  // number that memory is reserved for
   int threads;
 };
 
@@ -90,7 +90,7 @@ std::vector<PairKey> find_pairs(const PairSearch&, const std::vector<GrainPose>&
 /// A list of these pairs, and of those to be kept, however far apart.
 PairList make_list(const PairSearch&, const std::vector<PairKey>&, const std::vector<PairHistory>&);
 
-/// For each grain, in the order of the list: twice the group, and one more where it is second.
+/// Groups of each grain in list order, coded as 2 · group + (1 if the grain is second).
 struct BodyGroups {
   std::vector<std::uint32_t> begin, entry;
 };

@@ -16,8 +16,8 @@ std::uint32_t plate_number(int i, int j) {
   return std::uint32_t(i + half_grid) << 16 | std::uint32_t(j + half_grid);
 }
 
-/// Cells at least as wide as pairs are far apart. What lies outside of the box belongs to the
-/// cells of its border, or to those of its image where the box is periodic.
+/// Cells at least as wide as pairs are far apart. Spheres outside of the box belong to the cells of
+/// its border, or to those of their images where the box is periodic.
 class SphereCells {
  public:
   SphereCells(const PairSearch& s, const std::vector<Vec3>& centres, const Boundary& b,
@@ -46,7 +46,7 @@ class SphereCells {
   }
   std::uint32_t begin(std::size_t cell) const { return begin_[cell]; }
   std::uint32_t end(std::size_t cell) const { return begin_[cell + 1]; }
-  /// By how many periods a sphere lies away from the box.
+  /// Number of periods by which a sphere lies away from the box.
   int wrap(const Vec3& x, int axis) const {
     return periodic_ ? int(std::floor((x[axis] - low_[axis]) / boundary_.period(axis))) : 0;
   }

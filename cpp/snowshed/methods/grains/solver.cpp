@@ -49,7 +49,7 @@ double push(const GrainConstants& grain, GrainBody& body, double half_step) {
 
 constexpr std::ptrdiff_t bodies_in_push = 32;
 
-/// What the grains do to their surroundings does work on them, for half a step.
+/// Work of the grains on their surroundings in half a step.
 double boundary_work(const Boundary& b, double half_step) {
   double power = b.cone_force.dot(b.tip_velocity);
   for (int p = 0; p < 2; ++p) power += b.plate_force[p].dot(b.plate_velocity[p]);
@@ -243,7 +243,7 @@ void SolverImpl::step() {
   end_step(moved, dt);
 }
 
-/// From here on nothing throws but for forces that are not finite.
+/// Throws only if forces are not finite.
 void SolverImpl::end_step(const Boundary& moved, double dt) {
   state_.energy.boundary += boundary_work(moved, 0.5 * dt);  // with the forces of before
   std::swap(state_.bodies, work_.next);

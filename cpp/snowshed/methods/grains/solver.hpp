@@ -35,10 +35,10 @@ struct LoadingStresses {
   double cone_force = 0;                     // N
 };
 
-/// What a loading test measures, now.
+/// Present measurements of a loading test.
 struct LoadingMeasures : LoadingStresses {
-  int stage = 0;           // that is being loaded; the number of stages when all are done
-  double strain = 0;       // of this stage: displacement over the initial height
+  int stage = 0;           // stage being loaded; the number of stages when all are done
+  double strain = 0;       // strain of this stage: displacement over the initial height
   std::int64_t bonds = 0;  // pairs of spheres still bonded
   std::int64_t broken_in_tension = 0, broken_in_shear = 0;
   std::int64_t contacts = 0;  // pairs of spheres that touch
@@ -59,8 +59,8 @@ class Solver : public Method, public SeedsItself, public KeepsEnergy, public Has
  public:
   virtual std::size_t count_spheres() const = 0;
   virtual LoadingMeasures measures() const = 0;
-  virtual LoadingStresses stresses() const = 0;                  ///< of measures(), at once
-  virtual int stage() const = 0;                                 ///< measures().stage, at once
+  virtual LoadingStresses stresses() const = 0;  ///< the stresses of measures(), without the rest
+  virtual int stage() const = 0;                 ///< measures().stage, at once
   virtual std::vector<GrainContact> grain_contacts() const = 0;  ///< ordered by grains
   virtual std::vector<Vec3> sphere_positions() const = 0;        ///< m, in the order of the sample
   virtual std::vector<std::uint32_t> sphere_grains() const = 0;

@@ -52,7 +52,7 @@ class SolverImpl final : public Solver {
   std::vector<std::uint32_t> sphere_grains() const override { return model_.spheres.grain; }
 
  private:
-  /// What an archive holds.
+  /// Contents of an archive.
   struct Restored {
     State state;
     Work work;

@@ -4,8 +4,8 @@
 // - Friction acts on the running mean of the net normal impulse (see NodeKernels::apply), so the
 //   contacts have a memory that outlives a step.
 // - `separate` holds snow down where gravity presses it on, against a pull that is shorter-lived
-//   than the push before it, so that a slab that vibrates stays on its panel. Elsewhere it lets go
-//   at once, so that snow never hangs from a panel's back.
+//   than the push before it, so that a slab that vibrates stays on its panel. Elsewhere it releases
+//   snow at once, so that snow never hangs from a panel's back.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,7 @@
 
 namespace snowshed::mpm {
 
-/// A solid as the grid must see it: parts thinner than two cells would slip between the nodes, so
+/// A solid as the grid must see it. Parts thinner than two cells would slip between the nodes, so
 /// their surface is moved out until they are two cells thick.
 ThickSolid as_grid_sees(Shape shape, double dx, int dimension);
 Obstacle thick_enough(Obstacle obstacle, double dx, int dimension);
@@ -30,7 +30,7 @@ VecD<D> normal_in_section(const Vec3& normal) {
   return n.norm() > 1e-9 ? VecD<D>(n.normalized()) : VecD<D>(VecD<D>::Unit(D - 1));
 }
 
-/// When an obstacle lets go of snow, where its outward normal rises by `upward`.
+/// Rule by which an obstacle releases snow where its outward normal rises by `upward`.
 inline Release release(Condition condition, double upward) {
   if (condition == Condition::slip) return Release::never;
   return upward > 0 ? Release::after_push : Release::at_once;
@@ -83,13 +83,13 @@ class Boundary {
 
  private:
   std::vector<Obstacle> obstacles_;
-  std::vector<Shape> surfaces_;  // of the obstacles as they are given
+  std::vector<Shape> surfaces_;  // the obstacles as they are given
   std::vector<ContactLaw> laws_;
   double dx_, margin_;
   bool any_motion_ = false;
 };
 
-/// By obstacle, see Contacts::find_pushing_shares.
+/// Shares of friction by obstacle, see Contacts::find_pushing_shares.
 template <class T>
 struct PushingShares {
   explicit PushingShares(std::size_t obstacles) : shares(obstacles, T(1)), pushed(obstacles) {}

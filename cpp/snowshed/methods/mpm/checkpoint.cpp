@@ -9,7 +9,7 @@
 namespace snowshed::mpm {
 namespace {
 
-/// What a checkpoint holds of contacts and sleep, besides the particles and the numbers.
+/// Contents of a checkpoint about contacts and sleep, besides the particles and the numbers.
 template <class T, int D>
 struct Stored {
   std::vector<typename Contacts<T, D>::StoredImpulse> impulses;

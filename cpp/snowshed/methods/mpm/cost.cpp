@@ -25,8 +25,8 @@ constexpr Storage storage(int dimension, Precision precision) {
   return single ? Storage{150.0, 48.0} : Storage{300.0, 96.0};
 }
 
-/// Of a contact between a node and an obstacle, which is there twice while blocks are sorted, and
-/// of an obstacle with its shape, apart from files.
+/// Bytes per node-obstacle contact (twice its size, because sorting copies it) and per obstacle
+/// with its shape (without its file).
 struct ObstacleStorage {
   double bytes_per_contact, bytes_per_obstacle;
 };

@@ -17,7 +17,7 @@ void describe(SettingsVisitor& v, Settings& n) {
            "1/s, damping_length and crack_band_length 0.01 m, contact touch and fields of events, "
            "unless they are "
            "given; thesis sets what these settings are by default");
-  if (n.scheme != before) n.adopt(n.scheme);  // what is read next may differ from it
+  if (n.scheme != before) n.adopt(n.scheme);  // fields that are read next may differ from it
   v.choice("precision", n.precision, "Floating-point type of the particles and the grid");
   v.choice("transfer", n.transfer, "Transfer of velocities between particles and grid");
   v.number(

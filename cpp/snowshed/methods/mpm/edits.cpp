@@ -1,5 +1,5 @@
-// What others do to the snow between steps: adding, replacing, pushing and settling it. The new
-// state is built beside the old one, which stays where anything fails.
+// Changes of the snow from outside between steps: adding, replacing, pushing and settling it. The
+// new state is built beside the old one, which stays where anything fails.
 #include <cmath>
 
 #include "snowshed/core/errors.hpp"

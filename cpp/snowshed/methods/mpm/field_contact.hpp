@@ -10,7 +10,7 @@ namespace snowshed::mpm {
 
 template <class T>
 struct FieldContact {
-  BlockKey first_key, second_key;  // of the blocks of nodes, the first in the order of keys
+  BlockKey first_key, second_key;  // keys of the two blocks of nodes, in ascending order
   std::int32_t node;
   std::int32_t first, second;  // the blocks' places in the layout
   bool touches;                // else it has come off since, and only owes friction

@@ -1,4 +1,4 @@
-// What the solver derives, once, of each of a run's snows.
+// Constants that the solver derives once from each snow of a run.
 #pragma once
 
 #include "snowshed/material/cam_clay.hpp"

@@ -159,7 +159,8 @@ void Meetings<T, D>::find_normals(const Masses& a, const Masses& b, Nodes& nodes
   });
 }
 
-/// How far the particles of a field reach, with their radius, that have weight at the nodes.
+/// Distance to which the particles of a field reach, with their radius; only particles that have
+/// weight at the nodes count.
 template <class T, int D>
 void Meetings<T, D>::find_reach(const Model<T, D>& model, const State<T, D>& state, std::int32_t g,
                                 bool first, Nodes& nodes) const {

@@ -1,4 +1,4 @@
-// What a run of the solver is about and never changes: options, snows, obstacles, kernels.
+// Constants of a run of the solver: options, snows, obstacles, kernels.
 #pragma once
 
 #include <algorithm>
@@ -28,7 +28,7 @@ struct Model {
   Kernels<T> kernels;
   int max_threads;
   Boundary<T, D> boundary;
-  std::vector<Material> materials;              // of options.snows
+  std::vector<Material> materials;              // one per snow of options.snows
   std::vector<MaterialConstants<T>> constants;  // the same for the kernels
 
   /// Coulomb's coefficient between the fields of events: of the snow that has least.

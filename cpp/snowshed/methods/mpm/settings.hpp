@@ -1,4 +1,4 @@
-// What a scene may choose of the material point method.
+// Settings of the material point method in a scene.
 #pragma once
 
 #include <cmath>
@@ -25,7 +25,7 @@ struct Settings {
   double damping_length = 0;           // m, over which the damping averages; 0: by PIC, over dx
   double crack_band_length = 0;        // m, see `softening`; 0: none
   Contacting contact = Contacting::kernel;
-  double contact_radius = 0.6;  // of a particle that touches, over half the particles' spacing
+  double contact_radius = 0.6;  // radius of a touching particle, over half the particles' spacing
   Fields fields = Fields::one;
   double event_friction = 1;  // between the fields of events, over M/sqrt(3) of the snow
   Basis basis = Basis::quadratic;
@@ -65,15 +65,15 @@ struct Settings {
   /// Whether velocities are damped towards their average over a length, not by PIC.
   bool damps_over_length() const { return damping_length > 0; }
 
-  /// FLIP's share in a step of dt seconds. What the grid does not resolve keeps this part of its
-  /// velocity, so that exp(-rate t) of it is left after a time t of steps of any length.
+  /// FLIP's share in a step of dt seconds. Motion that the grid does not resolve keeps this part of
+  /// its velocity, so that exp(-rate t) of it is left after a time t of steps of any length.
   double flip_share(double dt) const {
     if (damps_over_length()) return 1.0;
     return damping_rate ? std::exp(-*damping_rate * dt) : flip_ratio;
   }
 
-  /// How many times faster than the snow's own law snow softens as it dilates beyond its initial
-  /// volume: cracks are a few cells wide, and so take the same energy per area on any grid.
+  /// Factor by which snow that dilates beyond its initial volume softens faster than its own law.
+  /// Cracks are a few cells wide, and then take the same energy per area on any grid.
   double softening() const { return crack_band_length > 0 ? dx / crack_band_length : 1.0; }
 
   /// The mean rate (1/s) at which velocities were damped over so many steps in so much time (s), by

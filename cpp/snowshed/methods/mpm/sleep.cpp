@@ -9,7 +9,7 @@
 namespace snowshed::mpm {
 namespace {
 
-/// How much faster than the limit a single particle of a slow block may be.
+/// Largest speed of a single particle in a slow block, over the limit.
 constexpr double most_over_mean = 5;
 
 /// Growth of the mean velocity from one half of a quiet spell to the other, along the latter and
@@ -184,7 +184,7 @@ template class Sleep<3>;
 
 // --- how the solver lets snow sleep --------------------------------------------------------------
 
-/// Blocks that fall asleep come to rest: what is left of their motion is lost.
+/// Blocks that fall asleep come to rest: the rest of their motion is lost.
 template <class T, int D>
 void SolverImpl<T, D>::let_sleep() noexcept {
   if (!state_.sleep.allowed() || counters().steps % steps_between_checks != 0) return;

@@ -30,14 +30,15 @@ class Sleep {
   Sleep(double speed, double time, double gravity)
       : limit_(speed), time_(time), gravity_(gravity) {}
 
-  /// What must be known of a particle block to let it fall asleep or to wake it.
+  /// Measurements of a particle block that decide when it falls asleep or wakes.
   struct BlockProbe {
-    std::function<double(std::int32_t)> fastest;         // speed of its fastest particle, m/s
-    std::function<double(std::int32_t)> speed;           // root of the mean square, m/s
-    std::function<VecD<D>(std::int32_t)> velocity;       // mean, m/s
-    std::function<CarriedMotion(std::int32_t)> carried;  // how its nodes would have moved it
-    std::function<bool(std::int32_t)> obstacle_moves;    // whether one does, through its nodes
-    std::function<bool(std::int32_t)> holds_its_snow;    // whether its particles lie within it
+    std::function<double(std::int32_t)> fastest;    // speed of its fastest particle, m/s
+    std::function<double(std::int32_t)> speed;      // root of the mean square, m/s
+    std::function<VecD<D>(std::int32_t)> velocity;  // mean, m/s
+    // Motion that its nodes would have given it.
+    std::function<CarriedMotion(std::int32_t)> carried;
+    std::function<bool(std::int32_t)> obstacle_moves;  // whether one does, through its nodes
+    std::function<bool(std::int32_t)> holds_its_snow;  // whether its particles lie within it
   };
 
   /// Checks all blocks at the time `now`, after some steps of dt; returns the blocks that fall
@@ -62,7 +63,7 @@ class Sleep {
   const std::vector<std::int32_t>& idle() const { return idle_; }
   std::int64_t awake_particles() const { return awake_particles_; }
 
-  /// What is known of one block of particles.
+  /// State of one block of particles.
   struct State {
     bool asleep = false;
     double since = 0;  // start of the present quiet spell, s
@@ -85,12 +86,12 @@ class Sleep {
   void list_blocks(const BlockLayout<D>& layout) noexcept;
 
   double limit_, time_, gravity_;
-  std::vector<BlockKey> keys_;        // of the layout that `states_` belongs to
+  std::vector<BlockKey> keys_;        // keys of the layout that `states_` belongs to
   std::vector<std::int32_t> counts_;  // particles in each of its blocks
   std::vector<State> states_;
   // The lists have room for all blocks, so that no step needs memory for them.
   std::vector<std::int32_t> awake_, active_, idle_, fallen_;
-  std::vector<bool> touched_;         // by awake snow: whether a grid block is active
+  std::vector<bool> touched_;         // whether awake snow touches a grid block
   std::vector<std::int32_t> border_;  // sleeping blocks that share nodes with awake snow
   std::int64_t awake_particles_ = 0;
 };

@@ -13,10 +13,11 @@
 namespace snowshed::mpm {
 namespace {
 
-/// Memory of the contacts' friction for fast snow, in cells that it slides over. The impulse it
-/// pressed with stays at the node, and what is not charged when it has left is lost. Of chunks of
-/// two cells and more, at 5 to 15 m/s, half a cell loses at most 2 % of the friction, a whole cell
-/// 11 %. Less than half charges the pushes of a chunk that vibrates before the pulls have come.
+/// Memory of the contacts' friction for fast snow, in cells that it slides over. The impulse of its
+/// push stays at the node, and the part that is not charged when the snow has left is lost. With
+/// half a cell, chunks of two cells and more at 5 to 15 m/s lose at most 2 % of the friction; with
+/// a whole cell, 11 %. Less than half charges the pushes of a chunk that vibrates before the pulls
+/// have come.
 constexpr double friction_reach = 0.5;
 
 }  // namespace
@@ -59,7 +60,7 @@ void SolverImpl<T, D>::step() {
   let_sleep();
 }
 
-/// All of a step that can fail for want of time step or memory; particles move last.
+/// The parts of a step that can fail (time step too long, no memory). Particles move last.
 template <class T, int D>
 double SolverImpl<T, D>::try_step() {
   if (!work_.tiles_valid) {

@@ -14,12 +14,12 @@ namespace snowshed::mpm {
 struct Options {
   int dimension = 3;
   double gravity = 9.81;            // m/s2, along -z
-  std::vector<Snow> snows{Snow()};  // by material_id; at least one, at most `max_materials`
+  std::vector<Snow> snows{Snow()};  // indexed by material_id; at least one, at most `max_materials`
   Settings settings;
   std::vector<Obstacle> obstacles;
-  std::vector<Shape> surfaces;  // of the obstacles, before thin parts were made
-                                // thicker; or none
-  bool energy = false;          // whether to keep the energy balance
+  // Surfaces of the obstacles, before thin parts were made thicker; or none.
+  std::vector<Shape> surfaces;
+  bool energy = false;  // whether to keep the energy balance
 };
 
 /// MPM as a method, and what only it has.

@@ -107,7 +107,7 @@ void Touch<T, D>::measure(const Model<T, D>& model, const State<T, D>& state, st
       block.touchers.push_back(toucher);
     }
   }
-  // What touches may cease to, but that matters little sooner or later.
+  // A particle may cease to touch earlier; it does not matter if this is noticed a little later.
   block.next = travel_ + std::max(nearest, contact_tolerance * n.dx);
   if (!block.touchers.empty()) block.next = travel_ + contact_tolerance * n.dx;
 }

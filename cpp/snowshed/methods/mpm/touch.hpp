@@ -30,15 +30,15 @@ class Touch {
   /// A particle that touches an obstacle.
   struct Toucher {
     std::int32_t particle, obstacle;
-    T normal[D];  // of the obstacle where it touches
+    T normal[D];  // normal of the obstacle where it touches
   };
-  struct Face {  // of an obstacle, that some particles touch
+  struct Face {  // face of an obstacle that some particles touch
     T normal[D];
     std::uint64_t nodes;  // a bit for each node where they have weight
     std::int32_t particles;
   };
   struct Block {
-    std::vector<Toucher> touchers;  // by obstacle
+    std::vector<Toucher> touchers;  // ordered by obstacle
     double next = 0;                // m, of travel, when to measure again
   };
 
@@ -49,7 +49,7 @@ class Touch {
                           std::int32_t obstacle) const;
 
   int support_;
-  std::vector<Block> blocks_;  // of particles
+  std::vector<Block> blocks_;  // one per block of particles
   double largest_radius_ = 0;  // m, of any particle
   double travel_ = 0;          // m, of the fastest snow since `forget`
   bool measured_ = false;

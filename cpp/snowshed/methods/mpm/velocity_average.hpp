@@ -55,10 +55,10 @@ class VelocityAverage {
   double spacing_, per_cell_, share_of_length_;
   double slack_;  // cells from the block's first node down to its lowest particle
   int tile_edge_, tile_size_;
-  std::vector<BlockKey> keys_;            // of the particle blocks that all below belongs to
-  std::vector<AverageTile<T>> tiles_of_;  // by particle block
-  std::vector<Coord> first_nodes_;        // of the tiles, by particle block
-  std::vector<std::uint8_t> settled_;     // by particle block: the tile holds sums that stay
+  std::vector<BlockKey> keys_;  // keys of the particle blocks that all arrays below belong to
+  std::vector<AverageTile<T>> tiles_of_;  // one per particle block
+  std::vector<Coord> first_nodes_;        // first nodes of the tiles, one per particle block
+  std::vector<std::uint8_t> settled_;     // one per particle block: the tile holds sums that stay
   int around_size_;
   std::vector<std::int32_t> around_;  // the coarse blocks of each particle block
   std::vector<Coord> coarse_blocks_;

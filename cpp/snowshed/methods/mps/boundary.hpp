@@ -1,4 +1,4 @@
-// Which particles are near which walls.
+// Search for the particles near each wall.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// What others do to the snow between steps. The new state is built beside the old one.
+// Changes of the snow from outside between steps. The new state is built beside the old one.
 #include <cmath>
 #include <string>
 

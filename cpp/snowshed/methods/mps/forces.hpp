@@ -1,4 +1,4 @@
-// What acts on the particles during a step, in the order in which it does.
+// Forces on the particles during a step, in the order in which they act.
 #pragma once
 
 #include <cmath>
@@ -43,7 +43,7 @@ void find_rates(const Model<D>&, Particles<D>&, Work<D>&);
 template <int D>
 void find_viscosities(const Model<D>&, Particles<D>&, const Work<D>&);
 
-/// What every particle gains in a step by gravity, m/s.
+/// Change of every particle's velocity in a step by gravity, m/s.
 template <int D>
 void add_gravity(const Model<D>&, double dt, Particles<D>&);
 
@@ -60,8 +60,8 @@ void prepare_pressure(const Model<D>&, const Particles<D>&, Work<D>&);
 template <int D>
 SolveReport solve_pressure(const Model<D>&, double dt, Particles<D>&, Work<D>&);
 
-/// Adds to the velocities what the pressure does to them, equation (15), and keeps particles from
-/// entering walls within the step. What was added is left in `change`.
+/// Adds the effect of the pressure to the velocities, equation (15), and keeps particles from
+/// entering walls within the step. `change` holds the change of the velocities.
 template <int D>
 void apply_pressure(const Model<D>&, double dt, Particles<D>&, Work<D>&);
 

@@ -1,4 +1,4 @@
-// What the pressure does to the velocities.
+// Effect of the pressure on the velocities.
 #include <algorithm>
 #include <cmath>
 
@@ -21,12 +21,12 @@ double least_pressure(const Particles<D>& particles, const Neighbourhood<D>& nea
   return least;
 }
 
-/// What is added to the neighbours' pressures in a gradient, Pa: the particle's own, so that each
-/// pair has equal and opposite forces; less its own, so that pressures that are linear have their
-/// gradient, once it is corrected; or less the least pressure around, as in equation (4). At the
-/// surface what is missing has the opposite pressure, as in the pressure equation: with it the
-/// second is the first. (A particle that rises above others would be pushed up the more by the
-/// second.)
+/// Pressure that a gradient adds to the neighbours' pressures, Pa. `conservative`: the particle's
+/// own, so that each pair has equal and opposite forces. `corrected`: minus its own, so that linear
+/// pressures have their exact gradient once it is corrected. `published`: minus the least pressure
+/// around, as in equation (4). At the surface the missing neighbours have the opposite pressure, as
+/// in the pressure equation, and the rule of `conservative` holds. (`corrected` would push a
+/// particle that rises above others up even more.)
 template <int D>
 double base_pressure(const Model<D>& model, const Particles<D>& particles,
                      const Neighbourhood<D>& near, std::size_t i) {

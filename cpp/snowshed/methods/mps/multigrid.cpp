@@ -8,8 +8,8 @@
 namespace snowshed::mps {
 namespace {
 
-constexpr float jacobi_damping = 0.9f;  // of Jacobi sweeps
-// Of corrections that are constant within aggregates: of particles, and of aggregates.
+constexpr float jacobi_damping = 0.9f;  // damping of Jacobi sweeps
+// Enlargement of corrections that are constant within aggregates: of particles, and of aggregates.
 constexpr float first_enlargement = 1.4f, enlargement = 1.8f;
 constexpr std::size_t most_direct = 64;  // unknowns of the level that is solved directly
 constexpr std::size_t most_levels = 24;
@@ -225,7 +225,7 @@ void Multigrid<D, C>::sweep(Level& level) {
                [&](std::size_t i) { level.x[i] += level.inverse[i] * level.r[i]; });
 }
 
-/// Improves x of a level, whose b is given; from zero, or from what is there.
+/// Improves x of a level for a given b, from zero or from the present x.
 template <int D, int C>
 void Multigrid<D, C>::cycle(std::size_t l, bool from_zero) {
   Level& level = levels_[l];

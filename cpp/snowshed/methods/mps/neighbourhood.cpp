@@ -17,8 +17,8 @@ constexpr double least_asymmetry = 0.12;
 constexpr double least_wall_asymmetry = 0.03;
 /// Below this ratio of number densities a particle is at a surface whatever is around it.
 constexpr double sparse = 0.75;
-/// Of the matrix of a particle's neighbours, below which gradients are not corrected; 1 on a
-/// lattice, 0.4 at its surface.
+/// Least determinant of the matrix of a particle's neighbours for which gradients are corrected; it
+/// is 1 on a lattice, 0.4 at its surface.
 constexpr double least_determinant = 0.1;
 
 template <int D>

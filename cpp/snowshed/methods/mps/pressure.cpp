@@ -50,7 +50,7 @@ double slip_divergence(const Model<D>& model, const Particles<D>& particles,
 }
 
 /// The share of walls' images in the divergence, 1/s. They move along the wall as the particles do.
-/// What flows through the wall counts as the pressure's slope does in the Laplacian, so that both
+/// The flow through the wall counts as the pressure's slope does in the Laplacian, so that both
 /// cancel at rest.
 template <int D>
 double image_divergence(const Model<D>& model, const Particles<D>& particles,
@@ -84,7 +84,7 @@ double divergence(const Model<D>& model, const Particles<D>& particles, const Wo
          image_divergence(model, particles, near, correction, i);
 }
 
-/// What `divergence` needs of the present velocities; the published source has none.
+/// Sums over the present velocities for `divergence`; the published source needs none.
 template <int D>
 void prepare_divergence(const Model<D>& model, const Particles<D>& particles, Work<D>& work) {
   if (model.settings().source == Source::published) return;
@@ -113,14 +113,13 @@ double compensation_time(const Model<D>& model, double dt, const Particles<D>& p
 /// equation is solved to a part of them.
 constexpr double least_source = 1e-8;
 
-/// Of densities below the surface, which need not be a lattice's.
+/// Tolerance of densities below the surface, where particles need not form a lattice.
 constexpr double surface_tolerance = 0.002;
 
-/// How much denser the snow is than on a lattice, for the compensation (ours): by how its room is
-/// filled; beside wall particles by its number density, which grows faster where particles come
-/// near to the wall. At the surface neighbours are missing, and below it at most as many as below
-/// that of a lattice: what is missing beyond that counts, so that room that is made there does not
-/// stay.
+/// Excess of density over a lattice, for the compensation (ours). Inside the snow it comes from the
+/// filled share of the room; beside wall particles from the number density, which grows faster near
+/// a wall. At the surface neighbours are missing; only those missing beyond a lattice's surface
+/// count, so that gaps close.
 template <int D>
 double compensated_excess(const Model<D>& model, const Particles<D>& particles,
                           const Neighbourhood<D>& near, std::size_t i) {
@@ -188,7 +187,7 @@ void prepare_pressure(const Model<D>& model, const Particles<D>& particles, Work
       else if (mirrored && near.dry[j] && particles.is_wall(i))
         sum += 2 * double(near.coupling[e]);
     }
-    // What is missing at a free surface has the pressure of the particle with the opposite sign.
+    // Missing neighbours at a free surface have the particle's pressure with the opposite sign.
     if (near.surface[i]) sum += 2 * std::max(0.0, n0 - near.density[i]);
     work.diagonal[i] = std::max(sum, 1e-3 * n0);
   });
@@ -201,7 +200,7 @@ void prepare_pressure(const Model<D>& model, const Particles<D>& particles, Work
 
 namespace {
 
-/// Solves for work.pressure from what stands there.
+/// Solves for work.pressure, from its present values.
 template <int D>
 SolveReport solve(const Model<D>& model, Work<D>& work) {
   const Settings& s = model.settings();
@@ -240,7 +239,8 @@ SolveReport solve_pressure(const Model<D>& model, double dt, Particles<D>& parti
   const std::size_t n = particles.size();
   prepare_divergence(model, particles, work);
   const double relaxation = compensation_time(model, dt, particles);
-  // What the Laplacian would make of a linear pressure, since neighbours do not lie evenly around.
+  // The Laplacian of a linear pressure, which is not zero because neighbours do not lie evenly
+  // around.
   const bool corrected = model.settings().gradient == Gradient::corrected;
   work.source.resize(n);
   work.pressure.resize(n);

@@ -11,8 +11,8 @@
 namespace snowshed::mps {
 namespace {
 
-/// A particle that would move farther than this in a step, in l0, has it repeated with half its
-/// length: it could pass through a wall. So often it is halved.
+/// If a particle would move farther than this (in l0), the step is repeated with half its length,
+/// at most `most_halvings` times: the particle could pass through a wall.
 constexpr double longest_distance = 0.5;
 constexpr int most_halvings = 20;
 
@@ -34,9 +34,9 @@ constexpr double expected_shear = 0.5;
 /// rho u^3/(eta g), the square of the Reynolds number of a body so high that it flows at u, is less
 /// than this: fast flows lose no volume to viscosity, and need not pay, however small l0 is.
 constexpr double least_stiffness = 2, least_fall = 2, most_inertia = 1e-3;
-/// That iteration begins with this share of the last step's viscous force, so that errors of the
-/// pressure die out; ends when the force changes by less than this part of gravity; and stops where
-/// it does not, since any number of its iterations is better than one.
+/// The iteration begins with this share of the last step's viscous force; errors of the pressure
+/// then die out. It ends when the force changes by less than this part of gravity. It also ends if
+/// it diverges; the iterations made until then are kept, because they are better than one.
 constexpr double first_shear = 0.9, coupling_tolerance = 3e-3;
 constexpr int most_couplings = 20;
 
@@ -165,8 +165,8 @@ bool SolverImpl<D>::couples(double dt) const {
 }
 
 /// The pressure balances what it can before viscosity acts, so that snow that does not yield stays
-/// where it is. It expects a viscous force where snow flows: a share of the last step's. What
-/// viscosity compresses nevertheless, the pressure of the next step takes away; or, where they are
+/// where it is. It expects a viscous force where snow flows: a share of the last step's. Viscosity
+/// may still compress the snow. The pressure of the next step undoes this; or, where they are
 /// coupled, both act anew until the force is the expected one, accelerated. Ours.
 template <int D>
 void SolverImpl<D>::act_after_pressure(double dt, State<D>& next) {
@@ -312,7 +312,8 @@ Report SolverImpl<D>::report() const {
   return r;
 }
 
-/// How well the equations were solved, in the last step and on average, and how dense the snow is.
+/// Quality of the solutions of the equations, in the last step and on average, and density of the
+/// snow.
 template <int D>
 ReportsRun::Section SolverImpl<D>::run_section() const {
   const Report r = report();

@@ -27,7 +27,7 @@ struct Report {
   double pressure_residual = 0, viscosity_residual = 0;  // relative
   double mean_pressure_iterations = 0, mean_viscosity_iterations = 0;
   double density_error = 0;    // root mean square of n/n0 - 1 within the snow
-  double largest_density = 0;  // of n/n0
+  double largest_density = 0;  // largest n/n0
 };
 
 /// MPS as a method, and what only it has.

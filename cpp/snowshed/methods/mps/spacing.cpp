@@ -1,4 +1,4 @@
-// What keeps particles apart besides the pressure.
+// Rules besides the pressure that keep particles apart.
 #include <algorithm>
 #include <cmath>
 

@@ -21,8 +21,8 @@ double share_of_mirror(double distance, double second) {
   return (1 - 2 * second) * falls(0.75, 1.25) + second * falls(1.75, 2.25);
 }
 
-/// How much of a wall particle's friction a particle takes that touches its obstacle, m; none where
-/// the wall particle is not of the layer at the surface.
+/// Weight of a wall particle's friction on a particle that touches its obstacle, m; 0 if the wall
+/// particle is not in the layer at the surface.
 template <int D>
 double hold(const Model<D>& model, float weight, const VecD<D>& to_wall, const WallContact<D>& c) {
   const double below = -to_wall.dot(c.normal);
@@ -30,8 +30,8 @@ double hold(const Model<D>& model, float weight, const VecD<D>& to_wall, const W
   return at_surface ? double(weight) * std::max(0.0, below) : 0.0;
 }
 
-/// What the particles that touch a wall particle's obstacle take of its friction together, but not
-/// less than most of what they do on a lattice: a wall particle beside the snow has less friction.
+/// Sum of these weights over the particles that touch a wall particle's obstacle, but at least most
+/// of that on a lattice: a wall particle beside the snow has less friction.
 template <int D>
 double hold_of_all(const Model<D>& model, const Particles<D>& particles,
                    const Neighbourhood<D>& near, std::size_t wall) {
@@ -47,8 +47,8 @@ double hold_of_all(const Model<D>& model, const Particles<D>& particles,
   return std::max(sum, touched * whole);
 }
 
-/// The share of each contact with a wall in the wall's shear stress. That of a wall particle acts
-/// on the particles around it, and is theirs wholly.
+/// The share of each contact with a wall in the wall's shear stress. The particles around a wall
+/// particle share all of its friction.
 template <int D>
 void find_shares(const Model<D>& model, const Particles<D>& particles, Work<D>& work) {
   const Neighbourhood<D>& near = work.near;
@@ -124,19 +124,20 @@ void find_couplings(const Model<D>& model, double factor, const Particles<D>& pa
 template <int D>
 using Velocities = AlignedVector<VecD<D>>;
 
-/// The apparent viscosities of a step are found when velocities change by less than this part of
-/// them from one iteration to the next.
+/// The iterations for the apparent viscosities of a step end when the velocities change by less
+/// than this share from one to the next.
 constexpr double yield_tolerance = 1e-3;
-/// Where these iterations begin: so far on the way from the velocities before the step to those
-/// that all but viscosity makes.
+/// The iterations begin at this fraction of the way from the velocities before the step to those
+/// predicted without viscosity.
 constexpr double first_guess = 0.01;
 
-/// The equation of an iteration is solved the better the less changed in the one before: at first
-/// so well, relative to what gravity adds in a step, and then to this share of the change.
+/// Tolerances of an iteration's equation: in the first iteration relative to the change by gravity
+/// in a step, and then as a share of the change in the iteration before.
 constexpr double loosest_solve = 0.1, solve_share = 0.03;
 
-/// Few iterations suffice with the diagonal alone where viscosity does not reach far in a step;
-/// after so many multigrid takes over. Its sweeps of the particles' velocities are damped by this.
+/// With the diagonal alone few iterations suffice if viscosity does not reach far in a step. After
+/// `most_by_diagonal` iterations multigrid takes over. Its sweeps of the particles' velocities are
+/// damped by `sweep_damping`.
 constexpr int most_by_diagonal = 12;
 constexpr double sweep_damping = 0.9;
 
@@ -258,8 +259,7 @@ SolveReport solve_viscosity(const Model<D>& model, double dt, const Velocities<D
   return {first.iterations + second.iterations, second.residual, second.converged};
 }
 
-/// What residuals and changes of all velocities are compared with: what gravity adds in a step,
-/// m/s.
+/// Scale of residuals and changes of all velocities: the change by gravity in a step, m/s.
 template <int D>
 double velocity_scale(const Model<D>& model, double dt, const Particles<D>& particles) {
   double speed2 = 0;

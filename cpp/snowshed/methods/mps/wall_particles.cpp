@@ -272,7 +272,7 @@ void WallParticles<D>::append_group(Group& group, const RigidPose& pose, double 
     for (const Point& p : points_in(group, c)) {
       const VecD<D> x = moves ? section<D>(pose.to_world(embed(p.position))) : p.position;
       if (period > 0 && (x[0] < 0 || x[0] >= period)) continue;
-      bool inside = false;  // of an obstacle at rest
+      bool inside = false;  // inside an obstacle at rest
       if (moves)
         for (const std::uint32_t k : groups_.front().obstacles)
           inside = inside || (*obstacles_)[k].shape->distance(embed(x)) < 0;

@@ -77,7 +77,7 @@ class WallParticles {
   const std::vector<Obstacle>* obstacles_ = nullptr;
   double spacing_ = 0, edge_ = 0;
   int layers_ = 0;
-  std::vector<Lattice> lattices_;  // of each obstacle
+  std::vector<Lattice> lattices_;  // one per obstacle
   std::vector<Group> groups_;      // those at rest first
 };
 

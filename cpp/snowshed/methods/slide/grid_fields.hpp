@@ -29,8 +29,8 @@ class GridFields {
   /// Makes room for snow anywhere on the terrain, and for sums where they are kept.
   void reserve(const Terrain& terrain, bool keeps_sums);
 
-  /// Takes over the cells' rectangle; what is at its nodes is to be found (`sum_on_nodes` in
-  /// kernel_api.hpp).
+  /// Takes over the cells' rectangle; `sum_on_nodes` (kernel_api.hpp) must then compute the values
+  /// at its nodes.
   void take_shape(const CellLists& cells);
 
   /// The nodes of the rectangle, row by row, and where it begins on the terrain.

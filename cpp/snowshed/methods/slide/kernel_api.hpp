@@ -1,4 +1,4 @@
-// What the slide's solver and its kernels agree on: raw views, and a table of functions. The
+// Interface between the slide's solver and its kernels: raw views, and a table of functions. The
 // kernels are compiled once for each instruction set (cmake/KernelVariants.cmake), so nothing here
 // depends on one.
 #pragma once
@@ -8,23 +8,23 @@
 
 namespace snowshed::slide {
 
-/// How friction acts within a step.
+/// Effect of friction within a step.
 enum class FrictionScheme {
   set_valued,         // Coulomb friction stops and holds snow
   avaframe_implicit,  // a rate that divides by the speed of before
   avaframe_explicit
 };
 
-/// By how much the kernel's sum over few neighbours falls short of the pressure of snow: where a
-/// particle sees n of its like within the kernel, pressure is raised by 1 + factor n^-power, at
-/// most twofold. In a triangular lattice with N particles within the kernel the sum gives n = N - 5
-/// N^-0.4, within a few percent for N above 10; this is its inverse, to 2 %.
+/// Correction of the pressure for few neighbours. With n neighbours in the kernel the pressure is
+/// multiplied by 1 + factor n^-power, at most by 2. In a triangular lattice with N particles within
+/// the kernel the sum gives n = N - 5 N^-0.4, within a few percent for N above 10; this is its
+/// inverse, to 2 %.
 struct FewNeighbours {
   double factor, power;
 };
 inline constexpr FewNeighbours few_neighbours{3.7, 1.32};
 
-/// Thinner snow counts as so thick where something is divided by it, m.
+/// Least thickness by which anything is divided, m.
 inline constexpr double least_thickness = 1e-6;
 
 /// Entries that may be read, whatever they hold, after those of the sorted arrays.
@@ -57,7 +57,7 @@ struct View {
   double *nx, *ny, *nz;
   double* thickness;
 
-  // What acts on them.
+  // Accelerations by the loads.
   double *ax, *ay, *az;  // m/s2
   double* yield;         // m/s2, deceleration by friction that does not depend on the speed
   double* drag;          // 1/m, deceleration over the square of the speed
@@ -69,7 +69,7 @@ struct View {
   // Particles in the order of their cells; default mode: z, and what pressure is multiplied by.
   double *sorted_x, *sorted_y, *sorted_z, *sorted_mass, *sorted_pressing;
   const std::uint32_t* sorted_particle;
-  const std::uint32_t* cell_begin;  // of the cells of a rectangle with a margin, row by row
+  const std::uint32_t* cell_begin;  // entries of the cells of a rectangle with a margin, row by row
   int cell_columns, cell_rows;
 
   // Bonds, and for each particle its bonds: twice the bond's place, and one more where it is

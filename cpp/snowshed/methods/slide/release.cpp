@@ -11,7 +11,8 @@
 namespace snowshed::slide {
 namespace {
 
-const double row_distance = std::sqrt(3.0) / 2;  // of a triangular lattice of side 1
+/// Distance of rows in a triangular lattice of side 1.
+const double row_distance = std::sqrt(3.0) / 2;
 
 /// The side of a triangular lattice with so many points per area.
 double lattice_side(double area, double points) { return std::sqrt(area / points / row_distance); }
@@ -190,7 +191,7 @@ MapPoint centroid(const Ring& ring) {
   return {o[0] + x / sum, o[1] + y / sum};
 }
 
-/// What the ground is like under an area, from points half a cell apart.
+/// Properties of the ground under an area, from points half a cell apart.
 struct Ground {
   double stretch = 0;          // sloping over projected area, mean
   double east = 1, north = 0;  // unit vector of the mean fall line
@@ -304,7 +305,7 @@ double mass_per_particle(const Settings& s, double cell) {
 
 void check_effort(const Settings& s, const Terrain& terrain, const std::vector<Area>& areas) {
   constexpr double most_particles = 2e6;    // they take a gigabyte and some seconds
-  constexpr double most_comparisons = 3e9;  // of a particle with a corner, some seconds
+  constexpr double most_comparisons = 3e9;  // comparisons of a particle with a corner: some seconds
   const double cell = terrain.cell();
   double particles = 0, corners = 0;
   const HeightField* map = nullptr;  // all areas share one

@@ -1,4 +1,4 @@
-// What a scene may choose of the snow slide.
+// Settings of the snow slide in a scene.
 #pragma once
 
 namespace snowshed::slide {
@@ -26,7 +26,7 @@ struct Settings {
   double artificial_viscosity = 100;
 
   bool bonds = true;
-  double max_strain = 0.2;        // of a bond, in tension or compression
+  double max_strain = 0.2;        // largest strain of a bond, in tension or compression
   double bond_modulus = 50000;    // Pa
   double min_bond_length = 1e-3;  // m, below which a bond exerts no force
 

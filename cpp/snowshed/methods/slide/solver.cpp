@@ -131,7 +131,7 @@ void SolverImpl::choose_step(State& next, const Work& work) const {
   next.counters.smallest_dt = std::min(next.counters.smallest_dt, next.step);
 }
 
-/// What a change from outside brings, beyond what there is now.
+/// Counts the energy that a change from outside adds to the present one.
 void SolverImpl::count_as_added(const State& next, const Work& work, Energy& sums) const {
   if (!model_.keeps_energy) return;
   Energy before, after;

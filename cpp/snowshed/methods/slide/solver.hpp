@@ -25,7 +25,7 @@ struct Options {
 /// (`seed_release`).
 class Solver : public Method, public SeedsItself, public KeepsEnergy, public ReportsRun {
  public:
-  /// How many particles `seed` gives.
+  /// Number of particles that `seed` gives.
   virtual std::size_t count_seeds() const = 0;
   virtual const Terrain& terrain() const = 0;
   virtual const PeakFields& peaks() const = 0;

@@ -1,5 +1,5 @@
-// What a slide is made of: a model that never changes, a state that steps change, and a workspace
-// that follows from both and may be thrown away.
+// Parts of a slide: a model that never changes, a state that steps change, and a workspace that
+// follows from both and may be thrown away.
 #pragma once
 
 #include <algorithm>
@@ -47,7 +47,7 @@ struct Model {
   bool keeps_energy;
 };
 
-/// What left the terrain, and the snow it took up on its way.
+/// Snow that left the terrain, and snow that was taken up.
 struct MassBalance {
   double released = 0, entrained = 0, left = 0;  // kg
   std::int64_t particles_left = 0;
@@ -96,7 +96,7 @@ struct Places {
   }
 };
 
-/// What acts on each particle during a step; see View.
+/// Loads on each particle during a step; see View.
 struct Loads {
   AlignedVector<double> ax, ay, az, yield, drag, speed;
 
@@ -124,7 +124,7 @@ struct Work {
   std::vector<double> piece_sums;
   bool none_splits = false;  // no particle is too heavy, and none becomes heavier
   EnergyAudit audit;
-  int threads = 1;  // that share the loops
+  int threads = 1;  // threads that share the loops
   ThreadChoice thread_choice;
 
   /// Makes room for all that a step of this state can need, so that nothing fails amid it.
@@ -134,7 +134,7 @@ struct Work {
 /// Iterations that a thread takes at a time.
 inline constexpr std::ptrdiff_t particles_in_piece = 64;
 
-/// What the kernels see of a slide, until an array of it changes its size.
+/// The kernels' view of a slide, valid until an array of it changes its size.
 View view_of(const Model&, State&, Work&);
 
 /// Calls f(begin, end) for pieces of so many particles or bonds.

@@ -36,7 +36,7 @@ SNOWSHED_INLINE void store_half(T* values, const NodeHalf<T>& half) {
   std::memcpy(values, &half, sizeof half);
 }
 
-/// Which registers of a node hold values of a half. A register that holds both belongs to both.
+/// Halves of a node whose values a register holds. A register that holds both belongs to both.
 enum class Halves { both, first, second };
 
 /// A node's values, or what each of them is multiplied by.
@@ -45,7 +45,8 @@ struct Node {
   using Part = typename NodeTypes<T>::part;
   static constexpr int parts = node_values * int(sizeof(T)) / int(sizeof(Part));
   static constexpr int part_values = node_values / parts;
-  static constexpr int first_parts = parts == 1 ? 1 : parts / 2;  // that hold the first half
+  // Number of registers that hold the first half.
+  static constexpr int first_parts = parts == 1 ? 1 : parts / 2;
   Part part[parts];
 
   /// All values, or those of the first half.

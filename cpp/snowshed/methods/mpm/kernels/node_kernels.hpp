@@ -92,7 +92,7 @@ struct NodeKernels {
     }
   };
 
-  /// What forces and gravity do.
+  /// Applies forces and gravity.
   static SNOWSHED_INLINE void let_free(const StepParameters<T>& step, const T* sums, T* velocities,
                                        Range& range) {
     Half gravity{};
@@ -111,7 +111,7 @@ struct NodeKernels {
     }
   }
 
-  /// What obstacles do.
+  /// Applies the conditions of obstacles.
   static SNOWSHED_INLINE void constrain(const StepParameters<T>& step, const T* sums, T* velocities,
                                         Contact<T>* contacts, int contact_count,
                                         const ContactLaw* laws, NodeStats& stats, Range& range) {
@@ -135,7 +135,7 @@ struct NodeKernels {
     const Half momentum = __builtin_shufflevector(load_half(sum), Half{}, 1, 2, 3, 4);
     return momentum / sum[0];
   }
-  /// What the particles' velocities take from the node goes into its second half.
+  /// The second half gets the values that the particles' velocities take from the node.
   static SNOWSHED_INLINE void store_velocity(T* node, const Half& now, const Half& old) {
     store_half(node, now);
     store_half(node + 4, takes_change ? Half(now - old) : now);
@@ -222,21 +222,21 @@ struct NodeKernels {
     return c.acts ? drain_rate(step, sliding_speed) : T(1);
   }
 
-  /// The pull that a contact cancels in a step, as a negative push (N s); more is let go. `stored`
-  /// is what is left of the push before.
+  /// The pull that a contact cancels in a step, as a negative push (N s); a larger pull is
+  /// released. `stored` is the rest of the push before.
   static T least_push(const Contact<T>& c, T stored) {
     if (c.release == Release::never) return std::numeric_limits<T>::lowest();
     return c.release == Release::after_push ? -stored : T(0);
   }
 
   /// Sticky, slip, separate (thesis 1.2.3), with Coulomb friction on the running mean of the net
-  /// normal impulse. Each contact has a store of normal impulse: what presses on the obstacle
-  /// fills it, pull empties it, and it drains at the rate 1/(friction memory); friction is charged
-  /// for what drains. Over time every newton-second of net push is charged once. Charging each
-  /// step's push as it comes, the usual rule, overestimates the friction of a slab that vibrates
-  /// on its panel (slip cancels the pulls but forgets them), up to holding it where it should
-  /// slide. Slip cancels any pull: its store may become a debt, which draws no friction and which
-  /// later pushes must pay back. Separate lets go of pull beyond the store.
+  /// normal impulse. Each contact has a store of normal impulse: pushes on the obstacle fill it,
+  /// pulls empty it, and it drains at the rate 1/(friction memory). Friction is charged for the
+  /// impulse that drains. Over time every newton-second of net push is charged once. Charging each
+  /// step's push as it comes, the usual rule, overestimates the friction of a slab that vibrates on
+  /// its panel (slip cancels the pulls but forgets them), up to holding it where it should slide.
+  /// Slip cancels any pull: its store may become a debt, which draws no friction and which later
+  /// pushes must pay back. Separate releases snow when the pull exceeds the store.
   ///
   /// The store stays at the node while the snow moves on, so fast snow must be charged before it
   /// has left: the store drains at least in the time that the snow takes to slide over a given part

@@ -1,5 +1,5 @@
-// What a particle takes from its nodes and gives to them: weighted sums, one direction after the
-// other. How a transfer weights the derivatives is its own rule (transfer_rules.hpp).
+// Weighted sums of a particle over its nodes, to and from the grid, one direction after the other.
+// The rule of a transfer (transfer_rules.hpp) weights the derivatives.
 #pragma once
 
 #include "snowshed/methods/mpm/kernels/node.hpp"
@@ -48,7 +48,8 @@ SNOWSHED_INLINE NodeSums<T, D> interpolate_nodes(const typename Rule::Interpolat
   using Values = Line<T, S, Rule::taken>;
   using Derivatives = Line<T, S, Rule::interpolated>;
   nodes = in_register(nodes);
-  Node<T> value[S], along[D][S];  // of the lines, planes beyond each node along the first direction
+  // Weights of the lines and planes beyond each node along the first direction.
+  Node<T> value[S], along[D][S];
   const auto along_last = [&](const T* row, Node<T>& a, Node<T>& b) SNOWSHED_INLINE_LAMBDA {
     Node<T> node[S];
     for (int k = 0; k < S; ++k)

@@ -242,7 +242,7 @@ struct ParticleKernels {
     }
   }
 
-  /// Of the new stresses along the motion just made.
+  /// Adds the power of the new stresses along the motion just made.
   void record_stress_power(const State& s, const Motion& m, const Tensor& tau, const Snow& snow,
                            int n) const {
     V work = broadcast<V>(T(0));

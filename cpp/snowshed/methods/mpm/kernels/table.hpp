@@ -9,8 +9,8 @@ SNOWSHED_METHOD_VARIANT_BEGIN(mpm)
 template <class T, int D, Transfer transfer, Basis basis, class Snows, bool energy>
 Kernels<T> kernels_for() {
   using P = ParticleKernels<T, D, transfer, basis, Snows, energy>;
-  using Motion =
-      ParticleKernels<T, D, transfer, basis, SingleMaterial<T, Elastic>, false>;  // of any snow
+  // Motion is the same for any snow.
+  using Motion = ParticleKernels<T, D, transfer, basis, SingleMaterial<T, Elastic>, false>;
   using G = NodeKernels<T, D, basis, transfer != Transfer::apic, energy>;
   Kernels<T> kernels{&P::scatter, &P::g2p2g,       nullptr,    &Motion::probe,    &G::gather,
                      &G::update,  &G::update_free, &G::finish, &G::carried_motion};

@@ -19,7 +19,7 @@ struct Overlap {
       : begin(offset < 0 ? block_edge<D> - 1 : 0),
         end(offset > 0 ? support(basis) : block_edge<D>),
         shift(offset * block_edge<D> + 1) {}
-  /// Of a direction that there is not.
+  /// The overlap along a direction that the dimension lacks.
   static constexpr Overlap none() { return Overlap(0, 1, 0); }
 
  private:

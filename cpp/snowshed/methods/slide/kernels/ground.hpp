@@ -1,4 +1,4 @@
-// How the ground acts on snow: weight, friction, curvature.
+// Effects of the ground on snow: weight, friction, curvature.
 #pragma once
 
 #include "snowshed/methods/slide/kernels/places.hpp"

@@ -64,11 +64,11 @@ SNOWSHED_INLINE PackVec along_ground(const PackVec& u, const PackVec& normal, do
 struct PackMotion {
   PackVec velocity;
   PackVec to;
-  PackMask moves;  // what rests stays where it is, to the last bit
+  PackMask moves;  // resting snow stays where it is, to the last bit
   PackReprojection on_ground;
 };
 
-/// The acceleration by all but friction, which is kept.
+/// The acceleration by all loads except friction, which acts later.
 SNOWSHED_INLINE PackVec acceleration(const View& s, const Lanes& l) {
   const PackRecord force = taken_apart([&](int k) SNOWSHED_INLINE_LAMBDA {
     const std::ptrdiff_t i = l.first + (k < l.count ? k : 0);

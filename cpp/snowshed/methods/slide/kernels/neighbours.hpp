@@ -51,7 +51,7 @@ SNOWSHED_INLINE V within(const V& values, std::uint32_t e, std::uint32_t end) {
 }
 
 /// weight (R - r)^2 / r from the square of the distance r, and 0 from the radius R on: the gradient
-/// of the kernel, over the distance and but for its constant.
+/// of the kernel over the distance, without its constant.
 template <class V>
 SNOWSHED_INLINE V spiky_gradient(const V& weight, const V& square, double radius) {
   const double least = 1e-3 * radius, most = radius * radius;

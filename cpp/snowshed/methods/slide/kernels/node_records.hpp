@@ -87,7 +87,7 @@ SNOWSHED_INLINE PackRows put_together(const PackRecord& r) {
 
 SNOWSHED_INLINE Pack load_whole_pack(const double* p) { return load_pack<Pack>(p, pack_lanes); }
 
-/// What is read of the records of the four nodes around a place.
+/// Part of the records of the four nodes around a place that is read.
 enum class NodeRecord {
   mean,             // the bilinear mean
   mean_and_known,   // the same, but the last value is NaN where the first one of node 0 is

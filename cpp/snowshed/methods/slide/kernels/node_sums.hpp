@@ -11,8 +11,8 @@ struct NodePair {
   Quad south, north;
 };
 
-/// What the particles of a cell hand on to the nodes to the west and to the east; adds to them, and
-/// copies what their neighbours will read.
+/// Adds the mass and momentum of a cell's particles to the nodes in the west and in the east, and
+/// copies the values that their neighbours will read.
 SNOWSHED_INLINE void hand_on(const View& s, std::uint32_t begin, std::uint32_t end, NodePair& west,
                              NodePair& east) {
   for (std::uint32_t e = begin; e < end; ++e) {

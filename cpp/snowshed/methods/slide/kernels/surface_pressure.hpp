@@ -2,11 +2,11 @@
 //
 // A particle has the thickness h_k = sum_l (m_l / rho) W(r_kl), with the spiky kernel W and the
 // distance r_kl in space, so that h is normal to the ground. Snow has the potential energy
-// sum_k m_k g n_z h_k / 2, with the ground's normal n. What it exerts along the ground follows from
-// it: two particles push each other with opposite forces (Monaghan 2005,
+// sum_k m_k g n_z h_k / 2, with the ground's normal n. The force along the ground follows from it:
+// two particles push each other with opposite forces (Monaghan 2005,
 // doi:10.1088/0034-4885/68/8/R01). Where a particle has so few neighbours that the sum falls short
-// of the integral, its pressure is raised by what is missing, at most twofold. That depends on h_k
-// alone, so that it has a potential, too.
+// of the integral, its pressure is raised to correct this, at most twofold. The correction depends
+// on h_k alone, so that it has a potential, too.
 #pragma once
 
 #include "snowshed/core/simd_math.hpp"
@@ -37,7 +37,8 @@ SNOWSHED_INLINE void count_neighbours_of(const View& s, std::uint32_t first,
       sum[k] += mass * inside * inside * inside;
     }
   });
-  const double constant = 10 / (s.cell * s.cell * s.cell);  // of the kernel, over a disc's area
+  // Constant of the kernel, over a disc's area.
+  const double constant = 10 / (s.cell * s.cell * s.cell);
   const Quad sums = constant * sums_of(sum[0], sum[1], V{}, V{});
   for (int k = 0; k < count; ++k) s.sorted_pressing[first + k] = sums[k] / s.sorted_mass[first + k];
 }
