@@ -65,7 +65,7 @@ Options parse(int argc, char** argv) {
   return o;
 }
 
-/// Shows on one line of the terminal how far the run has come.
+/// Shows the progress of the run on one line of the terminal.
 class Display : public snowshed::EventObserver {
  public:
   explicit Display(bool quiet) : quiet_(quiet) {}
@@ -111,7 +111,7 @@ snowshed::EventSequence open(const Options& o) {
     if (!o.quiet)
       std::fprintf(stderr, "note: %s\n", snowshed::printable(o.scene + ": " + note).c_str());
   const auto stop = [] {
-    setting_up = 0;  // asked while snow is seeded, which can stop by itself
+    setting_up = 0;  // called while snow is seeded, which can stop by itself
     return interrupted != 0;
   };
   if (!o.resume) return snowshed::EventSequence::create(scene, ".", o.folder, stop);
@@ -121,7 +121,7 @@ snowshed::EventSequence open(const Options& o) {
   return sequence;
 }
 
-/// Returns whether the run came to its end; after an error, the folder says so.
+/// Returns whether the run came to its end; after an error, run.json records it.
 bool run_all(snowshed::EventSequence& sequence, bool quiet) try {
   Display display(quiet);
   return sequence.run(display, 0.1);
@@ -143,7 +143,7 @@ void on_signal(int) {
   std::_Exit(130);
 }
 
-/// A signal that is ignored, as nohup has it, stays so.
+/// A signal that is ignored, as under nohup, stays so.
 void interrupt_on(int signal) {
   if (std::signal(signal, on_signal) == SIG_IGN) std::signal(signal, SIG_IGN);
 }

@@ -38,7 +38,7 @@ bool python_interrupts() {
   return false;
 }
 
-/// Passes all on to a Python object with the same methods.
+/// Passes all calls to a Python object with the same methods.
 class PythonObserver : public EventObserver {
  public:
   explicit PythonObserver(py::object observer) : observer_(std::move(observer)) {}

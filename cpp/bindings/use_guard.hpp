@@ -19,7 +19,7 @@ class Guarded {
   explicit Guarded(T object) : object_(std::move(object)) {}
 
   /// Calls f(object). Throws std::runtime_error, and leaves the object alone, while a call of
-  /// another thread is under way; from within a call of the same thread one may only read.
+  /// another thread runs. Calls from within a call of the same thread may only read.
   template <class F>
   auto use(const char* call, Access access, F f) {
     const Use use(*this, call, access);

@@ -25,7 +25,8 @@ py::dict curve(const Simulation& sim) {
   return columns_of(sim.curve()->columns(), sim.curve()->values());
 }
 
-/// Grains that touch: their numbers (n, 2), where, the force on the first, and whether bonded.
+/// Grains that touch: their numbers (n, 2), the place, the force on the first, and whether they are
+/// bonded.
 py::tuple contacts(const Simulation& sim) {
   const std::vector<GrainContact> contacts = grains_of(sim).grain_contacts();
   py::array_t<std::int64_t> grains({py::ssize_t(contacts.size()), py::ssize_t(2)});

@@ -12,7 +12,7 @@
 
 namespace snowshed {
 
-/// The count of those who hold a piece of memory; stands just before its first element.
+/// The number of holders of a piece of memory; it is stored just before the first element.
 class alignas(64) MemoryHolders {
  public:
   static MemoryHolders& of(const void* first_element) {

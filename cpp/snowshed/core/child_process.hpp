@@ -14,8 +14,8 @@ struct ChildResult {
   std::string output;  // its standard output
 };
 
-/// Runs a program and waits for it; what it writes to its standard error is dropped. Throws
-/// FileError if it cannot be started.
+/// Runs a program and waits for it; its standard error is dropped. Throws FileError if it cannot be
+/// started.
 ChildResult run_child(const std::filesystem::path& program,
                       const std::vector<std::string>& arguments);
 

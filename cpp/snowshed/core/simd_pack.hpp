@@ -287,7 +287,7 @@ SNOWSHED_INLINE void store_first(Scalar<V>* p, const V& v, int n) {
 }
 
 /// Read the first n values at p; the lanes beyond repeat the first one, so that they hold
-/// harmless numbers without touching memory that belongs to somebody else.
+/// harmless numbers without touching memory behind the array.
 template <class V>
 SNOWSHED_INLINE V load_pack(const Scalar<V>* p, int n) {
   if (n < lane_count<V>) return load_first(p, n, broadcast<V>(p[0]));

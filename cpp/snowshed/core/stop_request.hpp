@@ -1,4 +1,4 @@
-// Giving up work that takes long, on request.
+// Requests to stop work that takes long.
 #pragma once
 
 #include <functional>
@@ -6,11 +6,11 @@
 
 namespace snowshed {
 
-/// Asked from time to time by work that takes long; true: give it up. Where it is empty, nobody
-/// asks.
+/// A function that long work calls from time to time; if it returns true, the work stops. It may be
+/// empty.
 using StopRequest = std::function<bool()>;
 
-/// Thrown by work that was given up. Its data are unchanged.
+/// Thrown by work that was stopped. Its data are unchanged.
 class Stopped : public std::runtime_error {
  public:
   Stopped() : std::runtime_error("interrupted") {}

@@ -8,9 +8,9 @@
 
 namespace snowshed {
 
-/// Tries now and then whether steps are faster with one thread or with many, and goes on with what
-/// was faster. Threads that share few microseconds of work, or their cores with other programs,
-/// wait longer for each other than they save. For steps whose results do not depend on it.
+/// Tries now and then whether steps are faster with one thread or with many, and uses the faster
+/// choice. Threads that share few microseconds of work, or their cores with other programs, wait
+/// longer for each other than they save. The results of a step must not depend on the choice.
 class ThreadChoice {
  public:
   /// Returns the number of threads for the step that begins, 1 or `most`.
@@ -52,7 +52,7 @@ class ThreadChoice {
     return times[trials / 2];
   }
 
-  std::size_t period_ = first_period;  // steps from a trial to the next
+  std::size_t period_ = first_period;  // number of steps between trials
   std::size_t steps_ = 0, step_ = 0;   // since this trial began: steps begun, and the present one
   bool trial_ = false, many_ = false, gave_up_ = false;
   double with_one_ = 0;  // s

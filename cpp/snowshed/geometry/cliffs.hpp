@@ -1,4 +1,4 @@
-// Steps in elevations that no ground has: missing values that a raster holds as 0, for example.
+// Steps in elevations that no ground has, for example because a raster has 0 for missing values.
 #pragma once
 
 #include <string>

@@ -13,7 +13,7 @@ struct HeightField {
   int columns = 0, rows = 0;
   double cell = 1;              // m, between neighbouring nodes
   double west = 0, south = 0;   // m, coordinates of the south-west node
-  std::vector<double> heights;  // m, row by row from the south; NaN where nothing is known
+  std::vector<double> heights;  // m, row by row from the south; NaN if unknown
 
   std::size_t index(int column, int row) const {
     return std::size_t(row) * std::size_t(columns) + std::size_t(column);

@@ -98,15 +98,15 @@ std::vector<Role> roles(const std::vector<Shell>& shells) {
     const Shell& s = shells[i];
     return s.sense * (s.containers.empty() ? s.sense : shells[s.containers.back()].sense);
   };
-  std::vector<Role> found;
+  std::vector<Role> result;
   for (std::size_t i = 0; i < shells.size(); ++i) {
     int around = 0;
     for (const std::size_t k : shells[i].containers) around += sense(k);
-    found.push_back(around == 0              ? Role::solid
-                    : around + sense(i) == 0 ? Role::cavity
-                                             : Role::nothing);
+    result.push_back(around == 0              ? Role::solid
+                     : around + sense(i) == 0 ? Role::cavity
+                                              : Role::nothing);
   }
-  return found;
+  return result;
 }
 
 void append(const TriangleMesh& part, TriangleMesh& mesh) {

@@ -35,12 +35,12 @@ void limit_slope(GridSamples& samples, const NearestSeed& grid, const Band& band
 
 /// Returns whether values change sign more steeply than a distance can.
 bool cross_too_steeply(const GridSamples& samples, const NearestSeed& grid) {
-  bool found = false;
+  bool jumps = false;
   grid.for_each_edge([&](const Index& n, const Index& next) {
     const double value = samples.values[grid.at(n)], other = samples.values[grid.at(next)];
-    found |= (value < 0) != (other < 0) && std::abs(other - value) > 1.5 * samples.spacing;
+    jumps |= (value < 0) != (other < 0) && std::abs(other - value) > 1.5 * samples.spacing;
   });
-  return found;
+  return jumps;
 }
 
 }  // namespace

@@ -134,17 +134,17 @@ Band cut_off(const GridSamples& s) {
   return {level_outside < least ? infinity : *high, level_inside < least ? infinity : -*low};
 }
 
-std::string in_words(double metres) {
+std::string metres(double length) {
   std::ostringstream text;
-  text << metres << " m";
+  text << length << " m";
   return text.str();
 }
 
 std::string note_on(const Band& band) {
   std::string text = "the distances were cut off at ";
-  if (std::isfinite(band.outside)) text += in_words(band.outside) + " outside";
+  if (std::isfinite(band.outside)) text += metres(band.outside) + " outside";
   if (std::isfinite(band.outside) && std::isfinite(band.inside)) text += " and ";
-  if (std::isfinite(band.inside)) text += in_words(band.inside) + " inside";
+  if (std::isfinite(band.inside)) text += metres(band.inside) + " inside";
   return text + " the solid; beyond that they were rebuilt from its surface";
 }
 

@@ -81,7 +81,7 @@ class Thickened final : public LevelSet {
   std::vector<Vec3> normals_;
 };
 
-/// Dilates a solid that is so thick everywhere, or at its thickest part if it is convex.
+/// Dilates a solid with this thickness everywhere, or at its thickest part if it is convex.
 ThickSolid dilated(Shape shape, double half_thickness, double half) {
   const double missing = half - half_thickness;
   const Thickening told{Vec3::Zero(), 2 * half_thickness, missing, true};

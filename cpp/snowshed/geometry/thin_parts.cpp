@@ -71,18 +71,18 @@ class ThinPartSearch {
     return sum;
   }
 
-  /// Those of the cells that are thin, and their neighbours: where a thin part meets a thick one, a
-  /// cell is as near to either.
+  /// Thin cells and their neighbours. The neighbours count, because a cell between a thin and a
+  /// thick part is as near to either.
   std::vector<Vec3> around_thin(const std::vector<Vec3>& cells) const {
     std::unordered_set<std::uint64_t> thin;
     for (const Vec3& cell : thin_cells_)
       for (int k = 0; k < 27; ++k)
         thin.insert(
             key(cell + edge_ * in_space().cwiseProduct(Vec3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1))));
-    std::vector<Vec3> found;
+    std::vector<Vec3> near_thin;
     for (const Vec3& cell : cells)
-      if (thin.count(key(cell))) found.push_back(cell);
-    return found;
+      if (thin.count(key(cell))) near_thin.push_back(cell);
+    return near_thin;
   }
 
   Vec3 in_space() const { return {1.0, dimension_ == 2 ? 0.0 : 1.0, 1.0}; }
@@ -90,15 +90,15 @@ class ThinPartSearch {
   /// The parts of cells, half as large, that the surface may pass through.
   std::vector<Vec3> divided(const std::vector<Vec3>& cells) {
     edge_ *= 0.5;
-    std::vector<Vec3> found;
+    std::vector<Vec3> middles;
     for (const Vec3& cell : cells)
       for (std::size_t k = 0; k < children(); ++k) {
         const double sign[3] = {k & 1 ? 0.5 : -0.5, k & 4 ? 0.5 : -0.5, k & 2 ? 0.5 : -0.5};
         const Vec3 middle = cell + edge_ * in_space().cwiseProduct(Vec3(sign[0], sign[1], sign[2]));
         if (std::abs(shape_.distance(middle)) <= reach() + on_surface * half_)
-          found.push_back(middle);
+          middles.push_back(middle);
       }
-    return found;
+    return middles;
   }
 
   std::vector<ThinPart> parts_of(const std::vector<Vec3>& cells) {

@@ -57,7 +57,7 @@ constexpr ElementType element_type() {
   }
 }
 
-/// Collects sections and writes them at once. Arrays given by reference or pointer are not copied;
+/// Collects sections and writes them together. Arrays given by reference or pointer are not copied;
 /// they must stay alive and unchanged until `save`. Each name may be used once.
 class BinaryWriter {
  public:

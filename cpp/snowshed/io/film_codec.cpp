@@ -70,7 +70,7 @@ class NumberReader {
   const std::string& where_;
 };
 
-/// Numbers each of which is foretold to be as the one before.
+/// Numbers, each predicted to be equal to the one before.
 template <class Stream, class T>
 void transfer_list(Stream& stream, std::vector<T>& values) {
   std::int32_t before = 0;
@@ -214,9 +214,10 @@ bool could_be_deflated(std::size_t packed, std::size_t raw) { return raw / 1032 
 
 std::vector<std::uint8_t> inflated(const std::uint8_t* packed, std::size_t packed_bytes,
                                    std::size_t raw, const std::string& where) {
-  std::vector<std::uint8_t> bytes(raw + 1);  // one more, to see that there are no more
-  uLongf found = uLongf(bytes.size());
-  if (uncompress(bytes.data(), &found, packed, uLong(packed_bytes)) != Z_OK || found != raw)
+  std::vector<std::uint8_t> bytes(raw + 1);  // one byte more shows whether there are more
+  uLongf inflated_bytes = uLongf(bytes.size());
+  if (uncompress(bytes.data(), &inflated_bytes, packed, uLong(packed_bytes)) != Z_OK ||
+      inflated_bytes != raw)
     throw InputError(where, "damaged: cannot be inflated to its " + std::to_string(raw) + " bytes");
   bytes.resize(raw);
   return bytes;

@@ -23,7 +23,7 @@ struct FilmFrameFacts {
   std::size_t particles = 0;
 };
 
-/// Names the header and the first frames of a film, whatever follows them.
+/// Identifies the header and the first frames of a film, independent of later frames.
 struct FilmMark {
   std::size_t frames = 0;
   std::uint32_t checksum = 0;  // checksum of the last of them, which depends on all before it
@@ -40,10 +40,10 @@ class FilmReader {
   std::uint32_t version() const { return version_; }
   const FilmHeader& header() const { return header_; }
   const std::vector<FilmFrameFacts>& frames() const { return facts_; }
-  bool whole() const { return whole_; }    ///< no frame is cut off
+  bool is_complete() const { return is_complete_; }  ///< no frame is cut off
   bool closed() const { return closed_; }  ///< the run came to its end; never of version 1
 
-  /// Where the first so many frames end, bytes from the start of the file, and their checksum.
+  /// End of the first `frames` frames, bytes from the start of the file, and their checksum.
   std::size_t end_of(std::size_t frames) const {
     return frames ? records_[frames - 1].end : end_of_header_;
   }
@@ -51,7 +51,7 @@ class FilmReader {
     return frames ? records_[frames - 1].checksum : header_checksum_;
   }
 
-  /// The bytes of the header and the first so many frames, as the present version has them.
+  /// The bytes of the header and the first `frames` frames in the present version.
   std::string in_present_version(std::size_t frames) const;
 
   /// Decodes the next frame. Throws InputError where it is damaged.
@@ -85,21 +85,21 @@ class FilmReader {
   std::size_t end_of_header_ = 0, next_ = 0;
   std::vector<Record> records_;
   std::vector<FilmFrameFacts> facts_;
-  bool whole_ = true, closed_ = false;
+  bool is_complete_ = true, closed_ = false;
   FilmCodec codec_{FilmHeader{}};
 };
 
-/// Writes a film, frame by frame. Throws FileError, naming the file; a frame is written whole or
-/// taken back.
+/// Writes a film, frame by frame. Throws FileError, naming the file; an incomplete frame is
+/// removed.
 class FilmWriter {
  public:
   /// Begins a film in place of any other.
   FilmWriter(std::filesystem::path path, const FilmHeader& header);
 
-  /// Goes on with a film behind the frames that `keeps` wants, from the first on; the others are
-  /// removed with the next change. Where a `mark` is known, only what it names is looked at. A film
-  /// of version 1 becomes one of the present version. Throws InputError where the film is damaged,
-  /// or is not the one that was marked.
+  /// Continues a film behind the first frames for which `keeps` is true; the others are removed
+  /// with the next change. With a `mark` only the frames that it names are read. A film of version
+  /// 1 becomes one of the present version. Throws InputError where the film is damaged, or is not
+  /// the one that was marked.
   static FilmWriter reopen(const std::filesystem::path& path,
                            const std::function<bool(const FilmFrameFacts&)>& keeps,
                            const std::optional<FilmMark>& mark = {});
@@ -109,7 +109,7 @@ class FilmWriter {
   FilmMark mark() const { return {facts_.size(), checksum_}; }
 
   void append(const FilmFrame&);
-  /// Says that the film is complete. A frame that follows takes this back.
+  /// Marks the film as complete. A further frame removes the mark.
   void close();
 
  private:

@@ -1,4 +1,4 @@
-// A film of particles: what its header and its frames hold, in whole numbers.
+// A film of particles: the contents of its header and its frames, in whole numbers.
 // docs/reference/film.md describes the file.
 #pragma once
 
@@ -41,7 +41,7 @@ struct FilmFrame {
   std::vector<std::uint32_t> ids;
   std::vector<std::uint16_t> events;                 // event of each particle
   std::vector<std::uint8_t> materials;               // material of each particle
-  std::vector<std::int32_t> radii;                   // in quanta; empty where the header has none
+  std::vector<std::int32_t> radii;                   // in quanta; empty if the header has none
   std::vector<std::vector<std::int32_t>> positions;  // one list per axis, in quanta
   std::vector<std::vector<std::int32_t>> values;     // codes, one list per quantity
 };

@@ -1,4 +1,4 @@
-// Numbers that tell whether a file is still the same.
+// Numbers that show whether a file is still the same.
 #pragma once
 
 #include <cstddef>

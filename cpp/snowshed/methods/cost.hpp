@@ -42,7 +42,7 @@ struct SceneOutline {
 /// Estimates, in double because an absurd scene may ask for more than an integer holds.
 struct CostEstimate {
   std::vector<double> particles;  // new in each event
-  double total_particles = 0.0;   // sum over the events, what the last one carries
+  double total_particles = 0.0;   // sum over the events; the last one carries all
   double time_step = 0.0;         // s
   double event_time = 0.0;        // s, of an event; at most events.max_time
   double steps = 0.0;             // all events

@@ -22,8 +22,7 @@
 
 namespace snowshed {
 
-/// The parts of a scene that only some methods take. `sample` stands for its loading and its cone,
-/// too.
+/// The parts of a scene that only some methods take. `sample` includes its loading and its cone.
 enum class Part { panel, slab, ground, obstacles, bodies, domain, terrain, sample, snow, seeding };
 
 class Parts {
@@ -65,7 +64,7 @@ class MethodDescriptor {
   virtual void* settings(const std::type_info&) = 0;
   /// Shows a visitor each setting in turn.
   virtual void describe(SettingsVisitor&) = 0;
-  /// The size of the smallest thing the method resolves, m; 0 where a file decides it.
+  /// The size of the smallest thing that the method resolves, m; 0 if a file decides it.
   virtual double resolution() const = 0;
   /// The threads that the method shall use; 0: all.
   virtual int& threads() = 0;
@@ -76,8 +75,8 @@ class MethodDescriptor {
   virtual std::string step_setting() const = 0;
   /// The floating-point type of the particles.
   virtual const char* scalar() const { return "double"; }
-  /// The mean rate of numerical damping over so many steps in so much time (s), 1/s; nothing for
-  /// methods without it.
+  /// The mean rate of numerical damping over `steps` steps in `time` (s), 1/s; none for methods
+  /// without it.
   virtual std::optional<double> damping_rate(std::int64_t /*steps*/, double /*time*/) const {
     return std::nullopt;
   }
@@ -87,7 +86,7 @@ class MethodDescriptor {
   /// Throws InputError where settings or parts of the scene contradict each other. Each is in its
   /// range, and the scene has no part that the method does not take.
   virtual void validate(const SceneView&) const {}
-  /// A solid as the method must see it: its thin parts as thick as what the method resolves.
+  /// A solid as the method must see it: its thin parts are as thick as the method's resolution.
   virtual ThickSolid as_seen(const Shape& shape, int /*dimension*/) const {
     return {shape, std::nullopt};
   }
@@ -104,8 +103,8 @@ class MethodDescriptor {
 
   /// The number of particles that `fill` will place. Throws as it.
   virtual std::size_t count_particles(const LevelSet&, int dimension) const;
-  /// Fills a solid with particles; notes tell what has become of a solid that these do not resolve.
-  /// Throws InputError where that fails, and Stopped on request.
+  /// Fills a solid with particles; notes report on a solid that these do not resolve. Throws
+  /// InputError if that fails, and Stopped on request.
   virtual void fill(const LevelSet&, int dimension, const StopRequest&, ParticleBatch&,
                     std::vector<std::string>& notes) const;
 

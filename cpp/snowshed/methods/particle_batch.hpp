@@ -28,7 +28,7 @@ struct ParticleBatch {
 };
 
 /// Throws InputError for a batch that no method can take: masses that are not positive, or not one
-/// for each particle; a velocity that is not finite; a snow that is none of `materials`.
+/// for each particle; a velocity that is not finite; a snow that is not in `materials`.
 inline void check_batch(const ParticleBatch& batch, std::size_t materials) {
   if (batch.material_id < 0 || std::size_t(batch.material_id) >= materials)
     throw InputError("material_id", std::to_string(batch.material_id) + " is none of the " +

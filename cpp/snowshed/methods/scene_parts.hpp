@@ -30,7 +30,7 @@ struct ResistanceSpec {
   std::vector<HoleSpec> holes;
 };
 
-/// Ground from a raster of elevations, and what lies on it.
+/// Ground from a raster of elevations, and the areas on it.
 struct TerrainSpec {
   std::string file;  // ESRI ASCII grid
   std::string crs;   // name of the coordinate reference system of raster and areas, for the results
@@ -51,9 +51,10 @@ struct SampleSpec {
 };
 
 /// Parts that move in a stage. Plates are at the bottom, fixed, and at the top; sides are walls or
-/// periodic. `isotropic` has the speed as that of the height, and as stress the mean over top and
-/// sides. `hold` ends when the kinetic energy has fallen to 1e-4 of its peak in the stage, or after
-/// the time in which the speed would bring about the strain; `unload` ends at the strain, too.
+/// periodic. In `isotropic` the speed is that of the height, and the stress is the mean over top
+/// and sides. `hold` ends when the kinetic energy has fallen to 1e-4 of its peak in the stage, or
+/// after the time in which the speed would bring about the strain; `unload` ends at the strain,
+/// too.
 enum class LoadingKind {
   compress,   // the top plate moves down
   unload,     // the top plate moves up, until the stress on it falls to `stress`
@@ -66,7 +67,7 @@ enum class LoadingKind {
 
 struct LoadingStage {
   LoadingKind kind = LoadingKind::compress;
-  double speed = 0.02;  // m/s, of what moves
+  double speed = 0.02;  // m/s, of the moving parts
   double strain = 0.3;  // at which the stage ends: displacement over the sample's initial height
   double stress = 0;    // Pa; compress, isotropic: ends the stage if reached, 0: never;
                         // unload: see above; shear: normal stress, 0: constant height
@@ -101,7 +102,7 @@ struct Events {
 struct Output {
   double snapshot_interval = 0.0;  // s between particle snapshots; 0: only at the end of an event
   bool film = true;                // record the run, so that it can be viewed
-  double film_interval = 0.0;      // s between its frames; 0: chosen by how long events last
+  double film_interval = 0.0;      // s between its frames; 0: chosen by the events' duration
   bool energy = false;             // keep the energy balance
   double checkpoint_interval = 60.0;  // s of wall time between checkpoints; 0: none
 };

@@ -1,4 +1,4 @@
-// Through which a method describes its settings, without knowing who looks at them.
+// Interface by which a method describes its settings to any visitor.
 #pragma once
 
 #include <functional>

@@ -11,7 +11,7 @@
 
 namespace snowshed {
 
-/// A file that a scene names, and the fingerprint of what it held.
+/// A file that a scene names, and the fingerprint of its contents.
 struct FilePrint {
   std::string file;
   std::int64_t print;
@@ -33,7 +33,7 @@ struct Surroundings {
   std::vector<Snow> snows;                   // indexed by material_id
   std::vector<Obstacle> obstacles;           // all of them, as they are given
   std::vector<Obstacle> resolved;            // the same as the method sees them
-  std::vector<std::string> notes;            // on what was assumed or changed, a sentence each
+  std::vector<std::string> notes;            // on assumptions and changes, a sentence each
   std::shared_ptr<const MethodInput> input;  // null if the method reads no files
 };
 

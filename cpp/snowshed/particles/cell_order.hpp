@@ -25,7 +25,7 @@ class CellOrder {
   /// another one to be numbered.
   void update(const Points& points, double edge, double period = 0);
 
-  /// Where the points stand that come first, second, and so on; points of a cell keep their order.
+  /// Indices of the points in the order of cells; points of a cell keep their order.
   const std::vector<std::uint32_t>& order() const { return order_; }
   bool is_sorted() const { return sorted_; }
 

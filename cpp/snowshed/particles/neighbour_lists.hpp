@@ -1,4 +1,4 @@
-// For each of many points the others within a radius.
+// Lists of the points within a radius of each point.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 namespace snowshed {
 
 /// Lists of neighbours in one array (compressed rows), each pair in both of its lists, with the
-/// separation to the neighbour. Single precision suffices for ways, which are short.
+/// separation to the neighbour. Single precision suffices for separations, which are short.
 template <int D>
 class NeighbourLists {
  public:
@@ -28,7 +28,7 @@ class NeighbourLists {
   std::uint32_t end(std::size_t i) const { return first_[i + 1]; }
   std::uint32_t neighbour(std::size_t entry) const { return index_[entry]; }
 
-  /// Finds for each entry (i, j) where (j, i) stands.
+  /// Finds the place of (j, i) for each entry (i, j).
   void find_mirrors(int threads);
   /// The entry of the same pair in the neighbour's list, as `find_mirrors` has found it.
   std::uint32_t mirror(std::size_t entry) const { return mirror_[entry]; }

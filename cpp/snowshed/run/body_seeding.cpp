@@ -17,7 +17,7 @@
 namespace snowshed {
 namespace {
 
-/// Geometry knows no scene; gives its errors the place in it.
+/// Adds the place in the scene to errors of geometry, which does not know the scene.
 template <class Action>
 auto with_path(const std::string& path, Action action) {
   try {
@@ -32,7 +32,7 @@ auto with_path(const std::string& path, Action action) {
 
 std::string body_path(std::size_t i) { return "/bodies/" + std::to_string(i) + "/shape"; }
 
-/// Where in the scene the bodies of `assemble_bodies` stand.
+/// Places in the scene of the bodies of `assemble_bodies`.
 std::vector<std::string> body_paths(const Scene& scene, int event) {
   std::vector<std::string> paths;
   if (scene.slab) {

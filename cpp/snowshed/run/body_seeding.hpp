@@ -1,4 +1,4 @@
-// The snow that an event brings: how much it will be, and where its particles are.
+// The snow that an event brings: its amount and its particles.
 #pragma once
 
 #include <filesystem>

@@ -40,7 +40,7 @@ double most_overlapping(const std::vector<ObstacleSpec>& obstacles) {
   return everywhere + double(most);
 }
 
-/// The height of the snow of the first event, and of z = 0, m.
+/// The height of the snow of the first event, from its lowest point or z = 0 if that is lower, m.
 double height_of(const Scene& scene) {
   double low = 0, high = 0;
   for (const BodySpec& body : assemble_bodies(scene, 1))

@@ -12,13 +12,13 @@ namespace snowshed {
 SceneOutline outline_of(const Scene& scene);
 
 /// The cost of a scene whose method takes bodies. `particles`, new in each event, replace the
-/// estimate from the volumes, which leaves out snow whose volume the scene does not tell (meshes
+/// estimate from the volumes, which leaves out snow whose volume the scene does not give (meshes
 /// and grids).
 CostEstimate estimate_cost(const Scene& scene);
 CostEstimate estimate_cost(const Scene& scene, std::vector<double> particles);
 
-/// Throws InputError, naming what is to blame, where an event would take more steps than any run
-/// has time for (10^12), or be recorded more than a million times.
+/// Throws InputError, which names the cause, if an event would take more steps than any run has
+/// time for (10^12), or be recorded more than a million times.
 void check_duration(const Scene&, const CostEstimate&);
 
 /// Throws InputError naming both numbers when `bytes` exceeds `available`; by default the memory

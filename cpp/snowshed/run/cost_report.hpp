@@ -22,8 +22,8 @@ struct CostReport {
 /// snow count more. Nothing is measured. Throws InputError as running would.
 double expected_work(const Scene& scene, const std::filesystem::path& base_dir = ".");
 
-/// Throws InputError as running would. Takes a fraction of a second: the speed is measured on the
-/// scene itself, coarsened to at most 50 000 particles.
+/// Reports the cost; throws InputError as a run would. It takes a fraction of a second: the speed
+/// is measured on the scene itself, coarsened to at most 50 000 particles.
 CostReport report_cost(const Scene& scene, const std::filesystem::path& base_dir = ".");
 
 }  // namespace snowshed

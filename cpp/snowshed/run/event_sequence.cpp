@@ -63,7 +63,7 @@ bool EventSequence::run(EventObserver& observer, double report_interval) {
         if (sim_->scene().output.film && !std::exchange(films, true))
           sim_->record_film(folder_.film());  // its resolution depends on the snow
         stopped = observer.stop_requested();
-      } catch (const Stopped&) {  // the last checkpoint is of the same snow, before it aged
+      } catch (const Stopped&) {  // the last checkpoint has the same snow, before it aged
         return write_record("interrupted"), false;
       }
     const RunEnd end = stopped ? RunEnd::paused : run_event(observer, report_interval);
@@ -108,7 +108,7 @@ RunEnd EventSequence::run_event(EventObserver& observer, double report_interval)
   }
 }
 
-/// The checkpoint comes last: what is newer than it is written again when the run is resumed.
+/// The checkpoint comes last: newer results are written again when the run is resumed.
 void EventSequence::end_event(EventObserver& observer, RunEnd end) {
   EventFacts facts;
   facts.event = sim_->event();
@@ -151,7 +151,7 @@ void EventSequence::give_up_files() {
   if (!is_done()) record_.files.clear();
 }
 
-/// Between two events the last checkpoint is of the same snow, before it aged.
+/// Between two events the last checkpoint has the same snow, before it aged.
 void EventSequence::record_failure(const std::string& error) {
   try {
     if (sim_->event_running()) sim_->save(folder_.checkpoint());

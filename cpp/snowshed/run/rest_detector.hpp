@@ -5,8 +5,8 @@ namespace snowshed {
 
 /// The snow rests when for `rest_time` seconds on end its speed (root of twice the kinetic energy
 /// over the mass that the event brought, so that a large stack at rest does not hide a small slab
-/// in motion) stays below `rest_speed`, and has not grown meanwhile: snow that is just setting
-/// off is slow too.
+/// in motion) stays below `rest_speed`, and has not grown meanwhile, because snow that is just
+/// setting off is slow, too.
 class RestDetector {
  public:
   RestDetector(double rest_speed, double rest_time) : limit_(rest_speed), duration_(rest_time) {}

@@ -1,4 +1,4 @@
-// The results folder of a run: what is in it, and how it is made and opened again.
+// The results folder of a run: its contents, and how it is made and opened again.
 #pragma once
 
 #include <filesystem>
@@ -20,7 +20,7 @@ class ResultsFolder {
   /// Opens the folder of an earlier run of the same scene. Throws InputError where it is not one.
   static ResultsFolder reopen(std::filesystem::path folder, const Scene& scene);
 
-  /// Throws InputError unless `folder` is new or empty; what a killed run left does not count.
+  /// Throws InputError unless `folder` is new or empty; remains of a killed run do not count.
   static void require_empty(const std::filesystem::path& folder);
 
   const std::filesystem::path& path() const { return folder_; }
@@ -35,7 +35,7 @@ class ResultsFolder {
   /// The checksum of its scene.json.
   std::string scene_checksum() const;
 
-  /// Lets another run go on in the folder.
+  /// Releases the folder to another run.
   void unlock() { lock_.release(); }
 
   /// Writes the particles after an event, and adds them to the series of all events.

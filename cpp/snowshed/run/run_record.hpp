@@ -41,13 +41,13 @@ struct FileMark {
 /// A larger share of the energy that was gained or lost is worth a warning.
 inline constexpr double largest_energy_residual = 0.01;
 
-/// Returns what run.json calls the two ways in which events end.
+/// Returns the names that run.json has for the two ends of events.
 std::string name_of(RunEnd);
 
 class RunRecord {
  public:
-  /// Reads run.json; an empty record where there is none. Throws InputError where it is damaged.
-  /// `energies` names those that events have, in order, if they have any.
+  /// Reads run.json; returns an empty record if the file is missing. Throws InputError if it is
+  /// damaged. `energies` names those that events have, in order, if they have any.
   static RunRecord read(const std::filesystem::path& file,
                         const std::vector<std::string>& energies);
 
@@ -55,17 +55,17 @@ class RunRecord {
   void write(const std::filesystem::path& file, const Simulation&, const std::string& status,
              const std::string& error = "") const;
 
-  /// Throws InputError where one of `files` is there, and is not as the run wrote it.
+  /// Throws InputError if one of `files` exists, but is not as the run wrote it.
   void check_files(const std::filesystem::path& folder) const;
 
   /// Forgets the events after `event`, which will be run again.
   void keep_through(int event);
 
-  /// Adds what readers of the results should know, a sentence. Returns whether it is new.
+  /// Adds a note for readers of the results, a sentence. Returns whether it is new.
   bool add_note(const std::string& note);
 
   std::vector<EventFacts> finished;            // one per event
-  std::vector<std::string> notes;              // in the order in which they were said
+  std::vector<std::string> notes;              // in the order of their creation
   std::map<std::string, std::string> machine;  // further facts, by key
   /// Checksums of the tables that Python keeps: by name, of the rows through an event.
   std::map<std::string, std::map<std::string, std::string>> tables;

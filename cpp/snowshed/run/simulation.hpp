@@ -1,4 +1,4 @@
-// A scene being simulated, in memory: one slide-off event after another onto what lies there.
+// A scene being simulated, in memory: one slide-off event after another onto the stack.
 // `EventSequence` drives it through all events and keeps a results folder.
 #pragma once
 
@@ -48,27 +48,28 @@ class Simulation {
   explicit Simulation(const Scene& scene, const std::filesystem::path& base_dir = ".");
   ~Simulation();
 
-  /// Seeds the next event's snow: the slab on the panel (above what remained there, unless that is
-  /// less than 2 % of it and of what the last event laid) and the scene's bodies. With between =
-  /// "reseed", from the second event on the stack is first seeded afresh (`reseed_stack`). All or
-  /// nothing: throws InputError where the snow of this event cannot be seeded, or lies where snow
-  /// may not be (snow_placement.hpp), SimulationError where the stack cannot be converted or an
-  /// event still runs, Stopped on request, and leaves everything as it was.
+  /// Seeds the next event's snow: the slab on the panel (above the snow that remained there, unless
+  /// that is less than 2 % of the slab and of the last event's snow) and the scene's bodies. With
+  /// between = "reseed", from the second event on the stack is first seeded afresh
+  /// (`reseed_stack`). All or nothing: throws InputError where the snow of this event cannot be
+  /// seeded, or lies where snow may not be (snow_placement.hpp), SimulationError where the stack
+  /// cannot be converted or an event still runs, Stopped on request, and leaves everything as it
+  /// was.
   std::optional<Reseeding> begin_event(const StopRequest& stop = {});
 
   /// Runs the present event until the snow rests, the time limit, or `observer`, called every
-  /// `interval` seconds of wall time, returns false; then it goes on to the next safe point, so
-  /// that a checkpoint resumes to the same bits, and returns `paused`. Call again to go on.
+  /// `interval` seconds of wall time, returns false; then it continues to the next safe point, so
+  /// that a checkpoint resumes to the same bits, and returns `paused`. Another call resumes the
+  /// event.
   RunEnd run(const std::function<bool(const RunReport&)>& observer, double interval);
 
   /// Adds particles of the present event, beside those that begin_event seeds; before the first
-  /// event they are of that. `batch.event` is set here. Throws InputError where they lie where snow
-  /// may not be.
+  /// event they belong to it. `batch.event` is set here. Throws InputError where they lie where
+  /// snow may not be.
   void add_snow(ParticleBatch batch);
 
-  /// Takes `count` steps of the present event, whether the snow rests or not. For those who drive
-  /// the snow themselves: between steps, `add_velocity` adds to the velocities, particles ordered
-  /// by id.
+  /// Takes `count` steps of the present event, whether the snow rests or not. Callers that drive
+  /// the snow themselves can change velocities between steps by `add_velocity`.
   void step(int count = 1);
   void add_velocity(const std::vector<Vec3>& velocity_changes) {
     solver_->add_velocity(velocity_changes);
@@ -81,8 +82,8 @@ class Simulation {
   /// Writes a snapshot to `folder` every `interval` seconds of simulated time from now on.
   void write_snapshots(const std::filesystem::path& folder, double interval);
 
-  /// Records the particles into a film from now on, or goes on with the film of the run that was
-  /// resumed: what it holds beyond the present state is recorded anew. Throws InputError where that
+  /// Records the particles into a film from now on, or continues the film of the run that was
+  /// resumed: its frames after the present state are recorded anew. Throws InputError where that
   /// film is damaged.
   void record_film(const std::filesystem::path& file);
   bool films() const { return film_ != nullptr; }
@@ -94,8 +95,8 @@ class Simulation {
   /// SimulationError where the state could not be resumed from, FileError where it cannot be
   /// written; the older file stays then.
   void save(const std::filesystem::path& checkpoint) const;
-  /// Throws InputError where the file is not a sound checkpoint. The same bits come of any number
-  /// of `threads` (0: all); by default it is that of the checkpoint's scene.
+  /// Throws InputError where the file is not a sound checkpoint. Any number of `threads` (0: all)
+  /// gives the same bits; by default it is that of the checkpoint's scene.
   static std::unique_ptr<Simulation> load(const std::filesystem::path& checkpoint,
                                           std::optional<int> threads = {});
   /// The same in another scene, which lays other snow from the next event on, or has more events:

@@ -20,9 +20,9 @@ constexpr double depth_over_resolution = 1e-3;  // less is rounding of files, no
 
 /// Where old snow surrounds a point: within this many particle distances there are ...
 constexpr double reach = 2.2;
-constexpr double least_filled = 0.4;  // ... so many of the particles that whole snow would have,
-constexpr double most_aside = 0.28;   // and their centre lies so near, over the reach. On a flat
-                                      // surface it is at 0.38 (3D) and 0.42 (2D).
+constexpr double least_filled = 0.4;  // ... this share of the particles that whole snow would have,
+constexpr double most_aside = 0.28;   // and their centre is nearer than this, over the reach. On a
+                                      // flat surface it is at 0.38 (3D) and 0.42 (2D).
 
 constexpr std::size_t most_notes = 10;  // notes on the bodies of an event
 constexpr std::size_t most_parts = 3;   // parts in a sentence
@@ -49,7 +49,7 @@ PointBox box_around(const std::vector<Vec3>& points, std::size_t begin, std::siz
   return box;
 }
 
-/// The particles of a body that lie in one thing.
+/// The particles of a body that lie in one obstacle or body.
 struct Part {
   std::string where;
   std::size_t count = 0;

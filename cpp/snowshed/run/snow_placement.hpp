@@ -18,7 +18,7 @@ struct PlacedBody {
   std::string path;                    // in the scene
   const std::vector<Vec3>* positions;  // m, of its particles
   Shape shape = nullptr;               // solid that they fill; null where there is none
-  bool is_told_only = false;           // for it lies where the program laid it
+  bool is_told_only = false;           // only notes, because the program placed it
 };
 
 /// Space that new snow must not enter.
@@ -26,7 +26,7 @@ struct OccupiedSpace {
   const std::vector<Obstacle>& obstacles;  // as they are given
   const std::vector<Obstacle>& resolved;   // the same, as the method sees them
   double time = 0;                         // s, at which moving obstacles are met
-  std::vector<Vec3> particles;             // m, of the snow that is there already
+  std::vector<Vec3> particles;             // m, of the snow that is present already
   double particle_distance = 0;            // m, mean, between these
   int event = 1;                           // event of the new snow
 };
@@ -38,7 +38,8 @@ struct OccupiedSpace {
 /// for those that lie only where a thin obstacle is made thicker: from there they are pushed out.
 ///
 /// Throws InputError with share and place where it is more than `most_misplaced` of a body's
-/// particles, not counting the thickening, unless the scene allows that or the body is told only.
+/// particles, not counting the thickening, unless the scene allows that or the body's
+/// `is_told_only` is set.
 std::vector<std::string> check_placement(const Scene&, const std::vector<PlacedBody>&,
                                          const OccupiedSpace&);
 

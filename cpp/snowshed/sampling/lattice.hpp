@@ -1,4 +1,4 @@
-// Filling a solid with the particles of a lattice, each of which stands for a whole cell.
+// Filling a solid with the particles of a lattice, each of which represents a whole cell.
 #pragma once
 
 #include <cstddef>
@@ -16,8 +16,8 @@ struct LatticeFilling {
 };
 
 /// Fills a bounded solid with points of a square or cubic lattice of the given spacing (m), as many
-/// as its volume holds cells, to the nearest whole number (`count_lattice`). So the solid and its
-/// particles have the same volume, whatever the spacing.
+/// as its volume holds cells, to the nearest whole number (`count_lattice`). The solid and its
+/// particles then have the same volume, for any spacing.
 ///
 /// In a box the lattice stands along its edges. Its full layers begin at the lowest corner, and a
 /// partial layer is at the top. Other solids have a lattice along the world axes, which begins at

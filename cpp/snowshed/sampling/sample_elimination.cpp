@@ -105,11 +105,11 @@ std::vector<Vec3> eliminate_samples(const Candidates& candidates, std::size_t co
     });
   }
 
-  std::vector<Vec3> kept;
-  kept.reserve(count);
+  std::vector<Vec3> chosen;
+  chosen.reserve(count);
   for (std::uint32_t i = 0; i < points.size(); ++i)
-    if (candidates.inside[i] && queue.contains(i)) kept.push_back(points[i]);
-  return kept;
+    if (candidates.inside[i] && queue.contains(i)) chosen.push_back(points[i]);
+  return chosen;
 }
 
 }  // namespace snowshed

@@ -1,4 +1,4 @@
-// From the description of a solid in a scene to the solid.
+// Solids from their descriptions in a scene.
 #pragma once
 
 #include <filesystem>
@@ -17,7 +17,7 @@ inline constexpr int max_shape_depth = 32;
 /// relative to `base_dir`. In 2D boxes and plates are unbounded along y, and every point and
 /// direction must lie in the plane y = 0.
 ///
-/// What was changed or assumed in files is added to `notes`, if given, a sentence each.
+/// Changes and assumptions about files are added to `notes`, if given, a sentence each.
 ///
 /// Throws InputError with the JSON path (`json_path` + "/radius") of a bad value, or with
 /// the file and place of bad mesh or grid data.

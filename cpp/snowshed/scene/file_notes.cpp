@@ -13,12 +13,12 @@
 namespace snowshed {
 namespace {
 
-/// The files of millimetres read as metres, or the reverse, are 1000 times too large or small.
+/// Files in millimetres that are read as metres, or the reverse, are 1000 times too large or small.
 constexpr double too_different = 300;
 
 struct Solid {
   std::string file;  // empty: of no file
-  double size;       // m, its longest edge; infinite or 0 where it has none
+  double size;       // m, its longest edge; infinite or 0 if it has none
 };
 
 /// The first file that a shape is made of.

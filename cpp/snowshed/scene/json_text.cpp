@@ -24,14 +24,14 @@ std::string place(const std::string& text, std::size_t position, const std::stri
   return name + ":" + std::to_string(line) + ":" + std::to_string(column);
 }
 
-/// The library's message without its own code and place, in printable characters, and the last
+/// The library's message without its own code and place, in printable characters, and the last text
 /// that it could read.
 std::string plain_message(std::string message, std::string last_read) {
   last_read.erase(0, last_read.find_first_not_of(' '));
   for (const std::string end : {"syntax error ", ": "}) {
-    const std::size_t found = message.find(end);
-    if (found != std::string::npos) {
-      message.erase(0, found + end.size());
+    const std::size_t position = message.find(end);
+    if (position != std::string::npos) {
+      message.erase(0, position + end.size());
       break;
     }
   }
@@ -42,9 +42,9 @@ std::string plain_message(std::string message, std::string last_read) {
          (last_read.empty() ? "" : ", after " + quote(last_read));
 }
 
-/// The same text with spaces for line ends and tabs between values. The parser keeps what it has
-/// read since the last string or number for its message, and there spells each of them "<U+000A>":
-/// megabytes of empty lines would become gigabytes.
+/// The same text with spaces for line ends and tabs between values. For its message the parser
+/// keeps the text since the last string or number, and spells each blank "<U+000A>": megabytes of
+/// empty lines would become gigabytes.
 std::string with_plain_blanks(std::string text) {
   bool quoted = false;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -52,7 +52,7 @@ std::string with_plain_blanks(std::string text) {
     if (c == '"')
       quoted = !quoted;
     else if (c == '\\' && quoted)
-      ++i;  // whatever it is, it does not end the string
+      ++i;  // an escaped character never ends the string
     else if (!quoted && (c == '\n' || c == '\t' || c == '\r'))
       c = ' ';
   }

@@ -86,7 +86,7 @@ template <class T>
 std::string path_of(const Scene& scene, const T& member) {
   std::string path = "/";
   Locator locator(&member, typeid(T), scene.dimension, path);
-  describe(locator, const_cast<Scene&>(scene));  // visitors may write; this one does not
+  describe(locator, const_cast<Scene&>(scene));  // other visitors may write; this one does not
   return path;
 }
 

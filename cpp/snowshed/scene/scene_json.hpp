@@ -1,5 +1,5 @@
 // The JSON form of a scene: reading, checking, writing, and its published schema.
-// Every field is described once, in src/scene/describe.hpp.
+// Every field is described once, in scene/describe.hpp.
 #pragma once
 
 #include <filesystem>
@@ -18,7 +18,7 @@ namespace snowshed {
 Scene parse_scene(const std::string& text, const std::string& name = "scene",
                   std::vector<std::string>* notes = nullptr);
 
-/// The scene with absolute names of mesh and grid files; relative ones are taken to be in `folder`.
+/// The scene with absolute names of mesh and grid files; relative ones refer to `folder`.
 Scene with_absolute_files(const std::filesystem::path& folder, Scene scene);
 
 /// The mesh and grid files that the shapes of a scene name, as they are written there, without

@@ -18,7 +18,8 @@ class SchemaWriter {
  public:
   using json = nlohmann::ordered_json;
 
-  /// Shared by all visitors of one schema: what is referred to, because it contains itself.
+  /// Shared by all visitors of one schema: definitions that contain themselves, and are therefore
+  /// referred to.
   explicit SchemaWriter(json& definitions) : definitions_(definitions) {}
 
   /// The schema of T; its defaults are those of a new T.

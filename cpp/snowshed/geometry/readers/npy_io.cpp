@@ -50,7 +50,7 @@ std::vector<std::size_t> parse_shape(const std::string& tuple) {
   return shape;
 }
 
-/// Types that an array may have, as a regular expression and as text.
+/// Types and shapes that an array may have, as regular expressions and as text for messages.
 struct Allowed {
   const char *type, *types, *shape, *shapes;
 };

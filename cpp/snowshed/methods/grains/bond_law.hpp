@@ -60,8 +60,8 @@ struct BondLaw {
 
     const Mask slips = (holds == 0) & (V(ks * length) > cap);
     const V least = broadcast<V>(1e-300);
-    const V kept = select(slips, V(cap / max(V(ks * length), least)), broadcast<V>(1.0));
-    u = V(select(f.touching, kept, zero)) * trial;
+    const V share = select(slips, V(cap / max(V(ks * length), least)), broadcast<V>(1.0));
+    u = V(select(f.touching, share, zero)) * trial;
     f.drag = ks * u;
 
     const V lost = V(0.5 * ks) * dot(before + u, trial - u);
@@ -76,7 +76,7 @@ struct BondLaw {
   }
 
  private:
-  /// A displacement in the plane of the contact as it is now, of the same length.
+  /// A displacement turned into the present plane of the contact, of the same length.
   template <class V>
   static SNOWSHED_INLINE SimdVec<V> turned(const ContactMotion<V>& m, const SimdVec<V>& u) {
     const SimdVec<V> twisted = u + m.twist * cross(m.normal, u);

@@ -34,7 +34,7 @@ struct Boundary {
     return side_velocity[2 * axis + 1] - side_velocity[2 * axis];
   }
   void move(double dt);
-  /// The farthest that a part has come since an earlier time, m.
+  /// The largest displacement of a part since an earlier time, m.
   double travel_since(const Boundary& earlier) const;
   double top_speed() const;  // m/s, of the fastest part
 
@@ -66,7 +66,7 @@ struct SurfaceContact {
   Vec3 normal;  // into the surface
 };
 
-/// Where a cone with a shaft is met by a sphere whose centre lies at `centre` from the tip.
+/// Contact of a cone with a shaft and a sphere whose centre lies at `centre` from the tip.
 SurfaceContact meet_cone(const Cone&, const Vec3& centre, double radius);
 
 /// The wall that a sphere with this centre meets.

@@ -1,4 +1,4 @@
-// Whether settings, sample and loading of grains fit each other.
+// Checks that settings, sample and loading of grains fit each other.
 #pragma once
 
 #include "snowshed/methods/grains/solver.hpp"

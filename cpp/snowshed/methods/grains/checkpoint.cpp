@@ -108,7 +108,7 @@ std::vector<PairHistory> checked_pairs(const StateReader& archive,
     h.key = {pair.key[0], pair.key[1], {pair.shift[0], pair.shift[1]}, pair.key[2], pair.key[3]};
     h.shear = pair.shear;
     h.bonded = pair.bonded == 1;
-    h.kept = true;
+    h.always_listed = true;
     const bool of_grain = h.key.second < grains;
     const bool sound =
         pair.bonded <= 1 && h.shear.allFinite() && h.key.a < spheres && h.key.first < grains &&

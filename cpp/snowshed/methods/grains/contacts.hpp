@@ -1,4 +1,4 @@
-// The pairs of a list, one by one: for what is measured now and then.
+// The pairs of a list, one by one, for measurements between steps.
 #pragma once
 
 #include "snowshed/methods/grains/state.hpp"

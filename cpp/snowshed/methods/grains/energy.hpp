@@ -30,7 +30,7 @@ NamedEnergies named_energies(const Energy&);
 /// The kinetic energy of all grains, J.
 double kinetic_energy(const Model&, const State&);
 
-/// Fills in what is stored now.
+/// Fills in the energy that is stored now.
 void store_energy(const Model&, const State&, Energy&);
 
 }  // namespace snowshed::grains

@@ -126,7 +126,7 @@ Vec3 damping_of(double share, const Vec3& force, const Vec3& velocity) {
   return damping;
 }
 
-/// Adds up what the groups do to a grain, in their order.
+/// Adds up the forces of the groups on a grain, in their order.
 void gather(const Model& model, State& state, const Work& work, std::size_t i) {
   GrainBody& body = state.bodies[i];
   body.force = Vec3(0, 0, -model.grains[i].weight);

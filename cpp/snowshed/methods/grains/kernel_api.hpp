@@ -8,17 +8,17 @@
 
 namespace snowshed::grains {
 
-/// Sphere pairs are taken so many at a time: each group of them fills a multiple of it.
+/// Number of sphere pairs that kernels take at a time; each group of them fills a multiple of it.
 inline constexpr std::uint32_t pairs_at_once = 4;
 
-/// Where a body is and how it moves: grains, and plates, which do not turn.
+/// Pose and motion of a body: a grain, or a plate, which does not turn.
 struct BodyFrame {
   double position[3], velocity[3], spin[3];  // m, m/s, rad/s, in space
   double rotation[9];                        // from its frame to space, by rows
 };
 
-/// The sphere pairs of a grain and what it meets: another grain (or its image, so many periods
-/// away), a plate, a wall, the cone.
+/// The sphere pairs of a grain and its partner: another grain (or its image, `shift` periods away),
+/// a plate, a wall, the cone.
 struct PairGroup {
   std::uint32_t first, second;  // bodies
   std::int32_t shift[2];        // periods in x and y by which the second's image is away

@@ -18,7 +18,7 @@ struct LabelPieces {
 };
 LabelPieces count_pieces(const LabelImage&);
 
-/// Throws InputError where what should be labels are grey values, which change from voxel to voxel.
+/// Throws InputError if the labels are grey values, which change from voxel to voxel.
 void check_labels(const LabelPieces&);
 
 /// Note for the user about labels in several pieces, with or without `split_pieces`. Returns an

@@ -75,7 +75,8 @@ LoadingCurve::LoadingCurve(std::vector<LoadingStage> stages, double height,
   values_.reserve((stages_.size() * (points + 1) + 1) * columns_.size());
 }
 
-/// When the present stage reaches its next point; one that holds has the times of its strain, too.
+/// Time at which the present stage reaches its next point; `hold` uses the times of its strain,
+/// too.
 double LoadingCurve::next_time() const {
   const LoadingStage& stage = stages_[std::size_t(stage_)];
   const double part = double(points_done_ + 1) / points;

@@ -10,9 +10,9 @@
 namespace snowshed::grains {
 
 /// Rows of instantaneous values at the beginning of the test, at `points` strains of each stage,
-/// and where a stage ends. The strains are (k / points)^2 of that at which the stage ends: a
-/// brittle sample is elastic for a thousandth of it only. The rows depend on the steps alone:
-/// neither on the number of threads nor on whether the run was resumed.
+/// and at the end of each stage. The strains are (k / points)^2 of the stage's final strain,
+/// because a brittle sample is elastic for a thousandth of it only. The rows depend on the steps
+/// alone: neither on the number of threads nor on whether the run was resumed.
 ///
 /// Each row also has the strains and stresses of the step, since the row before, in which the
 /// sample carried most: the strength is the largest stress of all steps, not that of the rows.
@@ -22,7 +22,7 @@ class LoadingCurve final : public Curve {
  public:
   static constexpr int points = 300;
 
-  /// For the stages of a sample of that initial height (m); with the energies, if any are named.
+  /// A curve for the stages of a sample with this initial height (m), and for the named energies.
   LoadingCurve(std::vector<LoadingStage>, double height, const NamedEnergies& energies);
 
   void record(const Method& grains) override;

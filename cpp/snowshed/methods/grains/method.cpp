@@ -22,7 +22,7 @@ void check_stage(const LoadingStage& stage, const std::string& path, const Setti
     throw InputError(path + "/stress", kind + " takes no stress");
 }
 
-/// Stages follow on each other: what a stage undoes must have been done.
+/// The stages must fit to each other: a stage can only undo the load of an earlier one.
 void check_stages(const std::vector<LoadingStage>& stages, const Settings& settings) {
   constexpr double most_shortening = 0.95;  // or nothing is left between the plates
   double shortening = 0;

@@ -24,11 +24,11 @@ struct GrainPose {
   Orientation orientation{1, 0, 0, 0};
 };
 
-/// Stands for the sphere of an entry that only fills up its group.
+/// Sphere number of an entry that only fills up its group.
 inline constexpr std::uint32_t no_sphere_index = 0xffffffff;
 
-/// A pair by which it is found again: bodies (grains, then `Partner`s), periods by which the
-/// second's image is away, spheres. Spheres of plates are numbered by their places in the grid.
+/// Key of a pair: bodies (grains, then `Partner`s), periods by which the second's image is away,
+/// spheres. Spheres of plates are numbered by their places in the grid.
 struct PairKey {
   std::uint32_t first, second;
   std::int32_t shift[2];
@@ -42,7 +42,7 @@ struct PairHistory {
   PairKey key;
   Vec3 shear = Vec3::Zero();  // m
   bool bonded = false;
-  bool kept = false;  // in the list however far apart the spheres are
+  bool always_listed = false;  // in the list however far apart the spheres are
 };
 
 /// Groups ordered by bodies, pairs within them by spheres: the order is independent of the search.
@@ -80,14 +80,14 @@ struct PairSearch {
 /// sphere may move before the list is made anew.
 inline constexpr double skin_per_radius = 0.4;
 
-/// Where the centre of a plate's sphere lies from the plate's origin, m.
+/// Centre of a plate's sphere relative to the plate's origin, m.
 Vec3 plate_sphere(std::uint32_t number, double radius);
 
-/// All pairs nearer than the skin, ordered. Throws SimulationError where they are more than
-/// `most_pairs`, or the period too short.
+/// All pairs nearer than the skin, ordered. Throws SimulationError if they are more than
+/// `most_pairs`, or if the period is too short.
 std::vector<PairKey> find_pairs(const PairSearch&, const std::vector<GrainPose>&, const Boundary&);
 
-/// A list of these pairs, and of those to be kept, however far apart.
+/// A list of these pairs, and of the pairs in the history, at any distance.
 PairList make_list(const PairSearch&, const std::vector<PairKey>&, const std::vector<PairHistory>&);
 
 /// Groups of each grain in list order, coded as 2 · group + (1 if the grain is second).

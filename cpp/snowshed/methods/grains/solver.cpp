@@ -31,12 +31,12 @@ State empty_state(const Model& model) {
   return state;
 }
 
-/// The work that velocities and a force do while it speeds a grain up, for half a step.
+/// Work of a force at a velocity that it changes, for half a step.
 double work_of(const Vec3& force, const Vec3& before, const Vec3& after, double half_step) {
   return 0.5 * half_step * force.dot(before + after);
 }
 
-/// Lets force and torque act for half a step; returns what damping takes, J.
+/// Applies force and torque for half a step; returns the energy that damping takes, J.
 double push(const GrainConstants& grain, GrainBody& body, double half_step) {
   const Mat3 rotation = body.orientation.toRotationMatrix();
   const auto spin = [&] { return angular_velocity(rotation, body.spin_momentum, grain.inertia); };
@@ -179,7 +179,7 @@ void SolverImpl::drift(double dt) {
                   });
 }
 
-/// Throws where a grain has gone astray.
+/// Throws if a grain has left its surroundings.
 void SolverImpl::check_places() const {
   const double farthest = 5e4 * model_.radius + 10 * model_.box.maxCoeff();
   for (std::size_t i = 0; i < work_.next.size(); ++i) {

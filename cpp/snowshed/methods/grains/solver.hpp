@@ -25,7 +25,7 @@ struct Options {
 };
 
 /// Strains and stresses, now. Stresses are positive in compression, over the initial area; they are
-/// those of the present moment, no means over time.
+/// instantaneous, not means over time.
 struct LoadingStresses {
   double axial_strain = 0;  // shortening over the initial height, since the beginning
   double shear_strain = 0;
@@ -53,14 +53,14 @@ struct GrainContact {
   bool bonded;
 };
 
-/// Grains as a method, and what only they have. Its particles are the grains; `seed` gives those of
-/// the sample, at rest, and `add` takes these and no other.
+/// Grains as a method, with their own additions. Its particles are the grains; `seed` gives those
+/// of the sample, at rest, and `add` takes these and no other.
 class Solver : public Method, public SeedsItself, public KeepsEnergy, public HasCurve {
  public:
   virtual std::size_t count_spheres() const = 0;
   virtual LoadingMeasures measures() const = 0;
   virtual LoadingStresses stresses() const = 0;  ///< the stresses of measures(), without the rest
-  virtual int stage() const = 0;                 ///< measures().stage, at once
+  virtual int stage() const = 0;                 ///< measures().stage, without the rest
   virtual std::vector<GrainContact> grain_contacts() const = 0;  ///< ordered by grains
   virtual std::vector<Vec3> sphere_positions() const = 0;        ///< m, in the order of the sample
   virtual std::vector<std::uint32_t> sphere_grains() const = 0;

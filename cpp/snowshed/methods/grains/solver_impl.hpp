@@ -1,4 +1,4 @@
-// The solver of grains: what it holds, and how its parts go together.
+// The solver of grains: its data, and the order of its parts.
 #pragma once
 
 #include "snowshed/methods/grains/state.hpp"

@@ -55,7 +55,8 @@ struct Model {
   BondLaw law;
   double solid_volume;  // m3
 
-  /// Threads for steps of so many pairs: one that has little to do costs more time than it saves.
+  /// Threads for steps with this number of pairs: a thread with little work costs more time than it
+  /// saves.
   int threads_for(std::size_t pairs) const {
     return int(std::clamp<std::size_t>(pairs / pairs_per_thread, 1, std::size_t(threads)));
   }

@@ -1,5 +1,5 @@
 // Blocks of the grid that exist, the particles that belong to each, and the neighbours of each. The
-// grid is sparse and unbounded: only blocks that particles can reach are there.
+// grid is sparse and unbounded: it has only blocks that particles can reach.
 #pragma once
 
 #include <array>
@@ -60,7 +60,8 @@ struct BlockLayout {
   std::vector<BlockKey> particle_blocks;
   std::vector<std::int32_t> first;
 
-  /// Blocks with nodes that particles may reach: the above and all around them, ascending.
+  /// Blocks with nodes that particles may reach: the particle blocks and all blocks around them,
+  /// ascending.
   std::vector<BlockKey> grid_blocks;
 
   /// For each particle block, the grid blocks around it (always present), lexicographic.

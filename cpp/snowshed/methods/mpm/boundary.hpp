@@ -23,7 +23,7 @@ namespace snowshed::mpm {
 ThickSolid as_grid_sees(Shape shape, double dx, int dimension);
 Obstacle thick_enough(Obstacle obstacle, double dx, int dimension);
 
-/// A normal in the section, of length 1; upwards where the section has none of it.
+/// The unit normal in the section; upwards if the normal is perpendicular to it.
 template <int D>
 VecD<D> normal_in_section(const Vec3& normal) {
   const VecD<D> n = section<D>(normal);
@@ -41,8 +41,8 @@ template <class T, int D>
 class Boundary {
  public:
   /// `surfaces` are the obstacles as they are given, before thin parts were made thicker; without
-  /// them the obstacles themselves are. Nodes within a `margin` (m) outside these have contacts,
-  /// too.
+  /// them the obstacles themselves are used. Nodes within a `margin` (m) outside these have
+  /// contacts, too.
   Boundary(std::vector<Obstacle> obstacles, double dx, std::vector<Shape> surfaces = {},
            double margin = 0);
 
@@ -79,7 +79,7 @@ class Boundary {
   }
 
   /// Appends a block's contacts at a time: with the obstacles that move, or with those at rest.
-  void find(BlockKey block, double time, bool moving, std::vector<Contact<T>>& found) const;
+  void find(BlockKey block, double time, bool moving, std::vector<Contact<T>>& contacts) const;
 
  private:
   std::vector<Obstacle> obstacles_;
@@ -132,7 +132,7 @@ class Contacts {
   /// positive; 1 for obstacles that let snow leave. Slip holds some nodes of a body against pull,
   /// while internal forces press it more strongly on others. Friction on the pushed nodes alone
   /// would be too large.
-  void find_pushing_shares(PushingShares<T>& found) const;
+  void find_pushing_shares(PushingShares<T>& result) const;
 
   /// A contact with stored impulse (N s), for checkpoints.
   struct StoredImpulse {
@@ -144,7 +144,8 @@ class Contacts {
   void restore(const std::vector<StoredImpulse>& stored_impulses);
 
  private:
-  /// The contacts of some blocks, of which `find(index of a block, found)` appends a block's own.
+  /// The contacts of some blocks, where `find(index of a block, contacts)` appends those of a
+  /// block.
   template <class Find>
   static Contacts gathered(const std::vector<BlockKey>& blocks, int threads, Find find);
 

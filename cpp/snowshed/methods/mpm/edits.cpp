@@ -8,7 +8,7 @@
 namespace snowshed::mpm {
 namespace {
 
-/// Appends the batches to a state and makes all else follow.
+/// Appends the batches to a state and updates all that depends on them.
 template <class T, int D>
 void add_to(State<T, D>& state, const Model<T, D>& model,
             const std::vector<ParticleBatch>& batches) {

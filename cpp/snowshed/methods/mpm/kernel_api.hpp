@@ -64,7 +64,7 @@ struct ParticleView {
 };
 
 /// Values per node of the coarse grid over which velocities are averaged: mass and momentum (3), or
-/// something and the mean velocity (3).
+/// an unused value and the mean velocity (3).
 inline constexpr int average_values = 4;
 
 /// The part of that grid that the particles of a block reach. Its nodes are `edge` along each
@@ -195,7 +195,7 @@ struct Kernels {
   /// tile holds nothing beyond. With an `average` (null: none) velocities are damped towards it.
   void (*g2p2g)(const StepParameters<T>&, const ParticleView<T>&, int first, int count,
                 const T* const* velocities, const AverageTile<T>* average, T* tile, BlockStats&);
-  /// Mass and momentum of a block's particles onto the coarse grid. Null but with affine FLIP.
+  /// Adds mass and momentum of a block's particles to the coarse grid. Null without affine FLIP.
   void (*scatter_average)(const ParticleView<T>&, int first, int count, const AverageTile<T>&);
   /// Only the largest |dt grad v| that `g2p2g` would impose, of particles in `BlockStats::reach`.
   void (*probe)(const StepParameters<T>&, const ParticleView<T>&, int first, int count,
@@ -224,10 +224,10 @@ struct KernelChoice {
   bool energy = false;
   bool crack_band = false;
 
-  /// Whether the kernels are those for checks, which know everything. Without an affine FLIP only
-  /// they know the crack band.
+  /// Whether the kernels are those for checks, which have all features. Without affine FLIP only
+  /// they have the crack band.
   bool checks() const { return energy || (crack_band && transfer != Transfer::affine_flip); }
-  /// Whether the kernels look up each particle's material, of whatever model. Those for checks
+  /// Whether the kernels look up each particle's material, whose model may be any. Those for checks
   /// always do, which saves kernels of each model.
   bool material_per_particle() const { return several_materials || checks(); }
 };

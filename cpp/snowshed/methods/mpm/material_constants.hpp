@@ -12,7 +12,7 @@ namespace snowshed::mpm {
 struct Material {
   Elasticity<double> elastic;
   double density = 0;                 // kg/m3, initial
-  double initial_plastic_strain = 0;  // volumetric; elastic snow has none
+  double initial_plastic_strain = 0;  // volumetric; not used for elastic snow
   BandedCamClay<double> law;          // all zero for elastic snow
   double elastic_time_step = 0;       // s
 

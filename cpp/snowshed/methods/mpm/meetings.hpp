@@ -25,9 +25,9 @@ class Meetings {
   /// After a change of the layout or of the order of the particles: nothing is known any more.
   void forget(const Model<T, D>& model, const State<T, D>& state, int threads);
 
-  /// Finds the contacts between the fields, where snow may have moved far enough since the last
-  /// time for them to be others. `moved` is how far (m) the fastest snow has come since the last
-  /// call. The sums of active blocks must be present.
+  /// Finds the contacts between the fields again, if snow may have moved far enough since the last
+  /// time to change them. `moved` is the distance (m) by which the fastest snow has moved since the
+  /// last call. The sums of active blocks must be present.
   void update(const Model<T, D>& model, State<T, D>& state, Grid<T, D>& grid, double moved,
               int threads);
 

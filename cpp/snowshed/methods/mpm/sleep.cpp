@@ -20,7 +20,7 @@ constexpr double noise = 0.005;
 /// must be in flight.
 constexpr double flight = 0.5;
 
-/// Samples that the mean of a half takes, however long the steps are.
+/// Samples in the mean of a half, for any length of the steps.
 constexpr double least_samples = 4;
 
 template <int D>
@@ -53,7 +53,7 @@ Sleep<D> Sleep<D>::relocated(const BlockLayout<D>& layout, double now) const {
     if (old == keys_.size()) break;
     if (keys_[old] != layout.particle_blocks[b]) continue;
     states[b] = states_[old];
-    // Snow that sleeps does not leave its block, so any change is snow that came.
+    // Sleeping snow does not leave its block, so any change is snow that came.
     if (states[b].asleep && counts[b] != counts_[old]) states[b] = awake_since(now);
   }
   return restored(layout, std::move(states));
@@ -115,7 +115,7 @@ bool Sleep<D>::is_slow(double rms_speed, double fastest) const {
 }
 
 /// Whether the awake snow beside a sleeping block moves it, or presses harder than it withstands.
-/// Its own snow does not answer to forces, so these are summed up, older ones fading.
+/// Its own snow does not move by forces, so these are summed up, and older ones fade.
 template <int D>
 bool Sleep<D>::is_pushed(State& s, int steps, double dt, const CarriedMotion& carried) const {
   s.sum *= std::max(0.0, 1.0 - steps * dt / time_);

@@ -1,17 +1,17 @@
-// Snow at rest: which blocks of particles sleep, and which blocks of nodes are then not needed.
+// Snow at rest: blocks of particles that sleep, and blocks of nodes that are then not needed.
 //
 // A block of particles falls asleep when it has been slower than a limit for some time, and its
 // snow did not speed up along its motion meanwhile, nor change its velocity as snow in flight does:
-// what is just setting off, or turns in the air, is slow, too. Its speed is the
-// root of the mean square over its particles; no single one may be several times faster. A sleeping
-// block takes no part in a step, but keeps its mass and its stresses on its tile, so that its
-// neighbours rest on it. It wakes when nodes that it shares with awake snow would carry it faster
-// than the limit, or when the forces at them, left to act for as long as it takes to fall asleep,
-// would make it so; when particles come to it; and when an obstacle moves through its nodes.
+// snow that is just setting off, or turns in the air, is slow, too. Its speed is the root of the
+// mean square over its particles; no single one may be several times faster. A sleeping block takes
+// no part in a step, but keeps its mass and its stresses on its tile, so that its neighbours rest
+// on it. It wakes when nodes that it shares with awake snow would carry it faster than the limit,
+// or when the forces at them would do so in the time that it takes to fall asleep. It also wakes
+// when particles come to it, and when an obstacle moves through its nodes.
 //
 // The particles of a sleeping block lie within it: a block in which one has strayed beyond falls
-// asleep only after the next sort. So sorting takes no particle from a sleeping block, and one that
-// holds another number of them than before has got some.
+// asleep only after the next sort. Sorting therefore takes no particle from a sleeping block, and a
+// block with another number of particles than before has gained some.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +26,8 @@ namespace snowshed::mpm {
 template <int D>
 class Sleep {
  public:
-  /// Speed limit (m/s; 0: nothing ever sleeps), time (s), and gravity (m/s2), which tells flight.
+  /// Speed limit (m/s; 0: nothing ever sleeps), time (s), and gravity (m/s2), by which flight is
+  /// recognised.
   Sleep(double speed, double time, double gravity)
       : limit_(speed), time_(time), gravity_(gravity) {}
 
@@ -50,7 +51,7 @@ class Sleep {
   /// awake.
   Sleep relocated(const BlockLayout<D>& layout, double now) const;
 
-  /// Everything awake, from now on.
+  /// Wakes everything.
   void wake_all(const BlockLayout<D>& layout, double now) noexcept;
 
   /// Whether anything can sleep at all.

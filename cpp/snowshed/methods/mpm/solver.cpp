@@ -136,7 +136,7 @@ void SolverImpl<T, D>::scatter_block(const StepParameters<T>& step, const Partic
                          work_.grid.block_stats[b]);
 }
 
-/// First half of a step: the node sums, and at once the node velocities for a step of dt.
+/// First half of a step: the node sums and, in the same loop, the node velocities for a step of dt.
 template <class T, int D>
 void SolverImpl<T, D>::gather_and_update(double dt) {
   state_.contacts.follow(model_.boundary, time(), threads());
@@ -208,7 +208,7 @@ void SolverImpl<T, D>::update_block(const StepParameters<T>& step, std::ptrdiff_
                         model_.boundary.laws().data(), work_.grid.node_stats[g]);
 }
 
-/// No particle touches these nodes, so nobody asks for their velocities.
+/// No particle touches these nodes, so their velocities are not used.
 template <class T, int D>
 void SolverImpl<T, D>::leave_empty(std::ptrdiff_t g) {
   std::fill_n(work_.grid.node_stats[g].low, D, infinity);
@@ -240,7 +240,7 @@ double SolverImpl<T, D>::shorten_to_limits(double dt) {
 
 /// The largest velocity gradient (1/s) the particles will see. B-spline derivatives average nodal
 /// differences, so the range of the nodal velocities bounds it: of all nodes, or of those around a
-/// block. Only where these bounds are too large are the particles themselves asked.
+/// block. The particles themselves are examined only if these bounds are too large.
 template <class T, int D>
 double SolverImpl<T, D>::largest_strain() {
   const double dx = model_.options.settings.dx;

@@ -22,12 +22,12 @@ struct Options {
   bool energy = false;  // whether to keep the energy balance
 };
 
-/// MPM as a method, and what only it has.
+/// MPM as a method, with its own additions.
 class Solver : public Method, public Settles, public BalancesEnergy, public Sleeps {};
 
 inline constexpr int steps_between_sorts = 64;
-/// Fewer where each particle has more contacts than this: where thousands of obstacles overlap,
-/// steps take long, and a run that is to stop would wait for its safe point.
+/// Fewer steps if each particle has more contacts than this: with thousands of overlapping
+/// obstacles steps take long, and a run that shall stop would wait for its safe point.
 inline constexpr double contacts_per_particle = 100;
 
 std::unique_ptr<Solver> make_solver(Options);

@@ -82,7 +82,7 @@ struct State {
   double elastic_energy(const Model<T, D>& model) const;
   /// The energy balance up to now.
   EnergyBalance energy(const Model<T, D>& model) const;
-  /// Enters the present energies and, as added, what they are over `before` (J).
+  /// Enters the present energies, and their excess over `before` (J) as added.
   void record_added(const Model<T, D>& model, double before);
 };
 

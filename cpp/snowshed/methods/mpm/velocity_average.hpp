@@ -1,9 +1,10 @@
 // Velocities averaged over a length, towards which they are damped: sums of mass and momentum on a
-// coarse grid whose spacing is that length, whatever the cells. The grid's own PIC damps over dx.
+// coarse grid whose spacing is that length, independent of the cells. The grid's own PIC damps over
+// dx.
 //
 // As the sums of a step, those of a block's particles go to a tile of its own; the coarse grid, in
-// blocks, gathers the tiles in fixed order; the mean velocities come back to the tiles. Nothing of
-// it outlives a step but the tiles of sleeping blocks, which do not change.
+// blocks, gathers the tiles in fixed order; the mean velocities come back to the tiles. Only the
+// tiles of sleeping blocks, which do not change, outlive a step.
 #pragma once
 
 #include <array>
@@ -31,7 +32,7 @@ class VelocityAverage {
   void connect(const BlockLayout<D>& layout);
 
   /// Averages the velocities of all particles. `share` is the part of the difference from the
-  /// average that they lose. No other call may come between this and the `tile`s.
+  /// average that they lose. No other call is allowed before the calls of `tile`.
   void update(const Kernels<T>& kernels, const ParticleView<T>& view, const BlockLayout<D>& layout,
               const Sleep<D>& sleep, double share, int threads) noexcept;
 

@@ -17,7 +17,7 @@ class AndersonMixing {
  public:
   using Vectors = AlignedVector<VecD<D>>;
 
-  /// Replaces the result of an iteration from a point by the point to go on from.
+  /// Replaces the result of an iteration from a point by the next point.
   void mix(const Vectors& point, Vectors& result) {
     const std::size_t n = result.size();
     Vectors residual(n), plain = result;

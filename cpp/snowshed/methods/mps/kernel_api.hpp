@@ -52,9 +52,9 @@ struct Kernels {
                         const double* velocity, double* gradient, std::ptrdiff_t begin,
                         std::ptrdiff_t end);
   /// The sum of slope (value_j + base_i) r of each row; without values that of slope r.
-  void (*sum_ways)(const PairRows&, const float* const* offset, const float* slope,
-                   const double* value, const double* base, double* sum, std::ptrdiff_t begin,
-                   std::ptrdiff_t end);
+  void (*sum_separations)(const PairRows&, const float* const* offset, const float* slope,
+                          const double* value, const double* base, double* sum,
+                          std::ptrdiff_t begin, std::ptrdiff_t end);
   /// The sum of e v over the neighbours nearer than `limit`, e the direction to each and v the
   /// speed of approach where it is not negative, times `share` of the neighbour, m/s.
   void (*sum_approaches)(const PairRows&, const float* const* offset, const double* velocity,

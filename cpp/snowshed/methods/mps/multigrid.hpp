@@ -31,7 +31,7 @@ class Multigrid {
   /// z = M^-1 r, for one unknown.
   void apply(const double* r, double* z);
 
-  /// Adds to the particles' unknowns what the levels above make of their residuals.
+  /// Corrects the particles' unknowns by their residuals on the levels above.
   template <class T>
   void correct(const T* residual, T* x);
 

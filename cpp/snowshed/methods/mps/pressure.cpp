@@ -9,7 +9,7 @@ namespace snowshed::mps {
 namespace {
 
 /// Inner walls conduct pressure as snow does. In divergences they therefore move as the snow around
-/// them does; that nothing flows into the wall is what dummies behind them say (ours).
+/// them does; the dummies behind them ensure that nothing flows into the wall (ours).
 template <int D>
 void find_slip(const Model<D>& model, const Particles<D>& particles, Neighbourhood<D>& near) {
   near.slip.resize(particles.size());
@@ -28,8 +28,8 @@ void find_slip(const Model<D>& model, const Particles<D>& particles, Neighbourho
   });
 }
 
-/// The divergence beside walls of particles, 1/s, in which inner walls move as `slip` says, and
-/// dummies tell what flows into the wall.
+/// The divergence beside walls of particles, 1/s. Inner walls move with `slip`, and dummies add the
+/// flow into the wall.
 template <int D>
 double slip_divergence(const Model<D>& model, const Particles<D>& particles,
                        const Neighbourhood<D>& near, const Eigen::Matrix<double, D, D>& correction,
@@ -96,8 +96,8 @@ void prepare_divergence(const Model<D>& model, const Particles<D>& particles, Wo
 
 /// The time in which the density's error is taken away by the share `compensation`, s: the step, or
 /// the time in which a particle of usual speed moves by the Courant factor times l0 where that is
-/// longer. With the step alone, snow that one fast particle slows down would be pushed the harder,
-/// the shorter the step. (Ours.)
+/// longer. With the step alone a single fast particle, which shortens the step, would raise the
+/// pressure of all snow. (Ours.)
 template <int D>
 double compensation_time(const Model<D>& model, double dt, const Particles<D>& particles) {
   const Settings& s = model.settings();
@@ -109,8 +109,8 @@ double compensation_time(const Model<D>& model, double dt, const Particles<D>& p
                    : dt;
 }
 
-/// Sources smaller than this part of what the weight of a particle makes are rounding errors: no
-/// equation is solved to a part of them.
+/// Sources smaller than this share of the source by a particle's weight are rounding errors, and
+/// set no tolerance.
 constexpr double least_source = 1e-8;
 
 /// Tolerance of densities below the surface, where particles need not form a lattice.
@@ -149,8 +149,8 @@ double source(const Model<D>& model, double dt, double compensation_time,
              compensated_excess(model, particles, near, i);
 }
 
-/// A fluid without a free surface knows its pressure up to a constant: takes the mean from the
-/// sources, so that there is a solution.
+/// Subtracts the mean from the sources. The pressure of a fluid without a free surface is defined
+/// up to a constant, and only then is there a solution.
 template <int D>
 void balance_sources(Work<D>& work, std::size_t n) {
   double sum = 0, count = 0;

@@ -8,7 +8,7 @@
 namespace snowshed::mps {
 namespace {
 
-/// Nearer to a wall than this, in l0, the velocity behind it grows no further.
+/// Distance from a wall, in l0, below which the velocity behind it grows no further.
 constexpr double nearest_no_slip = 0.25;
 
 /// The difference of velocities between a particle and one behind a wall's surface over that

@@ -11,7 +11,7 @@ namespace {
 
 std::string in_millimetres(double metres) { return show_rounded(1000 * metres) + " mm"; }
 
-/// Says what becomes of a body that is too small for a lattice of particles of equal mass.
+/// Adds a note on a body that is too small for a lattice of particles of equal mass.
 void tell_of_coarse_lattice(const LevelSet& shape, const Settings& settings, double mass_ratio,
                             std::size_t particles, std::vector<std::string>& notes) {
   constexpr double most_uneven = 0.02;

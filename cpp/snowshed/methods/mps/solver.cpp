@@ -23,7 +23,7 @@ constexpr int most_halvings = 20;
 constexpr double pressure_courant = 0.5;
 
 /// The share of the last step's viscous force that the pressure of flowing snow expects. Without it
-/// stiff fluids are compressed more, since viscosity acts last; with 0.9 the pressure of a column
+/// stiff fluids are compressed more, because viscosity acts last; with 0.9 the pressure of a column
 /// of 1e4 Pa s at rest was 1.4 % too low (ours).
 constexpr double expected_shear = 0.5;
 
@@ -32,7 +32,7 @@ constexpr double expected_shear = 0.5;
 /// viscosity slows down within l0, rho g l0^2/eta, is more than this: in a stiff fluid at rest
 /// errors of the gradients would ask for large pressures, since these hardly move it. And
 /// rho u^3/(eta g), the square of the Reynolds number of a body so high that it flows at u, is less
-/// than this: fast flows lose no volume to viscosity, and need not pay, however small l0 is.
+/// than this: fast flows lose no volume to viscosity, and are solved the cheaper way for any l0.
 constexpr double least_stiffness = 2, least_fall = 2, most_inertia = 1e-3;
 /// The iteration begins with this share of the last step's viscous force; errors of the pressure
 /// then die out. It ends when the force changes by less than this part of gravity. It also ends if
@@ -164,10 +164,10 @@ bool SolverImpl<D>::couples(double dt) const {
          s.density * speed * speed * speed < most_inertia * s.viscosity * g;
 }
 
-/// The pressure balances what it can before viscosity acts, so that snow that does not yield stays
-/// where it is. It expects a viscous force where snow flows: a share of the last step's. Viscosity
-/// may still compress the snow. The pressure of the next step undoes this; or, where they are
-/// coupled, both act anew until the force is the expected one, accelerated. Ours.
+/// The pressure acts before viscosity, so that snow that does not yield stays where it is. It
+/// expects a viscous force where snow flows: a share of the last step's. Viscosity may still
+/// compress the snow. The pressure of the next step undoes this; or, where they are coupled, both
+/// act anew until the force is the expected one, accelerated. Ours.
 template <int D>
 void SolverImpl<D>::act_after_pressure(double dt, State<D>& next) {
   Particles<D>& p = next.particles;

@@ -30,7 +30,7 @@ struct Report {
   double largest_density = 0;  // largest n/n0
 };
 
-/// MPS as a method, and what only it has.
+/// MPS as a method, with its own additions.
 class Solver : public Method, public BalancesEnergy, public ReportsRun {
  public:
   virtual Report report() const = 0;

@@ -44,7 +44,7 @@ struct Model {
   VecD<D> gravity;  // m/s2
   KernelConstants kernel;
   double second_layer;       // see second_layer_share
-  SurfaceLack surface_lack;  // below a surface that is no lattice's
+  SurfaceLack surface_lack;  // below a surface that is not that of a lattice
   Rheology rheology;
   const Kernels<D>& kernels = chosen_kernels<D>();
   int threads;

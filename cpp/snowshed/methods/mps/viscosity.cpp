@@ -9,7 +9,7 @@
 namespace snowshed::mps {
 namespace {
 
-/// Nearer to a wall than this, in l0, its friction grows no further.
+/// Distance from a wall, in l0, below which its friction grows no further.
 constexpr double nearest_friction = 0.25;
 
 /// The share of the wall's shear stress that acts on a particle at a distance, in l0: that of the
@@ -43,8 +43,9 @@ double hold_of_all(const Model<D>& model, const Particles<D>& particles,
     if (c) sum += hold(model, near.weight[e], VecD<D>(-near.separation(e)), *c);
   }
   constexpr double touched = 0.8;
-  const double whole = (1 - model.second_layer) / (model.laplacian() * model.settings().spacing);
-  return std::max(sum, touched * whole);
+  const double on_lattice =
+      (1 - model.second_layer) / (model.laplacian() * model.settings().spacing);
+  return std::max(sum, touched * on_lattice);
 }
 
 /// The share of each contact with a wall in the wall's shear stress. The particles around a wall
@@ -162,7 +163,7 @@ double wall_drag(const Model<D>& model, const Particles<D>& particles, double sh
   return share * viscosity / (s.density * s.spacing * height);
 }
 
-/// The levels above the particles know their walls' drag as if it acted in all directions alike.
+/// On the levels above the particles the walls' drag acts equally in all directions.
 template <int D>
 void prepare_velocity_multigrid(const Model<D>& model, const Particles<D>& particles,
                                 Work<D>& work) {
@@ -296,8 +297,9 @@ template <int D>
 SolveReport apply_viscosity(const Model<D>& model, double dt, Particles<D>& particles,
                             Work<D>& work) {
   const Settings& s = model.settings();
-  // From nearly the velocities before the step, not from those that forces have driven apart: what
-  // creeps comes to rest. Nor quite from rest, which viscosity would keep for too many iterations.
+  // The iterations begin near the velocities before the step, not at those that forces have driven
+  // apart, so that creeping snow comes to rest. They do not begin quite at rest, because viscosity
+  // would keep it for too many iterations.
   const Velocities<D> start = particles.velocity;
   const bool newtonian = model.rheology.is_newtonian();
   if (!newtonian)
@@ -319,9 +321,9 @@ SolveReport apply_viscosity(const Model<D>& model, double dt, Particles<D>& part
     tolerance = std::max(tolerance, s.viscosity_tolerance);
     if (!newtonian) find_rates(model, particles, work);
     last = particles.velocity;
-    const SolveReport one = solve_viscosity(model, dt, start, tolerance, scale, particles, work);
-    report = {report.iterations + one.iterations, one.residual, one.converged};
-    if (!one.converged || newtonian || last_chance) break;
+    const SolveReport solve = solve_viscosity(model, dt, start, tolerance, scale, particles, work);
+    report = {report.iterations + solve.iterations, solve.residual, solve.converged};
+    if (!solve.converged || newtonian || last_chance) break;
     const double change = distance<D>(particles.velocity, last);
     const double limit =
         yield_tolerance * (norm<D>(particles.velocity) + s.viscosity_tolerance * scale);

@@ -1,4 +1,4 @@
-// Walls as mirrors: what a particle sees of itself and of its neighbours in them.
+// Walls as mirrors: images of a particle and of its neighbours in them.
 #pragma once
 
 #include "snowshed/methods/mps/boundary.hpp"

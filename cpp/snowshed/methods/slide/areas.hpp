@@ -14,10 +14,10 @@ namespace snowshed::slide {
 struct Area {
   std::string name;
   Polygon polygon;
-  double thickness = 0;  // m of snow, normal to the ground; unused where there is resistance only
+  double thickness = 0;  // m of snow, normal to the ground; unused for areas of resistance
   /// In place of that: the thickness in the cells around nodes. Only of releases.
   std::shared_ptr<const HeightField> map;
-  double max_thickness = 100;  // m, that the map may tell of
+  double max_thickness = 100;  // m, that the map may give
 };
 
 struct Areas {

@@ -16,7 +16,7 @@ class CellLists {
   /// `column` and `row` are those of the particles' cells.
   void update(const AlignedVector<std::int32_t>& column, const AlignedVector<std::int32_t>& row);
 
-  /// Makes room for so many particles anywhere on the terrain.
+  /// Reserves memory for this number of particles anywhere on the terrain.
   void reserve(std::size_t particles, const Terrain& terrain);
 
   /// The rectangle of cells, its margin included.

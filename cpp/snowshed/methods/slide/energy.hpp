@@ -1,4 +1,4 @@
-// Where the energy of a slide went.
+// The energy balance of a slide.
 #pragma once
 
 #include <vector>
@@ -13,8 +13,8 @@ struct State;
 struct Work;
 
 /// The energy of a slide, J. The first three are the present store; the others are sums over all
-/// steps of what left it. The balance closes when `residual` is small beside the drop of potential
-/// energy.
+/// steps of the energy that left it. The balance closes when `residual` is small beside the drop of
+/// potential energy.
 struct Energy {
   double kinetic = 0, potential = 0;  // the latter with that of the snow's thickness
   double bonds = 0;                   // elastic
@@ -36,7 +36,7 @@ struct Energy {
 /// Returns the balance as tables have it, names with units.
 NamedEnergies named_energies(const Energy&);
 
-/// Fills in what is stored now.
+/// Fills in the energy that is stored now.
 void store_energy(const Model&, const State&, const Work&, Energy&);
 
 /// Audits the energy of a step: it is called between its parts, reads velocities and loads, and

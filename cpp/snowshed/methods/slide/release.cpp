@@ -14,7 +14,7 @@ namespace {
 /// Distance of rows in a triangular lattice of side 1.
 const double row_distance = std::sqrt(3.0) / 2;
 
-/// The side of a triangular lattice with so many points per area.
+/// The side of a triangular lattice with this number of points per area.
 double lattice_side(double area, double points) { return std::sqrt(area / points / row_distance); }
 
 [[noreturn]] void refuse_area(std::size_t index, const std::string& name, const std::string& why) {
@@ -87,9 +87,10 @@ std::vector<ParticleBatch> seed_as_avaframe(const Settings& s, const Terrain& te
       for_lattice_points_near(
           column, row, cell, lattice_side(cell * cell, points), [&](double x, double y) {
             give_up();
-            const bool kept = std::any_of(outlines.begin(), outlines.end(),
-                                          [&](const Ring& ring) { return contains(ring, {x, y}); });
-            if (kept) place_on_ground(terrain, x, y, mass, batch);
+            const bool is_inside =
+                std::any_of(outlines.begin(), outlines.end(),
+                            [&](const Ring& ring) { return contains(ring, {x, y}); });
+            if (is_inside) place_on_ground(terrain, x, y, mass, batch);
           });
     }
   if (batch.positions.empty()) refuse_area(0, areas[0].name, "holds no particle");
@@ -146,7 +147,7 @@ SnowOfMap snow_of(const HeightField& map) {
   return snow;
 }
 
-/// The mean of a map's thickness over an area. Throws where it does not say it everywhere.
+/// The mean of a map's thickness over an area. Throws if the map does not cover all of it.
 double mean_thickness(const Area& area, const Terrain& terrain, std::size_t index) {
   if (!area.map) return area.thickness;
   const HeightField& m = *area.map;
@@ -246,8 +247,8 @@ void for_lattice_points(const Ring& ring, const MapPoint& origin, const Ground& 
     }
 }
 
-/// Throws where a point lies within two areas: it is not clear how much snow is released there.
-/// Areas may touch.
+/// Throws if a point lies within two areas, because the amount of snow there is not defined. Areas
+/// may touch.
 void refuse_overlap(const Terrain& terrain, const std::vector<Area>& areas, std::size_t index,
                     const ParticleBatch& batch) {
   const double aside = 1e-6 * terrain.cell();

@@ -3,7 +3,7 @@
 
 namespace snowshed::slide {
 
-/// `improved` mends the known faults of com5SnowSlide; `compatible` does what AvaFrame 2.1 does.
+/// `improved` mends the known faults of com5SnowSlide; `compatible` follows AvaFrame 2.1.
 enum class Mode { improved, compatible };
 
 /// Laws of friction between snow and ground, see friction.hpp.

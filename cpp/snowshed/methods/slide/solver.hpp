@@ -21,7 +21,7 @@ struct Options {
   bool energy = false;    // whether to keep the energy balance
 };
 
-/// A slide as a method, and what only a slide has. `seed` gives the particles of the release areas
+/// A slide as a method, with its own additions. `seed` gives the particles of the release areas
 /// (`seed_release`).
 class Solver : public Method, public SeedsItself, public KeepsEnergy, public ReportsRun {
  public:

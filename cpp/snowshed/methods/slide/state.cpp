@@ -227,7 +227,7 @@ void refresh_fields(const Model& model, const State& state, Work& work, PeakFiel
     view.peak_speed = raised->speed.data();
     if (!model.compatible()) view.sums = &work.fields.sums()->thickness;
   }
-  // Two rows of cells hand on to the same row of nodes: every other row at a time, so that no two
+  // Two rows of cells add to the same row of nodes: every other row at a time, so that no two
   // threads meet and the sums do not depend on how many there are.
   for (const int parity : {0, 1})
     parallel_pieces((work.cells.rows() + 1 - parity) / 2, work.threads, 1,

@@ -1,4 +1,4 @@
-// The ground that snow slides on, with what interpolation needs at each node.
+// The ground that snow slides on, with the values for interpolation at each node.
 #pragma once
 
 #include <cmath>

@@ -30,7 +30,7 @@ struct NodeKernels {
                      Contact<T>* contacts, int contact_count, const ContactLaw* laws,
                      NodeStats& stats) {
     Range range;
-    let_free(step, sums, velocities, range);
+    apply_forces(step, sums, velocities, range);
     constrain(step, sums, velocities, contacts, contact_count, laws, stats, range);
     range.store(stats);
     if constexpr (energy) record_kinetic_energy(step, sums, velocities, stats);
@@ -38,7 +38,7 @@ struct NodeKernels {
 
   static void update_free(const StepParameters<T>& step, const T* sums, T* velocities) {
     Range range;
-    let_free(step, sums, velocities, range);
+    apply_forces(step, sums, velocities, range);
   }
 
   static void finish(const StepParameters<T>& step, const T* sums, T* velocities,
@@ -93,8 +93,8 @@ struct NodeKernels {
   };
 
   /// Applies forces and gravity.
-  static SNOWSHED_INLINE void let_free(const StepParameters<T>& step, const T* sums, T* velocities,
-                                       Range& range) {
+  static SNOWSHED_INLINE void apply_forces(const StepParameters<T>& step, const T* sums,
+                                           T* velocities, Range& range) {
     Half gravity{};
     gravity[D - 1] = -step.dt * step.gravity;
     for (int k = 0; k < block_nodes<D>; ++k) {
@@ -156,10 +156,10 @@ struct NodeKernels {
     }
   }
 
-  /// Energy that a contact took which brought a node, or one direction of it, to a velocity of its
-  /// own. Over the step the node's velocity went from `before` to `after`; without the contact it
-  /// would have been `free`. Particles move with `after`, so that stresses and gravity did the work
-  /// m (free - before) . after; the contact took what of this is not kinetic energy now.
+  /// Energy lost in a contact that set the velocity of a node, or of one of its directions. Over
+  /// the step the node's velocity went from `before` to `after`; without the contact it would have
+  /// been `free`. Particles move with `after`, so that stresses and gravity did the work m (free -
+  /// before) . after; the contact took the part of this that is not kinetic energy now.
   static double taken_by_holding(T mass, const T (&before)[D], const T (&free)[D],
                                  const T (&after)[D]) {
     double sum = 0;
@@ -170,7 +170,7 @@ struct NodeKernels {
     return double(mass) * sum;
   }
 
-  /// The same of a bounded impulse, which leaves the node free to answer to the stresses: minus its
+  /// The same for a bounded impulse, after which the node still reacts to the stresses: minus its
   /// work at the mean velocity.
   static double taken_by_impulse(T mass, const T (&before)[D], const T (&free)[D],
                                  const T (&after)[D]) {

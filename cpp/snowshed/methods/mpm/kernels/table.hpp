@@ -1,4 +1,4 @@
-// From a choice of features to the functions compiled for exactly them.
+// The functions that are compiled for a choice of features.
 #pragma once
 
 #include "snowshed/methods/mpm/kernels/node_kernels.hpp"
@@ -19,7 +19,7 @@ Kernels<T> kernels_for() {
   return kernels;
 }
 
-/// `Law` is the Cam-Clay law that the kernels not for checks know.
+/// `Law` is the Cam-Clay law of the kernels that are not for checks.
 template <class T, int D, Transfer transfer, Basis basis, template <class> class Law>
 Kernels<T> with_law(const KernelChoice& c) {
   if (c.checks())

@@ -1,4 +1,4 @@
-// The snow on the nodes of the grid, from the masses and momenta that particles hand on to the four
+// The snow on the nodes of the grid, from the masses and momenta of particles, which go to the four
 // nodes around them.
 #pragma once
 
@@ -61,7 +61,7 @@ SNOWSHED_INLINE void finish_nodes(const View& s, int row) {
   }
 }
 
-/// Hands on what a row of cells holds to the rows of nodes south and north of it. Every other row
+/// Adds the sums of a row of cells to the rows of nodes south and north of it. Every other row
 /// comes first, and begins the sums of all nodes; the rows between add to them and finish them.
 SNOWSHED_INLINE void sum_on_nodes(const View& s, int row) {
   const bool begins = row % 2 == 0, has_north = row + 1 < s.cell_rows;
