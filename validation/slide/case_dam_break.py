@@ -91,7 +91,7 @@ def matrix(full: bool) -> list[Settings]:
     if not full:
         return [{**DEFAULTS, "layer_thickness": layer} for layer in LAYERS[:3]]
     listed: list[Settings] = [{**DEFAULTS, "layer_thickness": layer} for layer in LAYERS]
-    listed += [{"cell": 1.0, "time_step": 0.01, "layer_thickness": one} for one in LAYERS]
+    listed += [{"cell": 1.0, "time_step": 0.01, "layer_thickness": layer} for layer in LAYERS]
     listed += [{**DEFAULTS, "layer_thickness": LAYERS[2], "time_step": dt} for dt in (0.04, 0.005)]
     listed += [
         {**DEFAULTS, "layer_thickness": LAYERS[2], "artificial_viscosity": much}
@@ -108,7 +108,7 @@ CASE = Case(
         "numerical models, Pure and Applied Geophysics 157, 1081-1096"
     ),
     description="""
-    Snow 1 m thick behind a dam on a plane of 30 degrees, friction angle 20 degrees, is let go.
+    Snow 1 m thick behind a dam on a plane of 30 degrees, friction angle 20 degrees, is released.
     After 3 s the thickness along the middle of a strip 28 m wide, which its sides and its upper end
     have not reached, is compared. The error of the profile is the mean absolute difference over the
     way of the wave behind the dam, in parts of the dam's height. The front is where the thickness

@@ -87,7 +87,7 @@ def matrix(full: bool) -> list[Settings]:
         for ground in GROUNDS
         for thickness in thicknesses
     ]
-    return listed + [{**base, **one} for one in EXTREMES]
+    return listed + [{**base, **extreme} for extreme in EXTREMES]
 
 
 CASE = Case(
