@@ -361,8 +361,8 @@ def write_entries(runs: Iterable[Mapping[str, Any]], path: Path) -> None:
     about = (
         "Stacks of preset lab-50 after each event, in m, with panel friction 0.3 and the core's "
         "default numerics except for the settings that each run names. Costs are sums up to the "
-        "end of each event: time in s on one thread, particles times steps, steps, particles; 0: not "
-        "measured. Made by validation.laboratory.lab_records.record()."
+        "end of each event: time in s on one thread, particles times steps, steps, particles; "
+        "0: not measured. Made by validation.laboratory.lab_records.record()."
     )
     lines = ",\n".join(f"    {json.dumps(run)}" for run in runs)
     write_text(path, f'{{\n  "about": {json.dumps(about)},\n  "runs": [\n{lines}\n  ]\n}}\n')

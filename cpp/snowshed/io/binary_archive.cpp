@@ -236,7 +236,7 @@ void BinaryReader::read_sections() {
     const std::size_t start = position;
     Section section = read_section(start, position);
     if (!names.emplace(bytes() + start + sizeof(SectionHeader), section.name.size()).second)
-      fail(start, "section '" + section.name + "' is there twice");
+      fail(start, "section '" + section.name + "' occurs twice");
     sections_.push_back(std::move(section));
   }
   if (position != size_ - word) fail(position, "bytes follow the last section");

@@ -210,10 +210,10 @@ bool FilmReader::read_record(std::size_t& at) {
   if (at == bytes_.size()) return false;
   const std::size_t left = bytes_.size() - at;
   const bool cut_off = is_cut_off(at);
-  if (left < record_head && !cut_off) fail(at, "what follows is no frame");
+  if (left < record_head && !cut_off) fail(at, "the next bytes are not a frame");
   if (left < record_head) return false;
   if (read<std::uint32_t>(at) == close_tag && version_ != 1) return false;
-  if (read<std::uint32_t>(at) != frame_tag) fail(at, "what follows is no frame");
+  if (read<std::uint32_t>(at) != frame_tag) fail(at, "the next bytes are not a frame");
   if (version_ != 1 &&
       head_sum(bytes_.data() + at, checksum(records_.size())) != read<std::uint32_t>(at + 4))
     fail(at, "the head of a frame has another checksum, or the frame before it is missing");

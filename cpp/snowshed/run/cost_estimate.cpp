@@ -112,7 +112,7 @@ CostEstimate estimate_cost(const Scene& given, std::vector<double> particles) {
 
 void check_memory(double bytes, double available) {
   if (bytes > available)
-    throw InputError("/", "needs " + gigabytes(bytes) + " of memory, of which there are " +
+    throw InputError("/", "needs " + gigabytes(bytes) + " of memory; available are " +
                               gigabytes(available) + "; give fewer particles or a larger dx");
 }
 
@@ -121,9 +121,9 @@ void check_duration(const Scene& scene, const CostEstimate& cost) {
   const double steps = cost.event_time / cost.time_step;
   if (!(steps <= most_steps))
     throw InputError("/numerics/" + scene.numerics->step_setting(),
-                     "makes steps of " + show_rounded(cost.time_step) +
-                         " s, of which an event of " + show_rounded(cost.event_time) +
-                         " s would take " + show_rounded(steps) + "; at most 1e12 are allowed");
+                     "makes steps of " + show_rounded(cost.time_step) + " s; an event of " +
+                         show_rounded(cost.event_time) + " s would take " + show_rounded(steps) +
+                         " of them; at most 1e12 are allowed");
   const auto check_interval = [&](const double& interval) {
     const double records = cost.event_time * scene.events.count / interval;
     if (interval > 0 && !(records <= most_records))

@@ -80,7 +80,7 @@ std::string Simulation::input_remark() const {
 
 const EnergyHistory& Simulation::energy_history() const {
   if (!energies_)
-    throw InputError("/output/energy", curve_ ? "the energies stand in the curve of this method"
+    throw InputError("/output/energy", curve_ ? "the curve of this method has the energies"
                                               : "false; energies are kept only where true");
   return *energies_;
 }

@@ -21,9 +21,9 @@ struct LatticeFilling {
 ///
 /// In a box the lattice stands along its edges. Its full layers begin at the lowest corner, and a
 /// partial layer is at the top. Other solids have a lattice along the world axes, which begins at
-/// the lowest corner of their bounds. Cells that the surface cuts have a point in as many as their
-/// parts within the solid make together: every second one along a face that halves them. A point
-/// that would lie outside is moved to the surface.
+/// the lowest corner of their bounds. Cells that the surface cuts share points by volume: their
+/// number is that of the cells that their parts within the solid would fill. Along a face that
+/// halves them, every second one. A point that would lie outside is moved to the surface.
 ///
 /// Throws InputError where the solid holds less than half a cell, or more than `max_particles`, and
 /// Stopped on request.

@@ -142,16 +142,17 @@ HeightField read_ascii_grid(const std::filesystem::path& file, AsciiGridFacts* f
   const double nodata = declared ? header.at("nodata_value") : -9999;
   const std::size_t nodes = std::size_t(field.columns) * std::size_t(field.rows);
   if (double(nodes) > most_nodes)
-    scanner.fail("the header tells of " + std::to_string(nodes) + " cells; at most " +
+    scanner.fail("the header announces " + std::to_string(nodes) + " cells; at most " +
                  std::to_string(std::size_t(most_nodes)) + " are allowed; crop it first");
   // A value takes two bytes at least: a short file cannot ask for much memory.
   if (nodes > text.size())
-    scanner.fail("the header tells of " + std::to_string(nodes) + " values; the file is too short");
+    scanner.fail("the header announces " + std::to_string(nodes) +
+                 " values; the file is too short");
   field.heights.resize(nodes);
   std::size_t read = 0;
   for (bool more = !scanner.words().empty(); more; more = scanner.next_line())
     for (const std::string_view word : scanner.words()) {
-      if (read == nodes) scanner.fail("more values than the header tells of");
+      if (read == nodes) scanner.fail("more values than the header announces");
       const double value = number_of(word, scanner, assumed.decimal_commas);
       const bool missing = is_missing(value, nodata);
       if (!missing && std::abs(value) > largest_elevation)
@@ -163,7 +164,7 @@ HeightField read_ascii_grid(const std::filesystem::path& file, AsciiGridFacts* f
       field.heights[field.index(column, row)] = missing ? not_known : value;
     }
   if (read != nodes)
-    scanner.fail(std::to_string(read) + " values; the header tells of " + std::to_string(nodes));
+    scanner.fail(std::to_string(read) + " values; the header announces " + std::to_string(nodes));
   if (facts) *facts = assumed;
   return field;
 }

@@ -20,8 +20,8 @@ void check_size(const LabelImage& image) {
   if (double(size.bytes) > available)
     throw InputError("", "its " + std::to_string(size.spheres) + " spheres need " +
                              show_rounded(double(size.bytes) / 1e9) +
-                             " GB of memory, of which there are " + show_rounded(available / 1e9) +
-                             "; give a smaller image, or one of larger voxels");
+                             " GB of memory; available are " + show_rounded(available / 1e9) +
+                             " GB; give a smaller image, or one of larger voxels");
 }
 
 Sample read_sample(const SampleSpec& spec, const std::filesystem::path& base_dir) {

@@ -135,7 +135,8 @@ void SolverImpl::add(const std::vector<ParticleBatch>& batches, const StopReques
   if (std::all_of(batches.begin(), batches.end(),
                   [](const ParticleBatch& b) { return b.positions.empty(); }))
     return;
-  if (!state_.bodies.empty()) throw InputError("particles", "the grains of the sample are there");
+  if (!state_.bodies.empty())
+    throw InputError("particles", "the grains of the sample are already there");
   State next = with_batches(batches);
   next.next_id = std::uint32_t(next.bodies.size());
   accept(std::move(next), {});

@@ -350,8 +350,8 @@ std::string SolverImpl<T, D>::describe_unsound(std::int32_t b) const {
   for (int d = 1; d < D; ++d) message << ", " << x[d];
   message << ") m, t = " << time() << " s: ";
   if (std::isfinite(s.elastic_strain))
-    message << "its elastic strain has come to " << s.elastic_strain
-            << ", beyond what can be resolved (" << elastic_strain_limit
+    message << "its elastic strain has reached " << s.elastic_strain
+            << ", more than can be resolved (" << elastic_strain_limit
             << "); snow.youngs_modulus is too small for such speeds";
   else
     message << "its state is no longer finite; try a smaller numerics.courant_factor or double "

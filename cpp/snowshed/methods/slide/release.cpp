@@ -293,7 +293,7 @@ ParticleBatch seed_area(const Settings& s, const Terrain& terrain, const Area& a
                        seeded += share;
                      });
   if (batch.positions.empty())
-    refuse_area(index, area.name, "holds no particle: it is smaller than the room of one");
+    refuse_area(index, area.name, "holds no particle: it is smaller than the area of one particle");
   for (double& share : batch.masses) share *= mass / seeded;
   return batch;
 }
