@@ -38,8 +38,8 @@ double tensile_strength(const Snow& snow, int dimension) {
 
 constexpr double column_length = 0.2;
 
-/// How far the lower half of a column has come down that hangs from a sticky ceiling. Its weight
-/// grows slowly until it strains the ceiling with a part of the column's strength, and then stays.
+/// Fall of the lower half of a column that hangs from a sticky ceiling. Its weight grows slowly
+/// until it strains the ceiling with a part of the column's strength, and then stays.
 double fall_of_column(int dimension, double part_of_strength) {
   Options o = options_for({dimension, Precision::float32});
   Snow& snow = o.snows[0] = test_snow();
