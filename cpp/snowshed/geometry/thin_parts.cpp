@@ -132,8 +132,9 @@ class ThinPartSearch {
     const Vec3 n = normal(*touch);
     if (depth(*touch - half_ * n) >= 0.98 * half_) return std::nullopt;  // a ball fits in
     // Within a union, the surface of a part is not that of the whole: the chord goes on outward.
-    const double out = is_inside(*touch + shortest_step * half_ * n) ? way_out(*touch, n) : 0.0;
-    const double in = way_out(*touch, -n);
+    const double out =
+        is_inside(*touch + shortest_step * half_ * n) ? distance_out(*touch, n) : 0.0;
+    const double in = distance_out(*touch, -n);
     if (in + out >= thick * 2 * half_) return std::nullopt;
     const Vec3 middle = *touch + 0.5 * (out - in) * n;
     const Vec3 begin = normal(*touch + out * n), end = normal(*touch - in * n);
@@ -154,7 +155,7 @@ class ThinPartSearch {
   }
 
   /// The distance from x to the outside of the solid, at most twice the half thickness.
-  double way_out(const Vec3& x, const Vec3& direction) const {
+  double distance_out(const Vec3& x, const Vec3& direction) const {
     const double longest = 2 * half_, shortest = shortest_step * half_;
     double distance = 0;
     for (double d = 0; distance < longest; d = depth(x + distance * direction)) {

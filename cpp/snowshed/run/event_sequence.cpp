@@ -81,13 +81,13 @@ void EventSequence::begin_event(EventObserver& observer) {
     if (sim_->event() > 0) observer.between_events(*sim_);
     reseeding = sim_->begin_event([&] { return observer.stop_requested(); });
   }
-  tell_notes(observer);
+  report_notes(observer);
   observer.event_begun(*sim_, reseeding);
 }
 
-void EventSequence::tell_notes(EventObserver& observer) {
-  for (; told_ < sim_->notes().size(); ++told_) {
-    const std::string& note = sim_->notes()[told_];
+void EventSequence::report_notes(EventObserver& observer) {
+  for (; reported_notes_ < sim_->notes().size(); ++reported_notes_) {
+    const std::string& note = sim_->notes()[reported_notes_];
     if (record_.add_note(note)) observer.noted(note);
   }
 }

@@ -78,7 +78,7 @@ class EventSequence {
 
   bool is_done() const;
   void begin_event(EventObserver&);
-  void tell_notes(EventObserver&);
+  void report_notes(EventObserver&);
   RunEnd run_event(EventObserver&, double report_interval);
   void end_event(EventObserver&, RunEnd);
   void checkpoint(EventObserver&, const std::string& status);
@@ -89,7 +89,7 @@ class EventSequence {
   ResultsFolder folder_;
   RunRecord record_;
   std::string status_;                 // in run.json, as it was written last
-  std::size_t told_ = 0;               // number of the simulation's notes that were reported
+  std::size_t reported_notes_ = 0;     // number of the simulation's notes that were reported
   std::int64_t steps_before_;          // the present event
   double wall_before_, earlier_wall_;  // s, before the present event and before resuming
   Stopwatch clock_, since_checkpoint_;

@@ -60,16 +60,16 @@ struct Part {
 class Particles {
  public:
   Particles(const std::vector<Vec3>& positions, int dimension)
-      : positions_(positions), dimension_(dimension), found_(positions.size(), 0) {
+      : positions_(positions), dimension_(dimension), part_of_(positions.size(), 0) {
     for (std::size_t begin = 0; begin < positions.size(); begin += particles_in_box) {
       const std::size_t end = std::min(begin + particles_in_box, positions.size());
       boxes_.push_back(box_around(positions, begin, end));
-      whole_.extend(boxes_.back().low);
-      whole_.extend(boxes_.back().high);
+      box_.extend(boxes_.back().low);
+      box_.extend(boxes_.back().high);
     }
   }
 
-  const PointBox& box() const { return whole_; }
+  const PointBox& box() const { return box_; }
 
   /// Marks the particles where `distance` is below `-depth`, and counts them under a name.
   template <class Distance>
@@ -81,7 +81,7 @@ class Particles {
   template <class Distance>
   std::size_t count_others_within(double depth, const Distance& distance) const {
     std::size_t others = 0;
-    for_each_near(distance, depth, [&](std::size_t i) { others += found_[i] == 0; });
+    for_each_near(distance, depth, [&](std::size_t i) { others += part_of_[i] == 0; });
     return others;
   }
 
@@ -96,7 +96,8 @@ class Particles {
   }
 
   double share() const {
-    return share_of(found_.size() - std::size_t(std::count(found_.begin(), found_.end(), 0u)));
+    return share_of(part_of_.size() -
+                    std::size_t(std::count(part_of_.begin(), part_of_.end(), 0u)));
   }
   double share_of(std::size_t count) const { return double(count) / double(positions_.size()); }
   const std::vector<Part>& parts() const { return parts_; }
@@ -121,17 +122,17 @@ class Particles {
   void count(const std::string& where, std::size_t i) {
     if (parts_.empty() || parts_.back().where != where) parts_.push_back({where, 0, positions_[i]});
     const auto part = std::uint32_t(parts_.size());
-    if (found_[i] == part) return;  // a corner of the domain is beyond two of its sides
-    found_[i] = part;
+    if (part_of_[i] == part) return;  // a corner of the domain is beyond two of its sides
+    part_of_[i] = part;
     ++parts_.back().count;
   }
 
   const std::vector<Vec3>& positions_;
   const int dimension_;
   // One per particle: the last part that it is in, from 1; 0: none.
-  std::vector<std::uint32_t> found_;
+  std::vector<std::uint32_t> part_of_;
   std::vector<PointBox> boxes_;
-  PointBox whole_;
+  PointBox box_;
   std::vector<Part> parts_;
 };
 
@@ -316,7 +317,7 @@ std::vector<std::string> check_placement(const Scene& scene, const std::vector<P
     for (const std::string& sentence : sentences) notes.push_back(body.path + ": " + sentence);
     if (snow.parts().empty()) continue;
     const std::string sentence = sentence_of(snow, scene.dimension, space.event);
-    if (snow.share() > most_misplaced && !body.is_told_only &&
+    if (snow.share() > most_misplaced && !body.is_only_noted &&
         scene.misplaced_snow == MisplacedSnow::refuse)
       throw InputError(body.path, sentence + "; move it, or set /misplaced_snow to \"allow\"");
     notes.push_back(body.path + ": " + sentence);

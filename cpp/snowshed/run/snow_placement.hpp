@@ -18,7 +18,7 @@ struct PlacedBody {
   std::string path;                    // in the scene
   const std::vector<Vec3>* positions;  // m, of its particles
   Shape shape = nullptr;               // solid that they fill; null where there is none
-  bool is_told_only = false;           // only notes, because the program placed it
+  bool is_only_noted = false;          // only notes, because the program placed it
 };
 
 /// Space that new snow must not enter.
@@ -39,7 +39,7 @@ struct OccupiedSpace {
 ///
 /// Throws InputError with share and place where it is more than `most_misplaced` of a body's
 /// particles, not counting the thickening, unless the scene allows that or the body's
-/// `is_told_only` is set.
+/// `is_only_noted` is set.
 std::vector<std::string> check_placement(const Scene&, const std::vector<PlacedBody>&,
                                          const OccupiedSpace&);
 

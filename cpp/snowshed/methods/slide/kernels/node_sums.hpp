@@ -13,8 +13,8 @@ struct NodePair {
 
 /// Adds the mass and momentum of a cell's particles to the nodes in the west and in the east, and
 /// copies the values that their neighbours will read.
-SNOWSHED_INLINE void hand_on(const View& s, std::uint32_t begin, std::uint32_t end, NodePair& west,
-                             NodePair& east) {
+SNOWSHED_INLINE void add_to_nodes(const View& s, std::uint32_t begin, std::uint32_t end,
+                                  NodePair& west, NodePair& east) {
   for (std::uint32_t e = begin; e < end; ++e) {
     const std::uint32_t i = s.sorted_particle[e];
     const double mass = s.mass[i];
@@ -71,7 +71,7 @@ SNOWSHED_INLINE void sum_on_nodes(const View& s, int row) {
   NodePair west{};
   for (int column = 0; column < s.cell_columns; ++column) {
     NodePair east{};
-    hand_on(s, begin[column], begin[column + 1], west, east);
+    add_to_nodes(s, begin[column], begin[column + 1], west, east);
     const std::ptrdiff_t at = 4 * std::ptrdiff_t(column);
     store_row(south + at, begins ? west.south : Quad(load_row(south + at) + west.south));
     if (has_north)
