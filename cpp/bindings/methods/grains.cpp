@@ -12,7 +12,7 @@ namespace py = pybind11;
 namespace snowshed::grains {
 namespace {
 
-/// The solver as grains; throws InputError where the scene's method is another.
+/// The solver as grains; throws InputError if the scene's method is another.
 const Solver& grains_of(const Simulation& sim) {
   const auto* grains = dynamic_cast<const Solver*>(&sim.solver());
   if (!grains) throw InputError("/method", "is not \"grains\", and loads no sample");

@@ -11,7 +11,7 @@ namespace py = pybind11;
 namespace snowshed::slide {
 namespace {
 
-/// The solver as a slide; throws InputError where the scene's method is another.
+/// The solver as a slide; throws InputError if the scene's method is another.
 const Solver& slide_of(const Simulation& sim) {
   const auto* slide = dynamic_cast<const Solver*>(&sim.solver());
   if (!slide) throw InputError("/method", "is not \"slide\", and has no maps");

@@ -67,7 +67,7 @@ template <class T>
 using AlignedVector = std::vector<T, AlignedAllocator<T>>;
 
 /// The elements of a vector. The pointer keeps their memory when the vector grows or is destroyed.
-/// Null where the vector never held any.
+/// Null if the vector never held any.
 template <class T>
 std::shared_ptr<const T> share(const AlignedVector<T>& vector) {
   if (vector.capacity() == 0) return nullptr;

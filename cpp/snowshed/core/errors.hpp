@@ -1,4 +1,4 @@
-// Errors a user can act on: what was wrong, where, what is allowed.
+// Errors that a user can act on: the fault, its place, and the allowed values.
 #pragma once
 
 #include <cerrno>

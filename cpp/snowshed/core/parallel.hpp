@@ -1,6 +1,6 @@
 // Loops over threads. Each iteration writes only its own data, so results never depend on the
-// number of threads or on their shares of the work. Where iterations throw, the loop throws what
-// the first of them (by index) threw; later iterations may have run before.
+// number of threads or on their shares of the work. If iterations throw, the loop throws the
+// exception of the first of them (by index); later iterations may have run before.
 #pragma once
 
 #include <omp.h>

@@ -45,7 +45,7 @@ inline GridPlace place_in(double x, double y, int columns, int rows) {
 
 /// The field on a grid of another cell size with the same south-west node: bicubic where all
 /// sixteen heights around are known, bilinear where only four are, NaN elsewhere. It covers the
-/// field and no more. Throws InputError where the new grid would have more than 2^31 nodes.
+/// field and no more. Throws InputError if the new grid would have more than 2^31 nodes.
 HeightField resampled(const HeightField& field, double cell);
 
 }  // namespace snowshed

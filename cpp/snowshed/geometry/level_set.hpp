@@ -8,7 +8,7 @@
 
 namespace snowshed {
 
-/// Axis-aligned bounds; infinite where a shape is unbounded.
+/// Axis-aligned bounds; infinite if a shape is unbounded.
 struct Bounds {
   Vec3 min, max;
 };

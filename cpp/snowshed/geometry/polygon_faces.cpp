@@ -85,7 +85,7 @@ class EarClipper {
     }
   }
 
-  /// Returns false where no ear can be cut although the rest has an area.
+  /// Returns false if no ear can be cut although the rest has an area.
   bool clip(std::vector<Triangle>& triangles) {
     std::size_t i = 0, since_cut = 0;
     while (left_ > 3) {

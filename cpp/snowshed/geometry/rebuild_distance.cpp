@@ -50,7 +50,7 @@ void rebuild_distance(GridSamples& samples, Band band, const std::string& where)
   const std::vector<Vec3> surface = zero_crossings(grid, samples.values);
   if (surface.empty()) throw InputError(where, "no value is negative: the solid is empty");
   grid.propagate(surface);
-  if (cross_too_steeply(samples, grid)) band = {0, 0};  // none of the values is a distance
+  if (cross_too_steeply(samples, grid)) band = {0, 0};  // no value is a distance
   grid.for_each_node([&](const Index& n) {
     float& value = samples.values[grid.at(n)];
     const double trusted = at(band, value);

@@ -101,7 +101,7 @@ void transfer_ids(Stream& stream, std::vector<std::uint32_t>& ids) {
 
 }  // namespace
 
-/// Where the particles of a frame were in the last one; -1 where they are new.
+/// Where the particles of a frame were in the last one; -1 if they are new.
 std::vector<std::int64_t> FilmCodec::places_before(const FilmFrame& frame) const {
   std::vector<std::int64_t> before(frame.ids.size(), -1);
   std::size_t k = 0;

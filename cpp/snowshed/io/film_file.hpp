@@ -54,7 +54,7 @@ class FilmReader {
   /// The bytes of the header and the first `frames` frames in the present version.
   std::string in_present_version(std::size_t frames) const;
 
-  /// Decodes the next frame. Throws InputError where it is damaged.
+  /// Decodes the next frame. Throws InputError if it is damaged.
   FilmFrame next();
   std::size_t position() const { return next_; }  ///< number of the next frame
   /// The codec as it is after the frames that have been read.
@@ -98,7 +98,7 @@ class FilmWriter {
 
   /// Continues a film behind the first frames for which `keeps` is true; the others are removed
   /// with the next change. With a `mark` only the frames that it names are read. A film of version
-  /// 1 becomes one of the present version. Throws InputError where the film is damaged, or is not
+  /// 1 becomes one of the present version. Throws InputError if the film is damaged, or is not
   /// the one that was marked.
   static FilmWriter reopen(const std::filesystem::path& path,
                            const std::function<bool(const FilmFrameFacts&)>& keeps,

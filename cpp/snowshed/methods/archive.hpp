@@ -118,7 +118,7 @@ class StateWriter {
   BinaryWriter& out_;
 };
 
-/// Throws InputError where a section is missing, of another type or size, or holds values that no
+/// Throws InputError if a section is missing, of another type or size, or holds values that no
 /// state has. The methods check the meaning of arrays.
 class StateReader {
  public:

@@ -92,7 +92,7 @@ class Curve {
   virtual const std::vector<std::string>& columns() const = 0;
   virtual const std::vector<double>& values() const = 0;  ///< row by row
   virtual void save(BinaryWriter&) const = 0;
-  /// Throws InputError where the rows are not those of such a curve.
+  /// Throws InputError if the rows are not those of such a curve.
   virtual void load(const BinaryReader&) = 0;
 };
 

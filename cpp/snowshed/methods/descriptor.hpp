@@ -83,7 +83,7 @@ class MethodDescriptor {
 
   // --- a scene ---------------------------------------------------------------------------------
 
-  /// Throws InputError where settings or parts of the scene contradict each other. Each is in its
+  /// Throws InputError if settings or parts of the scene contradict each other. Each is in its
   /// range, and the scene has no part that the method does not take.
   virtual void validate(const SceneView&) const {}
   /// A solid as the method must see it: its thin parts are as thick as the method's resolution.
@@ -110,7 +110,7 @@ class MethodDescriptor {
 
   // --- cost ------------------------------------------------------------------------------------
 
-  /// Throws InputError where the scene cannot be run.
+  /// Throws InputError if the scene cannot be run.
   virtual CostEstimate cost(const CostRequest&) const = 0;
   /// Features that the method has, and whether the scene uses them.
   virtual std::vector<Feature> features(const SceneView&, const SceneOutline&) const = 0;

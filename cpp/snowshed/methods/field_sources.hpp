@@ -64,7 +64,7 @@ std::vector<FieldInfo> listed_fields(const VisitFields& visit_fields) {
   return all;
 }
 
-/// The view of the field of this name; throws InputError where there is none.
+/// The view of the field of this name; throws InputError if there is none.
 template <class VisitFields>
 FieldView found_field(const std::string& name, const VisitFields& visit_fields) {
   std::optional<FieldView> match;

@@ -10,7 +10,7 @@
 // step has been taken and the method has *failed*: it can still be read, but every call that would
 // alter, advance or save it throws SimulationError, so that a broken state never
 //   overwrites a good checkpoint. `load` repairs it.
-// - Errors: InputError for arguments that are not allowed, SimulationError where the simulation
+// - Errors: InputError for arguments that are not allowed, SimulationError if the simulation
 //   cannot go on, std::bad_alloc for lack of memory.
 // - The results do not depend on the number of threads, to the last bit.
 //
@@ -73,7 +73,7 @@ class Method {
   // --- the snow; between steps -----------------------------------------------------------------
 
   /// Adds the particles of all batches, or none. The energy balance counts their energy as added.
-  /// Throws InputError for a batch that the scene does not allow, SimulationError where a position
+  /// Throws InputError for a batch that the scene does not allow, SimulationError if a position
   /// lies outside the space that the method can address, and Stopped on request if it takes long.
   virtual void add(const std::vector<ParticleBatch>& batches, const StopRequest& stop) = 0;
   void add(const std::vector<ParticleBatch>& batches) { add(batches, {}); }
@@ -115,17 +115,17 @@ class Method {
   /// The quantities of the particles that can be read one by one, and whether they are stored.
   virtual std::vector<FieldInfo> fields() const = 0;
   /// One of them, in the order of storage: the particles' memory where it is stored, otherwise a
-  /// copy computed now. Throws InputError where there is no such field.
+  /// copy computed now. Throws InputError if there is no such field.
   virtual FieldView field(const std::string& name) const = 0;
   /// Where the particles are stored, ordered by id.
   virtual const std::vector<std::uint32_t>& order_by_id() const = 0;
 
-  // --- what the snow is and does; also of a method that has failed -----------------------------
+  // --- state and motion of the snow; allowed after a failure, too ------------------------------
 
   virtual std::size_t size() const = 0;  ///< particles
   virtual ParticleState state() const = 0;
   virtual MotionSummary motion(double speed) const = 0;  ///< m/s, which counts as moving
-  virtual std::size_t bytes() const = 0;  ///< held by the particles and what the steps need
+  virtual std::size_t bytes() const = 0;  ///< of the particles and of the arrays for steps
 
   /// Contents of a file of particles: by default the quantities of `state`, ordered by id.
   virtual PointCloud snapshot() const;
@@ -137,10 +137,10 @@ class Method {
   virtual void save(BinaryWriter&) const = 0;
 
   /// Takes over the state from an archive that a method of the same scene has saved, or of one that
-  /// has only the first of its snows. Throws InputError where the archive is not sound.
+  /// has only the first of its snows. Throws InputError if the archive is not sound.
   virtual void load(const BinaryReader&) = 0;
 
-  /// Throws InputError where `load` would, but takes nothing over and needs less memory.
+  /// Makes the checks of `load`, and throws as it, but takes nothing over and needs less memory.
   virtual void check(const BinaryReader&) const = 0;
 };
 

@@ -21,7 +21,7 @@ class CellOrder {
 
   /// Finds the order of the points in cells whose edges are `edge` or longer, m. With a `period` >
   /// 0 all is repeated along x with it; it must then be at least three edges long, and the points'
-  /// x lie in [0, period). Throws SimulationError where a point is not finite, or too far away from
+  /// x lie in [0, period). Throws SimulationError if a point is not finite, or too far away from
   /// another one to be numbered.
   void update(const Points& points, double edge, double period = 0);
 

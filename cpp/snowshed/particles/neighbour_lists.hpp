@@ -17,7 +17,7 @@ class NeighbourLists {
  public:
   /// Finds the neighbours of points that are stored in the order of their cells (whose `order` is
   /// the identity), within `radius`, which must not be longer than the cells' edges, m. `period` is
-  /// that of the cells. Throws SimulationError where there are too many pairs to be numbered.
+  /// that of the cells. Throws SimulationError if there are too many pairs to be numbered.
   void update(const AlignedVector<VecD<D>>& points, const CellOrder<D>& cells, double radius,
               double period, NeighbourSearch<D> search, int threads);
 

@@ -42,7 +42,7 @@ SeededSnow seeded(std::vector<ParticleBatch>);
 double slab_mass(const Scene& scene, int event);
 
 /// Returns how many particles each event will bring, by the volumes of its snow, or exactly where
-/// the method fills bodies itself; reads the files of bodies. Throws InputError where a body cannot
+/// the method fills bodies itself; reads the files of bodies. Throws InputError if a body cannot
 /// be built or is too small for a particle.
 std::vector<double> count_particles(const Scene& scene, const std::filesystem::path& base_dir);
 

@@ -92,7 +92,7 @@ void EventSequence::report_notes(EventObserver& observer) {
   }
 }
 
-/// Returns how the event ended; paused where the observer stopped it.
+/// Returns how the event ended; paused if the observer stopped it.
 RunEnd EventSequence::run_event(EventObserver& observer, double report_interval) {
   const double every = sim_->scene().output.checkpoint_interval;
   while (true) {

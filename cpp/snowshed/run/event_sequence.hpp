@@ -53,7 +53,7 @@ class EventSequence {
   /// the same snow. Exceptions of the simulation or the observer pass through.
   bool run(EventObserver&, double report_interval);
 
-  /// Throws InputError where a file that Python wrote has been changed, and forgets all of them,
+  /// Throws InputError if a file that Python wrote has been changed, and forgets all of them,
   /// for callers that do not update them.
   void give_up_files();
 

@@ -28,7 +28,7 @@ class FilmRecorder {
 
   /// Begins a film, or continues after the frames that a run had recorded up to `place`, so that a
   /// resumed run makes the same film. `mark` is that of the film then, where it is known. Throws
-  /// InputError where the film is damaged.
+  /// InputError if the film is damaged.
   FilmRecorder(const std::filesystem::path& file, const FilmHeader& header, const RunPlace& place,
                const std::optional<FilmMark>& mark);
 

@@ -9,7 +9,7 @@
 
 namespace snowshed {
 
-/// Empty where the scene has no panel.
+/// Empty if the scene has no panel.
 class PanelRegion {
  public:
   explicit PanelRegion(const Scene& scene);

@@ -14,10 +14,10 @@ namespace snowshed {
 /// Opening it removes files that a killed run left half-written.
 class ResultsFolder {
  public:
-  /// Makes the folder for a scene. Throws InputError where it holds anything.
+  /// Makes the folder for a scene. Throws InputError if it holds anything.
   static ResultsFolder create(std::filesystem::path folder, const Scene& scene);
 
-  /// Opens the folder of an earlier run of the same scene. Throws InputError where it is not one.
+  /// Opens the folder of an earlier run of the same scene. Throws InputError if it is not one.
   static ResultsFolder reopen(std::filesystem::path folder, const Scene& scene);
 
   /// Throws InputError unless `folder` is new or empty; remains of a killed run do not count.
@@ -29,7 +29,7 @@ class ResultsFolder {
   std::filesystem::path film() const { return folder_ / "film.bin"; }
   std::filesystem::path snapshots() const { return folder_ / "snapshots"; }
 
-  /// Reads the checkpoint. Throws InputError where it is damaged, or of another scene.
+  /// Reads the checkpoint. Throws InputError if it is damaged, or of another scene.
   std::unique_ptr<Simulation> load_checkpoint(const Scene&) const;
 
   /// The checksum of its scene.json.

@@ -113,7 +113,7 @@ SeededSnow Simulation::seed_next_event(double lift, const StopRequest& stop) con
   return seed_event(scene_, base_dir_, panel_, event_ + 1, lift, stop);
 }
 
-/// Returns notes on the new snow; throws InputError where it lies where snow may not be. Snow that
+/// Returns notes on the new snow; throws InputError if it lies where snow may not be. Snow that
 /// the program lays on a stack that has grown up to it only gives a note, so that a winter can
 /// continue.
 std::vector<std::string> Simulation::check_placement_of(

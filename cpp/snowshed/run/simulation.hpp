@@ -51,8 +51,8 @@ class Simulation {
   /// Seeds the next event's snow: the slab on the panel (above the snow that remained there, unless
   /// that is less than 2 % of the slab and of the last event's snow) and the scene's bodies. With
   /// between = "reseed", from the second event on the stack is first seeded afresh
-  /// (`reseed_stack`). All or nothing: throws InputError where the snow of this event cannot be
-  /// seeded, or lies where snow may not be (snow_placement.hpp), SimulationError where the stack
+  /// (`reseed_stack`). All or nothing: throws InputError if the snow of this event cannot be
+  /// seeded, or lies where snow may not be (snow_placement.hpp), SimulationError if the stack
   /// cannot be converted or an event still runs, Stopped on request, and leaves everything as it
   /// was.
   std::optional<Reseeding> begin_event(const StopRequest& stop = {});
@@ -64,7 +64,7 @@ class Simulation {
   RunEnd run(const std::function<bool(const RunReport&)>& observer, double interval);
 
   /// Adds particles of the present event, beside those that begin_event seeds; before the first
-  /// event they belong to it. `batch.event` is set here. Throws InputError where they lie where
+  /// event they belong to it. `batch.event` is set here. Throws InputError if they lie where
   /// snow may not be.
   void add_snow(ParticleBatch batch);
 
@@ -83,7 +83,7 @@ class Simulation {
   void write_snapshots(const std::filesystem::path& folder, double interval);
 
   /// Records the particles into a film from now on, or continues the film of the run that was
-  /// resumed: its frames after the present state are recorded anew. Throws InputError where that
+  /// resumed: its frames after the present state are recorded anew. Throws InputError if that
   /// film is damaged.
   void record_film(const std::filesystem::path& file);
   bool films() const { return film_ != nullptr; }
@@ -92,10 +92,10 @@ class Simulation {
   std::optional<FilmMark> film_mark() const;
 
   /// Writes a checkpoint, which replaces an older one only once it has been read back. Throws
-  /// SimulationError where the state could not be resumed from, FileError where it cannot be
+  /// SimulationError if the state could not be resumed from, FileError if it cannot be
   /// written; the older file stays then.
   void save(const std::filesystem::path& checkpoint) const;
-  /// Throws InputError where the file is not a sound checkpoint. Any number of `threads` (0: all)
+  /// Throws InputError if the file is not a sound checkpoint. Any number of `threads` (0: all)
   /// gives the same bits; by default it is that of the checkpoint's scene.
   static std::unique_ptr<Simulation> load(const std::filesystem::path& checkpoint,
                                           std::optional<int> threads = {});
@@ -114,7 +114,7 @@ class Simulation {
   const Curve* curve() const { return curve_.get(); }
   /// A remark on the files that the method reads; empty if there is none.
   std::string input_remark() const;
-  /// The energies over time while `run` ran; throws InputError where the scene does not keep them,
+  /// The energies over time while `run` ran; throws InputError if the scene does not keep them,
   /// and where a curve has them.
   const EnergyHistory& energy_history() const;
   int event() const { return event_; }

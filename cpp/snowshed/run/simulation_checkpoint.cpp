@@ -94,8 +94,8 @@ void Simulation::save(const std::filesystem::path& checkpoint) const {
   }
 }
 
-/// Throws InputError where `load` would. This needs memory for the particles twice; if that is not
-/// available, only the file is checked.
+/// Makes the checks of `load`, and throws as it. This needs memory for the particles twice; if that
+/// is not available, only the file is checked.
 void Simulation::read_back(const std::filesystem::path& checkpoint) const {
   const BinaryReader in = BinaryReader::load(checkpoint);
   in.require_finite();

@@ -17,7 +17,7 @@ inline constexpr double most_misplaced = 0.01;
 struct PlacedBody {
   std::string path;                    // in the scene
   const std::vector<Vec3>* positions;  // m, of its particles
-  Shape shape = nullptr;               // solid that they fill; null where there is none
+  Shape shape = nullptr;               // solid that they fill; null if there is none
   bool is_only_noted = false;          // only notes, because the program placed it
 };
 

@@ -25,7 +25,7 @@ struct LatticeFilling {
 /// number is that of the cells that their parts within the solid would fill. Along a face that
 /// halves them, every second one. A point that would lie outside is moved to the surface.
 ///
-/// Throws InputError where the solid holds less than half a cell, or more than `max_particles`, and
+/// Throws InputError if the solid holds less than half a cell, or more than `max_particles`, and
 /// Stopped on request.
 LatticeFilling fill_lattice(const LevelSet& shape, int dimension, double spacing,
                             const StopRequest& stop = {});

@@ -132,7 +132,7 @@ NpyArray read_npy(const std::filesystem::path& path) {
 
 namespace {
 
-/// Throws InputError where labels are more than a sample may have, before all are read: a
+/// Throws InputError if labels are more than a sample may have, before all are read: a
 /// file of holes takes no room on the disk. 512 voxels along each edge are more than can be loaded.
 void check_label_count(const std::filesystem::path& path) {
   constexpr std::uintmax_t most_bytes = std::uintmax_t(640) << 20;

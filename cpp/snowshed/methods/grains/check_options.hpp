@@ -5,7 +5,7 @@
 
 namespace snowshed::grains {
 
-/// Throws InputError where they do not.
+/// Throws InputError if they do not.
 void check_grains(const Options&);
 
 }  // namespace snowshed::grains

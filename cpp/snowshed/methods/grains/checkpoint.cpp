@@ -12,7 +12,7 @@
 namespace snowshed::grains {
 namespace {
 
-/// A pair of spheres as an archive has it.
+/// A pair of spheres in an archive.
 struct StoredPair {
   std::array<std::uint32_t, 4> key;  // bodies, spheres
   std::array<std::int32_t, 2> shift;

@@ -11,7 +11,7 @@
 namespace snowshed::grains {
 namespace {
 
-/// Throws InputError where the image holds no grain, or its clumps do not fit into memory.
+/// Throws InputError if the image holds no grain, or its clumps do not fit into memory.
 void check_size(const LabelImage& image) {
   const SampleSize size = image.labels.empty() ? SampleSize{} : measure_sample(image);
   if (size.grains == 0)

@@ -172,7 +172,7 @@ void LoadingCurve::load(const BinaryReader& in) {
     values_.assign(values.begin(), values.end());
   } else {
     const std::vector<double> filled = with_peaks(values, columns, columns_);
-    values_.assign(filled.begin(), filled.end());  // keeps what is reserved
+    values_.assign(filled.begin(), filled.end());  // keeps the reserved memory
   }
   peak_.reset();
   if (!peak.empty()) {

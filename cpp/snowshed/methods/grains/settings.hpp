@@ -24,7 +24,7 @@ struct Settings {
   bool bonded_plates = false;  // the snow is frozen to the plates
   int threads = 0;             // 0: all
 
-  /// The size of the smallest thing the method resolves, m; 0 where the sample's file decides.
+  /// The size of the smallest thing the method resolves, m; 0 if the sample's file decides.
   double resolution() const { return 0; }
 };
 

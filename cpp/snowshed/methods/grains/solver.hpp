@@ -66,7 +66,7 @@ class Solver : public Method, public SeedsItself, public KeepsEnergy, public Has
   virtual std::vector<std::uint32_t> sphere_grains() const = 0;
 };
 
-/// Throws InputError where settings, sample and loading do not fit each other.
+/// Throws InputError if settings, sample and loading do not fit each other.
 std::unique_ptr<Solver> make_solver(Options);
 
 }  // namespace snowshed::grains

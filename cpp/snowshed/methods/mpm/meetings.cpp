@@ -70,7 +70,7 @@ void Meetings<T, D>::update(const Model<T, D>& model, State<T, D>& state, Grid<T
 }
 
 /// Sums of a block of nodes, which `room` holds where the block takes no part in the step; null
-/// where no snow reaches it.
+/// if no snow reaches it.
 template <class T, int D>
 const T* Meetings<T, D>::sums_of(const State<T, D>& state, Grid<T, D>& grid,
                                  const Kernels<T>& kernels, std::int32_t g,

@@ -34,7 +34,7 @@ template <class T, int D>
 class ParticleSort {
  public:
   /// Finds where the particles belong. `blocks` holds the block that each one's `cell` refers to,
-  /// `present` the layout before. Throws SimulationError where one has left the addressable grid
+  /// `present` the layout before. Throws SimulationError if one has left the addressable grid
   /// (2^20 blocks to each side) or is not finite.
   ParticleSort(const Particles<T, D>&, std::vector<BlockKey> blocks, const BlockLayout<D>& present,
                int threads);

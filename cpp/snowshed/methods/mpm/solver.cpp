@@ -327,7 +327,7 @@ void SolverImpl<T, D>::record_damping(double dt) noexcept {
   p.undamped_time = damped ? 0.0 : p.undamped_time + dt;
 }
 
-/// Throws where a particle is not sound any more. The step cannot be taken back: the particles have
+/// Throws if a particle is not sound any more. The step cannot be taken back: the particles have
 /// moved, and a copy of them in each step would cost more than it is worth.
 template <class T, int D>
 void SolverImpl<T, D>::check_particles() {

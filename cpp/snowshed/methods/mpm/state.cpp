@@ -128,7 +128,7 @@ void State<T, D>::arrange(const Model<T, D>& model, std::vector<BlockKey> blocks
   if (sort.layout.grid_blocks != layout.grid_blocks)
     relocated = contacts.relocated(model.boundary, sort.layout.grid_blocks, progress.time, threads);
   Sleep<D> sleep_after = sleep.relocated(sort.layout, progress.time);
-  // All memory is there: nothing fails from here on.
+  // All memory is reserved: nothing fails from here on.
   sort.apply(particles);
   layout = std::move(sort.layout);
   if (relocated) contacts = std::move(*relocated);

@@ -31,7 +31,7 @@ struct NearSnow {
 /// Equation (23) is lost; its form is inferred: an erodible particle begins to move where the
 /// pressure is above p_e and a neighbour faster than u_e; a moving one is deposited on snow at rest
 /// or a wall where the pressure is below p_d and its speed below u_d. p_d < p_e and u_d < u_e, so
-/// that it does not change its mind at once.
+/// that a particle does not change back at once.
 template <int D>
 void erode_and_deposit(const Model<D>& model, Particles<D>& particles, Work<D>& work) {
   const Settings& s = model.settings();

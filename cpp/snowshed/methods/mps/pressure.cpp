@@ -150,7 +150,7 @@ double source(const Model<D>& model, double dt, double compensation_time,
 }
 
 /// Subtracts the mean from the sources. The pressure of a fluid without a free surface is defined
-/// up to a constant, and only then is there a solution.
+/// up to a constant, and its equation has a solution only if the mean of the sources is zero.
 template <int D>
 void balance_sources(Work<D>& work, std::size_t n) {
   double sum = 0, count = 0;

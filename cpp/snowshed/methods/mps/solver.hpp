@@ -36,7 +36,7 @@ class Solver : public Method, public BalancesEnergy, public ReportsRun {
   virtual Report report() const = 0;
 };
 
-/// Throws InputError where the settings do not fit each other.
+/// Throws InputError if the settings do not fit each other.
 std::unique_ptr<Solver> make_solver(Options);
 
 }  // namespace snowshed::mps

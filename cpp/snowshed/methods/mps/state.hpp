@@ -54,7 +54,7 @@ struct Model {
     return options.obstacles[c.obstacle].law.condition == Condition::sticky;
   }
 
-  /// Threads for a step of so many particles.
+  /// Threads for a step of this number of particles.
   int threads_for(std::size_t particles) const {
     return int(std::clamp<std::size_t>(particles / particles_per_thread, 1, std::size_t(threads)));
   }
@@ -128,7 +128,7 @@ struct Neighbourhood {
 template <int D>
 struct Work {
   WallParticles<D> walls;  // if the settings ask for them
-  State<D> next, start;    // the step's result, and its beginning once walls are there
+  State<D> next, start;    // the step's result, and its beginning with the present walls
   Particles<D> spare;
   Neighbourhood<D> near;
   AlignedVector<VecD<D>> velocity;                    // right-hand side, m/s

@@ -212,7 +212,7 @@ void WallParticles<D>::make(std::uint32_t number, const Cell& cell, Points& to) 
 }
 
 /// If obstacles of a group overlap, the first one has the wall particles there. Their normal is
-/// that of the obstacle in which they are deepest, as of the union of all; it is zero where two are
+/// that of the obstacle in which they are deepest, as of the union of all; it is zero if two are
 /// as deep.
 template <int D>
 const typename WallParticles<D>::Points& WallParticles<D>::points_in(Group& group,

@@ -31,7 +31,7 @@ void check_effort(const Settings& settings, const Terrain& terrain, const std::v
 /// Compatible mode: one lattice begins at the grid's origin. The mean slope of all areas decides
 /// the number of particles per cell. The particles of a cell share its mass. All are in one batch.
 ///
-/// Throws InputError where an area holds no particle, or, in compatible mode, is too thin for one.
+/// Throws InputError if an area holds no particle, or, in compatible mode, is too thin for one.
 ///
 /// Throws Stopped on request.
 std::vector<ParticleBatch> seed_release(const Settings& settings, const Terrain& terrain,

@@ -39,7 +39,7 @@ struct Settings {
   double stop_ratio = 0.01;  // kinetic energy over its peak at which the slide has stopped
   int threads = 0;           // 0: all
 
-  /// The size of the smallest thing the method resolves, m; 0 where the terrain decides.
+  /// The size of the smallest thing the method resolves, m; 0 if the terrain decides.
   double resolution() const { return cell; }
 };
 

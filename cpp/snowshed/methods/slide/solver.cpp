@@ -26,7 +26,7 @@ std::string on_map(const Terrain& terrain, int column, int row) {
   return text;
 }
 
-/// Throws where a cell under an area lacks a height at one of its nodes.
+/// Throws if a cell under an area lacks a height at one of its nodes.
 void check_no_hole(const Terrain& terrain, const Polygon& area, const std::string& where) {
   double low[2] = {area.outline[0][0], area.outline[0][1]}, high[2] = {low[0], low[1]};
   for (const MapPoint& p : area.outline)

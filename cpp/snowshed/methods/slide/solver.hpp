@@ -35,7 +35,7 @@ class Solver : public Method, public SeedsItself, public KeepsEnergy, public Rep
   virtual const MassBalance& mass_balance() const = 0;
 };
 
-/// Throws InputError where an area does not lie on known terrain.
+/// Throws InputError if an area does not lie on known terrain.
 std::unique_ptr<Solver> make_solver(Options);
 
 }  // namespace snowshed::slide

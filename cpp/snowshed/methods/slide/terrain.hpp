@@ -18,7 +18,7 @@ enum class BorderSlope { one_sided, level_in_the_south_west };
 class Terrain {
  public:
   struct Node {
-    double height;            // m; NaN where nothing is known
+    double height;            // m; NaN if nothing is known
     double slope_x, slope_y;  // the normal is (slope_x, slope_y, 1), not normalised
     double area;              // m2, of the ground within half a cell of the node
   };

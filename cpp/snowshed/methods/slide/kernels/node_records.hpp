@@ -90,7 +90,7 @@ SNOWSHED_INLINE Pack load_whole_pack(const double* p) { return load_pack<Pack>(p
 /// Part of the records of the four nodes around a place that is read.
 enum class NodeRecord {
   mean,             // the bilinear mean
-  mean_and_known,   // the same, but the last value is NaN where the first one of node 0 is
+  mean_and_known,   // the same, but the last value is NaN if the first one of node 0 is
   mean_and_middle,  // the bilinear mean of the first value, the plain means of the others
 };
 

@@ -9,7 +9,7 @@ SNOWSHED_METHOD_VARIANT_BEGIN(slide)
 
 using PackVec = SimdVec<Pack>;
 
-/// Below it a square counts as zero where a root is taken.
+/// Smaller squares count as zero in roots.
 inline constexpr double least_square = 1e-30;
 SNOWSHED_INLINE Pack length_from(const Pack& square) {
   const Pack s = max(square, broadcast<Pack>(least_square));
