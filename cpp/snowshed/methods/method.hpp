@@ -125,7 +125,7 @@ class Method {
   virtual std::size_t size() const = 0;  ///< particles
   virtual ParticleState state() const = 0;
   virtual MotionSummary motion(double speed) const = 0;  ///< m/s, which counts as moving
-  virtual std::size_t bytes() const = 0;  ///< of the particles and of the arrays for steps
+  virtual std::size_t bytes() const = 0;  ///< held by the particles and what the steps need
 
   /// Contents of a file of particles: by default the quantities of `state`, ordered by id.
   virtual PointCloud snapshot() const;
