@@ -30,7 +30,7 @@ DEFAULTS: Settings = {
     "pattern": "regular",
     "particles_per_voxel": 4,
 }
-#: What is tried besides resolutions and transfers, with APIC.
+#: Variants besides resolutions and transfers, with APIC.
 VARIANTS: Sequence[Settings] = (
     {"basis": "cubic"},
     {"precision": "float"},
@@ -175,7 +175,7 @@ BAR = Case(
 # --- the cantilever ---------------------------------------------------------------------------
 
 CANTILEVER_HEIGHT, POISSONS_RATIO = 0.2, 0.3  # m
-#: How far the beam reaches into its clamp, in cells.
+#: Length of the beam within its clamp, in cells.
 HELD_CELLS = 4
 #: Largest deflection over the length, periods, and steps between two samples.
 DEFLECTION, CANTILEVER_PERIODS, STEPS = 2e-3, 1.5, 10

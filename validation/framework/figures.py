@@ -38,7 +38,7 @@ Problem = Tuple[Settings, Sequence[Solution]]
 
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
 DASHES = ("-", (0, (5, 2)), (0, (1, 1.4)), (0, (6, 1.5, 1, 1.5)), (0, (9, 3)))
-#: Which settings get colours before others get markers and dashes.
+#: Settings that get colours; others get markers and dashes.
 FIRST = ("transfer", "law", "between", "dimension", "events", "basis", "precision")
 #: Points on a Pareto front closer than this part are not both named.
 NEARLY = 0.1

@@ -48,7 +48,7 @@ DEFAULTS: Settings = {
     "density_scaling": 1.0,
     "bonded_plates": True,
 }
-#: What is varied on the snow, one at a time.
+#: Variations of the snow, one at a time.
 EXTREMES: tuple[Settings, ...] = (
     {"elastic_modulus": 1.0},
     {"elastic_modulus": 1e12},

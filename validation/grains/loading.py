@@ -18,7 +18,7 @@ from snowshed.scene.loading import Cone, LoadingStage
 from validation.framework.drive import Drive
 
 GRAIN = 3e-4  # m, edge of the cells that cut the ice into grains
-WAVES, WAVELENGTH = 80, 1.4  # of the random field; 1, over GRAIN
+WAVES, WAVELENGTH = 80, 1.4  # number in the random field; wavelength over GRAIN
 THRESHOLD = 0.45  # standard deviations of the field above which there is ice
 
 

@@ -40,7 +40,7 @@ OBJECTIVE_GRIDS: Sequence[Settings] = (
     {**OBJECTIVE, "dimension": 3, "dx": 0.01, "seedings": 4},
 )
 
-#: What is tried instead of the default scheme, on the grid that the laboratory's stacks use.
+#: Variants of the default scheme, on the grid that the laboratory's stacks use.
 SCHEMES: Sequence[Settings] = (
     {"transfer": "apic"},
     {"flip_ratio": 0.95},
@@ -55,7 +55,7 @@ SCHEMES: Sequence[Settings] = (
     {"courant_factor": 0.3, "transfer": "apic"},
 )
 
-#: How the recorded runs of each scheme were made: a setting that is None is not given.
+#: Settings of the recorded runs of each scheme; a setting that is None is not given.
 AS_RECORDED: Wanted = {
     "transfer": ("flip", None),
     "flip_ratio": None,

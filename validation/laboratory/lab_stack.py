@@ -42,7 +42,7 @@ class Cost:
     wall_s
         Time of the solution alone, s.
     updates
-        Particles times steps; 0 if nobody counted them.
+        Particles times steps; 0 if they were not counted.
     """
 
     wall_s: float

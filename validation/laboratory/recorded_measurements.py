@@ -1,4 +1,4 @@
-"""Measurements of `stack_convergence` from recorded runs, which nobody has to make again.
+"""Measurements of `stack_convergence` from recorded runs, which need not be repeated.
 
 ``python -m validation.laboratory.recorded_measurements`` writes those of the scheme objective among
 the package's recorded measurements, from which ``--accuracy`` and the error of a stack come. The

@@ -177,7 +177,7 @@ CASE = Case(
     quantities=(
         Quantity("landing", "distance of landing from the edge, m", bar=0.01),
         Quantity("flight", "largest distance from the parabola over the distance flown", bar=1e-3),
-        # What the method can do (see the remarks), not what one would wish.
+        # The accuracy of the method (see the remarks), not the desired one.
         Quantity("spin", "angular velocity on leaving, nose down, rad/s", bar=0.65),
         Quantity(
             "spin_kept",

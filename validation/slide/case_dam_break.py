@@ -17,7 +17,7 @@ FRICTION = math.tan(math.radians(20.0))
 THICKNESS, DURATION = 1.0, 3.0  # m, s
 LENGTH, HALF_WIDTH = 40.0, 14.0  # m, along the slope; on the map
 MEASURED = 3.0  # m, half the width of the strip whose mean is compared: no side is felt there
-SEEN = 0.05  # of the dam's height: the front is where there is more snow
+SEEN = 0.05  # share of the dam's height; the front is where the snow is thicker
 
 DEFAULTS: Settings = {"cell": 2.0, "time_step": 0.02}
 #: Snow of this thickness over a cell makes a particle, m: about 4, 9, 16 and 36 particles per cell.

@@ -34,7 +34,7 @@ DEFAULTS: Settings = {
     "artificial_viscosity": 100.0,
     "bonds": True,
 }
-#: What is varied on the slope, one at a time.
+#: Variations on the slope, one at a time.
 EXTREMES: tuple[Settings, ...] = (
     {"time_step": 1e-5},
     {"time_step": 1.0, "bonds": False},

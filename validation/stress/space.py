@@ -79,7 +79,7 @@ class Choice:
 
 Parameter = Union[Range, Choice]
 
-#: What is simulated; `scenes` says how each is built.
+#: Kinds of simulated snow; `scenes` builds each.
 KINDS = {
     "slide": "slab slides off the panel onto the ground, a chunk of snow thrown onto it",
     "throw": "block of snow thrown onto the ground",
