@@ -1,6 +1,6 @@
 """Measuring every case over its matrix, one measurement after another.
 
-Nothing runs at the same time, since times are measured. A measurement that fails becomes a result
+Nothing runs at the same time, because times are measured. A measurement that fails becomes a result
 that says why.
 """
 

@@ -146,7 +146,7 @@ def measure_of(stack: StackMeasure, name: str) -> float:
 def lab_scene(settings: Settings) -> Scene:
     """Return the scene: preset lab-50 in 2D, panel friction 0.3, one thread, and the settings.
 
-    Snow at rest sleeps as it does by default, since stacks are what users run.
+    Snow at rest sleeps as it does by default, because stacks are what users run.
 
     Examples
     --------

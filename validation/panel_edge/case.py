@@ -198,7 +198,7 @@ CASE = Case(
     FLIP with 0.99 then damps the turning of a slab a few cells thick away: at dx 1 cm 70 % of it
     is gone after a fall of 1 m, at 2 cm 95 %. APIC keeps all of it, pure FLIP 98 %.
 
-    The parabola is met to rounding: the deviation named is the time step's, since symplectic Euler
-    falls g dt t/2 too far.
+    The parabola is met to rounding: the deviation named is the time step's, because
+    symplectic Euler falls g dt t/2 too far.
     """,
 )

@@ -12,7 +12,7 @@ namespace snowshed {
 void require_counts(const GridSamples& samples, const std::string& where);
 
 /// Throws InputError at `where` if no value is negative; if neighbours differ by clearly more than
-/// the spacing, since a distance cannot; or if the sign is the other way round. The sign is the
+/// the spacing, because a distance cannot; or if the sign is the other way round. The sign is the
 /// other way round if the solid would fill most of the border of the grid and most of its top, and
 /// either nothing of its bottom, or the largest value is neither at its sides nor at its top. The
 /// samples must satisfy require_counts.

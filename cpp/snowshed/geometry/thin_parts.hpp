@@ -24,8 +24,8 @@ struct ThinPart {
 /// The surface is found cell by cell, each as large as `half`. The thickness at a point of the
 /// surface is the length of the chord along its normal. It counts where the faces at both ends are
 /// parallel within 40 degrees, so that corners of thick parts are not thin. At other ends, as of
-/// triangular bars, the greatest depth within reach decides. Signs alone are used to measure, since
-/// depths of combined solids are lower bounds.
+/// triangular bars, the greatest depth within reach decides. Signs alone are used to measure,
+/// because depths of combined solids are lower bounds.
 ///
 /// A solid whose surface fills more than 400000 cells is searched in larger ones; parts that are
 /// smaller than those may be missed.

@@ -43,7 +43,7 @@ std::vector<Cell> cells_of(const OrientedBox& box, int dimension, double spacing
     const double full = std::floor(layers + rounding), left = layers - full;
     if (left > rounding) part[axis] = left;
     counts[axis] = std::size_t(full) + (left > rounding);
-    // The first layer lies against the lower face, for there may be an obstacle below.
+    // The first layer lies against the lower face, because there may be an obstacle below.
     const double up = box.axes(2, axis) < -rounding ? -1 : 1;
     cut_layer[axis] = up > 0 ? counts[axis] - 1 : 0;
     const double shorter = box.half[axis] - 0.5 * double(counts[axis]) * spacing;

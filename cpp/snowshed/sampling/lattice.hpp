@@ -23,7 +23,8 @@ struct LatticeFilling {
 /// partial layer is at the top. Other solids have a lattice along the world axes, which begins at
 /// the lowest corner of their bounds. Cells that the surface cuts share points by volume: their
 /// number is that of the cells that their parts within the solid would fill. Along a face that
-/// halves them, every second one. A point that would lie outside is moved to the surface.
+/// halves them every second cell has a point. A point that would lie outside is moved to the
+/// surface.
 ///
 /// Throws InputError if the solid holds less than half a cell, or more than `max_particles`, and
 /// Stopped on request.

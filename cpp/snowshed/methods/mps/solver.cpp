@@ -27,12 +27,13 @@ constexpr double pressure_courant = 0.5;
 /// of 1e4 Pa s at rest was 1.4 % too low (ours).
 constexpr double expected_shear = 0.5;
 
-/// Pressure and viscosity are found together where a step's plastic viscosity over rho l0^2/dt is
-/// at least this, and the fluid creeps. Its root mean square of speeds u, over that of a fall that
-/// viscosity slows down within l0, rho g l0^2/eta, is more than this: in a stiff fluid at rest
-/// errors of the gradients would ask for large pressures, since these hardly move it. And
-/// rho u^3/(eta g), the square of the Reynolds number of a body so high that it flows at u, is less
-/// than this: fast flows lose no volume to viscosity, and are solved the cheaper way for any l0.
+/// Pressure and viscosity are solved together under three conditions, with the root mean square u
+/// of the speeds. The plastic viscosity eta is at least `least_stiffness` rho l0^2/dt. The fluid
+/// moves: u is more than `least_fall` times rho g l0^2/eta, the speed of a fall that viscosity
+/// slows down within l0. (In a stiff fluid at rest errors of the gradients would cause large
+/// pressures, because these hardly move it.) The fluid creeps: rho u^3/(eta g), the square of the
+/// Reynolds number of a body so high that it flows at u, is less than `most_inertia`. Fast flows
+/// lose no volume to viscosity, and are solved the cheaper way for any l0.
 constexpr double least_stiffness = 2, least_fall = 2, most_inertia = 1e-3;
 /// The iteration begins with this share of the last step's viscous force; errors of the pressure
 /// then die out. It ends when the force changes by less than this part of gravity. It also ends if

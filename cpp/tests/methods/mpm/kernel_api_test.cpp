@@ -167,7 +167,7 @@ TEST(Scatter, SaysWhenAParticleHasLeftTheTile) {
   }
 }
 
-/// In a process of its own, since the choice is made once.
+/// In a process of its own, because the choice is made once.
 [[noreturn]] void choose_kernels(const char* name) {
   setenv("SNOWSHED_KERNELS", name, 1);
   try {

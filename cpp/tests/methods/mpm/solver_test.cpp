@@ -164,8 +164,8 @@ TEST_F(SolverFiles, ADiscKeepsSpinning) {
     double worst = 0;
     for (std::size_t i = 0; i < after.positions.size(); ++i)
       worst = std::max(worst, (after.positions[i] - turn * before.positions[i]).norm());
-    // The limit is relative to the distance that the rim has moved. FLIP's rim lags a little, for
-    // it is not quite affine there.
+    // The limit is relative to the distance that the rim has moved. FLIP's rim lags a little,
+    // because it is not quite affine there.
     EXPECT_LT(worst, (transfer == Transfer::flip ? 0.03 : 0.01) * angle * radius) << way.name();
   }
 }

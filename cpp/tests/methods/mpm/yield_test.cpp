@@ -67,7 +67,7 @@ double fall_of_column(int dimension, double part_of_strength) {
   return before - middle();
 }
 
-/// It breaks a little early, since the stress of particles scatters about that of the column.
+/// It breaks a little early, because the stress of particles scatters about that of the column.
 TEST(HangingColumn, BreaksAtItsTensileStrength) {
   for (int dimension : {2, 3}) {
     EXPECT_LT(fall_of_column(dimension, 0.85), 5e-4) << dimension;
