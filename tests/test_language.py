@@ -14,7 +14,9 @@ from snowshed.cli.main import cli
 PACKAGE = ROOT / "python" / "snowshed"
 #: Rooms whose names and texts follow the rules; others join when they do.
 CLEAN = ("base", "io", "methods", "scene", "snow", "plot", "results", "running", "season", "study")
-CLEAN += ("analysis", "cli", "reproductions")
+CLEAN += ("analysis", "cli", "reproductions", "validation")
+#: Those of them that stand beside the package.
+OUTSIDE = ("reproductions", "validation")
 #: Names that say nothing about their values.
 EMPTY_NAMES = {"found", "one", "way", "kept", "places"}
 
@@ -60,7 +62,7 @@ SECTION = re.compile(r"^(Parameters|Attributes|Returns|Yields|Raises|Examples|No
 
 
 def sources(rooms=CLEAN):
-    folders = [ROOT if room == "reproductions" else PACKAGE for room in rooms]
+    folders = [ROOT if room in OUTSIDE else PACKAGE for room in rooms]
     return [
         path
         for folder, room in zip(folders, rooms)

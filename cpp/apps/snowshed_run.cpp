@@ -65,7 +65,7 @@ Options parse(int argc, char** argv) {
   return o;
 }
 
-/// Shows on one line of the terminal how far the run has come.
+/// Shows the progress of the run on one line of the terminal.
 class Display : public snowshed::EventObserver {
  public:
   explicit Display(bool quiet) : quiet_(quiet) {}
@@ -96,7 +96,7 @@ class Display : public snowshed::EventObserver {
   bool terminal_ = isatty(STDERR_FILENO) != 0;  // a file or a pipe gets whole lines only
 };
 
-/// What time does to the stack between events is the Python package's to compute.
+/// The Python package computes the effects of time on the stack between events.
 void refuse_ageing(const std::filesystem::path& folder) {
   if (std::filesystem::exists(folder / "ageing.json"))
     throw snowshed::InputError(folder.string(),
@@ -111,7 +111,7 @@ snowshed::EventSequence open(const Options& o) {
     if (!o.quiet)
       std::fprintf(stderr, "note: %s\n", snowshed::printable(o.scene + ": " + note).c_str());
   const auto stop = [] {
-    setting_up = 0;  // asked while snow is seeded, which can stop by itself
+    setting_up = 0;  // called while snow is seeded, which can stop by itself
     return interrupted != 0;
   };
   if (!o.resume) return snowshed::EventSequence::create(scene, ".", o.folder, stop);
@@ -121,7 +121,7 @@ snowshed::EventSequence open(const Options& o) {
   return sequence;
 }
 
-/// Returns whether the run came to its end; after an error, the folder says so.
+/// Returns whether the run came to its end; after an error, run.json records it.
 bool run_all(snowshed::EventSequence& sequence, bool quiet) try {
   Display display(quiet);
   return sequence.run(display, 0.1);
@@ -138,12 +138,12 @@ void on_signal(int) {
   interrupted = 1;
   if (!setting_up) return;
   if (::write(STDERR_FILENO, message, sizeof message - 1) < 0) {
-    // Nobody reads it.
+    // It is not read.
   }
   std::_Exit(130);
 }
 
-/// A signal that is ignored, as nohup has it, stays so.
+/// A signal that is ignored, as under nohup, stays so.
 void interrupt_on(int signal) {
   if (std::signal(signal, on_signal) == SIG_IGN) std::signal(signal, SIG_IGN);
 }

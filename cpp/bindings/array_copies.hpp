@@ -39,9 +39,9 @@ inline pybind11::dict columns_of(const std::vector<std::string>& names,
                                  const std::vector<double>& values) {
   pybind11::dict table;
   for (std::size_t c = 0; c < names.size(); ++c) {
-    std::vector<double> found;
-    for (std::size_t i = c; i < values.size(); i += names.size()) found.push_back(values[i]);
-    table[names[c].c_str()] = column<double>(found);
+    std::vector<double> entries;
+    for (std::size_t i = c; i < values.size(); i += names.size()) entries.push_back(values[i]);
+    table[names[c].c_str()] = column<double>(entries);
   }
   return table;
 }

@@ -19,7 +19,7 @@ void bind_geometry(pybind11::module_&);
 void bind_machine(pybind11::module_&);
 void bind_material(pybind11::module_&);
 
-pybind11::object reseeding_dict(const std::optional<Reseeding>&);  ///< None where there is none
+pybind11::object reseeding_dict(const std::optional<Reseeding>&);  ///< None if there is none
 pybind11::dict report_dict(const RunReport&);
 
 }  // namespace snowshed

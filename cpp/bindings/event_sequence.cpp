@@ -32,13 +32,13 @@ py::dict facts_dict(const EventFacts& facts) {
 
 using Path = std::filesystem::path;
 
-/// What a handler of a signal raises, such as KeyboardInterrupt, comes through.
+/// Exceptions of a signal's handler, such as KeyboardInterrupt, pass through.
 bool python_interrupts() {
   if (PyErr_CheckSignals() != 0) throw py::error_already_set();
   return false;
 }
 
-/// Passes all on to a Python object with the same methods.
+/// Passes all calls to a Python object with the same methods.
 class PythonObserver : public EventObserver {
  public:
   explicit PythonObserver(py::object observer) : observer_(std::move(observer)) {}
@@ -142,7 +142,7 @@ void bind_event_sequence(py::module_& m) {
       .def("rewrite_record", &EventSequence::rewrite_record)
       .def_property_readonly(
           "simulation",
-          [](const std::shared_ptr<EventSequence>& s) {  // which the simulation keeps alive
+          [](const std::shared_ptr<EventSequence>& s) {  // kept alive by the simulation
             return std::make_unique<SimulationHandle>(
                 std::shared_ptr<Simulation>(s, &s->simulation()));
           })

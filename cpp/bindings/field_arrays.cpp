@@ -20,7 +20,7 @@ std::vector<py::ssize_t> shape_of(const FieldView& view) {
   }
 }
 
-/// Bytes from one index to the next along each axis; all but the first are without gaps.
+/// Bytes from one index to the next along each axis; only the first axis may have gaps.
 std::vector<py::ssize_t> strides_of(const FieldView& view, const std::vector<py::ssize_t>& shape,
                                     py::ssize_t element_bytes) {
   std::vector<py::ssize_t> strides(shape.size(), element_bytes);
@@ -30,7 +30,7 @@ std::vector<py::ssize_t> strides_of(const FieldView& view, const std::vector<py:
   return strides;
 }
 
-/// What Python holds to keep a view's memory.
+/// Object by which Python keeps a view's memory.
 py::capsule owner_of(const FieldView& view) {
   using Owner = std::shared_ptr<const void>;
   return py::capsule(new Owner(view.elements),

@@ -46,7 +46,7 @@ py::dict next_frame(FilmReader& reader) {
   return d;
 }
 
-/// Of the first so many frames, and so of the film until then.
+/// Checksum of the first `frames` frames, and so of the film until then.
 std::string film_checksum(const FilmReader& reader, std::size_t frames) {
   if (frames > reader.frames().size()) throw py::index_error("the film has fewer frames");
   return hexadecimal(reader.checksum(frames));
@@ -61,7 +61,7 @@ void bind_film(py::module_& m) {
       .def("next", &next_frame)
       .def("checksum", &film_checksum, "frames"_a)
       .def_property_readonly("version", &FilmReader::version)
-      .def_property_readonly("whole", &FilmReader::whole)
+      .def_property_readonly("whole", &FilmReader::is_complete)
       .def_property_readonly("closed", &FilmReader::closed)
       .def_property_readonly("axes", [](const FilmReader& r) { return r.header().axes; })
       .def_property_readonly("quantum_m", [](const FilmReader& r) { return r.header().quantum; })

@@ -1,4 +1,4 @@
-// What the core finds on this machine.
+// Facts of the core about this machine.
 #include "bindings.hpp"
 #include "snowshed/core/kernel_variant.hpp"
 #include "snowshed/core/memory.hpp"
@@ -9,7 +9,7 @@ void bind_machine(pybind11::module_& m) {
   m.def("available_memory_bytes", &available_memory_bytes,
         "Memory that can be had now without swapping.");
   m.def("slow_kernels_note", &slow_kernels_note,
-        "A sentence on what kernels without AVX2 cost, where these are used; else empty.");
+        "A sentence on the cost of kernels without AVX2, if these are used; otherwise empty.");
 }
 
 }  // namespace snowshed

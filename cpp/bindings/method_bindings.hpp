@@ -1,4 +1,5 @@
-// What methods add to the module: each in a file of its own in methods/, which nobody else names.
+// Additions of methods to the module: each is in a file of its own in methods/, which no other file
+// names.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,4 @@
-// snowshed._core: the C++ library as Python sees it. No logic here.
+// snowshed._core: the C++ library in Python, without logic of its own.
 #include <pybind11/pybind11.h>
 
 #include "bindings.hpp"

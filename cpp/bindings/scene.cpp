@@ -39,7 +39,7 @@ py::dict plan_dict(const py::object& argument, const std::filesystem::path& base
   return d;
 }
 
-/// Python's warnings tell what has another name since the version of a scene.
+/// Python's warnings name the fields that were renamed since the version of a scene.
 void warn(const std::vector<std::string>& notes, const std::string& file = "") {
   for (const std::string& note : notes) {
     const std::string message = file.empty() ? note : file + ": " + note;
@@ -79,9 +79,9 @@ void bind_scene(py::module_& m) {
           "path"_a, "The same of a file; files it names are found beside it.")
       .def_property_readonly("json", [](const ParsedScene& s) { return s.json; });
   m.def("update_version", &updated, "text"_a,
-        "The JSON of a scene, where it is of an earlier version as the present one says the same.");
+        "The JSON of a scene in the present version, with the same meaning.");
   m.def("scene_checksum", &scene_checksum, "text"_a,
-        "A checksum of the values in a scene's text, but for the number of threads.");
+        "A checksum of the values in a scene's text without the number of threads.");
   m.def("scene_schema", &scene_schema, "The JSON Schema of a scene.");
   m.def(
       "preset", [](const std::string& name) { return write_scene(preset_scene(name)); }, "name"_a);

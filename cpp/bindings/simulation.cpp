@@ -51,7 +51,7 @@ py::dict report_dict(const RunReport& r) {
 
 namespace {
 
-/// The callback answers whether to go on.
+/// The callback returns whether to continue.
 std::string run(Simulation& sim, const py::function& callback, double interval) {
   const auto observer = [&](const RunReport& r) {
     py::gil_scoped_acquire gil;
@@ -286,7 +286,7 @@ void bind_facts(SimulationClass& c) {
 
 void bind_simulation(py::module_& m) {
   using namespace py::literals;
-  m.def("quantities", &quantity_list, "(name, unit, meaning) of what particles may have.");
+  m.def("quantities", &quantity_list, "(name, unit, meaning) of the quantities of particles.");
   SimulationClass c(m);
   (*c).def(py::init([](const py::object& scene, const std::filesystem::path& base_dir) {
              return std::make_unique<SimulationHandle>(

@@ -19,7 +19,7 @@ class Guarded {
   explicit Guarded(T object) : object_(std::move(object)) {}
 
   /// Calls f(object). Throws std::runtime_error, and leaves the object alone, while a call of
-  /// another thread is under way; from within a call of the same thread one may only read.
+  /// another thread runs. Calls from within a call of the same thread may only read.
   template <class F>
   auto use(const char* call, Access access, F f) {
     const Use use(*this, call, access);
@@ -54,7 +54,7 @@ class Guarded {
   };
 
   T object_;
-  std::atomic<std::thread::id> user_{};  // that of no thread: free
+  std::atomic<std::thread::id> user_{};  // thread that uses it; that of no thread: free
   std::atomic<const char*> call_{"a call"};
 };
 

@@ -1,5 +1,5 @@
 // Fuzz target of checkpoints. A file must be refused, or give a simulation that can be inspected,
-// saved and continued, also into the next event. A SimulationError is allowed, since the state in
+// saved and continued, also into the next event. A SimulationError is allowed, because the state in
 // the file may be one from which no step is possible.
 #include "fuzzing.hpp"
 #include "snowshed/methods/capabilities.hpp"

@@ -26,7 +26,7 @@ void go_on(const std::filesystem::path& path) {
   writer.append(empty);
   writer.close();
   const FilmReader reader(path);
-  require(reader.whole() && reader.closed(), "the film does not end");
+  require(reader.is_complete() && reader.closed(), "the film does not end");
   require(reader.frames().size() == writer.frames().size(), "frames are lost");
 }
 

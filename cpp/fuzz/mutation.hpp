@@ -35,8 +35,8 @@ inline std::string mutate(std::string bytes, std::size_t max_size) {
   return bytes;
 }
 
-/// What LLVMFuzzerCustomMutator does with its arguments: replaces the data by
-/// `mutated(bytes, random)`, unless that is too long.
+/// Does the work of LLVMFuzzerCustomMutator on its arguments: replaces the data by `mutated(bytes,
+/// random)`, unless that is too long.
 template <class Mutated>
 std::size_t replace_data(std::uint8_t* data, std::size_t size, std::size_t max_size, unsigned seed,
                          Mutated mutated) {

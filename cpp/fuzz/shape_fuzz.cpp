@@ -34,7 +34,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   ShapeSpec spec;
   spec.type = SNOWSHED_FUZZ_TYPE;
   spec.file = file.path().string();
-  spec.spacing = 0.1;  // of grids
+  spec.spacing = 0.1;  // for grids
   for (const int dimension : {2, 3})
     allow_refusal([&] { check_samples(*build_shape(spec, dimension, "/shape", "")); });
   return 0;

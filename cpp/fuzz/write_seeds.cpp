@@ -368,8 +368,8 @@ void write_checkpoint(const Scene& scene, const fs::path& inputs, const fs::path
   simulation.save(file);
 }
 
-/// Of each other method, with everything that its state can hold. `inputs` gets the files that the
-/// scenes name.
+/// A checkpoint of each other method, with everything that its state can hold. `inputs` gets the
+/// files that the scenes name.
 void write_checkpoints_of_methods(const fs::path& folder, const fs::path& inputs) {
   write_terrain(inputs / "plane.asc");
   write_labels(inputs);

@@ -53,15 +53,15 @@ const openvdb::io::GridDescriptor& GridFile::find(const std::string& name) const
   const auto fits = [&](const auto& grid) {
     return name.empty() ? holds_floats(grid) : name_of(grid) == name || grid.gridName() == name;
   };
-  const auto found = std::find_if(grids_.begin(), grids_.end(), fits);
-  if (found == grids_.end())
+  const auto grid = std::find_if(grids_.begin(), grids_.end(), fits);
+  if (grid == grids_.end())
     throw InputError("", (name.empty() ? "no grid of floats" : "no such grid") + list());
-  if (!holds_floats(*found))
+  if (!holds_floats(*grid))
     throw InputError(
-        "", "a grid of type " + found->gridType() + "; allowed: " + openvdb::FloatGrid::gridType());
+        "", "a grid of type " + grid->gridType() + "; allowed: " + openvdb::FloatGrid::gridType());
   if (name.empty() && std::count_if(grids_.begin(), grids_.end(), fits) > 1)
     throw InputError("", "more than one grid of floats; give the name of one" + list());
-  return *found;
+  return *grid;
 }
 
 std::string GridFile::list() const {

@@ -88,7 +88,7 @@ void scatter(const Vec3& x, double spacing, int layers, Add add) {
 FloatGrid::Ptr density_grid(const ParticleCloud& cloud, const VdbWriteSettings& settings) {
   const int layers =
       settings.dimension == 2 ? std::max(1, int(std::lround(settings.width / settings.voxel))) : 0;
-  // The sums are in double precision, since in single precision each particle would lose mass.
+  // The sums are in double precision, because in single precision each particle would lose mass.
   openvdb::DoubleGrid sums;
   auto nodes = sums.getAccessor();
   const double volume = std::pow(settings.voxel, settings.dimension);

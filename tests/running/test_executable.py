@@ -312,7 +312,7 @@ def test_other_kernels_do_not_go_on(tmp_path):
     for kernels, code in (("junk", 2), ("baseline", 0)):
         done = snowshed_run(scene, "-o", first, env={**os.environ, "SNOWSHED_KERNELS": kernels})
         assert done.returncode == code
-    assert "note: the kernels do without AVX2: this takes two to five times" in done.stderr
+    assert "note: the kernels run without AVX2: this takes two to five times" in done.stderr
     present = {**os.environ, "SNOWSHED_KERNELS": "avx2"}
     done = snowshed_run(scene, "-o", first, "--resume", env=present)
     if "can run" not in done.stderr:  # a machine that has them

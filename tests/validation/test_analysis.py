@@ -173,20 +173,20 @@ def test_a_bar_holds_if_the_worst_it_is_for_is_small_enough():
     )
     meant = {"dx": 0.1, "transfer": "apic"}
     (bar,) = compare(table, [case_with(bar=0.05, bar_for=meant)])
-    assert (bar.kind, bar.demanded, bar.found, bar.count) == ("error", 0.05, 0.04, 2)
+    assert (bar.kind, bar.demanded, bar.worst, bar.count) == ("error", 0.05, 0.04, 2)
     assert bar.settings == {"dx": 0.1, "transfer": "apic", "seed": 1}
     assert bar.holds is True
     (strict,) = compare(table, [case_with(bar=0.03, bar_for=meant)])
     assert strict.holds is False
     (other,) = compare(table, [case_with(bar=0.03, bar_for={"basis": "cubic"})])
-    assert (other.holds, other.found, other.count) == (None, None, 0)
+    assert (other.holds, other.worst, other.count) == (None, None, 0)
 
 
 def test_a_bar_may_be_for_several_values_of_a_setting():
     flip, apic, none = {"transfer": "flip"}, {"transfer": "apic"}, {"scheme": "objective"}
     table = table_of((flip, 0.01, 1.0), (apic, 0.5, 1.0), (none, 0.02, 1.0))
     (bar,) = compare(table, [case_with(bar=0.1, bar_for={"transfer": ("flip", None)})])
-    assert (bar.holds, bar.count, bar.found) == (True, 2, 0.02)
+    assert (bar.holds, bar.count, bar.worst) == (True, 2, 0.02)
     assert meant(bar) == "flip or transfer default"
 
 
@@ -205,7 +205,7 @@ def test_every_series_must_converge_fast_enough():
     )
     facts = {"order_in": "dx", "least_order": 1.8}
     (bar,) = compare(table, [case_with(**facts)])
-    assert (bar.kind, bar.found, bar.count) == ("order", pytest.approx(1.0), 2)
+    assert (bar.kind, bar.worst, bar.count) == ("order", pytest.approx(1.0), 2)
     assert bar.settings == {"transfer": "pic"}
     assert bar.holds is False
     # A bar on the finest grid's error leaves the order one over all grids.

@@ -10,7 +10,7 @@ from validation.panel_edge.rigid_slab import RigidSlab
 
 
 def test_a_tipping_slab_without_friction_keeps_its_energy():
-    slab = RigidSlab(0.4, 0.05, tilt=35, friction=0.0, way=0.6)
+    slab = RigidSlab(0.4, 0.05, tilt=35, friction=0.0, sliding_distance=0.6)
     state = slab._leave()
     x, z = slab._slope(state.position)
     tilt = math.radians(35)

@@ -35,7 +35,7 @@ def test_voellmys_block_follows_its_equation():
     drag = 9.81 / (slide_block.TURBULENCE * slide_block.THICKNESS)
     rate = slide_block.PLANE.coulomb(slide_block.FRICTION) - drag * now.speed**2
     assert (then.speed - now.speed) / step == pytest.approx(rate, rel=1e-3)
-    assert (then.way - now.way) / step == pytest.approx(now.speed, rel=1e-3)
+    assert (then.distance - now.distance) / step == pytest.approx(now.speed, rel=1e-3)
 
 
 def test_a_map_turned_four_times_is_the_same():

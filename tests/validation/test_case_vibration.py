@@ -86,9 +86,9 @@ def test_smoothing_is_that_of_interpolating_a_wave(basis, transfer):
     else:
         ratio = transfer["flip_ratio"]
         again = weights.T @ (ratio * speeds + (1 - ratio) * (weights @ grid))
-    kept = (again / count) @ grid / (grid @ grid)
+    remaining = (again / count) @ grid / (grid @ grid)
     settings = {**transfer, "basis": basis, "dx": 1.0}
-    assert Smoothing.of(settings, k).kept == pytest.approx(kept, abs=1e-4)
+    assert Smoothing.of(settings, k).remaining == pytest.approx(remaining, abs=1e-4)
 
 
 @pytest.mark.parametrize("transfer", TRANSFERS, ids=str)
@@ -101,7 +101,7 @@ def test_what_smoothing_takes_per_period_is_what_its_recurrence_takes(transfer):
     for _ in range(1500):
         force = -stiffness * q
         q += dt * (v + dt * force)
-        v = smoothing.kept * v + smoothing.felt * dt * force
+        v = smoothing.remaining * v + smoothing.felt * dt * force
         values.append(q)
     swing = Swing.fit(dt * np.arange(1, 1501), np.array(values), frequency)
     assert smoothing.lost(frequency, dt) == pytest.approx(swing.lost, rel=2e-2, abs=1e-6)

@@ -263,7 +263,7 @@ CASE = Case(
     source=SOURCE,
     description=DESCRIPTION,
     quantities=[
-        # What the method can do on these grids (see the remarks), not what one would wish.
+        # The accuracy of the method on these grids (see the remarks), not the desired one.
         Quantity(
             "runout",
             "Run-out over radius, against Lube et al.",

@@ -1,4 +1,4 @@
-"""Collapsing columns of grains: what experiments found, and what is measured of a deposit."""
+"""Collapsing columns of grains: results of experiments, and measures of a deposit."""
 
 from __future__ import annotations
 

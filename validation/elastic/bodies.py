@@ -38,7 +38,7 @@ def elastic_scene(
     own
         Names among the settings that are the case's own.
     obstacles
-        What holds the body, if anything does.
+        Obstacles that hold the body, if any.
 
     Examples
     --------

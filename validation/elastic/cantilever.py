@@ -30,7 +30,7 @@ class Cantilever:
     length, height
         m.
     youngs_modulus, poissons_ratio, density
-        Of the material; Pa, 1, kg/m3.
+        Constants of the material; Pa, 1, kg/m3.
 
     Examples
     --------
@@ -52,13 +52,16 @@ class Cantilever:
 
     @property
     def euler_frequency(self) -> float:
-        """Of a slender beam, Hz; omega L^2 sqrt(rho H/(E I)) = 3.516, 1 + cosh x cos x = 0."""
+        """Frequency of a slender beam, Hz.
+
+        omega L^2 sqrt(rho H/(E I)) = 3.516, the square of the first root of 1 + cosh x cos x = 0.
+        """
         slenderness = self._bending / (self.density * self.height)
         return float(1.8751040687**2 / self.length**2 * math.sqrt(slenderness) / (2 * math.pi))
 
     @cached_property
     def frequency(self) -> float:
-        """By Timoshenko's theory, Hz."""
+        """Frequency by Timoshenko's theory, Hz."""
         from scipy.optimize import brentq
 
         slender = self.euler_frequency

@@ -128,8 +128,8 @@ class Spinning:
             core.add_velocity(from_plane(-DAMPED * along * outwards))
 
 
-def per_turn(kept: float, time: float) -> float:
-    """Return the change per turn, over what there is, of what has been kept for a time (s).
+def per_turn(ratio: float, time: float) -> float:
+    """Return the relative change per turn from the ratio to the start after a time (s).
 
     Examples
     --------
@@ -138,7 +138,7 @@ def per_turn(kept: float, time: float) -> float:
     >>> round(per_turn(0.5, 2 * TURN), 2)
     -0.29
     """
-    return math.expm1(math.log(abs(kept)) * TURN / time)
+    return math.expm1(math.log(abs(ratio)) * TURN / time)
 
 
 def measure(settings: Settings) -> Outcome:
@@ -175,18 +175,18 @@ def matrix(full: bool) -> list[Settings]:
     listed += [{**DISC, **APIC, "dx": dx, "begins": "equilibrium"} for dx in sizes]
     listed += [{**CYLINDER, **APIC}, {**CYLINDER, **FLIP}]
     if not full:
-        return [{**one, "turns": 1} for one in listed]
-    floats = [one for one in TRANSFERS if one != APIC]
-    listed += [{**DISC, **one, "precision": "float"} for one in floats]
+        return [{**settings, "turns": 1} for settings in listed]
+    floats = [transfer for transfer in TRANSFERS if transfer != APIC]
+    listed += [{**DISC, **transfer, "precision": "float"} for transfer in floats]
     listed += [{**DISC, **FLIP, "dx": dx, "begins": "equilibrium"} for dx in sizes]
-    listed += [{**DISC, **one, "basis": "cubic"} for one in (FLIP, APIC)]
+    listed += [{**DISC, **transfer, "basis": "cubic"} for transfer in (FLIP, APIC)]
     listed += [{**DISC, **APIC, "begins": "equilibrium", "basis": "cubic"}]
     seedings: list[Settings] = [{"particles_per_voxel": 4}, {"pattern": "poisson", "seed": 1}]
-    listed += [{**DISC, **one, **seeding} for seeding in seedings for one in (FLIP, APIC)]
+    listed += [{**DISC, **transfer, **seeding} for seeding in seedings for transfer in (FLIP, APIC)]
     listed += [{**DISC, **APIC, "begins": "equilibrium", "particles_per_voxel": 4}]
-    listed += [{**CYLINDER, **one} for one in TRANSFERS[1:3]]
+    listed += [{**CYLINDER, **transfer} for transfer in TRANSFERS[1:3]]
     listed += [{**CYLINDER, **APIC, "precision": "float"}]
-    return [*listed, *({**CYLINDER, **one, "dx": 0.1} for one in (FLIP, APIC))]
+    return [*listed, *({**CYLINDER, **transfer, "dx": 0.1} for transfer in (FLIP, APIC))]
 
 
 CASE = Case(

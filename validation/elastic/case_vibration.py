@@ -30,7 +30,7 @@ DEFAULTS: Settings = {
     "pattern": "regular",
     "particles_per_voxel": 4,
 }
-#: What is tried besides resolutions and transfers, with APIC.
+#: Variants besides resolutions and transfers, with APIC.
 VARIANTS: Sequence[Settings] = (
     {"basis": "cubic"},
     {"precision": "float"},
@@ -50,9 +50,9 @@ class Vibrating:
     mode
         Displacements of the particles in the mode, shape (n, 2), in any unit.
     frequency
-        Of the mode, Hz.
+        Frequency of the mode, Hz.
     height
-        What `mode` is to be multiplied with at the largest displacement.
+        Factor of `mode` at the largest displacement.
     """
 
     def __init__(self, drive: Drive, mode: Floats, frequency: float, height: float) -> None:
@@ -123,8 +123,8 @@ def bar_matrix(full: bool) -> list[Settings]:
         {**BAR_DEFAULTS, "dx": dx, **transfer} for transfer in TRANSFERS for dx in sizes
     ]
     if full:
-        listed += [{**BAR_DEFAULTS, "transfer": "apic", **one} for one in VARIANTS]
-        listed += [{**BAR_DEFAULTS, **TRANSFERS[0], **one} for one in VARIANTS]
+        listed += [{**BAR_DEFAULTS, "transfer": "apic", **variant} for variant in VARIANTS]
+        listed += [{**BAR_DEFAULTS, **TRANSFERS[0], **variant} for variant in VARIANTS]
     return listed
 
 
@@ -175,7 +175,7 @@ BAR = Case(
 # --- the cantilever ---------------------------------------------------------------------------
 
 CANTILEVER_HEIGHT, POISSONS_RATIO = 0.2, 0.3  # m
-#: How far the beam reaches into its clamp, in cells.
+#: Length of the beam within its clamp, in cells.
 HELD_CELLS = 4
 #: Largest deflection over the length, periods, and steps between two samples.
 DEFLECTION, CANTILEVER_PERIODS, STEPS = 2e-3, 1.5, 10
@@ -229,7 +229,7 @@ def cantilever_matrix(full: bool) -> list[Settings]:
     apic: Settings = {**CANTILEVER_DEFAULTS, "transfer": "apic"}
     if not full:
         return [*listed, {**CANTILEVER_DEFAULTS, **TRANSFERS[0]}, apic]
-    listed += [{**apic, **one} for one in VARIANTS]
+    listed += [{**apic, **variant} for variant in VARIANTS]
     return [*listed, {**apic, "length": 2 * LENGTH}]
 
 

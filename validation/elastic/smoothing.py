@@ -32,13 +32,13 @@ class Smoothing:
 
     Attributes
     ----------
-    kept
+    remaining
         g, the part of the velocity that a step hands on.
     felt
         f, the part of the forces that reaches the velocity.
     """
 
-    kept: float
+    remaining: float
     felt: float
 
     @classmethod
@@ -57,7 +57,7 @@ class Smoothing:
         PIC loses (k h/2)^2 of a long wave's velocity in every step.
 
         >>> pic = {"transfer": "flip", "flip_ratio": 0.0, "dx": 0.1, "basis": "quadratic"}
-        >>> round((1 - Smoothing.of(pic, 0.1).kept) / (0.1 * 0.1 / 2) ** 2, 3)
+        >>> round((1 - Smoothing.of(pic, 0.1).remaining) / (0.1 * 0.1 / 2) ** 2, 3)
         1.0
         """
         dx, quadratic = float(settings["dx"]), settings["basis"] == "quadratic"
@@ -68,9 +68,9 @@ class Smoothing:
         if settings["transfer"] == "apic":
             slope = factors * wave ** (factors - 1) * (math.cos(half) - wave) / half / 2  # over dx
             affine = once**2 + slope**2 * (4 if quadratic else 3)
-            return cls(kept=affine, felt=affine)
+            return cls(remaining=affine, felt=affine)
         lost = (1 - float(settings["flip_ratio"])) * (1 - once**2)
-        return cls(kept=1 - lost, felt=once**2)
+        return cls(remaining=1 - lost, felt=once**2)
 
     def lost(self, frequency: float, time_step: float) -> float:
         """Return the part of the amplitude that is lost in a period.
@@ -83,5 +83,5 @@ class Smoothing:
             s.
         """
         angle = (2 * math.pi * frequency * time_step) ** 2 / self.felt
-        step = self.kept - angle * (self.kept - self.felt)
+        step = self.remaining - angle * (self.remaining - self.felt)
         return -math.expm1(math.log(step) / (2 * frequency * time_step))

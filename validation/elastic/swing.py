@@ -58,5 +58,7 @@ class Swing:
         # Periods and heights of one make the four unknowns comparable.
         period, height = 1 / frequency, float(np.abs(values).max())
         start = (1.0, 0.0, 1.0, 0.0)
-        found, _ = curve_fit(swing, times / period, values / height, p0=start)
-        return cls(frequency=float(found[2]) * frequency, decay=float(found[1]) * frequency)
+        parameters, _ = curve_fit(swing, times / period, values / height, p0=start)
+        return cls(
+            frequency=float(parameters[2]) * frequency, decay=float(parameters[1]) * frequency
+        )

@@ -1,1 +1,1 @@
-"""Shared parts of the cases: how they are found and measured, compared and reported."""
+"""Shared parts of the cases: loading, measuring, comparing and reporting."""

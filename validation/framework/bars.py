@@ -18,25 +18,25 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Bar:
-    """A demand on a quantity, and what was found.
+    """A demand on a quantity, and the worst result.
 
     Attributes
     ----------
     kind
         ``"error"`` (the largest allowed) or ``"order"`` of convergence (the smallest allowed).
-    demanded, found
+    demanded, worst
         The bar, and the worst that was measured (NaN if that failed; None if nothing was).
     settings
         Those of the worst.
     count
-        How many errors or orders were compared with the bar.
+        Number of errors or orders that were compared with the bar.
     """
 
     case: str
     quantity: Quantity
     kind: str
     demanded: float
-    found: Optional[float]
+    worst: Optional[float]
     settings: Settings
     count: int
 
@@ -49,22 +49,22 @@ class Bar:
     @property
     def holds(self) -> Optional[bool]:
         """True if the bar holds; None if nothing was measured that it is for."""
-        if self.found is None:
+        if self.worst is None:
             return None
-        return self.found >= self.demanded if self.kind == "order" else self.found <= self.demanded
+        return self.worst >= self.demanded if self.kind == "order" else self.worst <= self.demanded
 
 
 def compare(table: pd.DataFrame, cases: Iterable[Case]) -> list[Bar]:
-    """Compare every demand of the cases with what was measured."""
-    found = []
+    """Compare every demand of the cases with the measurements."""
+    bars = []
     for case in cases:
         for quantity in case.quantities:
             rows = rows_of(table, case.name, quantity.name)
             if quantity.bar is not None:
-                found.append(_error_bar(case.name, quantity, quantity.bar, rows))
+                bars.append(_error_bar(case.name, quantity, quantity.bar, rows))
             if quantity.least_order is not None and quantity.order_in is not None:
-                found.append(_order_bar(case.name, quantity, quantity.least_order, rows))
-    return found
+                bars.append(_order_bar(case.name, quantity, quantity.least_order, rows))
+    return bars
 
 
 def _error_bar(case: str, quantity: Quantity, demanded: float, rows: pd.DataFrame) -> Bar:
@@ -80,12 +80,15 @@ def _order_bar(case: str, quantity: Quantity, demanded: float, rows: pd.DataFram
     """Every series must converge fast enough; one with a failed measurement does not."""
     order_in = quantity.order_in or ""
     demand = {name: value for name, value in quantity.bar_for.items() if name != order_in}
-    meant = [(one.order, one.settings) for one in convergences(solutions(rows), order_in)]
+    meant = [
+        (convergence.order, convergence.settings)
+        for convergence in convergences(solutions(rows), order_in)
+    ]
     meant += [(nan, row.settings) for row in records(rows) if isnan(row.error)]
     meant = [(order, settings) for order, settings in meant if _matches(settings, demand)]
     if not meant:
         return Bar(case, quantity, "order", demanded, None, {}, 0)
-    order, settings = min(meant, key=lambda one: -inf if isnan(one[0]) else one[0])
+    order, settings = min(meant, key=lambda pair: -inf if isnan(pair[0]) else pair[0])
     return Bar(case, quantity, "order", demanded, order, settings, len(meant))
 
 

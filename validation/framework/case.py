@@ -32,14 +32,14 @@ def alternatives(
 
 @dataclass(frozen=True)
 class Quantity:
-    """Something measured, with what is demanded of it.
+    """A measured quantity, and the demand on it.
 
     Parameters
     ----------
     name:
         Key, such as ``"acceleration"``.
     title:
-        What it is, with its unit if it has one.
+        Name in texts, with the unit if it has one.
     bar:
         Largest error allowed; `None` where nothing is demanded.
     bar_for:

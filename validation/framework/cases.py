@@ -47,8 +47,8 @@ def load_cases(names: Sequence[str] = ()) -> list[Case]:
     Parameters
     ----------
     names
-        Of cases, of modules with or without their folder, or of folders. A module and a folder
-        stand for all cases in them.
+        Names of cases, of modules with or without their folder, or of folders. A module and a
+        folder stand for all cases in them.
 
     Raises
     ------
@@ -67,10 +67,12 @@ def load_cases(names: Sequence[str] = ()) -> list[Case]:
     if names and set(names) <= set().union(*groups.values()):  # no other module is imported
         chosen = [name for name in modules if groups[name] & set(names)]
         return [case for name in chosen for case in cases_of(modules[name])]
-    found = [(name, case) for name, module in modules.items() for case in cases_of(module)]
-    _check_names(names, groups, found)
+    all_cases = [(name, case) for name, module in modules.items() for case in cases_of(module)]
+    _check_names(names, groups, all_cases)
     return [
-        case for name, case in found if not names or case.name in names or groups[name] & set(names)
+        case
+        for name, case in all_cases
+        if not names or case.name in names or groups[name] & set(names)
     ]
 
 
@@ -81,8 +83,10 @@ def _group_names(name: str, module: str) -> set[str]:
 
 
 def _check_names(
-    names: Sequence[str], groups: Mapping[str, set[str]], found: Sequence[tuple[str, Case]]
+    names: Sequence[str], groups: Mapping[str, set[str]], all_cases: Sequence[tuple[str, Case]]
 ) -> None:
-    known = {name: None for module, case in found for name in (*sorted(groups[module]), case.name)}
+    known = {
+        name: None for module, case in all_cases for name in (*sorted(groups[module]), case.name)
+    }
     if unknown := [name for name in names if name not in known]:
         raise InputError(f"--case {unknown[0]}: no such case; there are {', '.join(known)}")

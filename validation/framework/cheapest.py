@@ -65,12 +65,12 @@ def pareto_front(costs: Sequence[float], errors: Sequence[float]) -> Booleans:
     return front
 
 
-def by_problem(case: Case, found: Iterable[Solution]) -> list[tuple[Settings, list[Solution]]]:
+def by_problem(case: Case, listed: Iterable[Solution]) -> list[tuple[Settings, list[Solution]]]:
     """Return the problems among solutions, each with all ways in which it was solved."""
     groups: dict[Hashable, tuple[Settings, list[Solution]]] = {}
-    for one in found:
-        problem = problem_of(case, one.settings)
-        groups.setdefault(key_of(problem), (problem, []))[1].append(one)
+    for solution in listed:
+        problem = problem_of(case, solution.settings)
+        groups.setdefault(key_of(problem), (problem, []))[1].append(solution)
     return list(groups.values())
 
 
@@ -82,20 +82,20 @@ def cheapest(
     For each quantity with a relative error and each problem that was solved in several ways.
     """
     return [
-        _cheapest(case.name, quantity, problem, found, accuracy)
+        _cheapest(case.name, quantity, problem, group, accuracy)
         for case in cases
         for quantity in case.quantities
         if quantity.relative
-        for problem, found in by_problem(case, solutions(rows_of(table, case.name, quantity.name)))
-        if len(found) > 1
+        for problem, group in by_problem(case, solutions(rows_of(table, case.name, quantity.name)))
+        if len(group) > 1
         for accuracy in wanted
     ]
 
 
 def _cheapest(
-    case: str, quantity: Quantity, problem: Settings, found: Sequence[Solution], wanted: float
+    case: str, quantity: Quantity, problem: Settings, group: Sequence[Solution], wanted: float
 ) -> Cheapest:
-    errors = assured_errors(found, quantity.order_in)
-    i = quickest([one.wall_s for one in found], errors, wanted)
+    errors = assured_errors(group, quantity.order_in)
+    i = quickest([solution.wall_s for solution in group], errors, wanted)
     reached = errors[i] <= wanted
-    return Cheapest(case, quantity.name, problem, wanted, reached, errors[i], found[i])
+    return Cheapest(case, quantity.name, problem, wanted, reached, errors[i], group[i])

@@ -97,7 +97,7 @@ def _measure(
     from validation.framework.display import validation_bar
     from validation.framework.measure import measure_cases
 
-    durations = {one.key: one.elapsed_s for one in load_recorded()}
+    durations = {measurement.key: measurement.elapsed_s for measurement in load_recorded()}
     with validation_bar(quiet=quiet) as progress:
         return measure_cases(
             cases, results.measurements, full=full, progress=progress, durations=durations

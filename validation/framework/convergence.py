@@ -65,13 +65,13 @@ def pairwise_orders(sizes: Floats, errors: Floats) -> Floats:
     return slopes
 
 
-def convergences(found: Sequence[Solution], order_in: str) -> list[Convergence]:
+def convergences(solutions: Sequence[Solution], order_in: str) -> list[Convergence]:
     """Return how the error falls with a setting such as ``"dx"``, for each choice of the others."""
     series = []
-    for group in alike(found, order_in):
+    for group in alike(solutions, order_in):
         if len(group) > 1:
-            sizes = np.array([float(one.settings[order_in]) for one in group])
-            errors = np.array([abs(one.error) for one in group])
+            sizes = np.array([float(solution.settings[order_in]) for solution in group])
+            errors = np.array([abs(solution.error) for solution in group])
             others = {k: v for k, v in group[0].settings.items() if k != order_in}
             order, pairwise = observed_order(sizes, errors), pairwise_orders(sizes, errors)
             series.append(Convergence(others, sizes, errors, order, pairwise))

@@ -22,7 +22,7 @@ def validation_bar(*, quiet: bool) -> AbstractContextManager[Optional[Reporter]]
 
 
 def print_bars(bars: Sequence[Demand], cases: Sequence[Case]) -> None:
-    """Print what was demanded and what was found, if anything was."""
+    """Print the demands and their results, if there are any."""
     grid = sections.bars_grid(bars, cases)
     if not grid.rows:
         return

@@ -64,12 +64,12 @@ def _path(name: str) -> str:
 
 
 class Drive(drive.Drive):
-    """The first event of a scene, run as far as asked; only its steps count as run time.
+    """The first event of a scene, run to the given times; only its steps count as run time.
 
     Parameters
     ----------
     scene
-        What to simulate.
+        The scene to simulate.
 
     Attributes
     ----------

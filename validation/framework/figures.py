@@ -38,7 +38,7 @@ Problem = Tuple[Settings, Sequence[Solution]]
 
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
 DASHES = ("-", (0, (5, 2)), (0, (1, 1.4)), (0, (6, 1.5, 1, 1.5)), (0, (9, 3)))
-#: Which settings get colours before others get markers and dashes.
+#: Settings that get colours; others get markers and dashes.
 FIRST = ("transfer", "law", "between", "dimension", "events", "basis", "precision")
 #: Points on a Pareto front closer than this part are not both named.
 NEARLY = 0.1
@@ -76,7 +76,7 @@ class LineStyles:
     def of(
         cls, choices: Sequence[Settings], drawn: Sequence[Settings], along: Collection[str] = ()
     ) -> LineStyles:
-        """Return the styles for what is drawn.
+        """Return the styles of the lines.
 
         Parameters
         ----------
@@ -85,14 +85,14 @@ class LineStyles:
         drawn
             Those that are drawn: the settings in which they differ are told apart.
         along
-            Settings that are told by the lines. Where there are none, dashes tell nothing.
+            Settings that the lines distinguish. Without any, dashes have no meaning.
         """
         names = [name for name in varying(drawn) if name not in along]
         names.sort(key=lambda n: FIRST.index(n) if n in FIRST else len(FIRST))
         shapes = (COLOURS, MARKERS, DASHES) if along else (COLOURS, MARKERS)
         of_names: list[dict[str, dict[Optional[Value], Any]]] = [{}, {}, {}]
         for of_name, name, of_values in zip(of_names, names, shapes):
-            values = dict.fromkeys(one.get(name) for one in choices)
+            values = dict.fromkeys(settings.get(name) for settings in choices)
             of_name[name] = dict(zip(values, cycle(of_values)))
         return cls(*of_names)
 
@@ -112,7 +112,7 @@ class LineStyles:
             for keyword, styles in kinds
             for name, shapes in styles.items()
             for value, shape in shapes.items()
-            if any(one.get(name) == value for one in drawn)
+            if any(settings.get(name) == value for settings in drawn)
         ]
 
 
@@ -128,7 +128,7 @@ def convergence_figure(
     choices
         All choices of settings of the case.
     """
-    drawn = [one.settings for _, series in panels for one in series]
+    drawn = [convergence.settings for _, series in panels for convergence in series]
     styles = LineStyles.of(choices, drawn, _orders_in(panels))
     with _figure(styles, drawn, rows=-(-len(panels) // 2)) as figure:
         for axes, (quantity, series) in zip(_pairs(figure, len(panels)), panels):
@@ -149,7 +149,12 @@ def work_precision_figure(
     choices
         All choices of settings of the case.
     """
-    drawn = [one.settings for _, problems in panels for _, found in problems for one in found]
+    drawn = [
+        solution.settings
+        for _, problems in panels
+        for _, solutions in problems
+        for solution in solutions
+    ]
     styles = LineStyles.of(choices, drawn, _orders_in(panels))
     with _figure(styles, drawn, rows=len(panels)) as figure:
         grid = figure.subplots(len(panels), 2, squeeze=False, width_ratios=(1.25, 1))
@@ -195,12 +200,18 @@ def _pairs(figure: Figure, count: int) -> list[Axes]:
 def _draw_convergence(
     axes: Axes, quantity: Quantity, series: Sequence[Convergence], styles: LineStyles
 ) -> None:
-    for one in series:
-        errors = np.maximum(one.errors, ZERO)
-        axes.plot(one.sizes, errors, markersize=4.5, linewidth=1.3, **styles.for_line(one.settings))
+    for convergence in series:
+        errors = np.maximum(convergence.errors, ZERO)
+        axes.plot(
+            convergence.sizes,
+            errors,
+            markersize=4.5,
+            linewidth=1.3,
+            **styles.for_line(convergence.settings),
+        )
     axes.set(xscale="log", yscale="log", title=_title(quantity))
     axes.set_xlabel((quantity.order_in or "").replace("_", " "))
-    sizes = sorted({size for one in series for size in one.sizes})
+    sizes = sorted({size for convergence in series for size in convergence.sizes})
     axes.set_xticks(sizes, [formatting.number(size) for size in sizes])
     axes.minorticks_off()
     _draw_slope(axes, series, quantity.least_order)
@@ -209,11 +220,11 @@ def _draw_convergence(
 
 def _draw_slope(axes: Axes, series: Sequence[Convergence], least: Optional[float]) -> None:
     """Draw a line with the slope that is demanded, or else a whole number near what there is."""
-    orders = [one.order for one in series if np.isfinite(one.order)]
+    orders = [convergence.order for convergence in series if np.isfinite(convergence.order)]
     order = least or max(1.0, round(float(np.median(orders)))) if orders else 0.0
     if not order:
         return
-    best = min(series, key=lambda one: one.errors[-1])
+    best = min(series, key=lambda convergence: convergence.errors[-1])
     ends = np.array([best.sizes.max(), best.sizes.min()])
     line = 0.6 * max(best.errors[0], ZERO) * (ends / ends[0]) ** order
     axes.plot(ends, line, color=FAINT, linewidth=1.2, linestyle=(0, (2, 2)), zorder=1)
@@ -225,9 +236,9 @@ def _draw_slope(axes: Axes, series: Sequence[Convergence], least: Optional[float
 def _draw_work_precision(
     axes: Axes, quantity: Quantity, problems: Sequence[Problem], styles: LineStyles
 ) -> list[KeyLine]:
-    """Draw one diagram and return what is to be said about its fronts."""
-    for _, found in problems:
-        _draw_points(axes, found, quantity.order_in, styles)
+    """Draw one diagram and return the lines of text about its fronts."""
+    for _, solutions in problems:
+        _draw_points(axes, solutions, quantity.order_in, styles)
     axes.set(xscale="log", yscale="log", title=_title(quantity), xlabel="time of the solution")
     axes.margins(0.1)
     axes.set_xlim(_widened(*axes.get_xlim()))
@@ -235,10 +246,10 @@ def _draw_work_precision(
     _errors_on(axes, quantity)
     names, letters = varying(problem for problem, _ in problems), iter(ascii_uppercase)
     lines: list[KeyLine] = []
-    for problem, found in _with_fronts(problems):
+    for problem, solutions in _with_fronts(problems):
         if names:
             lines.append(KeyLine("", setting_labels.settings(problem, names), ""))
-        lines += _draw_front(axes, quantity, found, letters)
+        lines += _draw_front(axes, quantity, solutions, letters)
     return lines
 
 
@@ -249,55 +260,58 @@ def _with_fronts(problems: Sequence[Problem]) -> list[Problem]:
 
 
 def _draw_points(
-    axes: Axes, found: Sequence[Solution], order_in: Optional[str], styles: LineStyles
+    axes: Axes, solutions: Sequence[Solution], order_in: Optional[str], styles: LineStyles
 ) -> None:
-    for line in _lines(found, order_in):
-        points = [_time(found[i]) for i in line], [_size(found[i]) for i in line]
-        drawn = styles.for_line(found[line[0]].settings)
+    for line in _lines(solutions, order_in):
+        points = [_time(solutions[i]) for i in line], [_size(solutions[i]) for i in line]
+        drawn = styles.for_line(solutions[line[0]].settings)
         axes.plot(*points, markersize=5, linewidth=0.9, alpha=0.8, markeredgewidth=0, **drawn)
 
 
 def _draw_front(
-    axes: Axes, quantity: Quantity, found: Sequence[Solution], letters: Iterator[str]
+    axes: Axes, quantity: Quantity, solutions: Sequence[Solution], letters: Iterator[str]
 ) -> list[KeyLine]:
     """Draw the Pareto front of one problem, and name the points on it."""
-    times, errors = [_time(one) for one in found], [_size(one) for one in found]
+    times, errors = (
+        [_time(solution) for solution in solutions],
+        [_size(solution) for solution in solutions],
+    )
     on_front = pareto_front(times, errors)
     front = [int(i) for i in np.argsort(times) if on_front[i]]
     corners = np.array([(times[i], errors[i]) for i in front]).T
     axes.step(*corners, where="post", color=FAINT, linewidth=3.5, alpha=0.45, zorder=1)
-    names = varying(one.settings for one in found)
+    names = varying(solution.settings for solution in solutions)
     lines = []
     for i, letter in zip(worth_naming(front, times, errors), letters):
         _name_point(axes, letter, times[i], errors[i])
         error = quantity.error_text(errors[i])
         cost = f"{formatting.duration(times[i])}, {error}"
-        lines.append(KeyLine(letter, cost, setting_labels.settings(found[i].settings, names)))
+        lines.append(KeyLine(letter, cost, setting_labels.settings(solutions[i].settings, names)))
     return lines
 
 
-def _time(one: Solution) -> float:
-    return max(one.wall_s, SHORTEST)
+def _time(solution: Solution) -> float:
+    return max(solution.wall_s, SHORTEST)
 
 
-def _size(one: Solution) -> float:
-    return max(abs(one.error), ZERO)
+def _size(solution: Solution) -> float:
+    return max(abs(solution.error), ZERO)
 
 
 def worth_naming(
     front: Sequence[int], times: Sequence[float], errors: Sequence[float]
 ) -> list[int]:
-    """Return the points of a Pareto front but those that another one all but equals.
+    """Return the points of a Pareto front that differ clearly from each other.
 
-    Left out is what costs nearly as much as a more accurate one, or is hardly more accurate than
-    a cheaper one.
+    Points are left out if they cost nearly as much as a more accurate one, or if they are hardly
+    more accurate than a cheaper one.
 
     Parameters
     ----------
     front
         Indices, from the quickest to the most accurate.
     times, errors
-        Of all points.
+        Run times and errors of all points.
 
     Examples
     --------
@@ -313,15 +327,16 @@ def worth_naming(
     return named
 
 
-def _lines(found: Sequence[Solution], order_in: Optional[str]) -> list[list[int]]:
-    """Return the indices of solutions that a line joins: alike but for the setting `order_in`."""
+def _lines(solutions: Sequence[Solution], order_in: Optional[str]) -> list[list[int]]:
+    """Return the indices of solutions that a line joins: they differ in `order_in` only."""
     if order_in is None:
-        return [[i] for i in range(len(found))]
+        return [[i] for i in range(len(solutions))]
     groups: dict[Hashable, list[int]] = {}
-    for i, one in enumerate(found):
-        groups.setdefault(key_of(one.settings, without=[order_in]), []).append(i)
+    for i, solution in enumerate(solutions):
+        groups.setdefault(key_of(solution.settings, without=[order_in]), []).append(i)
     return [
-        sorted(group, key=lambda i: found[i].settings.get(order_in, 0)) for group in groups.values()
+        sorted(group, key=lambda i: solutions[i].settings.get(order_in, 0))
+        for group in groups.values()
     ]
 
 

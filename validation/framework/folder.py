@@ -63,8 +63,8 @@ class ValidationFolder:
     def keep_stress(self, runs: pd.DataFrame, *, full: bool, seed: int) -> None:
         """Keep the runs of a stress suite."""
         records = json.loads(runs.to_json(orient="records", double_precision=15))
-        kept = {**_identity(full, seed), "digest": _digest(records), "runs": records}
-        write_text(self._stress, json.dumps(kept) + "\n")
+        stored = {**_identity(full, seed), "digest": _digest(records), "runs": records}
+        write_text(self._stress, json.dumps(stored) + "\n")
 
     def kept_stress(self, *, full: bool, seed: int) -> Optional[pd.DataFrame]:
         """Return the runs of this stress suite, if they are there.
@@ -78,10 +78,10 @@ class ValidationFolder:
 
         if not self._stress.exists():
             return None
-        kept = read_object(self._stress)
-        check_values(kept, {"runs": list}, str(self._stress))
-        digest, runs = kept.pop("digest", None), kept.pop("runs")
-        if kept != _identity(full, seed) or digest is None:  # of another suite, or earlier days
+        stored = read_object(self._stress)
+        check_values(stored, {"runs": list}, str(self._stress))
+        digest, runs = stored.pop("digest", None), stored.pop("runs")
+        if stored != _identity(full, seed) or digest is None:  # of another suite, or earlier days
             return None
         if digest != _digest(runs):
             raise InputError(f"{self._stress}: damaged: /runs is not what was written")

@@ -1,6 +1,6 @@
 """Measuring every case over its matrix, one measurement after another.
 
-Nothing runs at the same time, since times are measured. A measurement that fails becomes a result
+Nothing runs at the same time, because times are measured. A measurement that fails becomes a result
 that says why.
 """
 
@@ -37,7 +37,7 @@ class Task(NamedTuple):
 
 
 def tasks_of(cases: Iterable[Case], *, full: bool) -> list[Task]:
-    """Return the entries of the cases' matrices; what a matrix lists twice only once."""
+    """Return the entries of the cases' matrices, each only once."""
     tasks = [Task(case, settings) for case in cases for settings in case.matrix(full)]
     return list({task.key: task for task in tasks}.values())
 
@@ -50,20 +50,20 @@ def measure_cases(
     progress: Optional[Reporter] = None,
     durations: Optional[Mapping[str, float]] = None,
 ) -> list[Measurement]:
-    """Measure all that `file` does not hold yet, and return all measurements.
+    """Make all measurements that `file` does not hold yet, and return all of them.
 
     Parameters
     ----------
     cases
-        What to measure.
+        Cases to measure.
     file
-        Where measurements are kept. Those of this version that did not fail are not made again.
+        File of the measurements. Those of this version that did not fail are not made again.
     full
         Whether to take the full matrices or the quick ones.
     progress
         Called before every measurement.
     durations
-        What measurements took on another occasion, by key, s: for the estimate of the time left.
+        Durations of earlier measurements, by key, s, for the estimate of the time left.
 
     Returns
     -------
@@ -71,7 +71,11 @@ def measure_cases(
         In the order of the matrices.
     """
     tasks = tasks_of(cases, full=full)
-    held = {one.key: one for one in file.read() if one.version == _core.version and not one.failure}
+    held = {
+        measurement.key: measurement
+        for measurement in file.read()
+        if measurement.version == _core.version and not measurement.failure
+    }
     due = [task for task in tasks if task.key not in held]
     estimate = Estimate(due, durations or {})
     with measuring_pool() as pool:
@@ -91,16 +95,16 @@ def measure_cases(
 
 
 class Estimate:
-    """Estimated duration of tasks: what they took before, scaled by how it goes this time.
+    """Estimated duration of tasks: that of earlier runs, scaled by the present speed.
 
-    A task about which nothing is known counts as the mean of its case, or of all.
+    A task without an earlier run counts as the mean of its case, or of all.
 
     Parameters
     ----------
     tasks
-        All that is to be done, in order.
+        All tasks, in order.
     durations
-        What tasks took on another occasion, by key, s.
+        Durations of earlier tasks, by key, s.
     """
 
     def __init__(self, tasks: Sequence[Task], durations: Mapping[str, float]) -> None:
@@ -134,7 +138,9 @@ def _expected(task: Task, tasks: Sequence[Task], durations: Mapping[str, float])
 def _measurement(task: Task, answer: Answer) -> Measurement:
     failure = answer.failure or _breach(task.case, answer.outcome)
     outcome = Outcome([], 0.0, 0) if failure or answer.outcome is None else answer.outcome
-    nothing = [Measured(one.name, math.nan, math.nan, math.nan) for one in task.case.quantities]
+    nothing = [
+        Measured(quantity.name, math.nan, math.nan, math.nan) for quantity in task.case.quantities
+    ]
     return Measurement(
         case=task.case.name,
         settings=dict(task.settings),
@@ -154,7 +160,7 @@ def _measurement(task: Task, answer: Answer) -> Measurement:
 
 def _breach(case: Case, outcome: Optional[Outcome]) -> str:
     """Return how an outcome breaks the contract of its case; empty if it does not."""
-    returned = [one.quantity for one in outcome.measured] if outcome else []
+    returned = [measured.quantity for measured in outcome.measured] if outcome else []
     listed = [quantity.name for quantity in case.quantities]
     if not returned:
         return "measure returned no quantity"

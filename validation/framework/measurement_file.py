@@ -29,7 +29,7 @@ class MeasurementFile:
     >>> with TemporaryDirectory() as folder:
     ...     file = MeasurementFile(Path(folder) / "m.jsonl")
     ...     file.append(Measurement("bar", {"dx": 0.1}, [Measured("height", 0.9, 1.0, -0.1)]))
-    ...     [one.case for one in file.read()]
+    ...     [measurement.case for measurement in file.read()]
     ['bar']
     """
 
@@ -44,11 +44,11 @@ class MeasurementFile:
         InputError
             If a line that is whole holds none, naming file and line.
         """
-        lines = self._whole().split(b"\n")[:-1]
-        places = [f"{self.path}:{number}" for number in range(1, len(lines) + 1)]
+        lines = self._content().split(b"\n")[:-1]
+        locations = [f"{self.path}:{number}" for number in range(1, len(lines) + 1)]
         return [
             Measurement.from_json(parse_object(line, where), where)
-            for line, where in zip(lines, places)
+            for line, where in zip(lines, locations)
         ]
 
     def append(self, measurement: Measurement) -> None:
@@ -56,13 +56,13 @@ class MeasurementFile:
         line = json.dumps(measurement.to_json(), allow_nan=False) + "\n"
         try:
             with self.path.open("ab") as file:
-                file.truncate(len(self._whole()))
+                file.truncate(len(self._content()))
                 file.write(line.encode())
         except OSError as error:  # writing does not say in which file
             error.filename = error.filename or str(self.path)
             raise
 
-    def _whole(self) -> bytes:
+    def _content(self) -> bytes:
         """Return what is in the file up to the end of its last complete line."""
         data = read_regular(self.path) if self.path.exists() else b""
         return data[: data.rfind(b"\n") + 1]

@@ -63,9 +63,9 @@ def measure_once(pool: Pool[Request, Answer], measure: Measure, settings: Settin
     ''
     """
     pool.submit(Request(measure, dict(settings)))
-    while not (found := pool.collect(WAIT_S)):
+    while not (results := pool.collect(WAIT_S)):
         pass
-    (ended,) = found
+    (ended,) = results
     if ended.result is not None:
         return ended.result
     if ended.never_began:

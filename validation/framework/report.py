@@ -49,18 +49,18 @@ class Stress:
 
     @property
     def failed(self) -> int:
-        """Number of runs that ended in a way that is not allowed."""
+        """Number of runs whose end is not allowed."""
         return int((self.runs["outcome"] == "failed").sum())
 
 
 @dataclass(frozen=True)
 class Validation:
-    """Cases and what was measured of them.
+    """Cases and their measurements.
 
     Attributes
     ----------
     cases, measurements
-        What was asked for, and all that was measured of it.
+        The cases, and all of their measurements.
     full
         Whether the matrices were the full ones.
     stress
@@ -74,19 +74,21 @@ class Validation:
 
     def facts(self) -> dict[str, str]:
         """Return what made the results."""
-        failed = sum(1 for one in self.measurements if one.failure)
+        failed = sum(1 for measurement in self.measurements if measurement.failure)
         return {
             "suite": "full" if self.full else "quick",
-            "version": _all({one.version for one in self.measurements}),
-            "machine": _all({one.machine for one in self.measurements}),
-            "date": _all({one.date for one in self.measurements}),
+            "version": _all({measurement.version for measurement in self.measurements}),
+            "machine": _all({measurement.machine for measurement in self.measurements}),
+            "date": _all({measurement.date for measurement in self.measurements}),
             "measurements": f"{len(self.measurements)}, {failed} failed",
-            "duration": formatting.duration(math.fsum(one.elapsed_s for one in self.measurements)),
+            "duration": formatting.duration(
+                math.fsum(measurement.elapsed_s for measurement in self.measurements)
+            ),
         }
 
 
 def write_report(validation: Validation, folder: Path) -> list[Bar]:
-    """Write the report's files into a folder; return what was demanded and what was found."""
+    """Write the report's files into a folder; return the demands and their results."""
     table = to_table(validation.measurements)
     bars = compare(table, validation.cases)
     answers = cheapest(table, validation.cases)
@@ -110,14 +112,15 @@ def problems(validation: Validation, bars: Sequence[Bar]) -> list[str]:
     titles = {case.name: case.title for case in validation.cases}
     lines = [
         f"{titles[bar.case]}, {bar.quantity.title}: demanded {sections.demanded(bar)}, "
-        f"worst {sections.found(bar)}, {setting_labels.settings(bar.settings)}"
+        f"worst {sections.worst_error(bar)}, {setting_labels.settings(bar.settings)}"
         for bar in bars
         if bar.holds is False
     ]
     lines += [
-        f"{titles[one.case]}, {setting_labels.settings(one.settings)}: {one.failure}"
-        for one in validation.measurements
-        if one.failure
+        f"{titles[measurement.case]}, {setting_labels.settings(measurement.settings)}: "
+        f"{measurement.failure}"
+        for measurement in validation.measurements
+        if measurement.failure
     ]
     if validation.stress is not None and validation.stress.failed:
         lines.append(f"stress suite: {validation.stress.failed} runs failed")
@@ -155,20 +158,25 @@ def json_text(
         "bars": [
             {**asdict(bar), "quantity": bar.quantity.name, "holds": bar.holds} for bar in bars
         ],
-        "cheapest": [asdict(one) for one in answers],
+        "cheapest": [asdict(answer) for answer in answers],
         "orders": _orders(validation, table),
-        "measurements": [one.to_json() for one in validation.measurements],
+        "measurements": [measurement.to_json() for measurement in validation.measurements],
     }
     return json.dumps(_plain(data), indent=1, allow_nan=False) + "\n"
 
 
 def _orders(validation: Validation, table: pd.DataFrame) -> list[dict[str, Any]]:
     return [
-        {"case": case.name, "quantity": quantity.name, "in": quantity.order_in, **asdict(one)}
+        {
+            "case": case.name,
+            "quantity": quantity.name,
+            "in": quantity.order_in,
+            **asdict(convergence),
+        }
         for case in validation.cases
         for quantity in case.quantities
         if quantity.order_in is not None
-        for one in convergences(
+        for convergence in convergences(
             solutions(rows_of(table, case.name, quantity.name)),
             quantity.order_in,
         )

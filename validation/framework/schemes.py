@@ -38,5 +38,5 @@ def varying(settings: Iterable[Settings]) -> list[str]:
     ['dx']
     """
     listed = list(settings)
-    names = dict.fromkeys(name for one in listed for name in one)
-    return [name for name in names if len({one.get(name) for one in listed}) > 1]
+    names = dict.fromkeys(name for settings in listed for name in settings)
+    return [name for name in names if len({settings.get(name) for settings in listed}) > 1]

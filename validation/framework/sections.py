@@ -25,13 +25,13 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.figure import Figure
 
-#: What a measurement costs, in words.
+#: Texts for the costs of a measurement.
 COSTS: Mapping[str, Callable[[Measurement], str]] = {
-    "time": lambda one: formatting.duration(one.wall_s),
-    "particles": lambda one: formatting.count(one.particles or None),
-    "steps": lambda one: formatting.count(one.steps or None),
-    "10⁶ updates/s": lambda one: formatting.number(one.updates_per_s / 1e6),
-    "memory, MB": lambda one: formatting.number(one.peak_memory_mb),
+    "time": lambda measurement: formatting.duration(measurement.wall_s),
+    "particles": lambda measurement: formatting.count(measurement.particles or None),
+    "steps": lambda measurement: formatting.count(measurement.steps or None),
+    "10⁶ updates/s": lambda measurement: formatting.number(measurement.updates_per_s / 1e6),
+    "memory, MB": lambda measurement: formatting.number(measurement.peak_memory_mb),
 }
 #: Stands for what the cell to the left says.
 SAME = "←"
@@ -74,17 +74,20 @@ def section(case: Case, measurements: Sequence[Measurement], table: pd.DataFrame
     case
         The case.
     measurements
-        Of this case.
+        Measurements of this case.
     table
         The same as a table.
     """
-    found = {one.name: solutions(rows_of(table, case.name, one.name)) for one in case.quantities}
-    series = {
-        one.name: convergences(found[one.name], one.order_in)
-        for one in case.quantities
-        if one.order_in is not None
+    solution_lists = {
+        quantity.name: solutions(rows_of(table, case.name, quantity.name))
+        for quantity in case.quantities
     }
-    choices = [one.settings for one in measurements]
+    series = {
+        quantity.name: convergences(solution_lists[quantity.name], quantity.order_in)
+        for quantity in case.quantities
+        if quantity.order_in is not None
+    }
+    choices = [measurement.settings for measurement in measurements]
     shared = {k: v for k, v in (choices or [{}])[0].items() if k not in varying(choices)}
     return Section(
         case=case,
@@ -93,26 +96,28 @@ def section(case: Case, measurements: Sequence[Measurement], table: pd.DataFrame
         common=setting_labels.settings(shared),
         results=results_grid(case, measurements),
         orders=orders_grid(case, series),
-        extremes=extremes_grid(case, found),
-        pictures=_pictures(case, found, series),
+        extremes=extremes_grid(case, solution_lists),
+        pictures=_pictures(case, solution_lists, series),
     )
 
 
 def results_grid(case: Case, measurements: Sequence[Measurement]) -> Grid:
     """Return all measurements of a case: what varies, every quantity, the cost."""
-    solved = [one for one in measurements if not one.failure]
-    names = varying([one.settings for one in measurements])
-    given = {m.quantity for one in solved for m in one.measured}
-    quantities = [_Columns.of(one, solved) for one in case.quantities if one.name in given]
-    costs = {name: [words(one) for one in solved] for name, words in COSTS.items()}
+    solved = [measurement for measurement in measurements if not measurement.failure]
+    names = varying([measurement.settings for measurement in measurements])
+    given = {m.quantity for measurement in solved for m in measurement.measured}
+    quantities = [
+        _Columns.of(quantity, solved) for quantity in case.quantities if quantity.name in given
+    ]
+    costs = {name: [words(measurement) for measurement in solved] for name, words in COSTS.items()}
     costs = {name: texts for name, texts in costs.items() if set(texts) != {formatting.NOTHING}}
     rows = [
         [
-            *(_cell(one.settings, name) for name in names),
-            *(text for columns in quantities for text in columns.texts(one)),
+            *(_cell(measurement.settings, name) for name in names),
+            *(text for columns in quantities for text in columns.texts(measurement)),
             *(texts[i] for texts in costs.values()),
         ]
-        for i, one in enumerate(solved)
+        for i, measurement in enumerate(solved)
     ]
     groups = [("", len(names)), *((c.heading, len(c.head)) for c in quantities), ("", len(costs))]
     head = [
@@ -126,40 +131,42 @@ def results_grid(case: Case, measurements: Sequence[Measurement]) -> Grid:
 
 def orders_grid(case: Case, series: Mapping[str, Sequence[Convergence]]) -> Grid:
     """Return the observed orders of convergence."""
-    titles = {one.name: one.title for one in case.quantities}
-    settings_in = {one.name: one.order_in or "" for one in case.quantities}
+    titles = {quantity.name: quantity.title for quantity in case.quantities}
+    settings_in = {quantity.name: quantity.order_in or "" for quantity in case.quantities}
     rows = [
         [
             titles[name],
-            setting_labels.settings(one.settings, varying([other.settings for other in listed]))
+            setting_labels.settings(
+                convergence.settings, varying([other.settings for other in listed])
+            )
             or "all",
             settings_in[name].replace("_", " "),
-            f"{formatting.number(one.sizes[0])} … {formatting.number(one.sizes[-1])}",
-            ", ".join(_order(slope) for slope in one.pairwise),
-            _order(one.order),
+            " … ".join(formatting.number(convergence.sizes[i]) for i in (0, -1)),
+            ", ".join(_order(slope) for slope in convergence.pairwise),
+            _order(convergence.order),
         ]
         for name, listed in series.items()
-        for one in listed
+        for convergence in listed
     ]
     head = ("quantity", "settings", "in", "from … to", "between neighbours", "order")
     return Grid(head, rows, "lllllr")
 
 
-def extremes_grid(case: Case, found: Mapping[str, Sequence[Solution]]) -> Grid:
+def extremes_grid(case: Case, solution_lists: Mapping[str, Sequence[Solution]]) -> Grid:
     """Return the smallest, the median and the largest error of every quantity, and where."""
     rows = []
     for quantity in case.quantities:
-        listed = sorted(found[quantity.name], key=lambda one: abs(one.error))
+        listed = sorted(solution_lists[quantity.name], key=lambda solution: abs(solution.error))
         if not listed:
             continue
-        names = varying([one.settings for one in listed])
-        middle = float(np.median([abs(one.error) for one in listed]))
+        names = varying([solution.settings for solution in listed])
+        middle = float(np.median([abs(solution.error) for solution in listed]))
         ends = [
             (
-                quantity.error_text(abs(one.error)),
-                setting_labels.settings(one.settings, names),
+                quantity.error_text(abs(solution.error)),
+                setting_labels.settings(solution.settings, names),
             )
-            for one in (listed[0], listed[-1])
+            for solution in (listed[0], listed[-1])
         ]
         median = quantity.error_text(middle)
         rows.append([quantity.title, *ends[0], median, *ends[1]])
@@ -168,7 +175,7 @@ def extremes_grid(case: Case, found: Mapping[str, Sequence[Solution]]) -> Grid:
 
 
 def bars_grid(bars: Sequence[Bar], cases: Sequence[Case]) -> Grid:
-    """Return what was demanded and what was found, what does not hold first."""
+    """Return the demands and their results, those that do not hold first."""
     titles = {case.name: case.title for case in cases}
     rank = {False: 0, True: 1, None: 2}
     rows = [
@@ -178,48 +185,50 @@ def bars_grid(bars: Sequence[Bar], cases: Sequence[Case]) -> Grid:
             bar.quantity.title,
             meant(bar),
             demanded(bar),
-            found(bar),
+            worst_error(bar),
             setting_labels.settings(bar.settings),
         ]
-        for bar in sorted(bars, key=lambda one: rank[one.holds])
+        for bar in sorted(bars, key=lambda bar: rank[bar.holds])
     ]
     head = ("", "case", "quantity", "for", "demanded", "worst", "with")
     return Grid(head, rows, "llllrrl")
 
 
 def meant(bar: Bar) -> str:
-    """Return the settings that a bar is for, in words."""
+    """Return the text for the settings that a bar is for."""
     wanted = [
-        " or ".join(setting_labels.setting(name, one) for one in alternatives(value))
+        " or ".join(
+            setting_labels.setting(name, alternative) for alternative in alternatives(value)
+        )
         for name, value in bar.meant.items()
     ]
     return ", ".join(wanted) or "all settings"
 
 
 def demanded(bar: Bar) -> str:
-    """Return what is demanded, in words."""
+    """Return the text for a demand."""
     if bar.kind == "order":
         return f"order ≥ {bar.demanded:g} in {bar.quantity.order_in}".replace("_", " ")
     return f"≤ {bar.quantity.error_text(bar.demanded)}"
 
 
-def found(bar: Bar) -> str:
-    """Return the worst that was found, in words."""
-    if bar.found is None:
+def worst_error(bar: Bar) -> str:
+    """Return the text for the worst result."""
+    if bar.worst is None:
         return formatting.NOTHING
-    if np.isnan(bar.found):
+    if np.isnan(bar.worst):
         return "failed"
     if bar.kind == "order":
-        return _order(bar.found)
-    return bar.quantity.error_text(bar.found)
+        return _order(bar.worst)
+    return bar.quantity.error_text(bar.worst)
 
 
 def cheapest_grid(
     answers: Sequence[Cheapest], cases: Sequence[Case], measurements: Sequence[Measurement]
 ) -> Grid:
     """Return the quickest settings for every wanted accuracy, a row for each problem."""
-    wanted = sorted({one.wanted for one in answers}, reverse=True)
-    head = ("case", "quantity", "problem", *(formatting.percent(one) for one in wanted))
+    wanted = sorted({answer.wanted for answer in answers}, reverse=True)
+    head = ("case", "quantity", "problem", *(formatting.percent(share) for share in wanted))
     rows = [row for case in cases for row in _cheapest_rows(case, answers, measurements)]
     return Grid(head, rows, "l" * len(head))
 
@@ -244,7 +253,12 @@ class _Columns:
     @classmethod
     def of(cls, quantity: Quantity, measurements: Iterable[Measurement]) -> _Columns:
         """Return the columns that measurements need."""
-        measured = [m for one in measurements for m in one.measured if m.quantity == quantity.name]
+        measured = [
+            m
+            for measurement in measurements
+            for m in measurement.measured
+            if m.quantity == quantity.name
+        ]
         exact = {m.exact for m in measured if not np.isnan(m.exact)}
         if exact == {0.0} and all(m.value == m.error for m in measured if not np.isnan(m.exact)):
             return cls(quantity, quantity.title, ("error",))
@@ -253,9 +267,9 @@ class _Columns:
             return cls(quantity, heading, ("value", "error"))
         return cls(quantity, quantity.title, ("value", "exact", "error"))
 
-    def texts(self, one: Measurement) -> list[str]:
+    def texts(self, measurement: Measurement) -> list[str]:
         """Return the cells of a measurement."""
-        for measured in one.measured:
+        for measured in measurement.measured:
             if measured.quantity == self.quantity.name:
                 cells = [formatting.number(measured.value, 4), formatting.number(measured.exact, 4)]
                 error = self.quantity.error_text(measured.error)
@@ -265,13 +279,15 @@ class _Columns:
 
 def _pictures(
     case: Case,
-    found: Mapping[str, Sequence[Solution]],
+    solution_lists: Mapping[str, Sequence[Solution]],
     series: Mapping[str, Sequence[Convergence]],
 ) -> list[Picture]:
-    choices = [one.settings for listed in found.values() for one in listed]
-    quantities = {one.name: one for one in case.quantities}
+    choices = [solution.settings for listed in solution_lists.values() for solution in listed]
+    quantities = {quantity.name: quantity for quantity in case.quantities}
     converging = [(quantities[name], listed) for name, listed in series.items() if listed]
-    solved = [(quantities[name], by_problem(case, listed)) for name, listed in found.items()]
+    solved = [
+        (quantities[name], by_problem(case, listed)) for name, listed in solution_lists.items()
+    ]
     solved = [
         (quantity, problems) for quantity, problems in solved if _compared(quantity, problems)
     ]
@@ -286,12 +302,12 @@ def _pictures(
 
 
 def _compared(quantity: Quantity, problems: Sequence[tuple[Settings, Sequence[Solution]]]) -> bool:
-    """Return whether errors say which way of solving is better.
+    """Return whether errors show which solution is better.
 
-    There must be several ways for one problem, and a measure of what a small error is.
+    There must be several solutions of one problem, and a measure of a small error.
     """
     measured_by = quantity.relative or quantity.order_in or quantity.bar is not None
-    return bool(measured_by) and any(len(found) > 1 for _, found in problems)
+    return bool(measured_by) and any(len(group) > 1 for _, group in problems)
 
 
 def _picture(figure: Figure, case: Case, title: str, caption: str) -> Picture:
@@ -304,19 +320,26 @@ def _cheapest_rows(
 ) -> list[list[str]]:
     """Return a row for each quantity and problem of a case; its title stands in the first."""
     groups: dict[Hashable, list[Cheapest]] = {}
-    for one in answers:
-        if one.case == case.name:
-            groups.setdefault((one.quantity, key_of(one.problem)), []).append(one)
+    for answer in answers:
+        if answer.case == case.name:
+            groups.setdefault((answer.quantity, key_of(answer.problem)), []).append(answer)
     titles = {quantity.name: quantity.title for quantity in case.quantities}
     problems = varying(group[0].problem for group in groups.values())
     ways = varying(
-        {k: v for k, v in one.settings.items() if k not in problem_of(case, one.settings)}
-        for one in measurements
-        if one.case == case.name
+        {
+            k: v
+            for k, v in measurement.settings.items()
+            if k not in problem_of(case, measurement.settings)
+        }
+        for measurement in measurements
+        if measurement.case == case.name
     )
     rows: list[list[str]] = []
     for group in groups.values():
-        texts = [_cheapest_cell(one, ways) for one in sorted(group, key=lambda one: -one.wanted)]
+        texts = [
+            _cheapest_cell(answer, ways)
+            for answer in sorted(group, key=lambda answer: -answer.wanted)
+        ]
         rows.append(
             [
                 "" if rows else case.title,
@@ -328,11 +351,11 @@ def _cheapest_rows(
     return rows
 
 
-def _cheapest_cell(one: Cheapest, ways: Sequence[str]) -> str:
-    if not one.reached:
-        return f"not reached; best {formatting.percent(one.error)}"
-    with_what = setting_labels.settings(one.solution.settings, ways)
-    return f"{formatting.duration(one.solution.wall_s)}: {with_what}".rstrip(": ")
+def _cheapest_cell(answer: Cheapest, ways: Sequence[str]) -> str:
+    if not answer.reached:
+        return f"not reached; best {formatting.percent(answer.error)}"
+    with_what = setting_labels.settings(answer.solution.settings, ways)
+    return f"{formatting.duration(answer.solution.wall_s)}: {with_what}".rstrip(": ")
 
 
 def _cell(settings: Settings, name: str) -> str:

@@ -68,13 +68,13 @@ def matrix(full: bool) -> list[Settings]:
     """Return tests over speeds, steps and scaled inertia."""
     listed: list[Settings] = []
     for test in ("pull", "shear", "press"):
-        one: Settings = {**DEFAULTS, "test": test}
+        base: Settings = {**DEFAULTS, "test": test}
         speeds = (0.1, 0.03, 0.01, 0.005, 0.002) if full else (0.02, 0.005)
-        listed += [{**one, "speed": speed} for speed in speeds]
+        listed += [{**base, "speed": speed} for speed in speeds]
         factors = (1.0, 0.6, 0.15) if full else (0.6,)
-        listed += [{**one, "courant_factor": factor} for factor in factors]
+        listed += [{**base, "courant_factor": factor} for factor in factors]
         scalings = (4.0, 16.0, 100.0) if full else (16.0,)
-        listed += [{**one, "density_scaling": scaling} for scaling in scalings]
+        listed += [{**base, "density_scaling": scaling} for scaling in scalings]
     return listed
 
 

@@ -48,7 +48,7 @@ DEFAULTS: Settings = {
     "density_scaling": 1.0,
     "bonded_plates": True,
 }
-#: What is varied on the snow, one at a time.
+#: Variations of the snow, one at a time.
 EXTREMES: tuple[Settings, ...] = (
     {"elastic_modulus": 1.0},
     {"elastic_modulus": 1e12},
@@ -78,7 +78,7 @@ EXTREMES: tuple[Settings, ...] = (
 
 
 def measure(settings: Settings) -> Outcome:
-    """Take some steps, and look for numbers that are none."""
+    """Take some steps, and count numbers that are not finite."""
     kind, strain = str(settings["kind"]), float(settings["strain"])
     stage = LoadingStage(kind=kind, speed=float(settings["speed"]), strain=strain)  # type: ignore[arg-type]
     drive = grains_drive(SAMPLES[str(settings["sample"])], VOXEL, [stage], settings, OWN)
@@ -108,7 +108,7 @@ def matrix(full: bool) -> list[Settings]:
         for sample in SAMPLES
         for kind in KINDS
     ]
-    return listed + [{**base, **one} for one in EXTREMES]
+    return listed + [{**base, **extreme} for extreme in EXTREMES]
 
 
 CASE = Case(
@@ -123,7 +123,7 @@ CASE = Case(
     no energy may be other than finite. A test may stop with an error that names its cause.
     """,
     quantities=(
-        Quantity("unsound", "numbers that are none", bar=0.0, relative=False),
+        Quantity("unsound", "numbers that are not finite", bar=0.0, relative=False),
         Quantity("stopped", "tests that stopped with an error", relative=False),
     ),
     matrix=matrix,

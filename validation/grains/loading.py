@@ -18,7 +18,7 @@ from snowshed.scene.loading import Cone, LoadingStage
 from validation.framework.drive import Drive
 
 GRAIN = 3e-4  # m, edge of the cells that cut the ice into grains
-WAVES, WAVELENGTH = 80, 1.4  # of the random field; 1, over GRAIN
+WAVES, WAVELENGTH = 80, 1.4  # number in the random field; wavelength over GRAIN
 THRESHOLD = 0.45  # standard deviations of the field above which there is ice
 
 
@@ -34,7 +34,7 @@ def snow_labels(across: int, voxels: int, seed: int = 1) -> Integers:
     voxels
         Along the edge of a cell.
     seed
-        Of the field and the cells.
+        Seed of the field and the cells.
 
     Examples
     --------
@@ -77,7 +77,7 @@ def grains_drive(
     own
         Names in `settings` that are the case's own business.
     cone_radius
-        Of stages that penetrate, m.
+        Radius of the cone in stages that penetrate, m.
     """
     chosen = GrainsSettings(threads=1)
     for name, value in settings.items():
@@ -93,12 +93,12 @@ def grains_drive(
 
 
 def load_all(drive: Drive, stages: Sequence[LoadingStage], height: float) -> LoadingCurve:
-    """Take steps for as long as all stages take at most; return what was measured.
+    """Take steps until all stages must have ended; return the measured curve.
 
     Parameters
     ----------
     height
-        Of the sample, m.
+        Height of the sample, m.
     """
     longest = 0.0
     for stage in stages:
@@ -116,7 +116,7 @@ def residual(curve: LoadingCurve) -> float:
 
 def mean_stress(curve: LoadingCurve, low: float, high: float) -> float:
     """Return the mean stress on the top plate between two strains, Pa."""
-    found = phases.mean_stress(curve["axial_strain"], curve["top_stress_pa"], low, high)
-    if found is None:
+    stress = phases.mean_stress(curve["axial_strain"], curve["top_stress_pa"], low, high)
+    if stress is None:
         raise ValueError(f"the test does not go from {low:%} to {high:%}")
-    return found
+    return stress

@@ -69,12 +69,12 @@ class Sliding:
 
     @property
     def speed(self) -> float:
-        """Of the centre of mass, m/s."""
+        """Speed of the centre of mass, m/s."""
         return float(self.drive.mean(self.drive.core.velocities()) @ self.incline.along)
 
     @property
     def place(self) -> float:
-        """Of the centre of mass, m."""
+        """Place of the centre of mass, m."""
         return float(self.drive.mean(self.drive.core.positions()) @ self.incline.along)
 
     def acceleration(self, begin: float, end: float) -> float:
@@ -104,10 +104,10 @@ def measure_slab(settings: Settings) -> Outcome:
 
 def _slide(sliding: Sliding, friction: float) -> Iterator[Measured]:
     exact = sliding.incline.coulomb(friction)
-    found = sliding.acceleration(*WINDOW)
-    yield relative("acceleration", found, exact)
+    acceleration = sliding.acceleration(*WINDOW)
+    yield relative("acceleration", acceleration, exact)
     if friction > 0:
-        missing = sliding.incline.coulomb(0.0) - found
+        missing = sliding.incline.coulomb(0.0) - acceleration
         pressed = GRAVITY * math.cos(math.radians(TILT))
         yield relative("effective_friction", missing / pressed, friction)
 
@@ -138,7 +138,7 @@ def slab_matrix(full: bool) -> list[Settings]:
         listed += [{**short, "dimension": 3, "friction": mu} for mu in (0.3, 0.6)]
         listed += [{**short, "speed": speed, "friction": 0.6} for speed in (1.0, 3.0, 10.0)]
         listed += [{**short, "friction": 1.2}, {**short, "dx": 0.005, "friction": 0.9}]
-        listed += [{**thrown, **one} for one in STOPS]
+        listed += [{**thrown, **stop} for stop in STOPS]
     return listed
 
 
@@ -223,7 +223,7 @@ def angle_matrix(full: bool) -> list[Settings]:
     resolutions = [{**slab, "dx": dx, "friction": mu} for dx in (0.02, 0.01) for mu in (0.3, 0.9)]
     fine = [{**slab, "dx": dx} for dx in (0.02, 0.01, 0.005)]
     steep: Settings = {**slab, "friction": 0.9, "seed": 2}
-    return [*fine, *resolutions, *({**slab, **one} for one in METHODS), steep]
+    return [*fine, *resolutions, *({**slab, **method} for method in METHODS), steep]
 
 
 ANGLE = Case(
@@ -242,7 +242,7 @@ ANGLE = Case(
     measure=measure_angle,
     remarks="""
     The answer is right to the width of the search as long as the slab is no thicker than five
-    cells. At ten cells (dx 5 mm) it lets go half a degree too early: within that range it never
+    cells. At ten cells (dx 5 mm) it slides half a degree too early: within that range it never
     stops, but creeps at 1 to 3 cm/s. The delay of friction, 40 elastic time steps, is then shorter
     than the slowest vibration through the slab's thickness (4 thickness/c); the two feed each other
     and the slab keeps shaking. With a delay twice as long it stops. Seedings at μ = 0.9 differ by

@@ -48,11 +48,15 @@ def measure(settings: Settings) -> Outcome:
     conversions = _conversions(runs)
     if conversions:
         dx = float(settings["dx"])
-        changes = {name: [one.change(name) / dx for one in conversions] for name in COMPARED}
+        changes = {
+            name: [conversion.change(name) / dx for conversion in conversions] for name in COMPARED
+        }
         measured += [_largest(f"conversion_{name}", changes[name]) for name in COMPARED]
         measured += [
-            _largest("conversion_loose", (one.loose_change for one in conversions)),
-            _largest("conversion_outline", (one.outline_moved / dx for one in conversions)),
+            _largest("conversion_loose", (conversion.loose_change for conversion in conversions)),
+            _largest(
+                "conversion_outline", (conversion.outline_moved / dx for conversion in conversions)
+            ),
             relative("conversion_space", _space(runs), 1.0),
         ]
     for name in ("height", "length"):
@@ -61,7 +65,7 @@ def measure(settings: Settings) -> Outcome:
 
 
 def _conversions(runs: Sequence[LabRun]) -> list[Conversion]:
-    return [one for run in runs for one in run.conversions]
+    return [conversion for run in runs for conversion in run.conversions]
 
 
 def _largest(name: str, changes: Iterable[float]) -> Measured:
@@ -76,13 +80,17 @@ def _space(runs: Sequence[LabRun]) -> float:
     particle.
     """
     last = [(run.particle_mass, run.conversions[-1]) for run in runs]
-    return float(np.mean([mass * one.particles_after / one.mass_after for mass, one in last]))
+    return float(
+        np.mean(
+            [mass * conversion.particles_after / conversion.mass_after for mass, conversion in last]
+        )
+    )
 
 
 def _mass(runs: Sequence[LabRun]) -> Measured:
     """Return the worst of all masses that should be equal: at conversions and at the end."""
     pairs = [(run.mass, run.brought_mass) for run in runs]
-    pairs += [(one.mass_after, one.mass_before) for one in _conversions(runs)]
+    pairs += [(conversion.mass_after, conversion.mass_before) for conversion in _conversions(runs)]
     value, exact = max(pairs, key=lambda pair: abs(pair[0] / pair[1] - 1))
     return relative("mass", value, exact)
 
@@ -106,7 +114,7 @@ outside the largest body. The largest change in any conversion is shown, lengths
 space that the stack fills after the last conversion is compared with the volume of its snow at the
 initial density: what is more than 1 is void that has become snow. Only the height of the largest
 body has a bar: it is half a cell, because the solid is made of cubes of a cell's size. A length has
-none, because it hangs on single grains, as is said under "Where the method is poor".
+none, because it depends on single grains, see "Where the method is poor".
 
 The last stacks, means over the seedings, are compared with the mean of the recorded runs on the
 same grid, whose snow was carried over: as a part of it, and in standard deviations between single

@@ -40,7 +40,7 @@ OBJECTIVE_GRIDS: Sequence[Settings] = (
     {**OBJECTIVE, "dimension": 3, "dx": 0.01, "seedings": 4},
 )
 
-#: What is tried instead of the default scheme, on the grid that the laboratory's stacks use.
+#: Variants of the default scheme, on the grid that the laboratory's stacks use.
 SCHEMES: Sequence[Settings] = (
     {"transfer": "apic"},
     {"flip_ratio": 0.95},
@@ -55,7 +55,7 @@ SCHEMES: Sequence[Settings] = (
     {"courant_factor": 0.3, "transfer": "apic"},
 )
 
-#: How the recorded runs of each scheme were made: a setting that is None is not given.
+#: Settings of the recorded runs of each scheme; a setting that is None is not given.
 AS_RECORDED: Wanted = {
     "transfer": ("flip", None),
     "flip_ratio": None,
@@ -162,7 +162,7 @@ alone.
 
 There is no exact answer. Each scheme has a reference of its own, the mean of recorded runs on the
 finest grid. For the scheme thesis it is dx 0.0025 m with four seedings in the plane and 0.005 m
-with one in space. These runs were made with the default settings but for sleep, which was off. For
+with one in space. These runs were made with the default settings, except that sleep was off. For
 the scheme objective it is dx 0.0025 m with eight seedings in the plane and, after one and two
 slabs, 0.005 m with four in space. Its snow slept as it does by default. Both were made once and are
 kept in lab_stack.json, together with runs on coarser grids. The error is that of a single run: the

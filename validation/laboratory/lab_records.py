@@ -185,13 +185,13 @@ def noise(name: str, runs: Sequence[Solved], settings: Settings) -> Measured:
     Returns
     -------
     Measured
-        Of the quantity ``<name>_noise``: the departure in standard deviations between the recorded
+        The quantity ``<name>_noise``: the departure in standard deviations between the recorded
         seedings.
     """
-    there = recorded(int(settings["dimension"]), float(settings["dx"]), scheme_of(settings))
+    reference = recorded(int(settings["dimension"]), float(settings["dx"]), scheme_of(settings))
     last = [run.series(name) for run in runs]
     event, value = len(last[0]), float(np.mean([series[-1] for series in last]))
-    departure = (value - there.mean(name, event)) / there.spread(name, event)
+    departure = (value - reference.mean(name, event)) / reference.spread(name, event)
     return absolute(f"{name}_noise", departure, 0.0)
 
 
@@ -328,7 +328,7 @@ def entry(
     costs: Sequence[Cost],
     origin: tuple[str, str, str],
 ) -> dict[str, Any]:
-    """Return what a file holds of a run.
+    """Return a run's entry in a file.
 
     Parameters
     ----------
@@ -337,7 +337,7 @@ def entry(
     run
         The stacks.
     ended
-        How its events ended.
+        The end of each event.
     costs
         Cost up to the end of each event; the times are those of one thread, 0 where it had more.
     origin
@@ -360,9 +360,9 @@ def write_entries(runs: Iterable[Mapping[str, Any]], path: Path) -> None:
     """Write a file of recorded runs, one a line."""
     about = (
         "Stacks of preset lab-50 after each event, in m, with panel friction 0.3 and the core's "
-        "default numerics but for what each run names. Costs are sums up to the end of each event: "
-        "time in s on one thread, particles times steps, steps, particles; 0: not measured. Made "
-        "by validation.laboratory.lab_records.record()."
+        "default numerics except for the settings that each run names. Costs are sums up to the "
+        "end of each event: time in s on one thread, particles times steps, steps, particles; "
+        "0: not measured. Made by validation.laboratory.lab_records.record()."
     )
     lines = ",\n".join(f"    {json.dumps(run)}" for run in runs)
     write_text(path, f'{{\n  "about": {json.dumps(about)},\n  "runs": [\n{lines}\n  ]\n}}\n')

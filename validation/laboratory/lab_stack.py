@@ -42,7 +42,7 @@ class Cost:
     wall_s
         Time of the solution alone, s.
     updates
-        Particles times steps; 0 if nobody counted them.
+        Particles times steps; 0 if they were not counted.
     """
 
     wall_s: float
@@ -71,9 +71,9 @@ class Conversion:
     before, after
         The stack.
     mass_before, mass_after
-        Of all snow, that on the panel included, kg.
+        Mass of all snow, with that on the panel, kg.
     particles_after
-        How many it is made of then.
+        Number of particles after reseeding.
     """
 
     before: StackMeasure
@@ -83,12 +83,12 @@ class Conversion:
     particles_after: int
 
     def change(self, name: str) -> float:
-        """Return by how much one of `COMPARED` grew, m."""
+        """Return the growth of one of `COMPARED`, m."""
         return measure_of(self.after, name) - measure_of(self.before, name)
 
     @property
     def loose_change(self) -> float:
-        """By how much the part of the snow that lies outside the largest body grew."""
+        """Growth of the share of snow that lies outside the largest body."""
         shares = [stack.detached_mass / stack.mass for stack in (self.before, self.after)]
         return shares[1] - shares[0]
 
@@ -107,15 +107,15 @@ class LabRun:
     stacks
         The stack after each event.
     conversions
-        What reseeding did before each event but the first.
+        The reseeding before each event except the first.
     ended
-        How each event ended.
+        The end of each event.
     mass
-        Of all snow at the end, kg (per metre of width in 2D).
+        Mass of all snow at the end, kg (per metre of width in 2D).
     brought_mass
-        Of all slabs, from their volume and density, kg.
+        Mass of all slabs, from their volume and density, kg.
     particle_mass
-        Of a particle of snow at its initial density, as the slabs are seeded, kg.
+        Mass of a particle of snow at its initial density, as the slabs are seeded, kg.
     costs
         Cost up to the end of each event.
     """
@@ -146,7 +146,7 @@ def measure_of(stack: StackMeasure, name: str) -> float:
 def lab_scene(settings: Settings) -> Scene:
     """Return the scene: preset lab-50 in 2D, panel friction 0.3, one thread, and the settings.
 
-    Snow at rest sleeps as it does by default, since stacks are what users run.
+    Snow at rest sleeps as it does by default, because stacks are what users run.
 
     Examples
     --------

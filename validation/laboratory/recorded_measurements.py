@@ -1,4 +1,4 @@
-"""Measurements of `stack_convergence` from recorded runs, which nobody has to make again.
+"""Measurements of `stack_convergence` from recorded runs, which need not be repeated.
 
 ``python -m validation.laboratory.recorded_measurements`` writes those of the scheme objective among
 the package's recorded measurements, from which ``--accuracy`` and the error of a stack come. The
@@ -91,13 +91,13 @@ def _common(runs: Iterable[RecordedRun], name: str) -> str:
 
 def renew(new: Sequence[Measurement], path: Path = PACKAGED) -> None:
     """Write measurements into a file in place of those of the same case and scheme."""
-    case, schemes = CASE.name, {scheme_of(one.settings) for one in new}
-    kept = [
-        one
-        for one in load_recorded(path)
-        if one.case == case and scheme_of(one.settings) not in schemes
+    case, schemes = CASE.name, {scheme_of(measurement.settings) for measurement in new}
+    others = [
+        measurement
+        for measurement in load_recorded(path)
+        if measurement.case == case and scheme_of(measurement.settings) not in schemes
     ]
-    record([*kept, *new], path)
+    record([*others, *new], path)
 
 
 if __name__ == "__main__":

@@ -131,7 +131,9 @@ def steps_matrix(full: bool) -> list[Settings]:
     if full:
         variants += [{"motion": "vortex", "amplitude": 0.1, **FLIP}]
         variants += [{"motion": "waves", "amplitude": 0.02, **FLIP}]
-        variants += [{"motion": "vortex", "amplitude": 1.0, **one} for one in (FLIP_99, APIC, PIC)]
+        variants += [
+            {"motion": "vortex", "amplitude": 1.0, **transfer} for transfer in (FLIP_99, APIC, PIC)
+        ]
         factors = (0.9, 0.45, 0.225)
     return [
         {**SCHEME, **STEP_STUDY, **variant, "courant_factor": factor}

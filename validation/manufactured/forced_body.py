@@ -32,7 +32,7 @@ class ForcedBody:
     motion
         The motion.
     settings
-        Of the scene.
+        Settings of the scene.
 
     Attributes
     ----------

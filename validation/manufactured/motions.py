@@ -30,7 +30,7 @@ WAVE_SPEED = math.sqrt(YOUNGS_MODULUS / DENSITY)
 class Motion(ABC):
     """A chosen motion that swings with sin(omega t), omega = pi c."""
 
-    #: Of the body that moves.
+    #: Poisson's ratio of the moving body.
     poissons_ratio: float
     #: Angular frequency, 1/s: half a swing takes as long as a wave across the square.
     omega = math.pi * WAVE_SPEED

@@ -230,7 +230,9 @@ def _matrix(full: bool, variants: list[Settings]) -> list[Settings]:
         plain: Settings = {**variant, "method": "backward Euler"}
         increments = (*COARSE, *FINE) if full else COARSE
         listed += [{**plain, "increment": increment} for increment in increments]
-        listed += [{**plain, "method": "extrapolated", "increment": one} for one in COARSE]
+        listed += [
+            {**plain, "method": "extrapolated", "increment": increment} for increment in COARSE
+        ]
     return listed
 
 
@@ -285,7 +287,7 @@ ISOTROPIC = Case(
     measure=measure_isotropic,
     remarks="""
     On this path the end of an increment does not depend on its size: backward Euler is exact, and
-    what is left are the tolerances of both sides.
+    the rest of the error is the tolerances of both sides.
     """,
 )
 OEDOMETER = _case(

@@ -66,7 +66,7 @@ class RateEquations:
 
     @property
     def stiffness(self) -> Floats:
-        """Of principal Hencky strains for principal Kirchhoff stresses, Pa, (d, d)."""
+        """Matrix from principal Hencky strains to principal Kirchhoff stresses, Pa, (d, d)."""
         nu = self.poissons_ratio
         first_lame = self.youngs_modulus * nu / ((1 + nu) * (1 - 2 * nu))
         return first_lame + 2 * self.shear_modulus * np.eye(self.dimension)
@@ -120,10 +120,10 @@ class RateEquations:
         start
             The state at time 0, inside the yield surface, (d + 1).
         rate
-            Of the principal strains, (d). Once the path has reached the yield surface it must go on
-            loading.
+            Rate of the principal strains, (d). Once the path has reached the yield surface it must
+            go on loading.
         times
-            Of the states wanted, (n).
+            Times of the states, (n).
 
         Returns
         -------
@@ -133,7 +133,7 @@ class RateEquations:
         Raises
         ------
         ArithmeticError
-            If the rate equations become singular, or a time falls where strength all but vanishes.
+            If the rate equations become singular, or if the strength nearly vanishes at a time.
         """
         yields = self._yield_time(start, rate, times[-1])
         later = times[times > yields]
@@ -202,10 +202,10 @@ class RateEquations:
         return np.append(rate - flow, flow.sum())
 
     def _loose(self, last: Floats, rate: Floats, after: Floats) -> Floats:
-        """Return the states `after` strength is all but spent: no stress, all strain plastic."""
+        """Return the states `after` the strength is nearly zero: no stress, all strain plastic."""
         unresolved = -2 * last[-1] / rate.sum()
         if np.any((after > 0) & (after < unresolved)):
-            raise ArithmeticError("a time falls where the strength all but vanishes; choose others")
+            raise ArithmeticError("a time falls where the strength nearly vanishes; choose others")
         states = np.zeros((len(after), len(last)))
         states[:, -1] = last.sum() + after * rate.sum()
         return states

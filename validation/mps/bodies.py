@@ -13,7 +13,7 @@ from validation.framework.drive import Drive
 
 GRAVITY = 9.81  # m/s2
 WATER = MpsSettings(density=1000.0, viscosity=1e-3, rheology="newtonian")
-#: What the cases compare, besides distances: walls, and the forms of Koshizuka and Oka.
+#: Variants in the cases besides distances: walls, and the forms of Koshizuka and Oka.
 VARIANTS: Sequence[Settings] = (
     {"walls": "particles"},
     {"gradient": "conservative", "walls": "particles"},

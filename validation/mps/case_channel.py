@@ -28,7 +28,7 @@ MUD = MpsSettings(
 ACROSS = (10, 20, 40)  # particles
 
 
-def exact_speed(places: Floats) -> Floats:
+def exact_speed(positions: Floats) -> Floats:
     """Return the speed at distances from the middle, m/s.
 
     Examples
@@ -36,31 +36,31 @@ def exact_speed(places: Floats) -> Floats:
     >>> exact_speed(np.array([0.0, 0.05, 0.1])).round(4).tolist()
     [0.0613, 0.0613, 0.0]
     """
-    sheared = np.maximum(np.abs(places) - PLUG, 0.0)
+    sheared = np.maximum(np.abs(positions) - PLUG, 0.0)
     return np.asarray(FORCE / (2 * VISCOSITY) * ((HALF_GAP - PLUG) ** 2 - sheared**2))
 
 
-def plug_width(places: Floats, speeds: Floats) -> float:
+def plug_width(positions: Floats, speeds: Floats) -> float:
     """Return half the width of the plug: where the parabola of the sheared fluid has its top, m.
 
     Examples
     --------
-    >>> places = np.linspace(-0.1, 0.1, 81)
-    >>> round(plug_width(places, exact_speed(places)), 4)
+    >>> positions = np.linspace(-0.1, 0.1, 81)
+    >>> round(plug_width(positions, exact_speed(positions)), 4)
     0.05
     """
-    top = float(speeds[np.abs(places) < 0.5 * PLUG].mean())
-    sheared = np.abs(places) > 0.5 * (HALF_GAP + PLUG)
+    top = float(speeds[np.abs(positions) < 0.5 * PLUG].mean())
+    sheared = np.abs(positions) > 0.5 * (HALF_GAP + PLUG)
     below = np.maximum(top - speeds[sheared], 0.0)
-    return float((np.abs(places[sheared]) - np.sqrt(below * 2 * VISCOSITY / FORCE)).mean())
+    return float((np.abs(positions[sheared]) - np.sqrt(below * 2 * VISCOSITY / FORCE)).mean())
 
 
 def middle_flow(positions: Floats, fall: Floats) -> tuple[float, float, float]:
     """Return the plug's speed, the mean speed and half the plug's width, in a slug's middle."""
     middle = np.abs(positions[:, 2] - positions[:, 2].mean()) < LENGTH / 6
-    places, speeds = positions[middle, 0], fall[middle]
-    plug = float(speeds[np.abs(places) < 0.5 * PLUG].mean())
-    return plug, float(speeds.mean()), plug_width(places, speeds)
+    positions_x, speeds = positions[middle, 0], fall[middle]
+    plug = float(speeds[np.abs(positions_x) < 0.5 * PLUG].mean())
+    return plug, float(speeds.mean()), plug_width(positions_x, speeds)
 
 
 def measure(settings: Settings) -> Outcome:
@@ -73,11 +73,11 @@ def measure(settings: Settings) -> Outcome:
     slug = Body(shape=Shape.box((0, 0), (2 * HALF_GAP, LENGTH)))
     drive = mps_drive(MUD, plates, [slug], {**settings, "spacing": spacing}, {"across"})
     drive.run_to(STEADY)
-    found = []
+    flows = []
     while drive.core.time_s < STEADY + MEAN_OVER:
         drive.step()
-        found.append(middle_flow(drive.core.positions(), -drive.core.velocities()[:, 2]))
-    speed, discharge, width = np.mean(found, axis=0)
+        flows.append(middle_flow(drive.core.positions(), -drive.core.velocities()[:, 2]))
+    speed, discharge, width = np.mean(flows, axis=0)
     ratio = PLUG / HALF_GAP
     mean = FORCE * HALF_GAP**2 / (3 * VISCOSITY) * (1 - 1.5 * ratio + 0.5 * ratio**3)
     return drive.outcome(
@@ -92,8 +92,8 @@ def measure(settings: Settings) -> Outcome:
 def matrix(full: bool) -> list[Settings]:
     """Return distances between particles, with both kinds of walls."""
     across, beside = (ACROSS, ACROSS[:2]) if full else (ACROSS[:2], ACROSS[:1])
-    listed: list[Settings] = [{"across": one} for one in across]
-    return listed + [{"across": one, "walls": "particles"} for one in beside]
+    listed: list[Settings] = [{"across": count} for count in across]
+    return listed + [{"across": count, "walls": "particles"} for count in beside]
 
 
 CASE = Case(

@@ -25,7 +25,7 @@ VALUES = (0.0, 1.0, 1e2, 1e4)
 
 
 def measure(settings: Settings) -> Outcome:
-    """Let a block slide against a board; look for numbers that are none, and where it is."""
+    """Let a block slide against a board; count numbers that are not finite, and find its place."""
     tilt, board = float(settings["tilt"]), float(settings["board"])
     angle = math.radians(tilt)
     down = np.array([math.cos(angle), 0.0, -math.sin(angle)])
@@ -43,16 +43,16 @@ def measure(settings: Settings) -> Outcome:
         drive.step(STEPS)
     except SimulationError:  # it names its cause, and the snow is as it was
         stopped = 1.0
-    places, speeds = drive.core.positions(), drive.core.velocities()
+    positions, speeds = drive.core.positions(), drive.core.velocities()
     fields = [drive.core.field_by_id(name) for name in ("pressure", "apparent_viscosity")]
-    unsound = sum(int((~np.isfinite(values)).sum()) for values in (places, speeds, *fields))
-    height, way = places @ normal, places @ down
+    unsound = sum(int((~np.isfinite(values)).sum()) for values in (positions, speeds, *fields))
+    height, distance = positions @ normal, positions @ down
     through = int((height < 0).sum())
     if board > 0:
-        inside = np.abs(way - BOARD_AT) < 0.5 * board * float(settings["spacing"])
+        inside = np.abs(distance - BOARD_AT) < 0.5 * board * float(settings["spacing"])
         through += int((inside & (height < BOARD_HEIGHT)).sum())
         low = height < 0.8 * BOARD_HEIGHT  # nothing has come over the board
-        through += int((low & (way > BOARD_AT)).sum()) if height.max() < BOARD_HEIGHT else 0
+        through += int((low & (distance > BOARD_AT)).sum()) if height.max() < BOARD_HEIGHT else 0
     density = float(drive.core.field_by_id("number_density").max())
     return drive.outcome(
         [
@@ -81,11 +81,11 @@ def matrix(full: bool) -> list[Settings]:
     listed += [
         {"board": board} for board in ((0.05, 0.2, 0.5, 1.0, 2.0, 4.0) if full else (0.2, 2.0))
     ]
-    listed += [{"spacing": one} for one in ((0.1, 0.05, 0.005) if full else (0.05,))]
-    listed += [{"radius": one} for one in ((1.5, 3.1, 4.5) if full else (3.1,))]
+    listed += [{"spacing": spacing} for spacing in ((0.1, 0.05, 0.005) if full else (0.05,))]
+    listed += [{"radius": radius} for radius in ((1.5, 3.1, 4.5) if full else (3.1,))]
     listed += [{"viscosity": 1e4, "cohesion": 1e4, "board": 0.2}]
     walls: list[Settings] = [{}, {"walls": "particles"}]
-    return [{**DEFAULTS, **one, **wall} for one in listed for wall in walls]
+    return [{**DEFAULTS, **variant, **wall} for variant in listed for wall in walls]
 
 
 CASE = Case(

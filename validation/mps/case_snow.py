@@ -69,7 +69,7 @@ def resting_front() -> float:
     return float((1.5 * HEAP[0] * HEAP[1] / math.sqrt(SCALE)) ** (2 / 3))
 
 
-def resting_heap(places: Floats) -> Floats:
+def resting_heap(positions: Floats) -> Floats:
     """Return the height at places of a Bingham fluid at rest: sqrt(2 tau0 (xf - x)/(rho g)).
 
     Examples
@@ -77,7 +77,7 @@ def resting_heap(places: Floats) -> Floats:
     >>> float(resting_heap(np.array([0.0]))[0].__round__(3))
     0.122
     """
-    return np.asarray(np.sqrt(SCALE * np.maximum(resting_front() - places, 0.0)))
+    return np.asarray(np.sqrt(SCALE * np.maximum(resting_front() - positions, 0.0)))
 
 
 def measure_heap(settings: Settings) -> Outcome:

@@ -19,7 +19,7 @@ ACROSS = (10, 20, 40)  # particles across the dam
 #: T* = t sqrt(2 g/L) and X* = x/L of the front.
 MARTIN_MOYCE = ((0.832, 1.217), (1.219, 1.474), (1.997, 2.292), (2.547, 2.995), (3.345, 4.134), (4.034, 4.944))  # fmt: skip # noqa: E501
 KOSHIZUKA_OKA = ((0.381, 1.111), (0.769, 1.252), (1.153, 1.505), (1.537, 1.892), (1.935, 2.241), (2.323, 2.615), (2.719, 3.003), (3.096, 3.624))  # fmt: skip # noqa: E501
-#: Front of such water, let go at once, as a volume of fluid (benchmarks/engines/gerris_dam.gfs).
+#: Front of such water, released suddenly, as a volume of fluid (benchmarks/engines/gerris_dam.gfs).
 GERRIS = ((0.5, 1.16), (1.0, 1.53), (1.5, 2.03), (2.0, 2.64), (2.5, 3.32), (3.0, 4.07), (3.5, 4.85))
 #: Martin and Moyce's tables, as others print them, do not count the time from when water was let
 #: go: fronts of both columns twice as high as wide, 1 1/8 and 2 1/4 inches, are here.
@@ -57,7 +57,7 @@ def column_matrix(full: bool) -> list[Settings]:
     time = 10.0 if full else 1.0
     spacings = SPACINGS if full else SPACINGS[:2]
     listed: list[Settings] = [{"spacing": spacing, "time": time} for spacing in spacings]
-    return listed + [{"spacing": 0.01, "time": time, **one} for one in VARIANTS[:2]]
+    return listed + [{"spacing": 0.01, "time": time, **variant} for variant in VARIANTS[:2]]
 
 
 def deviation(
@@ -70,10 +70,10 @@ def deviation(
     >>> deviation([(0, 1), (1, 2), (2, 3)], [(1.5, 2.5), (2.0, 2.5)], 0.5).__round__(3)
     0.354
     """
-    times, places = np.array(front).T
+    times, fronts = np.array(front).T
     measured_times, measured = np.array(known).T
-    found = np.interp(np.maximum(measured_times - delay, 0.0), times, places)
-    return float(np.sqrt(((found - measured) ** 2).mean()))
+    interpolated = np.interp(np.maximum(measured_times - delay, 0.0), times, fronts)
+    return float(np.sqrt(((interpolated - measured) ** 2).mean()))
 
 
 def measure_dam(settings: Settings) -> Outcome:
@@ -89,8 +89,8 @@ def measure_dam(settings: Settings) -> Outcome:
         drive.step()
         place = float(drive.core.positions()[:, 0].max()) + 0.5 * spacing
         front.append((drive.core.time_s / unit, place / DAM))
-    times, places = np.array(front).T
-    delay = ORIGIN[0] - float(np.interp(ORIGIN[1], places, times))
+    times, fronts = np.array(front).T
+    delay = ORIGIN[0] - float(np.interp(ORIGIN[1], fronts, times))
     return drive.outcome(
         [
             _off("martin_moyce", deviation(front, MARTIN_MOYCE)),
@@ -99,7 +99,7 @@ def measure_dam(settings: Settings) -> Outcome:
             Measured("delay", delay, 0.0, delay),
             _off("martin_moyce_delayed", deviation(front, MARTIN_MOYCE, delay)),
             _off("koshizuka_oka_delayed", deviation(front, KOSHIZUKA_OKA, delay)),
-            Measured("front_at_2", float(np.interp(2.0, times, places)), 2.7, 0.0),
+            Measured("front_at_2", float(np.interp(2.0, times, fronts)), 2.7, 0.0),
         ]
     )
 
@@ -111,8 +111,8 @@ def _off(name: str, value: float) -> Measured:
 def dam_matrix(full: bool) -> list[Settings]:
     """Return distances between particles, and the other walls and gradients."""
     across = ACROSS if full else ACROSS[:2]
-    listed: list[Settings] = [{"across": one} for one in across]
-    return listed + [{"across": one, **variant} for variant in VARIANTS for one in across[:2]]
+    listed: list[Settings] = [{"across": count} for count in across]
+    return listed + [{"across": count, **variant} for variant in VARIANTS for count in across[:2]]
 
 
 COLUMN = Case(
@@ -146,9 +146,9 @@ DAM_BREAK = Case(
     description="""
     A column of water, 2 1/4 inches wide and twice as high, collapses. Compared is the foremost
     particle, half a distance ahead, in widths of the column over T* = t √(2g/a): with another
-    method for water without friction that is let go at once (volume of fluid, Gerris), and with two
-    measured series, as they stand and with the origin of time of Martin and Moyce's tables, which
-    bring their runs together at X* = 1.44, T* = 1.19.
+    method for water without friction that is released suddenly (volume of fluid, Gerris), and with
+    two measured series, as they stand and with the origin of time of Martin and Moyce's tables,
+    which bring their runs together at X* = 1.44, T* = 1.19.
     """,
     quantities=(
         Quantity(
@@ -180,7 +180,7 @@ DAM_BREAK = Case(
     matrix=dam_matrix,
     measure=measure_dam,
     remarks="""
-    The front is where water without friction that is let go at once has it, and runs ahead of both
+    The front is that of water without friction that is released suddenly, and runs ahead of both
     series as they stand by 0.2 to 0.7. With the origin of time of the tables four of the six points
     of Martin and Moyce are met to 0.02. The last one, (4.034, 4.944), lies 0.26 behind, and off
     the line of its own neighbours. Gradients that lose energy come nearer to the series as they

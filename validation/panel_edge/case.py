@@ -55,7 +55,7 @@ def panel_scene(settings: Settings) -> Scene:
 
 
 class Throw:
-    """A slab let go on a panel, followed until it has fallen below the edge."""
+    """A slab released on a panel, followed until it has fallen below the edge."""
 
     def __init__(self, settings: Settings) -> None:
         scene = panel_scene(settings)
@@ -94,12 +94,12 @@ class Throw:
 
     def _sample(self) -> Moment:
         core, mean = self.drive.core, self.drive.mean
-        places, speeds = core.positions() - self._edge, core.velocities()
-        position, velocity = mean(places), mean(speeds)
-        arms, turning = places - position, speeds - velocity
+        positions, speeds = core.positions() - self._edge, core.velocities()
+        position, velocity = mean(positions), mean(speeds)
+        arms, turning = positions - position, speeds - velocity
         moment = mean(arms[:, 2] * turning[:, 0] - arms[:, 0] * turning[:, 2])
         spin = moment / mean(arms[:, 0] ** 2 + arms[:, 2] ** 2)
-        rear = (places @ self._slope).min()
+        rear = (positions @ self._slope).min()
         return Moment(core.time_s, position, velocity, float(spin), float(rear))
 
 
@@ -111,14 +111,14 @@ def landing(flight: list[Moment]) -> float:
 
 
 def off_parabola(flight: list[Moment], gravity: float = 9.81) -> float:
-    """Return the largest distance from the parabola of the first moment, over the way flown."""
+    """Return the largest distance from the first moment's parabola, over the distance flown."""
     first = flight[0]
-    times = np.array([one.time_s for one in flight])[:, np.newaxis] - first.time_s
+    times = np.array([moment.time_s for moment in flight])[:, np.newaxis] - first.time_s
     fall = np.array([0.0, 0.0, -gravity / 2])
     parabola = first.position + times * first.velocity + times**2 * fall
-    places = np.array([one.position for one in flight])
-    way = np.linalg.norm(places[-1] - first.position)
-    return float(np.linalg.norm(places - parabola, axis=1).max() / way)
+    centres = np.array([moment.position for moment in flight])
+    distance = np.linalg.norm(centres[-1] - first.position)
+    return float(np.linalg.norm(centres - parabola, axis=1).max() / distance)
 
 
 def measure(settings: Settings) -> Outcome:
@@ -169,15 +169,15 @@ CASE = Case(
         "edge and falls, integrated by an adaptive Runge-Kutta method; the parabola of free flight"
     ),
     description="""
-    A slab, 20 cm long and 4 cm thick, is let go in the middle of a panel 2 m long and tilted by 40
-    degrees. It slides off the lower edge and falls. Compared are where its centre of mass is when
-    it has come to 1 m below the edge; how far it strays, from the moment when all snow is three
+    A slab, 20 cm long and 4 cm thick, is released in the middle of a panel 2 m long and tilted by
+    40 degrees. It slides off the lower edge and falls. Compared are the place of its centre of mass
+    1 m below the edge; how far it strays, from the moment when all snow is three
     cells past the edge, from the parabola of that moment; and how fast it turns.
     """,
     quantities=(
         Quantity("landing", "distance of landing from the edge, m", bar=0.01),
-        Quantity("flight", "largest distance from the parabola over the way flown", bar=1e-3),
-        # What the method can do (see the remarks), not what one would wish.
+        Quantity("flight", "largest distance from the parabola over the distance flown", bar=1e-3),
+        # The accuracy of the method (see the remarks), not the desired one.
         Quantity("spin", "angular velocity on leaving, nose down, rad/s", bar=0.65),
         Quantity(
             "spin_kept",
@@ -198,7 +198,7 @@ CASE = Case(
     FLIP with 0.99 then damps the turning of a slab a few cells thick away: at dx 1 cm 70 % of it
     is gone after a fall of 1 m, at 2 cm 95 %. APIC keeps all of it, pure FLIP 98 %.
 
-    The parabola is met to rounding: the deviation named is the time step's, since symplectic Euler
-    falls g dt t/2 too far.
+    The parabola is met to rounding: the deviation named is the time step's, because
+    symplectic Euler falls g dt t/2 too far.
     """,
 )

@@ -26,7 +26,7 @@ class Landing:
     distance
         Horizontal distance of the centre of mass from the panel's edge, m.
     time_s
-        Since the slab was let go, s.
+        Time since the slab was released, s.
     spin
         Angular velocity in flight, nose down, rad/s.
     """
@@ -45,10 +45,10 @@ class RigidSlab:
     length, thickness
         m; the width does not matter.
     tilt
-        Of the panel, degrees.
+        Tilt of the panel, degrees.
     friction
         Coulomb coefficient.
-    way
+    sliding_distance
         From the centre of mass to the edge, along the slope, m.
     gravity
         m/s2.
@@ -57,7 +57,7 @@ class RigidSlab:
     --------
     A slab without extent is a point mass; from a level edge it would fall 1 m in 0.4515 s.
 
-    >>> landing = RigidSlab(1e-6, 1e-6, tilt=40, friction=0, way=1).landing(drop=1)
+    >>> landing = RigidSlab(1e-6, 1e-6, tilt=40, friction=0, sliding_distance=1).landing(drop=1)
     >>> speed = math.sqrt(2 * 9.81 * math.sin(math.radians(40)))
     >>> down, along = (speed * f(math.radians(40)) for f in (math.sin, math.cos))
     >>> time_s = (math.sqrt(down**2 + 2 * 9.81) - down) / 9.81
@@ -69,7 +69,7 @@ class RigidSlab:
     thickness: float
     tilt: float
     friction: float
-    way: float
+    sliding_distance: float
     gravity: float = 9.81
 
     def landing(self, drop: float) -> Landing:
@@ -136,8 +136,8 @@ class RigidSlab:
         from scipy.integrate import solve_ivp
 
         half = self.thickness / 2
-        way = self.way - self.friction * half
-        speed = math.sqrt(2 * self.acceleration * way)
+        distance = self.sliding_distance - self.friction * half
+        speed = math.sqrt(2 * self.acceleration * distance)
 
         def rates(_: float, state: Floats) -> list[float]:
             _, sliding, turning = self._rates(state)

@@ -342,8 +342,8 @@ YIELDING = Case(
     ),
     description=SETTING
     + """
-    The snow is soft (E = 20 kPa) and weak (p0 = 200 Pa), so that all but its top 5 cm yield and
-    harden (factor 1), and the top sinks by 3.1 % of the height.
+    The snow is soft (E = 20 kPa) and weak (p0 = 200 Pa), so that all except its top 5 cm yields and
+    hardens (factor 1), and the top sinks by 3.1 % of the height.
     """,
     quantities=_quantities(0.0025),
     matrix=yielding_matrix,

@@ -25,9 +25,9 @@ DEFAULTS: Settings = {"cell": 2.0, "layer_thickness": 0.06, "time_step": 0.01}
 
 
 class Motion(NamedTuple):
-    """Way (m) and speed (m/s) of a block after a time."""
+    """Distance (m) and speed (m/s) of a block after a time."""
 
-    way: float
+    distance: float
     speed: float
 
 
@@ -35,7 +35,7 @@ def block_motion(law: str, time: float) -> Motion:
     """Return how far a block has slid from rest, and its speed.
 
     Coulomb: du/dt = a = g (sin - mu cos). Voellmy: du/dt = a - g u^2/(xi h), so that
-    u = U tanh(a t/U) with U^2 = a xi h/g, and the way is U^2/a ln cosh(a t/U).
+    u = U tanh(a t/U) with U^2 = a xi h/g, and the distance is U^2/a ln cosh(a t/U).
 
     Examples
     --------
@@ -72,13 +72,15 @@ def measure(settings: Settings) -> Outcome:
     if stops:
         drive.core.add_velocity(np.tile(THROWN * down, (len(start), 1)))
     drive.run_to(SLIDING)
-    way = float(((drive.core.positions() - start)[middle] @ down).mean())
+    distance = float(((drive.core.positions() - start)[middle] @ down).mean())
     speed = float((drive.core.velocities()[middle] @ down).mean())
     if stops:
         exact = THROWN**2 / (-2 * PLANE.coulomb(STOPPING))
-        return drive.outcome([relative("way", way, exact), absolute("creep", speed, 0.0)])
+        return drive.outcome([relative("way", distance, exact), absolute("creep", speed, 0.0)])
     motion = block_motion(str(settings["law"]), drive.core.time_s)
-    return drive.outcome([relative("way", way, motion.way), relative("speed", speed, motion.speed)])
+    return drive.outcome(
+        [relative("way", distance, motion.distance), relative("speed", speed, motion.speed)]
+    )
 
 
 def matrix(full: bool) -> list[Settings]:
@@ -87,10 +89,10 @@ def matrix(full: bool) -> list[Settings]:
     particles = (0.25, 0.06, 0.03) if full else (0.25,)
     listed: list[Settings] = []
     for law in ("coulomb", "voellmy", "stop"):
-        one: Settings = {**DEFAULTS, "law": law}
-        listed += [{**one, "time_step": dt} for dt in steps]
-        listed += [{**one, "layer_thickness": layer} for layer in particles if layer != 0.06]
-        listed += [{**one, "cell": 1.0}] if full else []
+        base: Settings = {**DEFAULTS, "law": law}
+        listed += [{**base, "time_step": dt} for dt in steps]
+        listed += [{**base, "layer_thickness": layer} for layer in particles if layer != 0.06]
+        listed += [{**base, "cell": 1.0}] if full else []
     return listed
 
 
@@ -103,19 +105,19 @@ CASE = Case(
     ),
     description="""
     Half a metre of snow, 30 m long and wide on the map, slides down a plane of 35 degrees for 3 s,
-    without bonds and without artificial viscosity. Compared are the way and the speed of its
+    without bonds and without artificial viscosity. Compared are the distance and the speed of its
     middle, where the thickness stays what it was. With μ = 1.1 a block that was thrown down the
     slope at 4 m/s must stop after v²/(2 a), and then stay exactly where it is.
     """,
     quantities=(
-        Quantity("way", "way down the slope, m", bar=0.005, bar_for={"time_step": 0.01}),
+        Quantity("way", "distance down the slope, m", bar=0.005, bar_for={"time_step": 0.01}),
         Quantity("speed", "speed, m/s", bar=0.005, bar_for={"time_step": 0.01}),
         Quantity("creep", "speed after stopping, m/s", bar=1e-9, relative=False),
     ),
     matrix=matrix,
     measure=measure,
     remarks="""
-    Coulomb's friction is exact but for the step in which snow stops. Voellmy's is implicit, of
+    Coulomb's friction is exact except for the step in which snow stops. Voellmy's is implicit, of
     first order in the time step.
     """,
 )

@@ -17,7 +17,7 @@ FRICTION = math.tan(math.radians(20.0))
 THICKNESS, DURATION = 1.0, 3.0  # m, s
 LENGTH, HALF_WIDTH = 40.0, 14.0  # m, along the slope; on the map
 MEASURED = 3.0  # m, half the width of the strip whose mean is compared: no side is felt there
-SEEN = 0.05  # of the dam's height: the front is where there is more snow
+SEEN = 0.05  # share of the dam's height; the front is where the snow is thicker
 
 DEFAULTS: Settings = {"cell": 2.0, "time_step": 0.02}
 #: Snow of this thickness over a cell makes a particle, m: about 4, 9, 16 and 36 particles per cell.
@@ -91,7 +91,7 @@ def matrix(full: bool) -> list[Settings]:
     if not full:
         return [{**DEFAULTS, "layer_thickness": layer} for layer in LAYERS[:3]]
     listed: list[Settings] = [{**DEFAULTS, "layer_thickness": layer} for layer in LAYERS]
-    listed += [{"cell": 1.0, "time_step": 0.01, "layer_thickness": one} for one in LAYERS]
+    listed += [{"cell": 1.0, "time_step": 0.01, "layer_thickness": layer} for layer in LAYERS]
     listed += [{**DEFAULTS, "layer_thickness": LAYERS[2], "time_step": dt} for dt in (0.04, 0.005)]
     listed += [
         {**DEFAULTS, "layer_thickness": LAYERS[2], "artificial_viscosity": much}
@@ -108,7 +108,7 @@ CASE = Case(
         "numerical models, Pure and Applied Geophysics 157, 1081-1096"
     ),
     description="""
-    Snow 1 m thick behind a dam on a plane of 30 degrees, friction angle 20 degrees, is let go.
+    Snow 1 m thick behind a dam on a plane of 30 degrees, friction angle 20 degrees, is released.
     After 3 s the thickness along the middle of a strip 28 m wide, which its sides and its upper end
     have not reached, is compared. The error of the profile is the mean absolute difference over the
     way of the wave behind the dam, in parts of the dam's height. The front is where the thickness

@@ -34,7 +34,7 @@ DEFAULTS: Settings = {
     "artificial_viscosity": 100.0,
     "bonds": True,
 }
-#: What is varied on the slope, one at a time.
+#: Variations on the slope, one at a time.
 EXTREMES: tuple[Settings, ...] = (
     {"time_step": 1e-5},
     {"time_step": 1.0, "bonds": False},
@@ -87,7 +87,7 @@ def matrix(full: bool) -> list[Settings]:
         for ground in GROUNDS
         for thickness in thicknesses
     ]
-    return listed + [{**base, **one} for one in EXTREMES]
+    return listed + [{**base, **extreme} for extreme in EXTREMES]
 
 
 CASE = Case(

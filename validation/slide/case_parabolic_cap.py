@@ -146,7 +146,7 @@ def matrix(full: bool) -> list[Settings]:
     if not full:
         return listed
     fine: Settings = {"cell": 1.0, "time_step": 0.005}
-    listed += [{**one, **fine} for one in listed]
+    listed += [{**settings, **fine} for settings in listed]
     listed += [
         {**DEFAULTS, "shape": shape, "layer_thickness": LAYERS[2], "time_step": 0.04}
         for shape in ("ridge", "cap")

@@ -83,7 +83,7 @@ def measure(settings: Settings) -> Outcome:
         change = np.abs(_read_back(maps, after, degrees) - before)
         resolved = np.abs(_read_back(maps, _turned(straight, before, degrees), degrees) - before)
         for ending, power in (("", 1), ("_l2", 2)):
-            sums = [(found**power).sum() for found in (change, resolved)]
+            sums = [(values**power).sum() for values in (change, resolved)]
             share = float((sums[0] / sums[1]) ** (1 / power))
             measured.append(Measured(f"{name}{ending}", share, 0.0, share))
     return turned[0].outcome(measured)
@@ -98,9 +98,11 @@ def _turned(maps: SlideMaps, values: Floats, degrees: float) -> Floats:
     """Return a map turned counterclockwise, bilinear between nodes; 0 beyond its edge."""
     x, y = turn(*np.meshgrid(*node_axes(maps)), -degrees)
     inside = np.maximum(np.abs(x), np.abs(y)) < HALF
-    found = np.zeros_like(values)
-    found[inside] = Raster(values, maps.west, maps.south, maps.cell).height_at(x[inside], y[inside])
-    return found
+    heights = np.zeros_like(values)
+    heights[inside] = Raster(values, maps.west, maps.south, maps.cell).height_at(
+        x[inside], y[inside]
+    )
+    return heights
 
 
 def matrix(full: bool) -> list[Settings]:
@@ -112,7 +114,7 @@ def matrix(full: bool) -> list[Settings]:
         for angle in angles
     ]
     if full:
-        listed += [{**one, "cell": 4.0, "layer_thickness": 0.08} for one in listed]
+        listed += [{**settings, "cell": 4.0, "layer_thickness": 0.08} for settings in listed]
     return listed
 
 

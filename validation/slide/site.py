@@ -68,7 +68,7 @@ class Site:
     Parameters
     ----------
     height
-        Of the ground, m.
+        Height of the ground, m.
     west, south, east, north
         The rectangle on the map, m.
     release

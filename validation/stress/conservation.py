@@ -58,7 +58,7 @@ class Conservation:
         self._momenta = float(masses @ np.linalg.norm(velocities, axis=1))
 
     def sample(self) -> None:
-        """Compare what is there now with what came in."""
+        """Compare the present mass, momentum and energy with those that came in."""
         energy = self.simulation.energy()
         work = self._laid - energy["gravitational_j"]
         excess = _in_motion(energy) - self._brought - work

@@ -23,11 +23,11 @@ class Trial:
     design:
         ``"reference"``, ``"single"``, ``"pairwise"`` or ``"random"``.
     varied:
-        What of the reference is changed, in words; empty unless singly.
+        Text for the parameter that differs from the reference; empty unless it is a single one.
     point:
         The values.
     steps:
-        How many steps of the initial length each event may take.
+        Number of steps of the initial length that each event may take.
     """
 
     design: str

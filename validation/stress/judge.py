@@ -25,7 +25,7 @@ MASS_BOUND = 1e-9
 #: the time step, and soft snow takes steps that are not small beside its fall or its blow.
 ENERGY_BOUND = 0.2
 
-#: By how much motion and elastic strain may exceed what came in, for a step or two and at the end.
+#: Allowed excess of motion and elastic strain over the input, for a step or two and at the end.
 #: In the step in which two bodies meet they strain before they slow down: symplectic Euler swings
 #: about an energy of its own, by up to that of the meeting particles.
 SWING_BOUND = 0.1

@@ -22,7 +22,7 @@ def run(full: bool, seed: int = 1, progress: Optional[Reporter] = None) -> pd.Da
         Whether to make the full suite (thousands of runs, about ten minutes on one core) or the
         quick one (seconds).
     seed:
-        Of the random combinations.
+        Seed of the random combinations.
     progress:
         Called after every run.
 
@@ -47,8 +47,8 @@ def run_trials(plan: Sequence[Trial], progress: Optional[Reporter] = None) -> pd
     failed = 0
     with stress_pool() as pool:
         for trial in plan:
-            found = {**trial.point, **record(pool, Run(trial.point, trial.steps))}
-            outcome, reason = judge(found)
+            row = {**trial.point, **record(pool, Run(trial.point, trial.steps))}
+            outcome, reason = judge(row)
             failed += outcome == "failed"
             rows.append(
                 {
@@ -56,7 +56,7 @@ def run_trials(plan: Sequence[Trial], progress: Optional[Reporter] = None) -> pd
                     "varied": trial.varied,
                     "outcome": outcome,
                     "reason": reason,
-                    **found,
+                    **row,
                 }
             )
             if progress is not None:

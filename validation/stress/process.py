@@ -39,9 +39,9 @@ def record(pool: Pool[Run, Record], run: Run) -> Record:
     "raised" is an exception that is neither `InputError` nor `SimulationError`.
     """
     pool.submit(run)
-    while not (found := pool.collect(LIMIT_S)):
+    while not (results := pool.collect(LIMIT_S)):
         pass
-    return _record(found[0])
+    return _record(results[0])
 
 
 def compute(run: Run, report: Callable[[float], None]) -> Record:

@@ -25,7 +25,7 @@ Record = dict[str, Any]
 
 
 def solve(point: Point, steps: int) -> Record:
-    """Make one run and return what is known about it.
+    """Make one run and return its record.
 
     Parameters
     ----------

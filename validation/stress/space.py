@@ -29,8 +29,8 @@ class Range:
         The value in the reference scene.
     log:
         Whether random values are log-uniform, for ranges that span decades.
-    whole:
-        Whether values are whole numbers.
+    is_integer:
+        Whether values are integers.
     """
 
     name: str
@@ -40,7 +40,7 @@ class Range:
     high: float
     reference: float
     log: bool = False
-    whole: bool = False
+    is_integer: bool = False
 
     @property
     def levels(self) -> tuple[Value, ...]:
@@ -56,7 +56,7 @@ class Range:
         return self._rounded(float(random.uniform(self.low, self.high)))
 
     def _rounded(self, value: float) -> Value:
-        return round(value) if self.whole else float(value)
+        return round(value) if self.is_integer else float(value)
 
 
 @dataclass(frozen=True)
@@ -79,7 +79,7 @@ class Choice:
 
 Parameter = Union[Range, Choice]
 
-#: What is simulated; `scenes` says how each is built.
+#: Kinds of simulated snow; `scenes` builds each.
 KINDS = {
     "slide": "slab slides off the panel onto the ground, a chunk of snow thrown onto it",
     "throw": "block of snow thrown onto the ground",
@@ -108,9 +108,9 @@ PARAMETERS: tuple[Parameter, ...] = (
     Choice("ground_condition", "Condition of the ground", ("sticky", "separate", "slip")),
     Range("speed", "Speed of thrown snow", "m/s", 0.1, 100.0, 2.0, log=True),
     Range("thickness", "Thickness of the snow", "m", 0.005, 1.0, 0.06, log=True),
-    Range("cells", "Cells across the snow", "", 1, 6, 3, whole=True),
+    Range("cells", "Cells across the snow", "", 1, 6, 3, is_integer=True),
     Range("plate_cells", "Thickness of panel or plate in cells", "", 0.01, 4.0, 1.0, log=True),
-    Range("particles_per_voxel", "Particles per voxel", "", 1, 8, 6, whole=True),
+    Range("particles_per_voxel", "Particles per voxel", "", 1, 8, 6, is_integer=True),
     Choice("pattern", "Seeding pattern", ("poisson", "jittered", "regular")),
     Choice("dimension", "Dimension", (2, 3)),
     Choice("transfer", "Transfer", ("flip", "apic")),

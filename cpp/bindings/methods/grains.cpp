@@ -1,4 +1,4 @@
-// What only a simulation of grains tells.
+// Properties of a simulation of grains.
 #include <pybind11/numpy.h>
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace py = pybind11;
 namespace snowshed::grains {
 namespace {
 
-/// The solver as grains; throws InputError where the scene's method is another.
+/// The solver as grains; throws InputError if the scene's method is another.
 const Solver& grains_of(const Simulation& sim) {
   const auto* grains = dynamic_cast<const Solver*>(&sim.solver());
   if (!grains) throw InputError("/method", "is not \"grains\", and loads no sample");
@@ -25,7 +25,8 @@ py::dict curve(const Simulation& sim) {
   return columns_of(sim.curve()->columns(), sim.curve()->values());
 }
 
-/// Grains that touch: their numbers (n, 2), where, the force on the first, and whether bonded.
+/// Grains that touch: their numbers (n, 2), the place, the force on the first, and whether they are
+/// bonded.
 py::tuple contacts(const Simulation& sim) {
   const std::vector<GrainContact> contacts = grains_of(sim).grain_contacts();
   py::array_t<std::int64_t> grains({py::ssize_t(contacts.size()), py::ssize_t(2)});

@@ -1,4 +1,4 @@
-// What only a slide tells.
+// Properties of a simulation of a slide.
 #include <pybind11/numpy.h>
 
 #include "array_copies.hpp"
@@ -11,7 +11,7 @@ namespace py = pybind11;
 namespace snowshed::slide {
 namespace {
 
-/// The solver as a slide; throws InputError where the scene's method is another.
+/// The solver as a slide; throws InputError if the scene's method is another.
 const Solver& slide_of(const Simulation& sim) {
   const auto* slide = dynamic_cast<const Solver*>(&sim.solver());
   if (!slide) throw InputError("/method", "is not \"slide\", and has no maps");

@@ -12,7 +12,7 @@
 
 namespace snowshed {
 
-/// The count of those who hold a piece of memory; stands just before its first element.
+/// The number of holders of a piece of memory; it is stored just before the first element.
 class alignas(64) MemoryHolders {
  public:
   static MemoryHolders& of(const void* first_element) {
@@ -66,8 +66,8 @@ struct AlignedAllocator {
 template <class T>
 using AlignedVector = std::vector<T, AlignedAllocator<T>>;
 
-/// The elements of a vector; the pointer keeps their memory when the vector lets go of it, to grow
-/// or to be destroyed. Null where the vector never held any.
+/// The elements of a vector. The pointer keeps their memory when the vector grows or is destroyed.
+/// Null if the vector never held any.
 template <class T>
 std::shared_ptr<const T> share(const AlignedVector<T>& vector) {
   if (vector.capacity() == 0) return nullptr;

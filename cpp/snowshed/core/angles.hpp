@@ -1,4 +1,4 @@
-// Angles: everything that people write is in degrees.
+// Angles: users write all of them in degrees.
 #pragma once
 
 namespace snowshed {

@@ -41,7 +41,7 @@ class Pipe {
     ends_[1] = -1;
   }
 
-  /// All that is written until the other end is closed.
+  /// The bytes that are written until the other end is closed.
   std::string drain() {
     std::string all;
     char buffer[1 << 16];
@@ -95,7 +95,7 @@ std::optional<std::filesystem::path> beside_this_binary(const std::string& name)
   ::Dl_info info;
   if (::dladdr(reinterpret_cast<const void*>(&run_child), &info) && info.dli_fname)
     folders.push_back(std::filesystem::path(info.dli_fname).parent_path());
-  // Of an executable found on the path, the above is only the name it was called by.
+  // For an executable found on the path, dladdr gives only the name by which it was called.
   std::error_code error;
   const auto self = std::filesystem::read_symlink("/proc/self/exe", error);
   if (!error) folders.push_back(self.parent_path());

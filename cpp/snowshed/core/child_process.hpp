@@ -10,12 +10,12 @@ namespace snowshed {
 
 struct ChildResult {
   int exit_code = 0;
-  int signal = 0;      // that ended it; 0 if none did
-  std::string output;  // what it wrote to its standard output
+  int signal = 0;      // signal that ended it; 0 if none did
+  std::string output;  // its standard output
 };
 
-/// Runs a program and waits for it; what it writes to its standard error is dropped. Throws
-/// FileError if it cannot be started.
+/// Runs a program and waits for it; its standard error is dropped. Throws FileError if it cannot be
+/// started.
 ChildResult run_child(const std::filesystem::path& program,
                       const std::vector<std::string>& arguments);
 

@@ -1,4 +1,4 @@
-// Errors a user can act on: what was wrong, where, what is allowed.
+// Errors that a user can act on: the fault, its place, and the allowed values.
 #pragma once
 
 #include <cerrno>
@@ -26,8 +26,8 @@ class SimulationError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Reading or writing a file failed: which file, what could not be done, and the system's number of
-/// the reason (errno; 0 where it gives none).
+/// A failure to read or write a file: the file, the action, and the system's number of the reason
+/// (errno; 0 if it gives none).
 class FileError : public std::runtime_error {
  public:
   FileError(std::string file, const std::string& what, int code)
@@ -35,7 +35,7 @@ class FileError : public std::runtime_error {
   const std::string& file() const { return file_; }
   int code() const { return code_; }
 
-  /// Returns whether the disk is full or broken, which has nothing to do with what was asked for.
+  /// Returns whether the cause is a full or broken disk rather than the request.
   bool is_of_disk() const {
     return code_ == ENOSPC || code_ == EDQUOT || code_ == EIO || code_ == EFBIG;
   }

@@ -97,8 +97,8 @@ const char* slow_kernels_note() {
   if (machine_has(KernelVariant::avx2) && supported_variants().size() == 1)
     return "this build has no kernels for the AVX2 of this processor: this takes two to five times "
            "as long as with them (make build KERNELS=all)";
-  return "the kernels do without AVX2: this takes two to five times as long as on a processor "
-         "that has it (2013 or later)";
+  return "the kernels run without AVX2: this takes two to five times as long as on a processor "
+         "with it (2013 or later)";
 }
 
 }  // namespace snowshed

@@ -1,4 +1,4 @@
-// Which of the instruction sets that kernels are compiled for a process uses.
+// Choice of the instruction set whose kernels a process uses.
 #pragma once
 
 namespace snowshed {
@@ -6,14 +6,14 @@ namespace snowshed {
 enum class KernelVariant { baseline, avx2, avx512 };
 
 /// Returns the widest one that both the build and the machine have, or the one that the environment
-/// variable SNOWSHED_KERNELS names. Throws InputError where that cannot be had.
+/// variable SNOWSHED_KERNELS names. Throws InputError if that is not available.
 KernelVariant chosen_kernel_variant();
 
 /// Returns its name.
 const char* kernel_variant();
 
-/// Returns a sentence on what it costs that the kernels are narrower than they could be, because of
-/// the build or of the processor; else nothing. (benchmarks/results has the times of all kernels.)
+/// Returns a sentence on the cost of kernels that are narrower than possible, because of the build
+/// or of the processor; empty if they are not. (benchmarks/results has the times of all kernels.)
 const char* slow_kernels_note();
 
 }  // namespace snowshed

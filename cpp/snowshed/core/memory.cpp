@@ -59,7 +59,7 @@ struct Hierarchy {
   const char *limit, *used, *file_cache;
 };
 
-/// Where this process stands in the hierarchy, relative to its root.
+/// Place of this process in the hierarchy, relative to its root.
 std::string control_group(const Hierarchy& hierarchy) {
   std::ifstream lines("/proc/self/cgroup");
   for (std::string line; std::getline(lines, line);) {
@@ -95,7 +95,7 @@ std::uint64_t installed_memory_bytes() {
 }  // namespace
 
 std::uint64_t peak_resident_bytes() {
-  // getrusage also counts what the parent had before it started this program; this does not.
+  // getrusage also counts memory of the parent from before it started this program; this does not.
   if (const Bytes peak = field_in_kilobytes("/proc/self/status", "VmHWM:")) return *peak;
   rusage usage{};
   if (::getrusage(RUSAGE_SELF, &usage) != 0) return 0;

@@ -1,17 +1,17 @@
-// How much memory the process has used and how much the machine has.
+// Memory that the process has used and memory of the machine.
 #pragma once
 
 #include <cstdint>
 
 namespace snowshed {
 
-/// Largest resident size of this process so far, bytes; 0 where the system does not tell.
+/// Largest resident size of this process so far, bytes; 0 if the system does not report it.
 std::uint64_t peak_resident_bytes();
 
 /// Memory this process may use at most: of the machine, or of the container where it has less.
 std::uint64_t physical_memory_bytes();
 
-/// Memory that can be had now without swapping, bytes; never more than `physical_memory_bytes`.
+/// Memory that is available now without swapping, bytes; never more than `physical_memory_bytes`.
 std::uint64_t available_memory_bytes();
 
 }  // namespace snowshed

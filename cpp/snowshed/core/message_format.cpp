@@ -105,7 +105,8 @@ std::string pointer(const std::string& parent, const std::string& key) {
   std::string path = parent + "/";
   std::size_t length = 0;
   for (const char c : key) {
-    const bool continues = (static_cast<unsigned char>(c) & 0xC0) == 0x80;  // of a UTF-8 sequence
+    // Continues a UTF-8 sequence.
+    const bool continues = (static_cast<unsigned char>(c) & 0xC0) == 0x80;
     if (++length > longest && !continues) return path + "...";
     if (c == '~')
       path += "~0";

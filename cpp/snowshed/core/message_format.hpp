@@ -18,8 +18,8 @@ std::string show_briefly(double number);
 /// Returns the text in quotation marks, as ASCII and shortened, so that any text can be printed.
 std::string quote(const std::string& text);
 
-/// Returns a message as a terminal may show it, whatever it quotes: control characters, those that
-/// turn the direction of writing, and bytes that are no UTF-8 become "?".
+/// Returns a message that a terminal may show, even if it quotes untrusted text: control
+/// characters, those that turn the direction of writing, and bytes that are no UTF-8 become "?".
 std::string printable(const std::string& message);
 
 /// Returns whether the text is valid UTF-8.

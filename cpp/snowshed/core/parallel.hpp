@@ -1,6 +1,6 @@
-// Loops over threads. What an iteration writes is its own, so results never depend on how many
-// threads there are or which of them runs what. Where iterations throw, the loop throws what the
-// first of them (by index) threw; others may have run before it comes to that.
+// Loops over threads. Each iteration writes only its own data, so results never depend on the
+// number of threads or on their shares of the work. If iterations throw, the loop throws the
+// exception of the first of them (by index); later iterations may have run before.
 #pragma once
 
 #include <omp.h>
@@ -59,9 +59,9 @@ void run_piece(std::ptrdiff_t begin, std::ptrdiff_t end, std::ptrdiff_t stride, 
 }
 
 #ifdef SNOWSHED_STD_THREADS
-/// Stands in for OpenMP where ThreadSanitizer watches, which understands std::thread. Iterations
-/// go to the threads in turn, however short the loop, so that any two neighbours that touch the
-/// same memory are on different threads.
+/// Replaces OpenMP under ThreadSanitizer, which only understands std::thread. Iterations go to the
+/// threads in turn, however short the loop, so that any two neighbours that touch the same memory
+/// are on different threads.
 template <class F>
 void run_in_turn(std::ptrdiff_t n, int threads, F& f) {
   FirstException thrown;
@@ -93,8 +93,8 @@ inline std::vector<LoopShare> equal_shares(std::ptrdiff_t n, int threads) {
 #endif
 
 /// f(i) for i in [0, n); threads take `grain` iterations at a time. Each has its own share of the
-/// range, so that it finds in its cache what it left there the last time, and helps with those of
-/// the others when it has done its own. Where memory for this is short, it throws before the first
+/// range, so that it finds the data of the last loop in its cache. When it has done its own share
+/// it helps with those of the others. Where memory for this is short, it throws before the first
 /// iteration.
 template <class F>
 void parallel_for(std::ptrdiff_t n, int threads, [[maybe_unused]] int grain, F f) {

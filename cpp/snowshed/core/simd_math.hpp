@@ -57,7 +57,7 @@ SNOWSHED_INLINE V log1p(const V& a) {
     const V z = s * s;
     V series = broadcast<V>(T(1) / T(2 * Bits::log_terms + 1));
     for (int k = Bits::log_terms - 1; k >= 0; --k) series = series * z + T(1) / T(2 * k + 1);
-    const V rounding = (a - (u - T(1))) / u;  // what 1 + a lost
+    const V rounding = (a - (u - T(1))) / u;  // rounding error of 1 + a
     return __builtin_convertvector(e, V) * T(0.69314718055994530942) +
            (T(2) * s * series + rounding);
   }

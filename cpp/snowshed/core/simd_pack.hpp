@@ -42,7 +42,7 @@ struct SimdTypes<double> {
 template <class T>
 using SimdPack = typename SimdTypes<T>::type;
 
-/// What a comparison of SimdPack<T> gives: in each lane all bits or none.
+/// Result of a comparison of SimdPack<T>: all bits or none in each lane.
 template <class T>
 using SimdMask = typename SimdTypes<T>::mask;
 
@@ -208,7 +208,7 @@ SNOWSHED_INLINE void exchange_rows(V (&rows)[n]) {
 }
 
 /// Transposes a square of as many packs as they have lanes: lane j of row i becomes lane i of row
-/// j. Of fewer packs, each block of as many lanes is transposed.
+/// j. With fewer packs, each square block is transposed.
 template <class V, int n>
 SNOWSHED_INLINE void transpose(V (&rows)[n]) {
   static_assert(lane_count<V> % n == 0);
@@ -287,7 +287,7 @@ SNOWSHED_INLINE void store_first(Scalar<V>* p, const V& v, int n) {
 }
 
 /// Read the first n values at p; the lanes beyond repeat the first one, so that they hold
-/// harmless numbers without touching memory that belongs to somebody else.
+/// harmless numbers without touching memory behind the array.
 template <class V>
 SNOWSHED_INLINE V load_pack(const Scalar<V>* p, int n) {
   if (n < lane_count<V>) return load_first(p, n, broadcast<V>(p[0]));

@@ -1,4 +1,4 @@
-// Giving up work that takes long, on request.
+// Requests to stop work that takes long.
 #pragma once
 
 #include <functional>
@@ -6,11 +6,11 @@
 
 namespace snowshed {
 
-/// Asked from time to time by work that takes long; true: give it up. Where it is empty, nobody
-/// asks.
+/// A function that long work calls from time to time; if it returns true, the work stops. It may be
+/// empty.
 using StopRequest = std::function<bool()>;
 
-/// Thrown by work that was given up. What it was to change is as it was.
+/// Thrown by work that was stopped. Its data are unchanged.
 class Stopped : public std::runtime_error {
  public:
   Stopped() : std::runtime_error("interrupted") {}
@@ -21,7 +21,7 @@ class StopCheck {
  public:
   explicit StopCheck(const StopRequest& request) : request_(request) {}
 
-  /// Throws `Stopped` where the work is to be given up.
+  /// Throws `Stopped` if the work shall stop.
   void operator()() {
     if (++turns_ % turns_between == 0 && request_ && request_()) throw Stopped();
   }

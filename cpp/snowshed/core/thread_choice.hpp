@@ -1,4 +1,4 @@
-// How many threads take a short step: as many as make it faster, which only a trial can tell.
+// Number of threads for a short step: as many as make it faster, as trials show.
 #pragma once
 
 #include <algorithm>
@@ -8,9 +8,9 @@
 
 namespace snowshed {
 
-/// Tries now and then whether steps are faster with one thread or with many, and goes on with what
-/// was faster. Threads that share few microseconds of work, or their cores with other programs,
-/// wait longer for each other than they save. For steps whose results do not depend on it.
+/// Tries now and then whether steps are faster with one thread or with many, and uses the faster
+/// choice. Threads that share few microseconds of work, or their cores with other programs, wait
+/// longer for each other than they save. The results of a step must not depend on the choice.
 class ThreadChoice {
  public:
   /// Returns the number of threads for the step that begins, 1 or `most`.
@@ -44,7 +44,7 @@ class ThreadChoice {
   using Clock = std::chrono::steady_clock;
   // Steps. The first trials are soon repeated: a program that has just begun is slower.
   static constexpr std::size_t first_period = 64, longest_period = 1024, trials = 9;
-  static constexpr double worthwhile = 0.9;  // of the time with one thread
+  static constexpr double worthwhile = 0.9;  // share of the time with one thread
   using Times = std::array<double, trials>;
 
   static double median(Times times) {
@@ -52,12 +52,12 @@ class ThreadChoice {
     return times[trials / 2];
   }
 
-  std::size_t period_ = first_period;  // steps from a trial to the next
+  std::size_t period_ = first_period;  // number of steps between trials
   std::size_t steps_ = 0, step_ = 0;   // since this trial began: steps begun, and the present one
   bool trial_ = false, many_ = false, gave_up_ = false;
   double with_one_ = 0;  // s
   Clock::time_point begin_;
-  std::array<Times, 2> seconds_{};  // of the trials, s: with one thread and with many
+  std::array<Times, 2> seconds_{};  // times of the trials, s: with one thread and with many
 };
 
 }  // namespace snowshed

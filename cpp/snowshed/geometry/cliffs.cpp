@@ -23,7 +23,7 @@ double rise(const HeightField& f, double slope) {
   return slope < 90 ? std::tan(radians(slope)) * f.cell : std::numeric_limits<double>::infinity();
 }
 
-std::string in_words(const HeightField& f, const HeightStep& s) {
+std::string describe_step(const HeightField& f, const HeightStep& s) {
   const double from = f.height(s.column, s.row), to = f.height(s.column + s.east, s.row + s.north);
   char text[300];
   std::snprintf(text, sizeof text,
@@ -33,7 +33,7 @@ std::string in_words(const HeightField& f, const HeightStep& s) {
   return text;
 }
 
-/// Returns in words the first step between nodes of a rectangle for which a test holds.
+/// Describes the first step between nodes of a rectangle for which a test holds.
 template <class Test>
 std::string first_step(const HeightField& f, const int (&low)[2], const int (&high)[2], Test test) {
   for (int row = low[1]; row <= high[1]; ++row)
@@ -43,7 +43,7 @@ std::string first_step(const HeightField& f, const int (&low)[2], const int (&hi
         if (column + step.east >= f.columns || row + step.north >= f.rows) continue;
         const double from = f.height(column, row),
                      to = f.height(column + step.east, row + step.north);
-        if (std::abs(to - from) > least_step && test(step, from, to)) return in_words(f, step);
+        if (std::abs(to - from) > least_step && test(step, from, to)) return describe_step(f, step);
       }
   return "";
 }

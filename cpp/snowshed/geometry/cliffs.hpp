@@ -1,4 +1,4 @@
-// Steps in elevations that no ground has: missing values that a raster holds as 0, for example.
+// Steps in elevations that no ground has, for example because a raster has 0 for missing values.
 #pragma once
 
 #include <string>
@@ -8,14 +8,14 @@
 
 namespace snowshed {
 
-/// Tells of neighbouring nodes that differ in height as no ground does; empty where there are none:
-/// by more than 100 m at more than 80 degrees and `max_slope`, or from exactly 0 m by more than
-/// 10 m at more than `max_slope` degrees.
+/// Describes the first step between neighbouring nodes that no ground has: more than 100 m at more
+/// than 80 degrees and `max_slope`, or more than 10 m from exactly 0 m at more than `max_slope`
+/// degrees. Returns an empty text if there is none.
 std::string impossible_cliff(const HeightField& field, double max_slope);
 
-/// Tells of neighbouring nodes in or beside an area that differ in height by more than 10 m at more
-/// than `max_slope` degrees; empty where there are none. The area is given from the south-west
-/// node.
+/// Describes the first step between neighbouring nodes in or beside an area that is higher than 10
+/// m and steeper than `max_slope` degrees. Returns an empty text if there is none. The area is
+/// given from the south-west node.
 std::string cliff_under(const Polygon& area, const HeightField& field, double max_slope);
 
 }  // namespace snowshed

@@ -13,7 +13,7 @@ struct HeightField {
   int columns = 0, rows = 0;
   double cell = 1;              // m, between neighbouring nodes
   double west = 0, south = 0;   // m, coordinates of the south-west node
-  std::vector<double> heights;  // m, row by row from the south; NaN where nothing is known
+  std::vector<double> heights;  // m, row by row from the south; NaN if unknown
 
   std::size_t index(int column, int row) const {
     return std::size_t(row) * std::size_t(columns) + std::size_t(column);
@@ -45,7 +45,7 @@ inline GridPlace place_in(double x, double y, int columns, int rows) {
 
 /// The field on a grid of another cell size with the same south-west node: bicubic where all
 /// sixteen heights around are known, bilinear where only four are, NaN elsewhere. It covers the
-/// field and no more. Throws InputError where the new grid would have more than 2^31 nodes.
+/// field and no more. Throws InputError if the new grid would have more than 2^31 nodes.
 HeightField resampled(const HeightField& field, double cell);
 
 }  // namespace snowshed

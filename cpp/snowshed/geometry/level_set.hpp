@@ -8,7 +8,7 @@
 
 namespace snowshed {
 
-/// Axis-aligned bounds; infinite where a shape is unbounded.
+/// Axis-aligned bounds; infinite if a shape is unbounded.
 struct Bounds {
   Vec3 min, max;
 };
@@ -42,8 +42,8 @@ class LevelSet {
   /// Returns the greatest depth below the surface, metres (infinite for a half-space).
   virtual double inradius() const = 0;
 
-  /// Returns half of the thickness of the part that is nearest to x, metres, as far as it is known:
-  /// by default that of the thickest part.
+  /// Returns half the thickness (m) of the part that is nearest to x; by default, half that of the
+  /// thickest part.
   virtual double half_thickness(const Vec3& /*x*/) const { return inradius(); }
 
   /// Returns a lower bound of half of the thickness anywhere, metres; 0 if none is known. Contact

@@ -53,14 +53,14 @@ class Cutter {
   bool is_above(std::uint32_t vertex) const { return mesh_.vertices[vertex].y() > height_; }
 
   std::uint32_t point_on(std::uint32_t low, std::uint32_t high) {
-    const auto [found, is_new] =
+    const auto [entry, is_new] =
         points_.try_emplace(std::uint64_t(low) << 32 | high, std::uint32_t(section_.points.size()));
-    if (!is_new) return found->second;
+    if (!is_new) return entry->second;
     const Vec3 &a = mesh_.vertices[low], &b = mesh_.vertices[high];
     Vec3 x = a + (height_ - a.y()) / (b.y() - a.y()) * (b - a);
     x.y() = 0;
     section_.points.push_back(x);
-    return found->second;
+    return entry->second;
   }
 
   const TriangleMesh& mesh_;
@@ -116,7 +116,7 @@ double total_area(const std::vector<Section>& sections) {
 std::vector<TriangleMesh> sections_at_y0(const std::vector<TriangleMesh>& meshes,
                                          const std::string& where) {
   Bounds bounds = no_bounds();
-  double nearest = infinity;  // of the vertices to the plane
+  double nearest = infinity;  // distance from the vertices to the plane
   for (const TriangleMesh& mesh : meshes)
     for (const Vec3& v : mesh.vertices) {
       bounds = unite(bounds, {v, v});

@@ -45,7 +45,7 @@ struct Shell {
   TriangleMesh mesh;
   Bounds bounds;
   double volume;                        // m3
-  int sense;                            // of the file: 1 outward, -1 inward
+  int sense;                            // sense in the file: 1 outward, -1 inward
   std::vector<std::size_t> containers;  // shells around it, from the smallest to the largest
   Shape solid;                          // where it may contain others
 };
@@ -88,7 +88,7 @@ void find_containers(std::vector<Shell>& shells) {
       if (is_within(shells[i], shells[j])) shells[i].containers.push_back(j);
 }
 
-/// What a shell bounds.
+/// The space that a shell bounds.
 enum class Role { solid, cavity, nothing };
 
 /// The winding number around a shell counts the senses of its containers, as seen from the
@@ -98,15 +98,15 @@ std::vector<Role> roles(const std::vector<Shell>& shells) {
     const Shell& s = shells[i];
     return s.sense * (s.containers.empty() ? s.sense : shells[s.containers.back()].sense);
   };
-  std::vector<Role> found;
+  std::vector<Role> result;
   for (std::size_t i = 0; i < shells.size(); ++i) {
     int around = 0;
     for (const std::size_t k : shells[i].containers) around += sense(k);
-    found.push_back(around == 0              ? Role::solid
-                    : around + sense(i) == 0 ? Role::cavity
-                                             : Role::nothing);
+    result.push_back(around == 0              ? Role::solid
+                     : around + sense(i) == 0 ? Role::cavity
+                                              : Role::nothing);
   }
-  return found;
+  return result;
 }
 
 void append(const TriangleMesh& part, TriangleMesh& mesh) {
@@ -149,7 +149,7 @@ std::vector<TriangleMesh> layers_of(std::vector<Shell>& shells, const std::vecto
   return layers;
 }
 
-/// How often a mesh winds around a point (van Oosterom and Strackee 1983).
+/// Number of times that a mesh winds around a point (van Oosterom and Strackee 1983).
 double winding_number(const TriangleMesh& mesh, const Vec3& x) {
   double sum = 0;
   for (const Triangle& t : mesh.triangles) {

@@ -10,8 +10,8 @@ namespace snowshed {
 
 /// A solid as the union of meshes, whose triangles face outward.
 struct ShellSolid {
-  std::vector<TriangleMesh> layers;  // of shells that lie apart, each with the cavities within it
-  std::vector<std::string> notes;    // on what was changed, a sentence each
+  std::vector<TriangleMesh> layers;  // separate shells, each with its cavities
+  std::vector<std::string> notes;    // on changes, a sentence each
 };
 
 /// Returns the solid bounded by `mesh`, which must satisfy require_closed.
@@ -20,7 +20,7 @@ struct ShellSolid {
 /// an edge, those are neighbours that have the solid between them, so that solids that touch along
 /// an edge or a face are shells of their own.
 ///
-/// - A shell in no other faces outward, whichever way the file has it.
+/// - A shell that lies in no other faces outward, even if the file turns it inward.
 /// - Shells within others count by the rule of non-zero winding: one that turns the opposite way as
 ///   the shell around it is a cavity, a shell in a cavity is solid again, and one that turns the
 ///   same way lies in the solid and bounds nothing.

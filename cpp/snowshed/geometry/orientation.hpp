@@ -1,4 +1,4 @@
-// Which way three points of a plane turn, without rounding errors.
+// Exact sense in which three points of a plane turn, without rounding errors.
 #pragma once
 
 #include <array>
@@ -8,10 +8,10 @@ namespace snowshed {
 
 using PlanePoint = std::array<double, 2>;
 
-/// Returns a number whose sign tells how a, b, c turn: positive counter-clockwise, negative
-/// clockwise, 0 where they lie on one line. The sign is exact; the magnitude is about twice the
-/// area of the triangle. A rounded determinant decides where its error bound allows; else the six
-/// products are summed without rounding (Shewchuk 1997, doi:10.1007/PL00009321).
+/// Returns a number whose sign is the sense in which a, b, c turn: positive counter-clockwise,
+/// negative clockwise, 0 where they lie on one line. The sign is exact; the magnitude is about
+/// twice the area of the triangle. A rounded determinant decides where its error bound allows; else
+/// the six products are summed without rounding (Shewchuk 1997, doi:10.1007/PL00009321).
 inline double orientation(const PlanePoint& a, const PlanePoint& b, const PlanePoint& c) {
   const double left = (a[0] - c[0]) * (b[1] - c[1]), right = (a[1] - c[1]) * (b[0] - c[0]);
   constexpr double relative_error = 3.3306690738754716e-16;  // (3 + 16 u) u, u = 2^-53

@@ -42,20 +42,21 @@ Outline flattened(const std::vector<Vec3>& vertices, const Face& face, const Vec
 
 /// Drops repeated corners, and begins with that of the smallest coordinates.
 Face without_repetitions(const std::vector<Vec3>& vertices, const Face& face) {
-  Face kept;
+  Face corners;
   for (const std::uint32_t corner : face)
-    if (kept.empty() || vertices[corner] != vertices[kept.back()]) kept.push_back(corner);
-  while (kept.size() > 1 && vertices[kept.back()] == vertices[kept.front()]) kept.pop_back();
-  // So that two faces that coincide and turn opposite ways are cut alike.
-  std::rotate(kept.begin(),
-              std::min_element(kept.begin(), kept.end(),
+    if (corners.empty() || vertices[corner] != vertices[corners.back()]) corners.push_back(corner);
+  while (corners.size() > 1 && vertices[corners.back()] == vertices[corners.front()])
+    corners.pop_back();
+  // Two faces that coincide and turn opposite ways are then cut alike.
+  std::rotate(corners.begin(),
+              std::min_element(corners.begin(), corners.end(),
                                [&](auto a, auto b) {
                                  const Vec3 &p = vertices[a], &q = vertices[b];
                                  return std::lexicographical_compare(p.data(), p.data() + 3,
                                                                      q.data(), q.data() + 3);
                                }),
-              kept.end());
-  return kept;
+              corners.end());
+  return corners;
 }
 
 bool is_convex(const Outline& outline) {
@@ -84,7 +85,7 @@ class EarClipper {
     }
   }
 
-  /// Returns false where no ear can be cut although the rest has an area.
+  /// Returns false if no ear can be cut although the rest has an area.
   bool clip(std::vector<Triangle>& triangles) {
     std::size_t i = 0, since_cut = 0;
     while (left_ > 3) {
@@ -147,7 +148,7 @@ class EarClipper {
     return true;
   }
 
-  /// What has no area keeps the neighbouring faces connected.
+  /// Triangles without area keep the neighbouring faces connected.
   bool fan(std::size_t i, std::vector<Triangle>& triangles) {
     while (left_ > 2) cut(after_[i], triangles);
     return true;
@@ -185,11 +186,11 @@ void FaceCutter::append(const Face& given, TriangleMesh& mesh) {
   const Outline outline = flattened(mesh.vertices, face, area);
   if (is_convex(outline)) return append_fan(face, mesh.triangles);
   EarClipper clipper(outline, comparisons_);
-  const bool whole = clipper.clip(mesh.triangles);
+  const bool is_simple = clipper.clip(mesh.triangles);
   if (comparisons_ > most_comparisons)
     refuse(where_, mesh, face,
            "is one concave face too many to cut into triangles; give triangles instead");
-  if (!whole) refuse(where_, mesh, face, "has an outline that crosses itself");
+  if (!is_simple) refuse(where_, mesh, face, "has an outline that crosses itself");
 }
 
 }  // namespace snowshed

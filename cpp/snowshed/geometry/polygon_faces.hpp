@@ -32,7 +32,7 @@ class FaceCutter {
 
  private:
   std::string where_;
-  std::size_t comparisons_ = 0;  // of corners with ears
+  std::size_t comparisons_ = 0;  // comparisons of corners with ears
 };
 
 }  // namespace snowshed

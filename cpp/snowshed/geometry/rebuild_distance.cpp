@@ -35,12 +35,12 @@ void limit_slope(GridSamples& samples, const NearestSeed& grid, const Band& band
 
 /// Returns whether values change sign more steeply than a distance can.
 bool cross_too_steeply(const GridSamples& samples, const NearestSeed& grid) {
-  bool found = false;
+  bool jumps = false;
   grid.for_each_edge([&](const Index& n, const Index& next) {
     const double value = samples.values[grid.at(n)], other = samples.values[grid.at(next)];
-    found |= (value < 0) != (other < 0) && std::abs(other - value) > 1.5 * samples.spacing;
+    jumps |= (value < 0) != (other < 0) && std::abs(other - value) > 1.5 * samples.spacing;
   });
-  return found;
+  return jumps;
 }
 
 }  // namespace
@@ -50,7 +50,7 @@ void rebuild_distance(GridSamples& samples, Band band, const std::string& where)
   const std::vector<Vec3> surface = zero_crossings(grid, samples.values);
   if (surface.empty()) throw InputError(where, "no value is negative: the solid is empty");
   grid.propagate(surface);
-  if (cross_too_steeply(samples, grid)) band = {0, 0};  // none of the values is a distance
+  if (cross_too_steeply(samples, grid)) band = {0, 0};  // no value is a distance
   grid.for_each_node([&](const Index& n) {
     float& value = samples.values[grid.at(n)];
     const double trusted = at(band, value);

@@ -1,4 +1,5 @@
-// Signed distances where a file has none: outside the narrow band of a level set, and in a density.
+// Signed distances that a file does not contain: outside the narrow band of a level set, and in a
+// density.
 #pragma once
 
 #include <string>

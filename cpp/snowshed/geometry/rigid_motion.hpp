@@ -43,7 +43,7 @@ class RigidMotion {
 
   bool is_moving(double t) const { return t >= spec_.start && t < spec_.end; }
 
-  /// Returns pose and velocity at time t, seconds. Callers take it once per time step.
+  /// Returns pose and velocity at time t, seconds. Callers call it once per time step.
   RigidPose at(double t) const {
     const double elapsed = std::max(0.0, std::min(t, spec_.end) - spec_.start);
     RigidPose pose;

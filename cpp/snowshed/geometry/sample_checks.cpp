@@ -57,7 +57,7 @@ void check_slopes(const GridSamples& s, const std::string& where) {
   });
 }
 
-/// What is known of the signs at the border of a grid.
+/// Signs at the border of a grid.
 struct Border {
   std::size_t samples = 0, inside = 0, top = 0, top_inside = 0, bottom_inside = 0;
   double highest_at_sides = -infinity;  // value, m; the bottom does not count
@@ -96,8 +96,8 @@ void check_sign(const GridSamples& s, double highest, const std::string& where) 
           "by -1. (For a solid around a cavity, subtract the cavity from a box.)");
 }
 
-/// The mean slope of the values where they change sign. Of the differences to both neighbours
-/// along an axis the larger counts, because of kinks in thin walls.
+/// The mean slope of the values where they change sign. Along each axis the larger difference to
+/// the two neighbours counts, because thin walls have kinks.
 double mean_slope_at_surface(const GridSamples& s) {
   double sum = 0;
   std::size_t count = 0;

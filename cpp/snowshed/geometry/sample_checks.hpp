@@ -12,10 +12,10 @@ namespace snowshed {
 void require_counts(const GridSamples& samples, const std::string& where);
 
 /// Throws InputError at `where` if no value is negative; if neighbours differ by clearly more than
-/// the spacing, since a distance cannot; or if the sign is the other way round. That is so where
-/// the solid would fill most of the border of the grid and most of its top, and either nothing of
-/// its bottom, or the largest value is found neither at its sides nor at its top. The samples must
-/// satisfy require_counts.
+/// the spacing, because a distance cannot; or if the sign is the other way round. The sign is the
+/// other way round if the solid would fill most of the border of the grid and most of its top, and
+/// either nothing of its bottom, or the largest value is neither at its sides nor at its top. The
+/// samples must satisfy require_counts.
 void require_distances(const GridSamples& samples, const std::string& where);
 
 /// Replaces values that are no distances, where the surface is known, and adds a note on it.

@@ -85,9 +85,9 @@ class SampledGrid final : public LevelSet {
 
   template <class Predicate>
   bool any_inside(Predicate holds) const {
-    bool found = false;
-    for_each_inside([&](const Vec3& at, double) { found = found || holds(at); });
-    return found;
+    bool any = false;
+    for_each_inside([&](const Vec3& at, double) { any = any || holds(at); });
+    return any;
   }
 
   void find_depth() {

@@ -11,7 +11,7 @@
 namespace snowshed {
 namespace {
 
-constexpr double rounding = 1e-9;  // of the half thickness
+constexpr double rounding = 1e-9;  // share of the half thickness
 
 /// The middles of thin parts as triangles, two for each part.
 TriangleMesh middles_of(const std::vector<ThinPart>& parts) {
@@ -81,7 +81,7 @@ class Thickened final : public LevelSet {
   std::vector<Vec3> normals_;
 };
 
-/// Dilates a solid that is so thick everywhere, or at its thickest part if it is convex.
+/// Dilates a solid with this thickness everywhere, or at its thickest part if it is convex.
 ThickSolid dilated(Shape shape, double half_thickness, double half) {
   const double missing = half - half_thickness;
   const Thickening told{Vec3::Zero(), 2 * half_thickness, missing, true};

@@ -9,22 +9,22 @@
 
 namespace snowshed {
 
-/// What was made thicker.
+/// Parts that were made thicker.
 struct Thickening {
-  Vec3 thinnest;     // where the solid is thinnest, m; without meaning if `whole`
+  Vec3 thinnest;     // where the solid is thinnest, m; without meaning if `is_dilated`
   double thickness;  // m, there
   double outward;    // m, by which the surface moves out there, on each side
-  bool whole;        // the solid is dilated as a whole
+  bool is_dilated;   // the solid is dilated as a whole
 };
 
 /// A solid, and how it differs from the one that was given.
 struct ThickSolid {
   Shape shape;
-  std::optional<Thickening> thickening;  // none where the solid is what was given
+  std::optional<Thickening> thickening;  // none if the solid was not changed
 };
 
 /// Returns a solid that is nowhere thinner than `2 half` metres, and is as given where that is
-/// thicker. Convex solids are dilated until they are thick enough. Of others the parts that
+/// thicker. Convex solids are dilated until they are thick enough. In other solids the parts that
 /// find_thin_parts finds grow: all points within `half` of their middle are added, which for a
 /// plate is the same. Solids that are thick enough are returned themselves; a second call changes
 /// nothing.

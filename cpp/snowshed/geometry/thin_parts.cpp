@@ -19,7 +19,7 @@ constexpr double parallel = 0.77;
 
 /// Lengths below are parts of the half thickness that is asked for.
 constexpr double on_surface = 1e-6, shortest_step = 2e-3, thick = 0.999;
-/// So far the middle of a bent part may leave it along its tangent.
+/// The middle of a bent part may leave it along its tangent by this distance.
 constexpr double slack = 0.1;
 
 class ThinPartSearch {
@@ -71,18 +71,18 @@ class ThinPartSearch {
     return sum;
   }
 
-  /// Those of the cells that are thin, and their neighbours: where a thin part meets a thick one, a
-  /// cell is as near to either.
+  /// Thin cells and their neighbours. The neighbours count, because a cell between a thin and a
+  /// thick part is as near to either.
   std::vector<Vec3> around_thin(const std::vector<Vec3>& cells) const {
     std::unordered_set<std::uint64_t> thin;
     for (const Vec3& cell : thin_cells_)
       for (int k = 0; k < 27; ++k)
         thin.insert(
             key(cell + edge_ * in_space().cwiseProduct(Vec3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1))));
-    std::vector<Vec3> found;
+    std::vector<Vec3> near_thin;
     for (const Vec3& cell : cells)
-      if (thin.count(key(cell))) found.push_back(cell);
-    return found;
+      if (thin.count(key(cell))) near_thin.push_back(cell);
+    return near_thin;
   }
 
   Vec3 in_space() const { return {1.0, dimension_ == 2 ? 0.0 : 1.0, 1.0}; }
@@ -90,15 +90,15 @@ class ThinPartSearch {
   /// The parts of cells, half as large, that the surface may pass through.
   std::vector<Vec3> divided(const std::vector<Vec3>& cells) {
     edge_ *= 0.5;
-    std::vector<Vec3> found;
+    std::vector<Vec3> middles;
     for (const Vec3& cell : cells)
       for (std::size_t k = 0; k < children(); ++k) {
         const double sign[3] = {k & 1 ? 0.5 : -0.5, k & 4 ? 0.5 : -0.5, k & 2 ? 0.5 : -0.5};
         const Vec3 middle = cell + edge_ * in_space().cwiseProduct(Vec3(sign[0], sign[1], sign[2]));
         if (std::abs(shape_.distance(middle)) <= reach() + on_surface * half_)
-          found.push_back(middle);
+          middles.push_back(middle);
       }
-    return found;
+    return middles;
   }
 
   std::vector<ThinPart> parts_of(const std::vector<Vec3>& cells) {
@@ -132,8 +132,9 @@ class ThinPartSearch {
     const Vec3 n = normal(*touch);
     if (depth(*touch - half_ * n) >= 0.98 * half_) return std::nullopt;  // a ball fits in
     // Within a union, the surface of a part is not that of the whole: the chord goes on outward.
-    const double out = is_inside(*touch + shortest_step * half_ * n) ? way_out(*touch, n) : 0.0;
-    const double in = way_out(*touch, -n);
+    const double out =
+        is_inside(*touch + shortest_step * half_ * n) ? distance_out(*touch, n) : 0.0;
+    const double in = distance_out(*touch, -n);
     if (in + out >= thick * 2 * half_) return std::nullopt;
     const Vec3 middle = *touch + 0.5 * (out - in) * n;
     const Vec3 begin = normal(*touch + out * n), end = normal(*touch - in * n);
@@ -154,7 +155,7 @@ class ThinPartSearch {
   }
 
   /// The distance from x to the outside of the solid, at most twice the half thickness.
-  double way_out(const Vec3& x, const Vec3& direction) const {
+  double distance_out(const Vec3& x, const Vec3& direction) const {
     const double longest = 2 * half_, shortest = shortest_step * half_;
     double distance = 0;
     for (double d = 0; distance < longest; d = depth(x + distance * direction)) {
@@ -192,7 +193,7 @@ class ThinPartSearch {
     part.corners[2] = middle + a1 * along + b1 * across;
     part.corners[3] = middle - a0 * along + b1 * across;
     if (dimension_ == 3)
-      for (Vec3& corner : part.corners) {  // which an edge that runs aslant cuts off
+      for (Vec3& corner : part.corners) {  // an edge that runs aslant cuts it off
         const double distance = (corner - middle).norm();
         const Vec3 direction = (corner - middle) / distance;
         corner = middle +
@@ -236,7 +237,7 @@ class ThinPartSearch {
   const LevelSet& shape_;
   const double half_;
   const int dimension_;
-  double edge_ = 0;  // of the present cells, m
+  double edge_ = 0;  // edge of the present cells, m
   Vec3 corner_ = Vec3::Zero();
   std::vector<Vec3> thin_cells_;
 };

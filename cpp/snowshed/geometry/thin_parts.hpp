@@ -9,13 +9,13 @@
 namespace snowshed {
 
 /// A piece of the middle of a thin part: a rectangle between both of its faces. Its edges lie half
-/// the thickness away from those of the part. Of a thin rod it is a line, of a small ball a point,
-/// but for rounding.
+/// the thickness away from those of the part. For a thin rod it is a line, for a small ball a
+/// point, except for rounding.
 struct ThinPart {
   Vec3 middle;      // m
   Vec3 normal;      // across the part, unit
   double half;      // m, half of the thickness
-  Vec3 corners[4];  // of the rectangle, m
+  Vec3 corners[4];  // corners of the rectangle, m
 };
 
 /// Returns pieces of all parts of a solid that are thinner than `2 half`, so near to each other
@@ -24,8 +24,8 @@ struct ThinPart {
 /// The surface is found cell by cell, each as large as `half`. The thickness at a point of the
 /// surface is the length of the chord along its normal. It counts where the faces at both ends are
 /// parallel within 40 degrees, so that corners of thick parts are not thin. At other ends, as of
-/// triangular bars, the greatest depth within reach decides. Signs alone are used to measure, since
-/// depths of combined solids are lower bounds.
+/// triangular bars, the greatest depth within reach decides. Signs alone are used to measure,
+/// because depths of combined solids are lower bounds.
 ///
 /// A solid whose surface fills more than 400000 cells is searched in larger ones; parts that are
 /// smaller than those may be missed.

@@ -80,12 +80,12 @@ void merge_identical_vertices(TriangleMesh& mesh) {
   std::iota(order.begin(), order.end(), 0u);
   std::sort(order.begin(), order.end(), before);
 
-  std::vector<Vec3> kept;
+  std::vector<Vec3> distinct;
   for (std::size_t n = 0; n < order.size(); ++n) {
-    if (n == 0 || before(order[n - 1], order[n])) kept.push_back(v[order[n]]);
-    merged[order[n]] = static_cast<std::uint32_t>(kept.size() - 1);
+    if (n == 0 || before(order[n - 1], order[n])) distinct.push_back(v[order[n]]);
+    merged[order[n]] = static_cast<std::uint32_t>(distinct.size() - 1);
   }
-  mesh.vertices = std::move(kept);
+  mesh.vertices = std::move(distinct);
 
   std::vector<Triangle> triangles;
   for (const Triangle& t : mesh.triangles) {
@@ -125,10 +125,10 @@ void cancel_opposite_triangles(TriangleMesh& mesh) {
       dropped[front->number] = dropped[back->number] = 1;
     first = end;
   }
-  std::size_t kept = 0;
+  std::size_t count = 0;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    if (!dropped[t]) mesh.triangles[kept++] = mesh.triangles[t];
-  mesh.triangles.resize(kept);
+    if (!dropped[t]) mesh.triangles[count++] = mesh.triangles[t];
+  mesh.triangles.resize(count);
 }
 
 double enclosed_volume(const TriangleMesh& mesh) {

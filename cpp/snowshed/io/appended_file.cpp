@@ -53,7 +53,7 @@ void append_to_file(const std::filesystem::path& path, const void* data, std::si
     if (written < 0) {
       const int error = errno;
       if (::ftruncate(file.number(), facts.st_size) != 0) {
-        // Readers see that the rest is not whole.
+        // Readers detect that the rest is incomplete.
       }
       fail_at(path, "cannot write the file", error);
     }

@@ -26,7 +26,8 @@ std::string reason(int error) { return std::generic_category().message(error); }
 constexpr std::string_view temporary_prefix = ".partial-";
 constexpr std::size_t temporary_digits = 16;
 
-/// Returns a name in the same folder that nobody can guess: a link planted there would lead astray.
+/// Returns a random name in the same folder: a link planted under a name that can be guessed would
+/// redirect the file.
 std::filesystem::path temporary_name(const std::filesystem::path& path) {
   std::random_device random;
   const std::uint64_t number = std::uint64_t{random()} << 32 | random();
@@ -62,7 +63,7 @@ int retry_open(const std::filesystem::path& path, int flags) {
 }
 
 /// Flushes the folder of `path`. Without this a power cut may undo the rename. Some file systems
-/// refuse to flush a folder. That is no error, since the file itself is already safe.
+/// refuse to flush a folder. This is no error, because the file itself is already safe.
 void sync_folder(const std::filesystem::path& path) {
   const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
   const int descriptor = retry_open(folder, O_RDONLY | O_DIRECTORY);

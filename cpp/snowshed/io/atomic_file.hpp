@@ -15,8 +15,8 @@ namespace snowshed {
 /// removed and an older file at `path` stays as it was. All errors are FileError with the path and
 /// the reason.
 ///
-/// A device or a pipe cannot be replaced by renaming; it is written directly. Of a link, the file
-/// that it names is replaced.
+/// A device or a pipe cannot be replaced by renaming; it is written directly. A link stays; the
+/// file that it names is replaced.
 class AtomicFile {
  public:
   explicit AtomicFile(std::filesystem::path path);
@@ -48,8 +48,8 @@ class AtomicFile {
 /// that is still writing.
 bool is_leftover(const std::filesystem::directory_entry&);
 
-/// Removes such files from a folder; only who has locked the folder may. What cannot be removed
-/// stays.
+/// Removes such files from a folder; the caller must hold the lock of the folder. Files that cannot
+/// be removed stay.
 void remove_leftovers(const std::filesystem::path& folder);
 
 /// Writes the whole content of a file atomically.

@@ -20,7 +20,7 @@
 
 namespace snowshed {
 
-/// How an archive begins.
+/// The beginning of an archive.
 struct ArchiveHeader {
   char magic[8];
   std::uint32_t version;
@@ -74,17 +74,17 @@ const char* type_name(ElementType type) {
   return names[static_cast<std::uint32_t>(type) - 1];
 }
 
-/// A file that pads what is written and adds a checksum.
+/// A file that pads sections and adds a checksum.
 class ChecksummedFile {
  public:
   explicit ChecksummedFile(const std::filesystem::path& path) : file_(path) {}
 
   void write(const void* data, std::size_t bytes) {
-    const std::size_t whole = bytes / word * word;
-    pass(data, whole);
-    if (whole == bytes) return;
+    const std::size_t full_words = bytes / word * word;
+    pass(data, full_words);
+    if (full_words == bytes) return;
     char rest[word] = {};
-    std::memcpy(rest, static_cast<const char*>(data) + whole, bytes - whole);
+    std::memcpy(rest, static_cast<const char*>(data) + full_words, bytes - full_words);
     pass(rest, word);
   }
 
@@ -236,7 +236,7 @@ void BinaryReader::read_sections() {
     const std::size_t start = position;
     Section section = read_section(start, position);
     if (!names.emplace(bytes() + start + sizeof(SectionHeader), section.name.size()).second)
-      fail(start, "section '" + section.name + "' is there twice");
+      fail(start, "section '" + section.name + "' occurs twice");
     sections_.push_back(std::move(section));
   }
   if (position != size_ - word) fail(position, "bytes follow the last section");
@@ -275,9 +275,9 @@ T BinaryReader::read(std::size_t offset) const {
 }
 
 const BinaryReader::Section* BinaryReader::find(std::string_view name) const {
-  const auto found = std::find_if(sections_.begin(), sections_.end(),
+  const auto match = std::find_if(sections_.begin(), sections_.end(),
                                   [&](const Section& section) { return section.name == name; });
-  return found == sections_.end() ? nullptr : &*found;
+  return match == sections_.end() ? nullptr : &*match;
 }
 
 const BinaryReader::Section& BinaryReader::require(std::string_view name) const {

@@ -57,7 +57,7 @@ constexpr ElementType element_type() {
   }
 }
 
-/// Collects sections and writes them at once. Arrays given by reference or pointer are not copied;
+/// Collects sections and writes them together. Arrays given by reference or pointer are not copied;
 /// they must stay alive and unchanged until `save`. Each name may be used once.
 class BinaryWriter {
  public:
@@ -96,7 +96,7 @@ class BinaryWriter {
     std::uint64_t count;
     std::uint64_t bytes;
     const void* data;
-    std::shared_ptr<const void> owner;  // of `data`, if the writer owns it
+    std::shared_ptr<const void> owner;  // owner of `data`, if the writer holds it
   };
 
   template <class Container>
@@ -179,8 +179,8 @@ class BinaryReader {
     std::string name;
     ElementType type;
     std::size_t count;
-    std::size_t start;   // of the section, bytes from the start of the file
-    std::size_t offset;  // of its data
+    std::size_t start;   // start of the section, bytes from the start of the file
+    std::size_t offset;  // offset of its data
   };
 
   explicit BinaryReader(std::filesystem::path path) : path_(std::move(path)) {}

@@ -70,7 +70,7 @@ class NumberReader {
   const std::string& where_;
 };
 
-/// Numbers each of which is foretold to be as the one before.
+/// Numbers, each predicted to be equal to the one before.
 template <class Stream, class T>
 void transfer_list(Stream& stream, std::vector<T>& values) {
   std::int32_t before = 0;
@@ -101,7 +101,7 @@ void transfer_ids(Stream& stream, std::vector<std::uint32_t>& ids) {
 
 }  // namespace
 
-/// Where the particles of a frame were in the last one; -1 where they are new.
+/// Where the particles of a frame were in the last one; -1 if they are new.
 std::vector<std::int64_t> FilmCodec::places_before(const FilmFrame& frame) const {
   std::vector<std::int64_t> before(frame.ids.size(), -1);
   std::size_t k = 0;
@@ -112,7 +112,8 @@ std::vector<std::int64_t> FilmCodec::places_before(const FilmFrame& frame) const
   return before;
 }
 
-/// Positions and values, either way. What is new is foretold to be as the particle before it.
+/// Reads or writes positions and values. A new particle is predicted to be like the particle before
+/// it.
 template <class Stream>
 void FilmCodec::transfer(Stream& stream, FilmFrame& frame) {
   const std::vector<std::int64_t> before = places_before(frame);
@@ -213,9 +214,10 @@ bool could_be_deflated(std::size_t packed, std::size_t raw) { return raw / 1032 
 
 std::vector<std::uint8_t> inflated(const std::uint8_t* packed, std::size_t packed_bytes,
                                    std::size_t raw, const std::string& where) {
-  std::vector<std::uint8_t> bytes(raw + 1);  // one more, to see that there are no more
-  uLongf found = uLongf(bytes.size());
-  if (uncompress(bytes.data(), &found, packed, uLong(packed_bytes)) != Z_OK || found != raw)
+  std::vector<std::uint8_t> bytes(raw + 1);  // one byte more shows whether there are more
+  uLongf inflated_bytes = uLongf(bytes.size());
+  if (uncompress(bytes.data(), &inflated_bytes, packed, uLong(packed_bytes)) != Z_OK ||
+      inflated_bytes != raw)
     throw InputError(where, "damaged: cannot be inflated to its " + std::to_string(raw) + " bytes");
   bytes.resize(raw);
   return bytes;

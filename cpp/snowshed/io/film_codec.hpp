@@ -1,4 +1,4 @@
-// Frames of a film as bytes: differences to what the frames before foretell, as variable-length
+// Frames of a film as bytes: differences to a prediction from the frames before, as variable-length
 // numbers, deflated.
 #pragma once
 
@@ -12,7 +12,7 @@
 namespace snowshed {
 
 /// Turns frames into bytes and back, one after the other: both sides must have seen the same frames
-/// before. A position is foretold from the two before it, a value from the one before.
+/// before. A position is predicted from the two before it, a value from the one before.
 class FilmCodec {
  public:
   explicit FilmCodec(const FilmHeader& header) : header_(header) {}
@@ -22,8 +22,8 @@ class FilmCodec {
 
   std::vector<std::uint8_t> encode(const FilmFrame&);
 
-  /// Fills a frame of so many particles. Throws InputError, in the name of `where`, where the bytes
-  /// are not those of such a frame; then the codec is of no further use.
+  /// Fills a frame of this number of particles. Throws InputError at `where` if the bytes are not
+  /// those of such a frame; then the codec is of no further use.
   void decode(const std::vector<std::uint8_t>& bytes, bool lists_particles, std::size_t particles,
               const std::string& where, FilmFrame& frame);
 
@@ -40,13 +40,14 @@ class FilmCodec {
 
   FilmHeader header_;
   FilmFrame last_;
-  std::vector<std::vector<std::int32_t>> steps_;  // by axis, from the frame before the last
+  // One list per axis, from the frame before the last.
+  std::vector<std::vector<std::int32_t>> steps_;
 };
 
-/// Deflated bytes (zlib format, RFC 1950); throws std::bad_alloc for lack of memory.
+/// Deflated bytes (zlib format, RFC 1950); throws std::bad_alloc if memory runs out.
 std::vector<std::uint8_t> deflated(const std::vector<std::uint8_t>& bytes);
 
-/// Whether deflate can make so few bytes of so many: no more than 1032 to 1.
+/// Whether deflate can reach this ratio of bytes: it is at most 1032 to 1.
 bool could_be_deflated(std::size_t packed, std::size_t raw);
 
 /// The bytes that were deflated; throws InputError, in the name of `where`, unless there are `raw`.

@@ -15,13 +15,13 @@ namespace snowshed {
 namespace {
 
 constexpr char film_magic[8] = {'S', 'N', 'O', 'W', 'F', 'I', 'L', 'M'};
-constexpr std::size_t film_text_start = 24;  // of the JSON text
+constexpr std::size_t film_text_start = 24;  // start of the JSON text
 constexpr std::size_t most_header_bytes = 1u << 20;
 constexpr std::size_t header_sum_at = 16;
 constexpr std::uint32_t frame_tag = 0x4d415246;  // "FRAM"
 constexpr std::uint32_t close_tag = 0x53444e45;  // "ENDS"
 constexpr std::size_t record_head = 40, facts_at = 8, content_sum_at = 36;
-// Of a frame; the particles that runs record, with all their quantities, take a twentieth of it.
+// Largest frame. The particles that runs record, with all their quantities, take a twentieth of it.
 constexpr std::size_t most_raw_bytes = std::size_t{1} << 27;
 constexpr std::uint32_t lists_flag = 1;
 
@@ -53,7 +53,7 @@ std::uint32_t header_sum(std::uint32_t version, const char* text, std::size_t le
   return crc32_of(text, length, crc32_of(fixed.data(), fixed.size()));
 }
 
-/// The checksum of the head of a frame, which goes on with that of the frame before.
+/// The checksum of the head of a frame, which continues that of the frame before.
 std::uint32_t head_sum(const char* head, std::uint32_t before) {
   return crc32_of(head + facts_at, record_head - facts_at, before);
 }
@@ -68,7 +68,7 @@ std::string header_bytes(const FilmHeader& header) {
   return std::string(bytes.begin(), bytes.end()) + text;
 }
 
-/// What the head of a record says beside its checksums.
+/// Contents of the head of a record, without its checksums.
 struct RecordFacts {
   double time;
   std::uint32_t event, flags, particles, raw, packed;
@@ -127,7 +127,7 @@ FilmReader::FilmReader(std::filesystem::path path, std::size_t most_frames)
   while (records_.size() < most_frames && read_record(at)) {
   }
   if (records_.size() < most_frames) read_close(at);
-  whole_ = at == bytes_.size() || records_.size() == most_frames;
+  is_complete_ = at == bytes_.size() || records_.size() == most_frames;
   codec_ = FilmCodec(header_);
 }
 
@@ -167,18 +167,19 @@ void FilmReader::read_header() {
   end_of_header_ = film_text_start + length;
 }
 
-/// Whether a killed run may have left the frame at `at`: its beginning is there, and all that is
-/// there is right.
+/// Whether a killed run may have left the frame at `at`: its beginning is present, and all present
+/// bytes are right.
 bool FilmReader::is_cut_off(std::size_t at) const {
   const std::size_t left = bytes_.size() - at;
   if (std::memcmp(bytes_.data() + at, &frame_tag, std::min(left, sizeof frame_tag)) == 0)
     return left < record_head ||
-           read<std::uint32_t>(at + 32) > left - record_head;  // of the packed content
+           read<std::uint32_t>(at + 32) > left - record_head;  // bytes of the packed content
   return left < record_head &&
          std::memcmp(bytes_.data() + at, &close_tag, std::min(left, sizeof close_tag)) == 0;
 }
 
-/// Whether there is a sound frame of version 1 anywhere behind `at`: then the one there is damaged.
+/// Whether a sound frame of version 1 follows anywhere behind `at`; the frame at `at` is then
+/// damaged.
 bool FilmReader::a_frame_follows(std::size_t at) const {
   const std::string tag(reinterpret_cast<const char*>(&frame_tag), sizeof frame_tag);
   for (at = bytes_.find(tag, at + 1); at != std::string::npos; at = bytes_.find(tag, at + 1)) {
@@ -192,7 +193,7 @@ bool FilmReader::a_frame_follows(std::size_t at) const {
   return false;
 }
 
-/// Returns the checksum of the frame at `at`, which is there as a whole.
+/// Returns the checksum of the frame at `at`, which must be complete.
 std::uint32_t FilmReader::checked_sum(std::size_t at, std::size_t packed) const {
   const auto sum = read<std::uint32_t>(at + 4);
   const char* content = bytes_.data() + at + record_head;
@@ -204,15 +205,15 @@ std::uint32_t FilmReader::checked_sum(std::size_t at, std::size_t packed) const 
   return sum;
 }
 
-/// Returns whether there is a whole frame at `at`, which is moved behind it.
+/// Returns whether there is a complete frame at `at`; moves `at` behind it.
 bool FilmReader::read_record(std::size_t& at) {
   if (at == bytes_.size()) return false;
   const std::size_t left = bytes_.size() - at;
   const bool cut_off = is_cut_off(at);
-  if (left < record_head && !cut_off) fail(at, "what follows is no frame");
+  if (left < record_head && !cut_off) fail(at, "the next bytes are not a frame");
   if (left < record_head) return false;
   if (read<std::uint32_t>(at) == close_tag && version_ != 1) return false;
-  if (read<std::uint32_t>(at) != frame_tag) fail(at, "what follows is no frame");
+  if (read<std::uint32_t>(at) != frame_tag) fail(at, "the next bytes are not a frame");
   if (version_ != 1 &&
       head_sum(bytes_.data() + at, checksum(records_.size())) != read<std::uint32_t>(at + 4))
     fail(at, "the head of a frame has another checksum, or the frame before it is missing");
@@ -237,7 +238,7 @@ void FilmReader::add_record(std::size_t at, std::uint32_t checksum) {
   facts_.push_back(facts);
 }
 
-/// Reads the record that closes a film, where there is one at `at`, which is moved behind it.
+/// Reads the record that closes a film, if there is one at `at`; moves `at` behind it.
 void FilmReader::read_close(std::size_t& at) {
   if (bytes_.size() - at < record_head || read<std::uint32_t>(at) != close_tag) return;
   if (head_sum(bytes_.data() + at, checksum(records_.size())) != read<std::uint32_t>(at + 4))
@@ -293,20 +294,20 @@ FilmWriter FilmWriter::reopen(const std::filesystem::path& path,
       (reader.frames().size() < mark->frames || reader.checksum(mark->frames) != mark->checksum))
     throw InputError(path.string(), "damaged: its first " + std::to_string(mark->frames) +
                                         " frames are not those that the run recorded");
-  std::size_t kept = 0;
-  while (kept < reader.frames().size() && keeps(reader.frames()[kept])) {
+  std::size_t count = 0;
+  while (count < reader.frames().size() && keeps(reader.frames()[count])) {
     reader.next();
-    ++kept;
+    ++count;
   }
   if (reader.version() != film_version) {
-    write_atomic(path, reader.in_present_version(kept));
+    write_atomic(path, reader.in_present_version(count));
     return reopen(path, [](const FilmFrameFacts&) { return true; });
   }
   FilmWriter writer(path, reader.header(), FilmCodec(reader.header()));
-  writer.facts_.assign(reader.frames().begin(), reader.frames().begin() + std::ptrdiff_t(kept));
-  writer.checksum_ = reader.checksum(kept);
-  writer.end_ = reader.end_of(kept);
-  writer.closed_ = reader.closed() && kept == reader.frames().size();
+  writer.facts_.assign(reader.frames().begin(), reader.frames().begin() + std::ptrdiff_t(count));
+  writer.checksum_ = reader.checksum(count);
+  writer.end_ = reader.end_of(count);
+  writer.closed_ = reader.closed() && count == reader.frames().size();
   writer.more_follows_ = std::filesystem::file_size(path) > writer.end_;
   writer.codec_ = std::move(reader).release_codec();
   return writer;

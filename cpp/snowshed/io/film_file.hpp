@@ -16,17 +16,17 @@ namespace snowshed {
 
 inline constexpr std::uint32_t film_version = 2;  // written; version 1 is read, too
 
-/// What is known of a frame without its particles.
+/// Facts about a frame without its particles.
 struct FilmFrameFacts {
   double time = 0;  // s
   std::uint32_t event = 0;
   std::size_t particles = 0;
 };
 
-/// Names the header and the first frames of a film, whatever follows them.
+/// Identifies the header and the first frames of a film, independent of later frames.
 struct FilmMark {
   std::size_t frames = 0;
-  std::uint32_t checksum = 0;  // of the last of them, and so of all before it
+  std::uint32_t checksum = 0;  // checksum of the last of them, which depends on all before it
 };
 
 /// Reads a film. The file is untrusted: sizes are checked before memory is taken for them, and
@@ -40,10 +40,10 @@ class FilmReader {
   std::uint32_t version() const { return version_; }
   const FilmHeader& header() const { return header_; }
   const std::vector<FilmFrameFacts>& frames() const { return facts_; }
-  bool whole() const { return whole_; }    ///< no frame is cut off
+  bool is_complete() const { return is_complete_; }  ///< no frame is cut off
   bool closed() const { return closed_; }  ///< the run came to its end; never of version 1
 
-  /// Where the first so many frames end, bytes from the start of the file, and their checksum.
+  /// End of the first `frames` frames, bytes from the start of the file, and their checksum.
   std::size_t end_of(std::size_t frames) const {
     return frames ? records_[frames - 1].end : end_of_header_;
   }
@@ -51,10 +51,10 @@ class FilmReader {
     return frames ? records_[frames - 1].checksum : header_checksum_;
   }
 
-  /// The bytes of the header and the first so many frames, as the present version has them.
+  /// The bytes of the header and the first `frames` frames in the present version.
   std::string in_present_version(std::size_t frames) const;
 
-  /// Decodes the next frame. Throws InputError where it is damaged.
+  /// Decodes the next frame. Throws InputError if it is damaged.
   FilmFrame next();
   std::size_t position() const { return next_; }  ///< number of the next frame
   /// The codec as it is after the frames that have been read.
@@ -85,21 +85,21 @@ class FilmReader {
   std::size_t end_of_header_ = 0, next_ = 0;
   std::vector<Record> records_;
   std::vector<FilmFrameFacts> facts_;
-  bool whole_ = true, closed_ = false;
+  bool is_complete_ = true, closed_ = false;
   FilmCodec codec_{FilmHeader{}};
 };
 
-/// Writes a film, frame by frame. Throws FileError, naming the file; a frame is written whole or
-/// taken back.
+/// Writes a film, frame by frame. Throws FileError, naming the file; an incomplete frame is
+/// removed.
 class FilmWriter {
  public:
   /// Begins a film in place of any other.
   FilmWriter(std::filesystem::path path, const FilmHeader& header);
 
-  /// Goes on with a film behind the frames that `keeps` wants, from the first on; the others are
-  /// removed with the next change. Where a `mark` is known, only what it names is looked at. A film
-  /// of version 1 becomes one of the present version. Throws InputError where the film is damaged,
-  /// or is not the one that was marked.
+  /// Continues a film behind the first frames for which `keeps` is true; the others are removed
+  /// with the next change. With a `mark` only the frames that it names are read. A film of version
+  /// 1 becomes one of the present version. Throws InputError if the film is damaged, or is not
+  /// the one that was marked.
   static FilmWriter reopen(const std::filesystem::path& path,
                            const std::function<bool(const FilmFrameFacts&)>& keeps,
                            const std::optional<FilmMark>& mark = {});
@@ -109,7 +109,7 @@ class FilmWriter {
   FilmMark mark() const { return {facts_.size(), checksum_}; }
 
   void append(const FilmFrame&);
-  /// Says that the film is complete. A frame that follows takes this back.
+  /// Marks the film as complete. A further frame removes the mark.
   void close();
 
  private:
@@ -121,8 +121,8 @@ class FilmWriter {
   FilmHeader header_;
   FilmCodec codec_;
   std::vector<FilmFrameFacts> facts_;
-  std::uint32_t checksum_ = 0;  // of the last frame, or else of the header
-  std::size_t end_ = 0;         // of the frames that are kept, bytes
+  std::uint32_t checksum_ = 0;  // checksum of the last frame, or of the header if there is none
+  std::size_t end_ = 0;         // size of the frames that are kept, bytes
   bool more_follows_ = false;   // behind them in the file
   bool closed_ = false;
 };

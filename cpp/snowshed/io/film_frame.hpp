@@ -1,5 +1,5 @@
-// A film of particles: what its header and its frames hold, in whole numbers. docs/reference/film.md
-// describes the file.
+// A film of particles: the contents of its header and its frames, in whole numbers.
+// docs/reference/film.md describes the file.
 #pragma once
 
 #include <cstddef>
@@ -24,7 +24,7 @@ struct FilmHeader {
   int axes = 3;         // 2: x and z; 3: x, y and z
   double quantum = 0;   // m, of positions
   double interval = 0;  // s, between frames; longer in events that last
-  double share = 1;     // of the particles that are recorded, chosen by their ids
+  double share = 1;     // share of the particles that is recorded, chosen by id
   bool has_radius = false;
   std::vector<FilmQuantity> quantities;
 
@@ -39,11 +39,11 @@ struct FilmFrame {
   double time = 0;  // s, through all events
   std::uint32_t event = 0;
   std::vector<std::uint32_t> ids;
-  std::vector<std::uint16_t> events;                 // of the particles
-  std::vector<std::uint8_t> materials;               // of the particles
-  std::vector<std::int32_t> radii;                   // in quanta; empty where the header has none
-  std::vector<std::vector<std::int32_t>> positions;  // by axis, in quanta
-  std::vector<std::vector<std::int32_t>> values;     // by quantity, codes
+  std::vector<std::uint16_t> events;                 // event of each particle
+  std::vector<std::uint8_t> materials;               // material of each particle
+  std::vector<std::int32_t> radii;                   // in quanta; empty if the header has none
+  std::vector<std::vector<std::int32_t>> positions;  // one list per axis, in quanta
+  std::vector<std::vector<std::int32_t>> values;     // codes, one list per quantity
 };
 
 }  // namespace snowshed

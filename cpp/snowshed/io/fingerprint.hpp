@@ -1,4 +1,4 @@
-// Numbers that tell whether a file is still the same.
+// Numbers that show whether a file is still the same.
 #pragma once
 
 #include <cstddef>
@@ -6,7 +6,7 @@
 
 namespace snowshed {
 
-/// A number that is another one for other bytes, but for rare accidents (FNV-1a, 64 bits).
+/// A hash (FNV-1a, 64 bits): other bytes give another number, except by a rare accident.
 class Fingerprint {
  public:
   template <class T>

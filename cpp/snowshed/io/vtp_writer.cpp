@@ -25,8 +25,8 @@ constexpr const char* vtk_type() {
   if constexpr (std::is_same_v<T, std::uint8_t>) return "UInt8";
 }
 
-/// A file that ends with the checksum of what was written before, in a comment: programs that show
-/// the file need not know of it.
+/// A file that ends with the checksum of all bytes before, in a comment, so that programs that show
+/// the file can ignore it.
 class ChecksummedXml {
  public:
   explicit ChecksummedXml(const std::filesystem::path& path) : file_(path) {}

@@ -33,13 +33,13 @@ struct CamClayLaw {
   C beta{};       ///< cohesion: tensile strength over p0
   C xi{};         ///< hardening factor
   C hardening{};  ///< K, Pa
-  // Of the crack band only.
+  // For the crack band only.
   C softening = C{} + T(1);  ///< s
   C band_begin{};            ///< e_0
 
   static constexpr bool plastic = true;
 
-  /// Returns the constants from E (Pa), nu, M, beta, xi. M is at least 1e-4. This stands for the
+  /// Returns the constants from E (Pa), nu, M, beta, xi. M is at least 1e-4. This is close to the
   /// frictionless limit, in which snow carries no shear but keeps its tensile strength and its
   /// preconsolidation pressure.
   static CamClayLaw from(double youngs_modulus, double poissons_ratio, double critical_state_slope,
@@ -87,7 +87,8 @@ struct CamClayLaw {
   /// bracket are replaced by bisection.
   template <class V>
   SNOWSHED_INLINE bool return_map(PQ<V>& s, V& ev) const {
-    // Snow that dilated far beyond the loss of its strength (u < -1) has none; u is clamped there.
+    // Snow that dilated far beyond the loss of its strength (u < -1) has no strength; u is clamped
+    // there.
     const auto hardness = hyperbolic(max(V(-xi * softened(ev)), broadcast<V>(T(-1))));
     const auto yields = yield(s, strength(hardness)) > T(0);
     if (!any(yields)) return false;
@@ -96,7 +97,7 @@ struct CamClayLaw {
   }
 
  private:
-  /// The plastic strain that stands in (1.2.7) for e_v.
+  /// The plastic strain that replaces e_v in (1.2.7).
   template <class V>
   SNOWSHED_INLINE V softened(const V& ev) const {
     if constexpr (band)
@@ -104,7 +105,7 @@ struct CamClayLaw {
     else
       return ev;
   }
-  /// How it changes while e_v changes by d.
+  /// Change of that strain while e_v changes by d.
   template <class V>
   SNOWSHED_INLINE V softened_by(const V& ev, const V& d) const {
     if constexpr (band) {
@@ -147,7 +148,7 @@ struct CamClayLaw {
     return {k.sinh * cosh_w + k.cosh * sinh_w, k.cosh * cosh_w + k.sinh * sinh_w};
   }
 
-  /// How many times faster than in (1.2.7) snow softens at e_v.
+  /// Factor by which snow at e_v softens faster than in (1.2.7).
   template <class V>
   SNOWSHED_INLINE V softening_at(const V& ev) const {
     return select(ev > band_begin, broadcast<V>(softening), broadcast<V>(T(1)));
@@ -173,7 +174,7 @@ struct CamClayLaw {
     PQ<V> s;
     V ev;
     Hyperbolic<V> hardness;  // at e_v
-    bool series_suffices;    // for every change of e_v that comes into question
+    bool series_suffices;    // for every possible change of e_v
   };
 
   /// Returns p0 once e_v has changed by d; `slope` receives d p0 / d e_v.
@@ -268,7 +269,7 @@ struct CamClayLaw {
       const auto before_centre = n * n_trial > T(0);
       // The root is found where y is zero to rounding. The comparison fails where y overflows.
       const V size = shear + (abs(p) + beta * p0) * (abs(p) + p0);
-      const auto found = before_centre & (abs(y) < tolerance * size);
+      const auto solved = before_centre & (abs(y) < tolerance * size);
       const V y_slope = T(2) * (T(1) + T(2) * beta) / m2 * q * q_slope +
                         (elastic.bulk + beta * p0_slope) * (p - p0) +
                         (p + beta * p0) * (elastic.bulk - p0_slope);
@@ -276,7 +277,7 @@ struct CamClayLaw {
       const auto past = (y <= T(0)) | (n * n_trial <= T(0));
       near = select(past, near, d);
       end = select(past, d, end);
-      // Half the second derivative, but for that of p0, which changes too little to matter.
+      // Half the second derivative, without that of p0, which changes too little to matter.
       const V y_curve = (T(1) + T(2) * beta) / m2 *
                             (q_slope * q_slope - T(2) * q * q_slope * (n_slope - c) * per_flow) +
                         (elastic.bulk + beta * p0_slope) * (elastic.bulk - p0_slope);
@@ -294,7 +295,7 @@ struct CamClayLaw {
                          (change_of_p <= root_of_tolerance * pressure) & usable;
       const auto settled = ((change_of_p <= rounding) | small) & (abs(y) <= T(0.01) * size);
       const auto moved = (change > tolerance * abs(next)) & !settled;
-      active = active & !found;
+      active = active & !solved;
       d = select(active, next, d);
       active = active & moved;
       if (!any(active)) break;

@@ -1,5 +1,5 @@
-// Writes, reads and checks the states of methods. A state shows an archive each of its arrays and
-// numbers once, in the order of the file; a writer adds them, a reader takes them over.
+// Writes, reads and checks the states of methods. A state presents each of its arrays and numbers
+// to an archive once, in the order of the file. A writer stores them, and a reader fills them.
 //
 //   array(name, values, count)             one section; read back, it must have `count` elements
 //   numbers(name, number...)               one section of numbers of floating point
@@ -26,7 +26,7 @@
 
 namespace snowshed {
 
-/// What an element of an array is stored as, and how many of them.
+/// Type in which an element of an array is stored, and number of values per element.
 template <class T, class = void>
 struct StoredAs {
   using Type = T;
@@ -118,8 +118,8 @@ class StateWriter {
   BinaryWriter& out_;
 };
 
-/// Throws InputError where a section is missing, of another type or size, or holds what no state
-/// does. What arrays mean is for the methods to check.
+/// Throws InputError if a section is missing, of another type or size, or holds values that no
+/// state has. The methods check the meaning of arrays.
 class StateReader {
  public:
   static constexpr bool reads = true;

@@ -1,5 +1,5 @@
-// What only some methods can do. A method that can derives from the class too, and whoever needs it
-// asks for it (`capability`).
+// Capabilities that only some methods have. Such a method derives from the class of the capability
+// too, and callers ask for it with `capability`.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@
 
 namespace snowshed {
 
-/// The method as one that has a capability; null where it has not.
+/// The method's capability, or null if it does not have it.
 template <class Capability, class SomeMethod>
 auto* capability(SomeMethod& method) {
   using Kind = std::conditional_t<std::is_const_v<SomeMethod>, const Capability, Capability>;
@@ -27,8 +27,8 @@ class Settles {
  public:
   /// Lowers each particle, ordered by id, by a height (m) and adds to its volumetric plastic
   /// strain, if its law has one. Elastic strains and velocities stay. The energy balance counts it
-  /// as added. Throws as `Method::add_velocity`, and SimulationError where a particle would come to
-  /// lie outside the space that the method can address.
+  /// as added. Throws as `Method::add_velocity`, and SimulationError if a particle would lie
+  /// outside the space that the method can address.
   virtual void settle(const std::vector<double>& drops,
                       const std::vector<double>& plastic_changes) = 0;
 
@@ -36,7 +36,7 @@ class Settles {
   ~Settles() = default;
 };
 
-/// It makes its particles itself, from what only it takes of a scene.
+/// It makes its particles itself, from the parts of a scene that only this method takes.
 class SeedsItself {
  public:
   /// The particles of an event, to be added. Throws InputError, and Stopped on request.
@@ -82,7 +82,7 @@ class Curve {
   virtual const std::vector<std::string>& columns() const = 0;
   virtual const std::vector<double>& values() const = 0;  ///< row by row
   virtual void save(BinaryWriter&) const = 0;
-  /// Throws InputError where the rows are not those of such a curve.
+  /// Throws InputError if the rows are not those of such a curve.
   virtual void load(const BinaryReader&) = 0;
 };
 
@@ -95,7 +95,7 @@ class HasCurve {
   ~HasCurve() = default;
 };
 
-/// It has facts of its own to tell in run.json.
+/// It adds facts of its own to run.json.
 class ReportsRun {
  public:
   struct Section {

@@ -1,10 +1,11 @@
-// How snow behaves at the surface of an obstacle.
+// Behaviour of snow at the surface of an obstacle.
 #pragma once
 
 namespace snowshed {
 
-/// Collision conditions, of the velocity relative to the obstacle. `sticky` and `slip` are the
-/// thesis's (1.2.3), `separate` is its SEPARATE but for a short memory (see NodeKernels::apply).
+/// Conditions on the velocity relative to the obstacle at a collision. `sticky` and `slip` are
+/// those of the thesis (1.2.3); `separate` is its SEPARATE with a short memory (see
+/// NodeKernels::apply).
 ///
 /// sticky    all of it is zero
 /// slip      its normal part is zero both ways: snow stays in the surface; Coulomb friction

@@ -1,4 +1,4 @@
-// Cost of a scene: its outline by arithmetic, and the method's estimate from it.
+// Cost of a scene: its outline by arithmetic, and the method's estimate from the outline.
 #pragma once
 
 #include <string>
@@ -11,8 +11,8 @@
 
 namespace snowshed {
 
-/// How far and how long the snow of an event moves: a slab slides off the panel and falls, bodies
-/// fall, and the snow settles.
+/// Distance and duration of the motion of an event's snow: a slab slides off the panel and falls,
+/// bodies fall, and the snow settles.
 struct SnowMotion {
   bool slides = false;         // gravity overcomes the panel's friction
   double sliding_time = 0.0;   // s, until the slab's rear leaves the panel
@@ -23,31 +23,32 @@ struct SnowMotion {
   double event_time = 0.0;     // s, sliding, falling and settling; at most events.max_time
 };
 
-/// What a scene's solids and snow add up to, without building them.
+/// Totals of a scene's solids and snow, computed without building them.
 struct SceneOutline {
-  std::vector<Snow> snows;                   // by material_id
+  std::vector<Snow> snows;                   // indexed by material_id
   std::vector<std::vector<double>> volumes;  // m3 (2D: m2) of the bodies of each event
   double particles_per_voxel = 0;
   double height = 0;             // m, of the snow of the first event above z = 0, or of itself
-  std::vector<bool> conditions;  // by Condition: whether an obstacle has it
+  std::vector<bool> conditions;  // indexed by Condition: whether an obstacle has it
   bool has_moving_obstacle = false;
   bool has_domain = false;
-  double obstacles = 0;         // how many
-  double most_overlapping = 0;  // how many of them overlap where most do
+  double obstacles = 0;         // number of obstacles
+  double most_overlapping = 0;  // largest number of obstacles that overlap at a point
   SnowMotion motion;
 };
 
 /// Estimates, in double because an absurd scene may ask for more than an integer holds.
 struct CostEstimate {
   std::vector<double> particles;  // new in each event
-  double total_particles = 0.0;   // sum over the events, what the last one carries
+  double total_particles = 0.0;   // sum over the events; the last one carries all
   double time_step = 0.0;         // s
   double event_time = 0.0;        // s, of an event; at most events.max_time
   double steps = 0.0;             // all events
-  double updates = 0.0;           // of particles that are awake, all events
+  double updates = 0.0;           // updates of awake particles, all events
   double scattering = 1.0;        // work of an update where snow flies apart, over that at first
   double bytes = 0.0;             // peak memory, particles and grid
-  std::vector<std::pair<std::string, double>> parts;  // of the particles, by name, if they have any
+  // Named parts of the particle count, if there are any.
+  std::vector<std::pair<std::string, double>> parts;
 };
 
 /// A feature of a method, and whether a scene uses it.

@@ -1,5 +1,5 @@
-// What the program knows of a method: a class for each, and one line in registry.cpp. Scenes, runs
-// and programs ask descriptors, and name no method.
+// The program's knowledge of a method: one class per method, and one line in registry.cpp. Scenes,
+// runs and programs ask descriptors, and name no method.
 #pragma once
 
 #include <cstdint>
@@ -21,8 +21,7 @@
 
 namespace snowshed {
 
-/// The parts of a scene that only some methods take. `sample` stands for its loading and its cone,
-/// too.
+/// The parts of a scene that only some methods take. `sample` includes its loading and its cone.
 enum class Part { panel, slab, ground, obstacles, bodies, domain, terrain, sample, snow, seeding };
 
 class Parts {
@@ -38,14 +37,15 @@ class Parts {
   unsigned bits_ = 0;
 };
 
-/// What never changes of a method.
+/// Constant facts about a method.
 struct MethodFacts {
   const char* name;                     // as scenes give it
   const char* doc;                      // in the schema
-  Parts takes;                          // of a scene
-  const char* length_unit = "cells";    // what `resolution` is the size of, in messages
+  Parts takes;                          // parts of a scene that it takes
+  const char* length_unit = "cells";    // things whose size is `resolution`, in messages
   std::vector<std::string> energies{};  // names with units, in the order of tables
-  std::vector<Quantity> quantities{};   // of its particles, besides those that all methods share
+  // Quantities of its particles besides those that all methods share.
+  std::vector<Quantity> quantities{};
 };
 
 /// A method together with its settings. The registry holds one of each method with the default
@@ -61,7 +61,7 @@ class MethodDescriptor {
 
   /// Shows a visitor each setting in turn.
   virtual void describe(SettingsVisitor&) = 0;
-  /// The size of the smallest thing the method resolves, m; 0 where a file decides it.
+  /// The size of the smallest thing that the method resolves, m; 0 if a file decides it.
   virtual double resolution() const = 0;
   /// The threads that the method shall use; 0: all.
   virtual int threads() const = 0;
@@ -72,18 +72,18 @@ class MethodDescriptor {
   virtual std::string step_setting() const = 0;
   /// The floating-point type of the particles.
   virtual const char* scalar() const { return "double"; }
-  /// The mean rate of numerical damping over so many steps in so much time (s), 1/s; nothing for
-  /// methods without it.
+  /// The mean rate of numerical damping over `steps` steps in `time` (s), 1/s; none for methods
+  /// without it.
   virtual std::optional<double> damping_rate(std::int64_t /*steps*/, double /*time*/) const {
     return std::nullopt;
   }
 
   // --- a scene ---------------------------------------------------------------------------------
 
-  /// Throws InputError where settings or parts of the scene contradict each other. Each is in its
+  /// Throws InputError if settings or parts of the scene contradict each other. Each is in its
   /// range, and the scene has no part that the method does not take.
   virtual void validate(const SceneView&) const {}
-  /// A solid as the method must see it: its thin parts as thick as what the method resolves.
+  /// A solid as the method must see it: its thin parts are as thick as the method's resolution.
   virtual ThickSolid as_seen(const Shape& shape, int /*dimension*/) const {
     return {shape, std::nullopt};
   }
@@ -100,21 +100,21 @@ class MethodDescriptor {
 
   /// The number of particles that `fill` will place. Throws as it.
   virtual std::size_t count_particles(const LevelSet&, int dimension) const;
-  /// Fills a solid with particles; notes tell what has become of a solid that these do not resolve.
-  /// Throws InputError where that fails, and Stopped on request.
+  /// Fills a solid with particles; notes report on a solid that these do not resolve. Throws
+  /// InputError if that fails, and Stopped on request.
   virtual void fill(const LevelSet&, int dimension, const StopRequest&, ParticleBatch&,
                     std::vector<std::string>& notes) const;
 
   // --- cost ------------------------------------------------------------------------------------
 
-  /// The cost of a scene with so many new particles in each event, before anything is built; of
+  /// The cost of a scene with so many new particles in each event, before anything is built; for
   /// methods that take bodies.
   virtual CostEstimate cost_of_bodies(const SceneView&, const SceneOutline&,
                                       std::vector<double> particles) const;
-  /// The cost of a scene for which a method was built, before any snow; of all other methods.
-  /// Throws InputError where the scene cannot be run.
+  /// The cost of a scene for which a method was built, before any snow, for all other methods.
+  /// Throws InputError if the scene cannot be run.
   virtual CostEstimate cost_of_method(const SceneView&, const Surroundings&, const Method&) const;
-  /// What the method can do, and which of it the scene uses.
+  /// Features that the method has, and whether the scene uses them.
   virtual std::vector<Feature> features(const SceneView&, const SceneOutline&) const = 0;
 };
 
@@ -139,7 +139,7 @@ class SettingsHolder : public MethodDescriptor {
   Settings settings_;
 };
 
-/// What all descriptors share: a method's own one, `Self`, derives from this one.
+/// Base of all descriptors; a method's descriptor, `Self`, derives from it.
 template <class Self, class Settings>
 class DescriptorOf : public SettingsHolder<Settings> {
  public:

@@ -8,8 +8,8 @@
 namespace snowshed {
 
 /// The energy balance, J (per metre of width in 2D). The first three are the present store; the
-/// others are sums over all steps of what left it. `residual` is what the time integration gained
-/// (> 0) or lost: the balance closes when it is small beside the rest.
+/// others are sums over all steps of the energy that left it. `residual` is the energy that the
+/// time integration gained (> 0) or lost: the balance closes when it is small beside the rest.
 struct EnergyBalance {
   double kinetic = 0, gravitational = 0, elastic = 0;
   double plastic = 0, friction = 0, sticking = 0, impact = 0, transfer = 0;

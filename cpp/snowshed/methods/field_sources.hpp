@@ -1,4 +1,4 @@
-// From what a method keeps to the fields that others see: how views are made and found by name.
+// Fields of a method's data for callers: views, which are made and found by name.
 #pragma once
 
 #include <memory>
@@ -99,17 +99,17 @@ std::vector<FieldInfo> listed_fields(const VisitFields& visit_fields) {
   return all;
 }
 
-/// The view of the field of this name; throws InputError where there is none.
+/// The view of the field of this name; throws InputError if there is none.
 template <class VisitFields>
 FieldView found_field(const std::string& name, const VisitFields& visit_fields) {
-  std::optional<FieldView> found;
+  std::optional<FieldView> match;
   std::string names;
   visit_fields([&](const FieldInfo& info, const auto& view) {
-    if (info.name == name) found = view();
+    if (info.name == name) match = view();
     names += (names.empty() ? "" : ", ") + info.name;
   });
-  if (!found) throw InputError("field", "no \"" + name + "\"; there are " + names);
-  return *found;
+  if (!match) throw InputError("field", "no \"" + name + "\"; there are " + names);
+  return *match;
 }
 
 }  // namespace snowshed

@@ -1,21 +1,21 @@
-// The contract between a method and what runs it: particles are added and replaced, steps are
-// taken, fields are read, and the state is saved and restored. What only some methods can do, such
-// as to settle, is in capabilities.hpp.
+// The contract between a method and its callers: particles are added and replaced, steps are taken,
+// fields are read, and the state is saved and restored. Capabilities of some methods, such as
+// settling, are in capabilities.hpp.
 //
-// What a method promises:
+// Promises of every method:
 // - A call that throws leaves the snow, the time, the counters and the energies as they were, so
-//   that the same call may be made again or another instead. What is read back by id is the same;
-//   only the order of the particles in memory may differ. This holds for lack of memory too.
+//   that the same call may be made again or another instead. Data read by id are the same; only
+//   the order of the particles in memory may differ. This holds for lack of memory too.
 // - One exception: `step` can find only afterwards that a particle is no longer sound. Then the
-//   step has been taken and the method has *failed*: it may be looked at, but everything that
-//   would alter, advance or save it throws SimulationError, so that nobody writes a broken state
-//   over a good checkpoint. `load` makes it whole again.
-// - Errors: InputError for arguments that are not allowed, SimulationError where the simulation
+// step has been taken and the method has *failed*: it can still be read, but every call that would
+// alter, advance or save it throws SimulationError, so that a broken state never
+//   overwrites a good checkpoint. `load` repairs it.
+// - Errors: InputError for arguments that are not allowed, SimulationError if the simulation
 //   cannot go on, std::bad_alloc for lack of memory.
 // - The results do not depend on the number of threads, to the last bit.
 //
-// Particles have ids, in the order in which they were added. For the outside they are ordered by
-// id, wherever the method keeps them.
+// Particles have ids, in the order in which they were added. For callers they are ordered by id;
+// their order in memory is the method's own.
 #pragma once
 
 #include <cstddef>
@@ -35,8 +35,8 @@ namespace snowshed {
 class BinaryWriter;
 class BinaryReader;
 
-/// A copy of the particles for the outside, in double, ordered by id. What a method does not know
-/// stays empty.
+/// A copy of the particles for the outside, in double, ordered by id. Fields that a method does not
+/// have are empty.
 struct ParticleState {
   std::vector<Vec3> positions, velocities;  // m, m/s
   std::vector<double> masses;               // kg
@@ -47,10 +47,10 @@ struct ParticleState {
   std::vector<Mat3> affine;                 // C of APIC, 1/s
   std::vector<std::uint32_t> ids;
   std::vector<std::uint16_t> events;
-  std::vector<std::uint8_t> material_ids;  // which of the snows each is, if there are several
+  std::vector<std::uint8_t> material_ids;  // snow of each particle, if there are several
 };
 
-/// How much the snow moves.
+/// Motion of the snow as a whole.
 struct MotionSummary {
   double mass = 0;         // kg
   double rms_speed = 0;    // m/s
@@ -60,41 +60,40 @@ struct MotionSummary {
 /// Counters since the method was made.
 struct StepCounters {
   std::int64_t steps = 0, rejected = 0, sorts = 0;
-  std::int64_t particle_updates = 0;  // of particles that took part in a step
+  std::int64_t particle_updates = 0;  // particles that took part, summed over the steps
   double smallest_dt = 0;             // s
 };
 
-/// What a method is to the rest of the program; see the top of this file for what holds when a call
-/// throws. Dimension and precision are chosen once, where the method is made.
+/// A method as the rest of the program sees it; the top of this file describes a call that throws.
+/// Dimension and precision are chosen once, where the method is made.
 class Method {
  public:
   virtual ~Method() = default;
 
   // --- the snow; between steps -----------------------------------------------------------------
 
-  /// Adds the particles of all batches, or none. The energy balance counts what they bring as
-  /// added. Throws InputError for a batch that the scene does not allow, SimulationError where a
-  /// position lies outside the space that the method can address, and Stopped on request if it
-  /// takes long.
+  /// Adds the particles of all batches, or none. The energy balance counts their energy as added.
+  /// Throws InputError for a batch that the scene does not allow, SimulationError if a position
+  /// lies outside the space that the method can address, and Stopped on request if it takes long.
   virtual void add(const std::vector<ParticleBatch>& batches, const StopRequest& stop) = 0;
   void add(const std::vector<ParticleBatch>& batches) { add(batches, {}); }
   void add(const ParticleBatch& batch) { add(std::vector<ParticleBatch>{batch}); }
 
   /// Removes all particles and adds those of the batches, or leaves all as it is. New particles get
-  /// new ids; the time goes on. The energy balance counts what goes and what comes as added, with
-  /// its sign. Throws as `add`.
+  /// new ids; the time goes on. The energy balance counts the energy that comes and goes as added,
+  /// with its sign. Throws as `add`.
   virtual void replace(const std::vector<ParticleBatch>& batches) = 0;
 
   /// Adds to the velocity of each particle, ordered by id (m/s); the energy balance counts it as
-  /// added. Throws InputError for another number of changes than particles, or if not finite.
+  /// added. Throws InputError unless there is one finite change per particle.
   virtual void add_velocity(const std::vector<Vec3>& velocity_changes) = 0;
 
   // --- time ------------------------------------------------------------------------------------
 
-  /// Takes one step, of a length that the method chooses. Throws SimulationError when it cannot go
-  /// on: without snow, where the time step falls to nothing, and where a particle is lost, all
-  /// three with the state as it was; and where a particle is not finite or strained beyond what can
-  /// be resolved, with the method failed (see the top).
+  /// Takes one step, of a length that the method chooses. Throws SimulationError if it cannot go
+  /// on: without snow, if the time step falls to zero, and if a particle is lost, all three with
+  /// the state as it was; or if a particle is not finite or strained beyond the resolution, with
+  /// the method failed (see the top).
   virtual void step() = 0;
 
   /// Whether all that the method keeps follows from what `save` writes, so that a checkpoint taken
@@ -102,11 +101,11 @@ class Method {
   /// last bits. A method is at a safe point again after a bounded number of steps.
   virtual bool at_safe_point() const = 0;
 
-  /// Whether the snow has come to rest, where the method has a criterion of its own; without one it
-  /// leaves that to those who run it.
+  /// Whether the snow has come to rest, if the method has a criterion of its own; without one the
+  /// caller decides.
   virtual std::optional<bool> at_rest() const { return std::nullopt; }
 
-  /// The part of an event that is done, 0 to 1, if the method knows it better than the time tells.
+  /// The finished part of an event, 0 to 1, if the method knows it better than the time shows.
   virtual std::optional<double> progress() const { return std::nullopt; }
 
   virtual double time() const = 0;       ///< s
@@ -116,12 +115,12 @@ class Method {
   /// The quantities of the particles that can be read one by one, and whether they are stored.
   virtual std::vector<FieldInfo> fields() const = 0;
   /// One of them, in the order of storage: the particles' memory where it is stored, otherwise a
-  /// copy computed now. Throws InputError where there is no such field.
+  /// copy computed now. Throws InputError if there is no such field.
   virtual FieldView field(const std::string& name) const = 0;
   /// Where the particles are stored, ordered by id.
   virtual const std::vector<std::uint32_t>& order_by_id() const = 0;
 
-  // --- what the snow is and does; also of a method that has failed -----------------------------
+  // --- state and motion of the snow; allowed after a failure, too ------------------------------
 
   virtual std::size_t size() const = 0;  ///< particles
   virtual ParticleState state() const = 0;
@@ -129,20 +128,20 @@ class Method {
   /// Memory of the particles and of the largest arrays that the steps need.
   virtual std::size_t bytes() const = 0;
 
-  /// What files of particles hold: by default the quantities of `state`, ordered by id.
+  /// Contents of a file of particles: by default the quantities of `state`, ordered by id.
   virtual PointCloud snapshot() const;
 
   // --- checkpoints -----------------------------------------------------------------------------
 
   /// Adds the state to an archive, whose sections may refer to the method's memory until it is
-  /// written: no other call may come between. Throws SimulationError if the method has failed.
+  /// written: no other call is allowed until then. Throws SimulationError if the method has failed.
   virtual void save(BinaryWriter&) const = 0;
 
   /// Takes over the state from an archive that a method of the same scene has saved, or of one that
-  /// has only the first of its snows. Throws InputError where the archive is not sound.
+  /// has only the first of its snows. Throws InputError if the archive is not sound.
   virtual void load(const BinaryReader&) = 0;
 
-  /// Throws InputError where `load` would, but takes nothing over and needs less memory.
+  /// Makes the checks of `load`, and throws as it, but takes nothing over and needs less memory.
   virtual void check(const BinaryReader&) const = 0;
 };
 

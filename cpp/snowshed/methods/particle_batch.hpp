@@ -14,7 +14,7 @@ struct ParticleBatch {
   std::vector<Vec3> positions;   // m
   Vec3 velocity = Vec3::Zero();  // m/s
   double mass = 0;               // kg each (per metre of width in 2D)
-  std::vector<double> masses;    // kg, of each in place of `mass`; empty where they are equal
+  std::vector<double> masses;    // kg, of each in place of `mass`; empty if they are equal
   int event = 1;
   int material_id = 0;
 
@@ -28,7 +28,7 @@ struct ParticleBatch {
 };
 
 /// Throws InputError for a batch that no method can take: masses that are not positive, or not one
-/// for each particle; a velocity that is not finite; a snow that is none of `materials`.
+/// for each particle; a velocity that is not finite; a snow that is not in `materials`.
 inline void check_batch(const ParticleBatch& batch, std::size_t materials) {
   if (batch.material_id < 0 || std::size_t(batch.material_id) >= materials)
     throw InputError("material_id", std::to_string(batch.material_id) + " is none of the " +

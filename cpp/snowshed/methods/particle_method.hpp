@@ -1,4 +1,4 @@
-// What methods of particles have in common.
+// Common parts of methods of particles.
 #pragma once
 
 #include <cmath>
@@ -29,7 +29,7 @@ class Soundness {
     fault_ = std::move(fault);
     throw SimulationError(fault_);
   }
-  /// From now on they are not, for a reason that is yet to be told.
+  /// Marks the particles as unsound; `fail` gives the reason later.
   void lose() {
     broken_ = true;
     fault_.clear();
@@ -73,7 +73,8 @@ inline void check_velocity_changes(const std::vector<Vec3>& changes, std::size_t
     if (!change.allFinite()) throw InputError("velocity changes", "not finite");
 }
 
-/// How much particles move: `mass(i)` and `square(i)` are a particle's mass and squared speed.
+/// Motion of particles as a whole: `mass(i)` and `square(i)` are a particle's mass and squared
+/// speed.
 template <class Mass, class Square>
 MotionSummary motion_of(std::size_t particles, double speed, Mass mass, Square square) {
   MotionSummary m;

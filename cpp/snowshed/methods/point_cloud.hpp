@@ -1,4 +1,4 @@
-// What a file of particles holds.
+// Contents of a file of particles.
 #pragma once
 
 #include <array>

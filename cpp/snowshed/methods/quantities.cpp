@@ -39,12 +39,12 @@ std::vector<Quantity> quantities() {
 }
 
 const Quantity& quantity(const std::string& name) {
-  const Quantity* found = nullptr;
+  const Quantity* match = nullptr;
   for_each_quantity([&](const Quantity& q) {
-    if (q.name == name) found = &q;
+    if (q.name == name) match = &q;
   });
-  if (!found) throw std::out_of_range("no quantity " + name);
-  return *found;
+  if (!match) throw std::out_of_range("no quantity " + name);
+  return *match;
 }
 
 }  // namespace snowshed

@@ -15,7 +15,7 @@ struct Quantity {
 /// Those that all methods share, then those of each method in turn.
 std::vector<Quantity> quantities();
 
-/// The quantity of this name; throws std::out_of_range where there is none.
+/// The quantity of this name; throws std::out_of_range if the method has none.
 const Quantity& quantity(const std::string& name);
 
 }  // namespace snowshed

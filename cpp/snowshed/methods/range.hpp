@@ -1,4 +1,4 @@
-// Which values a field may take.
+// Values that a field may take.
 #pragma once
 
 #include <limits>

@@ -13,8 +13,8 @@ const std::vector<const MethodDescriptor*>& all_methods();
 
 std::vector<std::string> method_names();
 
-/// A further method of a program that links the library, as long as this object exists. None may
-/// come or go while others look.
+/// A further method of a program that links the library, as long as this object exists. No method
+/// may be added or removed while others are looked up.
 class RegisteredMethod {
  public:
   explicit RegisteredMethod(const MethodDescriptor&);

@@ -30,15 +30,15 @@ struct ResistanceSpec {
   std::vector<HoleSpec> holes;
 };
 
-/// Ground from a raster of elevations, and what lies on it.
+/// Ground from a raster of elevations, and the areas on it.
 struct TerrainSpec {
-  std::string file;              // ESRI ASCII grid
-  std::string crs;               // of the raster and the areas, in words; handed on to the results
-  bool single_precision = true;  // of elevations in compatible mode
-  std::string thickness_file;    // of the release, in place of the areas' thickness; an ASCII grid
+  std::string file;  // ESRI ASCII grid
+  std::string crs;   // name of the coordinate reference system of raster and areas, for the results
+  bool single_precision = true;  // rounds elevations in compatible mode
+  std::string thickness_file;    // thickness of the release in place of the areas'; an ASCII grid
   double max_thickness = 10;     // m, of the snow in the areas
   double max_slope = 70;         // degrees, of cliffs under a release
-  std::string notes;             // what was assumed of the files, for the results
+  std::string notes;             // assumptions about the files, for the results
   std::vector<AreaSpec> release, entrainment;
   std::vector<ResistanceSpec> resistance;
 };
@@ -50,10 +50,11 @@ struct SampleSpec {
   bool split_labels = false;  // whether each piece of a label is a grain
 };
 
-/// What moves in a stage. Plates are at the bottom, fixed, and at the top; sides are walls or
-/// periodic. `isotropic` has the speed as that of the height, and as stress the mean over top and
-/// sides. `hold` ends when the kinetic energy has fallen to 1e-4 of its peak in the stage, or after
-/// the time in which the speed would bring about the strain; `unload` ends at the strain, too.
+/// Parts that move in a stage. Plates are at the bottom, fixed, and at the top; sides are walls or
+/// periodic. In `isotropic` the speed is that of the height, and the stress is the mean over top
+/// and sides. `hold` ends when the kinetic energy has fallen to 1e-4 of its peak in the stage, or
+/// after the time in which the speed would bring about the strain; `unload` ends at the strain,
+/// too.
 enum class LoadingKind {
   compress,   // the top plate moves down
   unload,     // the top plate moves up, until the stress on it falls to `stress`
@@ -66,7 +67,7 @@ enum class LoadingKind {
 
 struct LoadingStage {
   LoadingKind kind = LoadingKind::compress;
-  double speed = 0.02;  // m/s, of what moves
+  double speed = 0.02;  // m/s, of the moving parts
   double strain = 0.3;  // at which the stage ends: displacement over the sample's initial height
   double stress = 0;    // Pa; compress, isotropic: ends the stage if reached, 0: never;
                         // unload: see above; shear: normal stress, 0: constant height
@@ -78,7 +79,7 @@ struct Cone {
   double half_angle = 30;  // degrees
 };
 
-/// How snow is filled with particles.
+/// Arrangement of the particles that fill snow.
 struct Seeding {
   double particles_per_voxel = 0.0;  // 0: 6 in 2D, 8 in 3D
   SeedPattern pattern = SeedPattern::poisson;
@@ -86,7 +87,7 @@ struct Seeding {
   bool allow_sparse = false;  // fewer than 4 (2D) or 6 (3D) per voxel
 };
 
-/// What happens to the stack between two events.
+/// Treatment of the stack between two events.
 enum class Between { carry, reseed };
 
 /// When an event ends.
@@ -101,7 +102,7 @@ struct Events {
 struct Output {
   double snapshot_interval = 0.0;  // s between particle snapshots; 0: only at the end of an event
   bool film = true;                // record the run, so that it can be viewed
-  double film_interval = 0.0;      // s between its frames; 0: chosen by how long events last
+  double film_interval = 0.0;      // s between its frames; 0: chosen by the events' duration
   bool energy = false;             // keep the energy balance
   double checkpoint_interval = 60.0;  // s of wall time between checkpoints; 0: none
 };

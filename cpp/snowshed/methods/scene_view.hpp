@@ -1,4 +1,4 @@
-// What a method may know of a scene before anything is built.
+// A method's view of a scene before anything is built.
 #pragma once
 
 #include <optional>

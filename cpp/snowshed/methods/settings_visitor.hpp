@@ -1,4 +1,4 @@
-// Through which a method describes its settings, without knowing who looks at them.
+// Interface by which a method describes its settings to any visitor.
 #pragma once
 
 #include <functional>
@@ -42,7 +42,7 @@ class Choice {
   std::function<void(std::size_t)> choose_;
 };
 
-/// What looks at settings; scene/describe.hpp says what the calls mean.
+/// A visitor of settings; scene/describe.hpp says what the calls mean.
 class SettingsVisitor {
  public:
   virtual ~SettingsVisitor() = default;

@@ -1,10 +1,10 @@
-// What files of particles hold, of methods that add nothing to it.
+// Contents of files of particles for methods that add nothing to it.
 #include "snowshed/methods/method.hpp"
 
 namespace snowshed {
 namespace {
 
-/// Quantities of which only some methods know.
+/// Quantities that only some methods have.
 void add_stresses(const Method& method, PointCloud& cloud) {
   for (const FieldInfo& info : method.fields()) {
     if (info.name != "deviatoric_stress" && info.name != "preconsolidation_pressure") continue;
@@ -26,7 +26,7 @@ PointCloud Method::snapshot() const {
   cloud.add<std::uint16_t>("event", s.events);
   cloud.add<float>("density", s.densities);
   cloud.add<float>("pressure", s.pressures);
-  s.plastic_strains.resize(s.positions.size());  // files have had it of all methods
+  s.plastic_strains.resize(s.positions.size());  // earlier files have it for all methods
   cloud.add<float>("volumetric_plastic_strain", s.plastic_strains);
   cloud.add<std::int32_t>("id", s.ids);
   add_stresses(*this, cloud);

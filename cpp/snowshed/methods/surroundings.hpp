@@ -1,4 +1,4 @@
-// What surrounds the snow of a scene: solids, and what a method reads from files, built once.
+// Surroundings of the snow in a scene: solids, and a method's input files, built once.
 #pragma once
 
 #include <cstdint>
@@ -11,13 +11,13 @@
 
 namespace snowshed {
 
-/// A file that a scene names, and the fingerprint of what it held.
+/// A file that a scene names, and the fingerprint of its contents.
 struct FilePrint {
   std::string file;
   std::int64_t print;
 };
 
-/// What a method read from the files that only it takes.
+/// Input that a method read from files of its own.
 class MethodInput {
  public:
   virtual ~MethodInput() = default;
@@ -30,10 +30,10 @@ class MethodInput {
 };
 
 struct Surroundings {
-  std::vector<Snow> snows;                   // by material_id
+  std::vector<Snow> snows;                   // indexed by material_id
   std::vector<Obstacle> obstacles;           // all of them, as they are given
   std::vector<Obstacle> resolved;            // the same as the method sees them
-  std::vector<std::string> notes;            // on what was assumed or changed, a sentence each
+  std::vector<std::string> notes;            // on assumptions and changes, a sentence each
   std::shared_ptr<const MethodInput> input;  // null if the method reads no files
 };
 

@@ -11,7 +11,7 @@
 namespace snowshed {
 namespace {
 
-/// So many cells along an axis that the product of all axes fits into 64 bits.
+/// Largest number of cells along an axis; the product over the axes fits into 64 bits.
 template <int D>
 constexpr double most_cells_of_axis = D == 2 ? 1e9 : 2e6;
 

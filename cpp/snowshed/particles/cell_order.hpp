@@ -21,11 +21,11 @@ class CellOrder {
 
   /// Finds the order of the points in cells whose edges are `edge` or longer, m. With a `period` >
   /// 0 all is repeated along x with it; it must then be at least three edges long, and the points'
-  /// x lie in [0, period). Throws SimulationError where a point is not finite, or too far away from
+  /// x lie in [0, period). Throws SimulationError if a point is not finite, or too far away from
   /// another one to be numbered.
   void update(const Points& points, double edge, double period = 0);
 
-  /// Where the points stand that come first, second, and so on; points of a cell keep their order.
+  /// Indices of the points in the order of cells; points of a cell keep their order.
   const std::vector<std::uint32_t>& order() const { return order_; }
   bool is_sorted() const { return sorted_; }
 
@@ -61,7 +61,7 @@ class CellOrder {
   void list_cells();
 
   bool periodic_ = false, sorted_ = true;
-  Coordinates counts_{};  // of cells along each axis, with an empty one at either end
+  Coordinates counts_{};  // number of cells along each axis, with an empty one at either end
   std::vector<std::uint64_t> keys_, sorted_keys_, spare_keys_, cell_keys_;
   std::vector<std::uint32_t> order_, spare_order_, begin_;
   std::vector<Coordinates> coordinates_;

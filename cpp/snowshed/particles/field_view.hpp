@@ -21,7 +21,7 @@ constexpr FieldType field_type() {
   if constexpr (std::is_same_v<T, std::uint32_t>) return FieldType::uint32;
 }
 
-/// What a field is.
+/// Description of a field.
 struct FieldInfo {
   std::string name, unit, meaning;  // "1" where a quantity has no unit
   int components = 1;               // values of a particle: 1, 3 (x, y, z) or 9 (matrix, by rows)
@@ -35,7 +35,7 @@ struct FieldView {
   FieldInfo info;
   std::size_t count = 0;                 // particles
   std::ptrdiff_t stride = 0;             // bytes from one particle to the next
-  std::shared_ptr<const void> elements;  // of the first particle; null without particles
+  std::shared_ptr<const void> elements;  // start at the first particle; null without particles
 
   /// The values of one particle.
   template <class T>

@@ -22,7 +22,7 @@ void NeighbourLists<D>::Part::make_room(std::size_t more) {
   if (index.size() < needed) index.resize(2 * needed);
 }
 
-/// What the points of some cells find; `first_` gets the lengths of their lists.
+/// Finds the neighbours of the points of some cells; `first_` gets the lengths of their lists.
 template <int D>
 void NeighbourLists<D>::find(const SearchedPoints<D>& points, const CellOrder<D>& cells,
                              NeighbourSearch<D> search, std::size_t first_cell,
@@ -43,7 +43,7 @@ void NeighbourLists<D>::find(const SearchedPoints<D>& points, const CellOrder<D>
   }
 }
 
-/// Puts what the points of some cells have found where it belongs, with the ways there.
+/// Stores the neighbours of the points of some cells, with their separations.
 template <int D>
 void NeighbourLists<D>::keep(const SearchedPoints<D>& points, const CellOrder<D>& cells,
                              std::size_t first_cell, std::size_t last_cell, const Part& part) {
@@ -102,8 +102,8 @@ void NeighbourLists<D>::find_mirrors(int threads) {
                       for (std::uint32_t e = begin(i); e < end(i); ++e) {
                         const std::uint32_t j = index_[e];
                         const auto row = index_.begin();
-                        const auto found = std::find(row + begin(j), row + end(j), i);
-                        mirror_[e] = std::uint32_t(found - row);
+                        const auto place = std::find(row + begin(j), row + end(j), i);
+                        mirror_[e] = std::uint32_t(place - row);
                       }
                   });
 }

@@ -1,4 +1,4 @@
-// For each of many points the others within a radius.
+// Lists of the points within a radius of each point.
 #pragma once
 
 #include <array>
@@ -11,13 +11,13 @@
 namespace snowshed {
 
 /// Lists of neighbours in one array (compressed rows), each pair in both of its lists, with the
-/// separation to the neighbour. Single precision suffices for ways, which are short.
+/// separation to the neighbour. Single precision suffices for separations, which are short.
 template <int D>
 class NeighbourLists {
  public:
   /// Finds the neighbours of points that are stored in the order of their cells (whose `order` is
   /// the identity), within `radius`, which must not be longer than the cells' edges, m. `period` is
-  /// that of the cells. Throws SimulationError where there are too many pairs to be numbered.
+  /// that of the cells. Throws SimulationError if there are too many pairs to be numbered.
   void update(const AlignedVector<VecD<D>>& points, const CellOrder<D>& cells, double radius,
               double period, NeighbourSearch<D> search, int threads);
 
@@ -28,7 +28,7 @@ class NeighbourLists {
   std::uint32_t end(std::size_t i) const { return first_[i + 1]; }
   std::uint32_t neighbour(std::size_t entry) const { return index_[entry]; }
 
-  /// Finds for each entry (i, j) where (j, i) stands.
+  /// Finds the place of (j, i) for each entry (i, j).
   void find_mirrors(int threads);
   /// The entry of the same pair in the neighbour's list, as `find_mirrors` has found it.
   std::uint32_t mirror(std::size_t entry) const { return mirror_[entry]; }
@@ -48,7 +48,7 @@ class NeighbourLists {
   std::size_t bytes() const;
 
  private:
-  /// What a part of the points finds, before it is known where it stands in the whole.
+  /// Neighbours of a part of the points, before their place in the whole is known.
   struct Part {
     std::vector<std::uint32_t> index;
     std::size_t size = 0;

@@ -1,5 +1,5 @@
-// What neighbour lists and the kernel that searches for them agree on: nothing here depends on an
-// instruction set.
+// Interface between neighbour lists and the kernel that searches for them: nothing here depends on
+// an instruction set.
 #pragma once
 
 #include <cstddef>
@@ -7,8 +7,8 @@
 
 namespace snowshed {
 
-/// Points by axes, in the order of their cells, m. Kernels read and write some values at a time:
-/// behind the last point, and behind the neighbours, there is room for `spare` more.
+/// Points by axes, in the order of their cells, m. Kernels read and write some values at a time, so
+/// there is memory for `spare` more behind the last point and behind the neighbours.
 template <int D>
 struct SearchedPoints {
   static constexpr std::size_t spare = 16;
@@ -16,8 +16,8 @@ struct SearchedPoints {
   double radius, period;  // m; period 0: nothing is repeated along x
 };
 
-/// Writes which of the points [begin, end) are nearer to point i than the radius, without i itself,
-/// in their order; returns how many.
+/// Writes the points of [begin, end) that are nearer to point i than the radius, without i itself,
+/// in their order; returns their number.
 template <int D>
 using NeighbourSearch = std::size_t (*)(const SearchedPoints<D>&, std::uint32_t i,
                                         std::uint32_t begin, std::uint32_t end,

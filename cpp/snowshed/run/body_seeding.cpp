@@ -17,7 +17,7 @@
 namespace snowshed {
 namespace {
 
-/// Geometry knows no scene; gives its errors the place in it.
+/// Adds the place in the scene to errors of geometry, which does not know the scene.
 template <class Action>
 auto with_path(const std::string& path, Action action) {
   try {
@@ -32,7 +32,7 @@ auto with_path(const std::string& path, Action action) {
 
 std::string body_path(std::size_t i) { return "/bodies/" + std::to_string(i) + "/shape"; }
 
-/// Where in the scene the bodies of `assemble_bodies` stand.
+/// Places in the scene of the bodies of `assemble_bodies`.
 std::vector<std::string> body_paths(const Scene& scene, int event) {
   std::vector<std::string> paths;
   if (scene.slab) {
@@ -46,8 +46,8 @@ std::vector<std::string> body_paths(const Scene& scene, int event) {
   return paths;
 }
 
-/// What the scene tells of a body's volume (m3, in 2D m2); else it is measured, coarsely, in the
-/// solid itself, whose files are read here before anything is run.
+/// A body's volume (m3, in 2D m2) from the scene. If the scene does not give it, it is measured,
+/// coarsely, in the solid itself, whose files are read here before anything is run.
 double body_volume(const BodySpec& body, const Scene& scene, const std::string& path,
                    const std::filesystem::path& base_dir) {
   if (const auto told = shape_volume(body.shape, scene.dimension)) return *told;
@@ -60,7 +60,8 @@ double body_volume(const BodySpec& body, const Scene& scene, const std::string& 
   });
 }
 
-/// How many particles the method fills a body with; about, where they are too many for any machine.
+/// Number of particles with which the method fills a body. It is a rough estimate if they are too
+/// many for any machine.
 double particles_of(const BodySpec& body, const Scene& scene, const std::string& path,
                     const std::filesystem::path& base_dir) {
   const double told = shape_volume(body.shape, scene.dimension).value_or(0.0);

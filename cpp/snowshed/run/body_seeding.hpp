@@ -1,4 +1,4 @@
-// The snow that an event brings: how much it will be, and where its particles are.
+// The snow that an event brings: its amount and its particles.
 #pragma once
 
 #include <filesystem>
@@ -23,8 +23,8 @@ struct SeededBody {
 /// The slab and the bodies of one event, as particles.
 struct SeededSnow {
   std::vector<ParticleBatch> batches;  // one for each layer of the slab, then for each body
-  std::vector<SeededBody> bodies;      // of the batches; none of a method that seeds its own
-  std::vector<std::string> notes;      // what has become of bodies that particles do not resolve
+  std::vector<SeededBody> bodies;      // bodies of the batches; none if the method seeds its own
+  std::vector<std::string> notes;      // notes on bodies that particles do not resolve
   double mass = 0;                     // kg
   double height_on_panel = 0;          // m along its normal: the slab, and bodies over the panel
 };
@@ -42,7 +42,7 @@ SeededSnow seeded(std::vector<ParticleBatch>);
 double slab_mass(const Scene& scene, int event);
 
 /// Returns how many particles each event will bring, by the volumes of its snow, or exactly where
-/// the method fills bodies itself; reads the files of bodies. Throws InputError where a body cannot
+/// the method fills bodies itself; reads the files of bodies. Throws InputError if a body cannot
 /// be built or is too small for a particle.
 std::vector<double> count_particles(const Scene& scene, const std::filesystem::path& base_dir);
 

@@ -18,7 +18,8 @@
 namespace snowshed {
 namespace {
 
-/// How many obstacles overlap where most do: their boxes are counted at the middles of some.
+/// Largest number of obstacles that overlap at a point. Boxes are counted at the middles of some
+/// obstacles.
 double most_overlapping(const std::vector<ObstacleSpec>& obstacles) {
   constexpr std::size_t places = 200;
   std::vector<Eigen::AlignedBox3d> boxes;
@@ -39,7 +40,7 @@ double most_overlapping(const std::vector<ObstacleSpec>& obstacles) {
   return everywhere + double(most);
 }
 
-/// The height of the snow of the first event, and of z = 0, m.
+/// The height of the snow of the first event, from its lowest point or z = 0 if that is lower, m.
 double height_of(const Scene& scene) {
   double low = 0, high = 0;
   for (const BodySpec& body : assemble_bodies(scene, 1))
@@ -52,7 +53,7 @@ double height_of(const Scene& scene) {
 
 std::string gigabytes(double bytes) { return show_briefly(bytes / 1e9) + " GB"; }
 
-/// What the volumes of each event hold.
+/// Particles in the volumes of each event.
 std::vector<double> count_particles(const Scene& scene, const SceneOutline& outline) {
   std::vector<double> counts;
   const double voxel = std::pow(scene.numerics->resolution(), scene.dimension);
@@ -106,7 +107,7 @@ CostEstimate estimate_cost(const Scene& given, std::vector<double> particles) {
 
 void check_memory(double bytes, double available) {
   if (bytes > available)
-    throw InputError("/", "needs " + gigabytes(bytes) + " of memory, of which there are " +
+    throw InputError("/", "needs " + gigabytes(bytes) + " of memory; available are " +
                               gigabytes(available) + "; give fewer particles or a larger dx");
 }
 
@@ -115,9 +116,9 @@ void check_duration(const Scene& scene, const CostEstimate& cost) {
   const double steps = cost.event_time / cost.time_step;
   if (!(steps <= most_steps))
     throw InputError("/numerics/" + scene.numerics->step_setting(),
-                     "makes steps of " + show_rounded(cost.time_step) +
-                         " s, of which an event of " + show_rounded(cost.event_time) +
-                         " s would take " + show_rounded(steps) + "; at most 1e12 are allowed");
+                     "makes steps of " + show_rounded(cost.time_step) + " s; an event of " +
+                         show_rounded(cost.event_time) + " s would take " + show_rounded(steps) +
+                         " of them; at most 1e12 are allowed");
   const auto check_interval = [&](const double& interval) {
     const double records = cost.event_time * scene.events.count / interval;
     if (interval > 0 && !(records <= most_records))

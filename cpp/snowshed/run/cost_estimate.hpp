@@ -1,4 +1,4 @@
-// What a scene will cost, by arithmetic alone: nothing is seeded or simulated.
+// Cost of a scene by arithmetic alone: nothing is seeded or simulated.
 #pragma once
 
 #include <vector>
@@ -8,17 +8,17 @@
 
 namespace snowshed {
 
-/// What the solids and the snow of a resolved scene add up to.
+/// Totals of the solids and the snow of a resolved scene.
 SceneOutline outline_of(const Scene& scene);
 
 /// The cost of a scene whose method takes bodies. `particles`, new in each event, replace the
-/// estimate from the volumes, which leaves out snow whose volume the scene does not tell (meshes
+/// estimate from the volumes, which leaves out snow whose volume the scene does not give (meshes
 /// and grids).
 CostEstimate estimate_cost(const Scene& scene);
 CostEstimate estimate_cost(const Scene& scene, std::vector<double> particles);
 
-/// Throws InputError, naming what is to blame, where an event would take more steps than any run
-/// has time for (10^12), or be recorded more than a million times.
+/// Throws InputError, which names the cause, if an event would take more steps than any run has
+/// time for (10^12), or be recorded more than a million times.
 void check_duration(const Scene&, const CostEstimate&);
 
 /// Throws InputError naming both numbers when `bytes` exceeds `available`; by default the memory

@@ -42,7 +42,7 @@ double measured_speed(const Scene& scene, const std::filesystem::path& base_dir,
   }
 }
 
-/// Of updates on a slab still whole, how many take as long as those of an event.
+/// Number of updates of whole snow that take as long as the updates of an event.
 double work_of(const CostEstimate& cost) {
   return std::max(broken_snow, cost.scattering) * cost.updates;
 }

@@ -1,4 +1,4 @@
-// What a scene uses and costs on this machine, before it runs.
+// Features and cost of a scene on this machine, before it runs.
 #pragma once
 
 #include <filesystem>
@@ -10,7 +10,7 @@
 namespace snowshed {
 
 struct CostReport {
-  std::vector<std::string> used, left_out;  // features, in words
+  std::vector<std::string> used, left_out;  // names of features
   CostEstimate cost;
   double updates_per_s = 0;  // particle updates, measured here and now on a small copy
   double wall_time = 0;      // s, expected
@@ -22,8 +22,8 @@ struct CostReport {
 /// snow count more. Nothing is measured. Throws InputError as running would.
 double expected_work(const Scene& scene, const std::filesystem::path& base_dir = ".");
 
-/// Throws InputError as running would. Takes a fraction of a second: the speed is measured on the
-/// scene itself, coarsened to at most 50 000 particles.
+/// Reports the cost; throws InputError as a run would. It takes a fraction of a second: the speed
+/// is measured on the scene itself, coarsened to at most 50 000 particles.
 CostReport report_cost(const Scene& scene, const std::filesystem::path& base_dir = ".");
 
 }  // namespace snowshed

@@ -16,12 +16,12 @@ class BinaryWriter;
 /// whether the run was resumed.
 class EnergyHistory {
  public:
-  /// Of energies with these names; `interval` is that between rows, s.
+  /// A history of energies with these names, one row per `interval` seconds.
   EnergyHistory(const std::vector<std::string>& energies, double interval);
 
   /// Adds the row that is due, if one is.
   void record(const Method&, int event);
-  /// Adds the last row of an event, unless it is there already.
+  /// Adds the last row of an event, unless it has been added.
   void record_end(const Method&, int event);
 
   /// Event, time through all events (s), and the energies (J).
@@ -29,8 +29,8 @@ class EnergyHistory {
   const std::vector<double>& values() const { return values_; }  ///< row by row
 
   void save(BinaryWriter&) const;
-  /// Begins anew where the archive is of a version that kept no such rows. Throws InputError where
-  /// the rows are not of such energies.
+  /// Begins anew if the archive's version kept no such rows. Throws InputError if the rows are not
+  /// of these energies.
   void load(const BinaryReader&);
 
  private:

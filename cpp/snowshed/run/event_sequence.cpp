@@ -43,7 +43,8 @@ EventSequence::EventSequence(std::unique_ptr<Simulation> sim, ResultsFolder fold
     wall_before_ += facts.wall;
   }
   const int done = sim_->event() - int(sim_->event_running());
-  if (int(record_.finished.size()) < done)  // of the version before, which kept no such record
+  // Checkpoints of the version before have no such record.
+  if (int(record_.finished.size()) < done)
     count_from(sim_->solver().counters().steps, earlier_wall_);
 }
 
@@ -60,9 +61,9 @@ bool EventSequence::run(EventObserver& observer, double report_interval) {
     if (!stopped) try {
         begin_event(observer);  // seeding may take long
         if (sim_->scene().output.film && !std::exchange(films, true))
-          sim_->record_film(folder_.film());  // whose resolution is that of the snow
+          sim_->record_film(folder_.film());  // its resolution depends on the snow
         stopped = observer.stop_requested();
-      } catch (const Stopped&) {  // the last checkpoint is of the same snow, before it aged
+      } catch (const Stopped&) {  // the last checkpoint has the same snow, before it aged
         return write_record("interrupted"), false;
       }
     const RunEnd end = stopped ? RunEnd::paused : run_event(observer, report_interval);
@@ -80,18 +81,18 @@ void EventSequence::begin_event(EventObserver& observer) {
     if (sim_->event() > 0) observer.between_events(*sim_);
     reseeding = sim_->begin_event([&] { return observer.stop_requested(); });
   }
-  tell_notes(observer);
+  report_notes(observer);
   observer.event_begun(*sim_, reseeding);
 }
 
-void EventSequence::tell_notes(EventObserver& observer) {
-  for (; told_ < sim_->notes().size(); ++told_) {
-    const std::string& note = sim_->notes()[told_];
+void EventSequence::report_notes(EventObserver& observer) {
+  for (; reported_notes_ < sim_->notes().size(); ++reported_notes_) {
+    const std::string& note = sim_->notes()[reported_notes_];
     if (record_.add_note(note)) observer.noted(note);
   }
 }
 
-/// Returns how the event ended; paused where the observer stopped it.
+/// Returns how the event ended; paused if the observer stopped it.
 RunEnd EventSequence::run_event(EventObserver& observer, double report_interval) {
   const double every = sim_->scene().output.checkpoint_interval;
   while (true) {
@@ -107,7 +108,7 @@ RunEnd EventSequence::run_event(EventObserver& observer, double report_interval)
   }
 }
 
-/// The checkpoint comes last: what is newer than it is written again when the run is resumed.
+/// The checkpoint comes last: newer results are written again when the run is resumed.
 void EventSequence::end_event(EventObserver& observer, RunEnd end) {
   EventFacts facts;
   facts.event = sim_->event();
@@ -150,7 +151,7 @@ void EventSequence::give_up_files() {
   if (!is_done()) record_.files.clear();
 }
 
-/// Between two events the last checkpoint is of the same snow, before it aged.
+/// Between two events the last checkpoint has the same snow, before it aged.
 void EventSequence::record_failure(const std::string& error) {
   try {
     if (sim_->event_running()) sim_->save(folder_.checkpoint());

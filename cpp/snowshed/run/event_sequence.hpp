@@ -14,24 +14,24 @@
 
 namespace snowshed {
 
-/// Is told how a sequence of events goes on.
+/// Observer of a sequence of events.
 class EventObserver {
  public:
   virtual ~EventObserver() = default;
 
   /// Before the next event begins; the snow may be settled.
   virtual void between_events(Simulation&) {}
-  /// An event has begun, or is gone on with; `reseeding` tells what became of the stack before it.
+  /// An event has begun or is resumed; `reseeding` describes the change of the stack before it.
   virtual void event_begun(const Simulation&, const std::optional<Reseeding>& /*reseeding*/) {}
-  /// What readers of the results should know of the snow that was just laid, a sentence; run.json
-  /// will have it.
+  /// A note for readers of the results on the snow that was just laid, a sentence; run.json will
+  /// have it.
   virtual void noted(const std::string& /*note*/) {}
   virtual void progress(const Simulation&, const RunReport&) {}
   /// An event has ended and its particles are in the folder, but there is no checkpoint of it yet.
   virtual void event_ended(const Simulation&, const EventFacts&) {}
-  /// A checkpoint is about to be written: what must be as new as it is kept now.
+  /// A checkpoint is about to be written; records that must be as new as it are saved now.
   virtual void before_checkpoint(const Simulation&) {}
-  /// Asked at every report, between events and while snow is seeded; true interrupts the sequence.
+  /// Called at every report, between events and while snow is seeded; true interrupts the sequence.
   virtual bool stop_requested() { return false; }
 };
 
@@ -42,31 +42,31 @@ class EventSequence {
   static EventSequence create(const Scene& scene, const std::filesystem::path& base_dir,
                               const std::filesystem::path& folder, const StopRequest& stop = {});
 
-  /// Goes on from the last checkpoint in the folder of an earlier run of the same scene, whichever
-  /// program began it, or begins where there is no checkpoint yet. Throws InputError.
+  /// Continues from the last checkpoint in the folder of an earlier run of the same scene, by any
+  /// program, or begins if there is no checkpoint yet. Throws InputError.
   static EventSequence resume(const Scene& scene, const std::filesystem::path& base_dir,
                               const std::filesystem::path& folder);
 
   /// Runs the events that are left, with a report every `report_interval` seconds of wall time and
   /// checkpoints as the scene's output.checkpoint_interval asks, and after each event. Returns
-  /// false if the observer stopped it, after a checkpoint; amid seeding the last checkpoint is of
-  /// the same snow. What is thrown by the simulation or the observer comes through.
+  /// false if the observer stopped it, after a checkpoint; during seeding the last checkpoint has
+  /// the same snow. Exceptions of the simulation or the observer pass through.
   bool run(EventObserver&, double report_interval);
 
-  /// Throws InputError where a file that Python wrote has been changed, and forgets all of them:
-  /// for those who go on without keeping them up.
+  /// Throws InputError if a file that Python wrote has been changed, and forgets all of them,
+  /// for callers that do not update them.
   void give_up_files();
 
-  /// Writes run.json again, with what has become of `record` since; as far as the run has come.
+  /// Writes run.json again, with the changes of `record` since, up to the present progress.
   void rewrite_record();
 
   /// Records in the folder that the run cannot go on, with a checkpoint of its last good state.
   void record_failure(const std::string& error);
 
-  /// Steps and wall time (s) of the events that are done, where run.json does not tell.
+  /// Steps and wall time (s) of the finished events, if run.json does not have them.
   void count_from(std::int64_t steps, double wall) { steps_before_ = steps, wall_before_ = wall; }
 
-  /// Lets another run go on in the folder; this one must not run any more.
+  /// Releases the folder to another run; this one must not run any more.
   void close() { folder_.unlock(); }
 
   Simulation& simulation() { return *sim_; }
@@ -78,7 +78,7 @@ class EventSequence {
 
   bool is_done() const;
   void begin_event(EventObserver&);
-  void tell_notes(EventObserver&);
+  void report_notes(EventObserver&);
   RunEnd run_event(EventObserver&, double report_interval);
   void end_event(EventObserver&, RunEnd);
   void checkpoint(EventObserver&, const std::string& status);
@@ -89,7 +89,7 @@ class EventSequence {
   ResultsFolder folder_;
   RunRecord record_;
   std::string status_;                 // in run.json, as it was written last
-  std::size_t told_ = 0;               // of the simulation's notes
+  std::size_t reported_notes_ = 0;     // number of the simulation's notes that were reported
   std::int64_t steps_before_;          // the present event
   double wall_before_, earlier_wall_;  // s, before the present event and before resuming
   Stopwatch clock_, since_checkpoint_;

@@ -14,8 +14,8 @@ namespace {
 constexpr double coarsest_quantum = 1.0 / 1024;  // m
 constexpr double most_quanta = 1 << 30;
 
-/// The smallest length that matters in a picture, m: a part of a radius, or the resolution; zero
-/// where the method leaves it to a raster, which is coarse.
+/// The smallest length that matters in a picture, m: a part of a radius, or the resolution; zero if
+/// a raster decides it, which is coarse.
 double smallest_length(const Scene& scene, const Method& solver, bool has_radius) {
   if (!has_radius || solver.size() == 0) return scene.numerics->resolution();
   const FieldView radii = solver.field("equivalent_radius");
@@ -31,9 +31,9 @@ double quantum_for(double resolution) {
 }
 
 const FieldInfo* find(const std::vector<FieldInfo>& fields, const std::string& name) {
-  const auto found = std::find_if(fields.begin(), fields.end(),
+  const auto field = std::find_if(fields.begin(), fields.end(),
                                   [&name](const FieldInfo& info) { return info.name == name; });
-  return found == fields.end() ? nullptr : &*found;
+  return field == fields.end() ? nullptr : &*field;
 }
 
 /// The chosen particles' values of a field: `convert` of each, all components.
@@ -57,7 +57,7 @@ std::int32_t in_quanta(double metres, double quantum) {
   return std::int32_t(std::lround(std::clamp(metres / quantum, -most_quanta, most_quanta)));
 }
 
-/// Where the recorded particles are stored, ordered by id; `ids` are theirs.
+/// Places of the recorded particles in storage, ordered by id; `ids` are their ids.
 std::vector<std::uint32_t> recorded_indices(const Method& solver, const FilmHeader& header,
                                             std::vector<std::uint32_t>& ids) {
   const std::vector<std::uint32_t>& order = solver.order_by_id();

@@ -17,8 +17,8 @@ struct RunPlace {
   double time = 0;  // s, through all events
 };
 
-/// Chooses what a film holds of a run: of at most about `most_particles` particles, some, chosen by
-/// their ids; positions to a 16th of the resolution (with radii: to a 128th of the smallest),
+/// Chooses the contents of a run's film: of at most about `most_particles` particles, some, chosen
+/// by their ids; positions to a 16th of the resolution (with radii: to a 128th of the smallest),
 /// and to half a millimetre at least; frames at the `record_interval`.
 FilmHeader film_header(const Scene&, const Method&, const CostEstimate&);
 
@@ -26,9 +26,9 @@ class FilmRecorder {
  public:
   static constexpr double most_particles = 40000;
 
-  /// Begins a film, or goes on with the frames that a run had recorded when it stood at `place`, so
-  /// that a resumed run makes the same film. `mark` is that of the film then, where it is known.
-  /// Throws InputError where the film is damaged.
+  /// Begins a film, or continues after the frames that a run had recorded up to `place`, so that a
+  /// resumed run makes the same film. `mark` is that of the film then, where it is known. Throws
+  /// InputError if the film is damaged.
   FilmRecorder(const std::filesystem::path& file, const FilmHeader& header, const RunPlace& place,
                const std::optional<FilmMark>& mark);
 

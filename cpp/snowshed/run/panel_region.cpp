@@ -19,14 +19,14 @@ bool PanelRegion::is_over(const Vec3& point) const {
 
 std::vector<bool> PanelRegion::contains(const std::vector<Vec3>& positions,
                                         double laid_height) const {
-  std::vector<bool> there(positions.size(), false);
-  if (!frame_) return there;
+  std::vector<bool> over_panel(positions.size(), false);
+  if (!frame_) return over_panel;
   const double height = 2 * dx_ + laid_height;
-  for (std::size_t i = 0; i < there.size(); ++i) {
+  for (std::size_t i = 0; i < over_panel.size(); ++i) {
     const double z = above(positions[i]);
-    there[i] = z > -dx_ && z < height && is_over(positions[i]);
+    over_panel[i] = z > -dx_ && z < height && is_over(positions[i]);
   }
-  return there;
+  return over_panel;
 }
 
 double PanelRegion::height_of(const std::vector<Vec3>& positions) const {
@@ -41,10 +41,10 @@ double PanelRegion::height_of(const std::vector<Vec3>& positions) const {
 }
 
 PanelRegion::Layer PanelRegion::snow_on(const ParticleState& particles, double laid_height) const {
-  const std::vector<bool> there = contains(particles.positions, laid_height);
+  const std::vector<bool> over_panel = contains(particles.positions, laid_height);
   Layer layer;
-  for (std::size_t i = 0; i < there.size(); ++i) {
-    if (!there[i]) continue;
+  for (std::size_t i = 0; i < over_panel.size(); ++i) {
+    if (!over_panel[i]) continue;
     layer.mass += particles.masses[i];
     layer.top = std::max(layer.top, above(particles.positions[i]));
   }

@@ -1,4 +1,4 @@
-// The region over the panel's face: which snow lies on it, and how high.
+// The region over the panel's face, and the snow in it.
 #pragma once
 
 #include <optional>
@@ -9,7 +9,7 @@
 
 namespace snowshed {
 
-/// Empty where the scene has no panel.
+/// Empty if the scene has no panel.
 class PanelRegion {
  public:
   explicit PanelRegion(const Scene& scene);

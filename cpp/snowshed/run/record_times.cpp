@@ -7,7 +7,8 @@ namespace snowshed {
 namespace {
 
 constexpr double records_of_all_events = 400;
-constexpr double least_records = 12, most_records = 40;  // of one event, as long as it should last
+// Limits for one event that lasts as long as expected.
+constexpr double least_records = 12, most_records = 40;
 constexpr std::size_t records_before_longer = 240;
 
 }  // namespace

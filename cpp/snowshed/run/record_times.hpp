@@ -1,4 +1,4 @@
-// When a run is recorded over time: its film and its energies.
+// Times at which a run's film and energies are recorded.
 #pragma once
 
 #include <cstddef>
@@ -12,9 +12,9 @@ namespace snowshed {
 /// 40 of them, and fewer where there are more than ten events.
 double record_interval(const Scene&, const CostEstimate&);
 
-/// When an event is recorded next, s, after `count` records since `first`, the last one at `last`.
-/// The interval doubles with every 240 records: endless events stay small. Depends on the records
-/// alone, so that a resumed run goes on as an uninterrupted one.
+/// Time of an event's next record, s, after `count` records since `first`, the last one at `last`.
+/// The interval doubles with every 240 records, so that records of endless events stay small. It
+/// depends on the records alone, so that a resumed run makes the same records.
 double next_record_time(double first, double last, std::size_t count, double interval);
 
 }  // namespace snowshed

@@ -13,11 +13,11 @@
 namespace snowshed {
 namespace {
 
-/// For each point the particle nearest to it, all of them within `reach` of one.
+/// The particle nearest to each point; each point must be within `reach` of one.
 std::vector<std::size_t> nearest_particles(const std::vector<Vec3>& points,
                                            const std::vector<Vec3>& particles, double reach) {
   const PointGrid grid(particles, reach);
-  std::vector<std::size_t> found;
+  std::vector<std::size_t> nearest_of;
   for (const Vec3& x : points) {
     std::size_t at = particles.size() - 1;
     double nearest = std::numeric_limits<double>::infinity();
@@ -27,17 +27,17 @@ std::vector<std::size_t> nearest_particles(const std::vector<Vec3>& points,
       nearest = distance;
       at = i;
     });
-    found.push_back(at);
+    nearest_of.push_back(at);
   }
-  return found;
+  return nearest_of;
 }
 
 int material_id_of(const ParticleState& particles, std::size_t i) {
   return particles.material_ids.empty() ? 0 : particles.material_ids[i];
 }
 
-/// Shares out the mass of old particles among the new ones that stand for them (`old_of`): each
-/// snow keeps its mass, in equal parts. That of a snow without new particles goes to all.
+/// Distributes the mass of old particles over the new ones that replace them (`old_of`): each snow
+/// keeps its mass, in equal parts. The mass of a snow without new particles goes to all.
 std::vector<double> share_masses(const ParticleState& old, const std::vector<std::size_t>& old_of,
                                  std::size_t snows) {
   std::vector<double> mass(snows), count(snows);

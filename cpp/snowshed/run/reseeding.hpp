@@ -25,7 +25,7 @@ struct Reseeding {
 /// Seeds the stack `old` afresh before the event that follows `event`: at rest, in its initial
 /// state, with its mass. Event and snow of a new particle are those of the old one nearest to it,
 /// and each snow keeps its mass. The snow that stayed on the panel is converted along with it, so
-/// nothing is lost. Throws SimulationError where the stack cannot be converted, and Stopped on
+/// nothing is lost. Throws SimulationError if the stack cannot be converted, and Stopped on
 /// request.
 Reseeding reseed_stack(const Scene& scene, const PanelRegion& panel, ParticleState old, int event,
                        double laid_height, const StopRequest& stop = {});

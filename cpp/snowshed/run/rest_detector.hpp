@@ -5,15 +5,15 @@ namespace snowshed {
 
 /// The snow rests when for `rest_time` seconds on end its speed (root of twice the kinetic energy
 /// over the mass that the event brought, so that a large stack at rest does not hide a small slab
-/// in motion) stays below `rest_speed`, and has not grown meanwhile: snow that is just setting
-/// off is slow too.
+/// in motion) stays below `rest_speed`, and has not grown meanwhile, because snow that is just
+/// setting off is slow, too.
 class RestDetector {
  public:
   RestDetector(double rest_speed, double rest_time) : limit_(rest_speed), duration_(rest_time) {}
 
   void start_event(double time) { since_ = time, speed_at_start_ = 0, speed_ = 0, next_ = time; }
 
-  /// Whether the speed is to be told again.
+  /// Returns whether the detector needs the speed again.
   bool due(double time) const { return time >= next_; }
 
   /// Tells the detector the speed (m/s) at a time (s); returns whether the snow rests.
@@ -34,7 +34,7 @@ class RestDetector {
  private:
   double limit_, duration_;
   double since_ = 0;           // start of the present quiet interval
-  double speed_at_start_ = 0;  // of that interval
+  double speed_at_start_ = 0;  // speed at the start of that interval
   double speed_ = 0, next_ = 0;
 };
 

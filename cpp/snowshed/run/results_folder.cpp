@@ -19,7 +19,7 @@ namespace snowshed {
 namespace {
 
 /// The JSON paths at which two scenes differ, "/panel/tilt, /snow/density". The number of threads
-/// does not change what comes of a scene.
+/// does not change the results of a scene.
 std::string differences(const Scene& one, const Scene& other) {
   const auto json_of = [](const Scene& s) {
     return parse_json(write_scene(resolve(with_threads(s, 0))), "scene");
@@ -32,7 +32,7 @@ std::string differences(const Scene& one, const Scene& other) {
   return list;
 }
 
-/// Where the system refuses, the error is a FileError, as everywhere.
+/// Refusals of the system become FileErrors, as everywhere.
 template <class Action>
 auto with_file_errors(Action action) {
   try {

@@ -1,4 +1,4 @@
-// The results folder of a run: what is in it, and how it is made and opened again.
+// The results folder of a run: its contents, and how it is made and opened again.
 #pragma once
 
 #include <filesystem>
@@ -11,16 +11,16 @@ namespace snowshed {
 
 /// Holds scene.json, run.json (`RunRecord`), checkpoint.bin, particles/event_NNN.vtp,
 /// particles.pvd, film.bin and snapshots/. It is locked: no other run writes into it meanwhile.
-/// What a killed run left half-written is removed when it is opened.
+/// Opening it removes files that a killed run left half-written.
 class ResultsFolder {
  public:
-  /// Makes the folder for a scene. Throws InputError where it holds anything.
+  /// Makes the folder for a scene. Throws InputError if it holds anything.
   static ResultsFolder create(std::filesystem::path folder, const Scene& scene);
 
-  /// Opens the folder of an earlier run of the same scene. Throws InputError where it is not one.
+  /// Opens the folder of an earlier run of the same scene. Throws InputError if it is not one.
   static ResultsFolder reopen(std::filesystem::path folder, const Scene& scene);
 
-  /// Throws InputError unless `folder` is new or empty; what a killed run left does not count.
+  /// Throws InputError unless `folder` is new or empty; remains of a killed run do not count.
   static void require_empty(const std::filesystem::path& folder);
 
   const std::filesystem::path& path() const { return folder_; }
@@ -29,13 +29,13 @@ class ResultsFolder {
   std::filesystem::path film() const { return folder_ / "film.bin"; }
   std::filesystem::path snapshots() const { return folder_ / "snapshots"; }
 
-  /// Reads the checkpoint. Throws InputError where it is damaged, or of another scene.
+  /// Reads the checkpoint. Throws InputError if it is damaged, or of another scene.
   std::unique_ptr<Simulation> load_checkpoint(const Scene&) const;
 
   /// The checksum of its scene.json.
   std::string scene_checksum() const;
 
-  /// Lets another run go on in the folder.
+  /// Releases the folder to another run.
   void unlock() { lock_.release(); }
 
   /// Writes the particles after an event, and adds them to the series of all events.

@@ -64,7 +64,7 @@ EventFacts event_facts(const json& j, const std::vector<std::string>& energies,
   return facts;
 }
 
-/// What a method tells of itself.
+/// Converts a method's section about a run.
 ordered_json to_json(const ReportsRun::Section& section) {
   ordered_json j = ordered_json::object();
   for (const auto& [name, value] : section.facts)
@@ -132,7 +132,7 @@ RunRecord RunRecord::read(const std::filesystem::path& file,
   if (j.contains("tables")) record.tables = table_checksums(j["tables"]);
   if (j.contains("files")) record.files = file_marks(j["files"]);
   if (j.contains("notes")) record.notes = note_list(j["notes"]);
-  if (!j.contains("finished_events")) return record;  // of the version before
+  if (!j.contains("finished_events")) return record;  // written by the version before
   const json& events = j["finished_events"];
   if (!events.is_array()) throw wrong_type("/finished_events", events, "an array");
   for (std::size_t i = 0; i < events.size(); ++i)

@@ -1,4 +1,5 @@
-// What run.json says of a run: what it ran on, how far it came, and how each event went.
+// The contents of run.json: machine and version of a run, its progress, and the course of each
+// event.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +14,7 @@
 
 namespace snowshed {
 
-/// How one event went. With particles/event_NNN.vtp this is all that measuring the event takes.
+/// Course of one event. With particles/event_NNN.vtp this is all that measuring the event takes.
 struct EventFacts {
   int event = 0;
   double sim_time = 0;  // s
@@ -25,13 +26,13 @@ struct EventFacts {
   std::vector<std::pair<std::string, double>>
       energy;  // J, by name; empty without the energy balance
 
-  /// What the time integration gained or lost, over the largest of the energies; none without the
-  /// energy balance.
+  /// Energy that the time integration gained or lost, over the largest of the energies; none
+  /// without the energy balance.
   std::optional<double> energy_residual() const;
 };
 
-/// How much of a file a run wrote, and the checksum (CRC-32) of that: a file that grows may have
-/// become longer since.
+/// Length of a file as a run wrote it, and the checksum (CRC-32) of that part: a growing file may
+/// be longer by now.
 struct FileMark {
   std::uint64_t bytes = 0;
   std::string checksum;
@@ -40,13 +41,13 @@ struct FileMark {
 /// A larger share of the energy that was gained or lost is worth a warning.
 inline constexpr double largest_energy_residual = 0.01;
 
-/// Returns what run.json calls the two ways in which events end.
+/// Returns the names that run.json has for the two ends of events.
 std::string name_of(RunEnd);
 
 class RunRecord {
  public:
-  /// Reads run.json; an empty record where there is none. Throws InputError where it is damaged.
-  /// `energies` names those that events have, in order, if they have any.
+  /// Reads run.json; returns an empty record if the file is missing. Throws InputError if it is
+  /// damaged. `energies` names those that events have, in order, if they have any.
   static RunRecord read(const std::filesystem::path& file,
                         const std::vector<std::string>& energies);
 
@@ -54,21 +55,21 @@ class RunRecord {
   void write(const std::filesystem::path& file, const Simulation&, const std::string& status,
              const std::string& error = "") const;
 
-  /// Throws InputError where one of `files` is there, and is not as the run wrote it.
+  /// Throws InputError if one of `files` exists, but is not as the run wrote it.
   void check_files(const std::filesystem::path& folder) const;
 
   /// Forgets the events after `event`, which will be run again.
   void keep_through(int event);
 
-  /// Adds what readers of the results should know, a sentence. Returns whether it is new.
+  /// Adds a note for readers of the results, a sentence. Returns whether it is new.
   bool add_note(const std::string& note);
 
-  std::vector<EventFacts> finished;            // by event
-  std::vector<std::string> notes;              // in the order in which they were said
+  std::vector<EventFacts> finished;            // one per event
+  std::vector<std::string> notes;              // in the order of their creation
   std::map<std::string, std::string> machine;  // further facts, by key
   /// Checksums of the tables that Python keeps: by name, of the rows through an event.
   std::map<std::string, std::map<std::string, std::string>> tables;
-  /// What else Python wrote into the folder, by name.
+  /// Other files that Python wrote into the folder, by name.
   std::map<std::string, FileMark> files;
   std::string scene;  // the checksum of scene.json, see scene_checksum
   double wall = 0;    // s, of the whole run so far

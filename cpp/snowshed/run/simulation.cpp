@@ -40,7 +40,7 @@ Simulation::Simulation(const Scene& scene, const std::filesystem::path& base_dir
       panel_(scene_),
       rest_(scene.events.rest_speed, scene.events.rest_time) {
   const bool takes_bodies = scene_.numerics.takes(Part::bodies);
-  if (takes_bodies) {  // told by the scene: before anything is built
+  if (takes_bodies) {  // from the scene, before anything is built
     cost_ = estimate_cost(scene_, count_particles(scene_, base_dir));
     check_cost();
   }
@@ -80,7 +80,7 @@ std::string Simulation::input_remark() const {
 
 const EnergyHistory& Simulation::energy_history() const {
   if (!energies_)
-    throw InputError("/output/energy", curve_ ? "the energies stand in the curve of this method"
+    throw InputError("/output/energy", curve_ ? "the curve of this method has the energies"
                                               : "false; energies are kept only where true");
   return *energies_;
 }
@@ -113,8 +113,9 @@ SeededSnow Simulation::seed_next_event(double lift, const StopRequest& stop) con
   return seed_event(scene_, base_dir_, panel_, event_ + 1, lift, stop);
 }
 
-/// Returns notes on the new snow; throws InputError where it lies where snow may not be. What the
-/// program lays on a stack that has grown to it is told only: a winter goes on with it.
+/// Returns notes on the new snow; throws InputError if it lies where snow may not be. Snow that
+/// the program lays on a stack that has grown up to it only gives a note, so that a winter can
+/// continue.
 std::vector<std::string> Simulation::check_placement_of(
     const SeededSnow& snow, const std::optional<Reseeding>& reseeding) const {
   std::vector<std::string> notes;
@@ -192,7 +193,7 @@ double Simulation::lift_of_next_slab(const std::optional<Reseeding>& reseeding) 
   return left.mass > 0.02 * std::min(last_mass, next_mass) ? left.top + 0.5 * resolution() : 0.0;
 }
 
-/// The particles of batches as the method will hold them, rounded to its precision.
+/// The particles of batches, rounded to the method's precision.
 ParticleState Simulation::as_held(const std::vector<ParticleBatch>& batches) const {
   const std::unique_ptr<Method> method = empty_method();
   method->add(batches);
@@ -250,20 +251,20 @@ RunEnd Simulation::run(const std::function<bool(const RunReport&)>& observer, do
   }
 }
 
-/// Writes what is due now.
+/// Writes the outputs that are due now.
 void Simulation::record() {
   if (snapshots_ && snapshots_->due(solver_->time())) snapshots_->write(*solver_);
   if (energies_) energies_->record(*solver_, event_);
   if (film_ && film_->due({event_, running_, solver_->time()})) film_->record(*solver_, event_);
 }
 
-/// How the event has ended now, if it has. Its last step is a whole one, which may reach beyond the
-/// time limit; one that misses it by rounding reaches it.
+/// Reason for which the event has ended, or none while it goes on. Its last step is a whole one,
+/// which may reach beyond the time limit; one that misses it by rounding reaches it.
 std::optional<RunEnd> Simulation::event_end() {
-  constexpr double rounding = 1e-6;  // of a step
+  constexpr double rounding = 1e-6;  // share of a step
   const std::optional<bool> own = solver_->at_rest();
   const bool rests = own ? *own : rest_.due(solver_->time()) && is_at_rest();
-  if (event_time() <= 0) return std::nullopt;  // nothing rests by not moving for no time
+  if (event_time() <= 0) return std::nullopt;  // snow cannot have been at rest for zero seconds
   if (rests) return RunEnd::rest;
   if (event_time() >= scene_.events.max_time - rounding * solver_->time_step())
     return RunEnd::time_limit;

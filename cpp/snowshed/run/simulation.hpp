@@ -1,4 +1,4 @@
-// A scene being simulated, in memory: one slide-off event after another onto what lies there.
+// A scene being simulated, in memory: one slide-off event after another onto the stack.
 // `EventSequence` drives it through all events and keeps a results folder.
 #pragma once
 
@@ -27,10 +27,10 @@ class EnergyHistory;
 class FilmRecorder;
 class SnapshotSeries;
 
-/// How `Simulation::run` came back.
+/// Reason for which `Simulation::run` returned.
 enum class RunEnd { rest, time_limit, paused };
 
-/// What an observer is told while an event runs.
+/// Report to an observer while an event runs.
 struct RunReport {
   double time = 0;       // s, in this event
   double time_step = 0;  // s
@@ -48,41 +48,42 @@ class Simulation {
   explicit Simulation(const Scene& scene, const std::filesystem::path& base_dir = ".");
   ~Simulation();
 
-  /// Seeds the next event's snow: the slab on the panel (above what remained there, unless that is
-  /// less than 2 % of it and of what the last event laid) and the scene's bodies. With between =
-  /// "reseed", from the second event on the stack is first seeded afresh (`reseed_stack`). All or
-  /// nothing: throws InputError where the snow of this event cannot be seeded, or lies where snow
-  /// may not be (snow_placement.hpp), SimulationError where the stack cannot be converted or an
-  /// event still runs, Stopped on request, and leaves everything as it was.
+  /// Seeds the next event's snow: the slab on the panel (above the snow that remained there, unless
+  /// that is less than 2 % of the slab and of the last event's snow) and the scene's bodies. With
+  /// between = "reseed", from the second event on the stack is first seeded afresh
+  /// (`reseed_stack`). All or nothing: throws InputError if the snow of this event cannot be
+  /// seeded, or lies where snow may not be (snow_placement.hpp), SimulationError if the stack
+  /// cannot be converted or an event still runs, Stopped on request, and leaves everything as it
+  /// was.
   std::optional<Reseeding> begin_event(const StopRequest& stop = {});
 
   /// Runs the present event until the snow rests, the time limit, or `observer`, called every
-  /// `interval` seconds of wall time, returns false; then it goes on to the next safe point, so
-  /// that a checkpoint resumes to the same bits, and returns `paused`. Call again to go on.
+  /// `interval` seconds of wall time, returns false; then it continues to the next safe point, so
+  /// that a checkpoint resumes to the same bits, and returns `paused`. Another call resumes the
+  /// event.
   RunEnd run(const std::function<bool(const RunReport&)>& observer, double interval);
 
   /// Adds particles of the present event, beside those that begin_event seeds; before the first
-  /// event they are of that. `batch.event` is set here. Throws InputError where they lie where snow
-  /// may not be.
+  /// event they belong to it. `batch.event` is set here. Throws InputError if they lie where
+  /// snow may not be.
   void add_snow(ParticleBatch batch);
 
-  /// Takes `count` steps of the present event, whether the snow rests or not. For those who drive
-  /// the snow themselves: between steps, `add_velocity` adds to the velocities, particles ordered
-  /// by id.
+  /// Takes `count` steps of the present event, whether the snow rests or not. Callers that drive
+  /// the snow themselves can change velocities between steps by `add_velocity`.
   void step(int count = 1);
   void add_velocity(const std::vector<Vec3>& velocity_changes) {
     solver_->add_velocity(velocity_changes);
   }
 
-  /// What time does to the snow between two events, see Settles. Throws InputError while an event
-  /// runs, and where snow of the method does not settle, but should.
+  /// Applies the effects of time on the snow between two events, see Settles. Throws InputError
+  /// while an event runs, and where snow of the method does not settle, but should.
   void settle(const std::vector<double>& drops, const std::vector<double>& plastic_changes);
 
   /// Writes a snapshot to `folder` every `interval` seconds of simulated time from now on.
   void write_snapshots(const std::filesystem::path& folder, double interval);
 
-  /// Records the particles into a film from now on, or goes on with the film of the run that was
-  /// resumed: what it holds beyond the present state is recorded anew. Throws InputError where that
+  /// Records the particles into a film from now on, or continues the film of the run that was
+  /// resumed: its frames after the present state are recorded anew. Throws InputError if that
   /// film is damaged.
   void record_film(const std::filesystem::path& file);
   bool films() const { return film_ != nullptr; }
@@ -91,11 +92,11 @@ class Simulation {
   std::optional<FilmMark> film_mark() const;
 
   /// Writes a checkpoint, which replaces an older one only once it has been read back. Throws
-  /// SimulationError where the state could not be resumed from, FileError where it cannot be
+  /// SimulationError if the state could not be resumed from, FileError if it cannot be
   /// written; the older file stays then.
   void save(const std::filesystem::path& checkpoint) const;
-  /// Throws InputError where the file is not a sound checkpoint. The same bits come of any number
-  /// of `threads` (0: all); by default it is that of the checkpoint's scene.
+  /// Throws InputError if the file is not a sound checkpoint. Any number of `threads` (0: all)
+  /// gives the same bits; by default it is that of the checkpoint's scene.
   static std::unique_ptr<Simulation> load(const std::filesystem::path& checkpoint,
                                           std::optional<int> threads = {});
   /// The same in another scene, which lays other snow from the next event on, or has more events:
@@ -105,19 +106,20 @@ class Simulation {
                                                const std::filesystem::path& checkpoint);
 
   const Scene& scene() const { return scene_; }
-  const std::vector<Snow>& snows() const { return surroundings_.snows; }  ///< by material_id
+  /// Indexed by material_id.
+  const std::vector<Snow>& snows() const { return surroundings_.snows; }
   const CostEstimate& cost() const { return cost_; }
   const Method& solver() const { return *solver_; }
-  /// What is measured after each step, so far; null for methods that have no such curve.
+  /// The curve measured after each step so far; null for methods without such a curve.
   const Curve* curve() const { return curve_.get(); }
   /// A remark on the files that the method reads; empty if there is none.
   std::string input_remark() const;
-  /// The energies over time while `run` ran; throws InputError where the scene does not keep them,
+  /// The energies over time while `run` ran; throws InputError if the scene does not keep them,
   /// and where a curve has them.
   const EnergyHistory& energy_history() const;
   int event() const { return event_; }
-  /// What readers of the results should know of the snow that was laid since this object was made,
-  /// a sentence each.
+  /// Notes for readers of the results on the snow that was laid since this object was made, a
+  /// sentence each.
   const std::vector<std::string>& notes() const { return notes_; }
   bool event_running() const { return running_; }
   double event_time() const { return solver_->time() - event_start_; }
@@ -131,7 +133,7 @@ class Simulation {
     return scene_.numerics->damping_rate(solver_->counters().steps, solver_->time());
   }
 
-  /// How high all snow laid so far would lie on the panel had none of it left, m.
+  /// Height that all snow laid so far would have on the panel if none had left it, m.
   double laid_height() const { return laid_height_; }
 
   /// Returns for each position whether it is that of snow on the panel, now or when the snow laid
@@ -175,9 +177,10 @@ class Simulation {
   RunReport report(double rms_speed) const;
 
   Scene scene_;
-  // As checkpoints hold it, written ahead: lack of memory amid JSON would end the process.
+  // Text for checkpoints, made in advance: the JSON library would end the process if memory ran
+  // out.
   std::string scene_text_;
-  std::vector<std::int64_t> shape_prints_;  // of the files that shapes are read from
+  std::vector<std::int64_t> shape_prints_;  // fingerprints of the files that shapes are read from
   std::filesystem::path base_dir_;
   CostEstimate cost_;
   PanelRegion panel_;
@@ -188,8 +191,8 @@ class Simulation {
   std::unique_ptr<SnapshotSeries> snapshots_;
   std::unique_ptr<FilmRecorder> film_;
   std::optional<FilmMark> film_mark_;        // in the checkpoint that was loaded
-  std::unique_ptr<Curve> curve_;             // of methods that have one
-  std::unique_ptr<EnergyHistory> energies_;  // of all others, with output.energy
+  std::unique_ptr<Curve> curve_;             // for methods that have one
+  std::unique_ptr<EnergyHistory> energies_;  // for all others, with output.energy
   RestDetector rest_;
   std::vector<std::string> notes_;
   int event_ = 0;

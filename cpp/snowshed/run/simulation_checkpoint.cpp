@@ -1,4 +1,4 @@
-// Saving and restoring a simulation: its scene, where it stands between events, and the solver.
+// Saving and restoring a simulation: its scene, its progress through the events, and the solver.
 #include "snowshed/core/errors.hpp"
 #include "snowshed/core/kernel_variant.hpp"
 #include "snowshed/core/memory.hpp"
@@ -24,8 +24,7 @@ void check_file(const BinaryReader& in, const std::string& file, std::int64_t th
                              " was made; restore the file, or start a new run");
 }
 
-/// Throws InputError where a file that the method read is another than when the checkpoint was
-/// made.
+/// Throws InputError if a file that the method read has changed since the checkpoint was made.
 void check_files(const BinaryReader& in, const Surroundings& surroundings) {
   if (!surroundings.input) return;
   const std::vector<FilePrint> now = surroundings.input->files();
@@ -40,7 +39,7 @@ std::vector<std::int64_t> prints_of(const MethodInput& input) {
 }
 
 /// The same of the files that shapes are read from; a checkpoint of an earlier version does not
-/// know them.
+/// have them.
 void check_shape_files(const BinaryReader& in, const Scene& scene,
                        const std::vector<std::int64_t>& now) {
   const std::vector<std::string> files = shape_files(scene);
@@ -49,7 +48,7 @@ void check_shape_files(const BinaryReader& in, const Scene& scene,
   for (std::size_t i = 0; i < files.size(); ++i) check_file(in, files[i], then[i], now[i]);
 }
 
-/// Other kernels round differently, so that the run would not go on to the same bits.
+/// Other kernels round differently, so that the run would not continue to the same bits.
 void check_kernels(const BinaryReader& in) {
   if (!in.has("kernels")) return;
   const std::string then = in.text("kernels"), now = kernel_variant();
@@ -60,7 +59,7 @@ void check_kernels(const BinaryReader& in) {
                          "those where the machine has them, or start a new run");
 }
 
-/// Throws InputError unless the numbers of the particles' snows mean the same in another scene.
+/// Throws InputError unless the particles' snows have the same numbers in another scene.
 void check_same_snow(const BinaryReader& in, const std::vector<Snow>& then,
                      const std::vector<Snow>& now) {
   for (std::size_t i = 0; i < then.size(); ++i)
@@ -95,8 +94,8 @@ void Simulation::save(const std::filesystem::path& checkpoint) const {
   }
 }
 
-/// Throws InputError where `load` would. Particles are there twice meanwhile; where that does not
-/// fit into memory, only the file is checked.
+/// Makes the checks of `load`, and throws as it. This needs memory for the particles twice; if that
+/// is not available, only the file is checked.
 void Simulation::read_back(const std::filesystem::path& checkpoint) const {
   const BinaryReader in = BinaryReader::load(checkpoint);
   in.require_finite();

@@ -8,12 +8,12 @@
 
 namespace snowshed {
 
-/// Writes what the method shows of its particles, in SI units: at least the velocity.
+/// Writes the method's fields of its particles, in SI units: at least the velocity.
 void write_particles(const std::filesystem::path& file, const Method&);
 
 class SnapshotSeries {
  public:
-  /// Goes on with a series that is already in `folder`, from `time` on.
+  /// Continues a series that is already in `folder`, from `time` on.
   SnapshotSeries(std::filesystem::path folder, double interval, double time);
 
   bool due(double time) const { return time >= next_; }

@@ -11,8 +11,8 @@ namespace snowshed {
 namespace {
 
 /// From the last impact to rest, snow loses the speed of its fall at about the acceleration of
-/// gravity: 0.2 to 0.35 s in the laboratory scene, 0.5 to 0.7 s where it falls from 2 m. Less than
-/// this it never took:
+/// gravity: 0.2 to 0.35 s in the laboratory scene, 0.5 to 0.7 s where it falls from 2 m. This is
+/// the least time that it took:
 constexpr double least_settling_time = 0.25;  // s
 
 /// Mean acceleration down the panel, from gravity less friction.
@@ -37,12 +37,12 @@ double fall_duration(const Scene& scene, double height, double downward) {
                                : std::numeric_limits<double>::infinity();
 }
 
-/// How fast a velocity brings a point nearer to the ground below it; the height is linear.
+/// Speed at which a velocity brings a point nearer to the ground below it; the height is linear.
 double approach(const Scene& scene, const Vec3& velocity) {
   return -height_above_ground(scene, velocity);
 }
 
-/// Distance of what falls from a speed for a time, at most.
+/// Largest distance of a fall that begins with a speed, after a time.
 double falling_distance(const Scene& scene, double speed, double time) {
   return time * (speed + scene.gravity * time / 2.0);
 }
@@ -79,7 +79,7 @@ void add_slab(const Scene& scene, SnowMotion& motion) {
   add_flight(scene, front_slides, motion);
 }
 
-/// Speed of what falls last when it lands, over gravity.
+/// Speed at which the snow that falls last lands, over gravity.
 double time_to_lose_speed(const Scene& scene, const SnowMotion& motion) {
   if (!(scene.gravity > 0.0) || !motion.slides) return 0.0;
   const double along = sliding_acceleration(scene) * motion.sliding_time;

@@ -1,4 +1,4 @@
-// How the snow of an event will move, by arithmetic alone.
+// Estimate of an event's motion by arithmetic alone.
 #pragma once
 
 #include "snowshed/methods/cost.hpp"
@@ -6,7 +6,7 @@
 
 namespace snowshed {
 
-/// Of a resolved scene: zeros that follow other fields are replaced.
+/// Requires a resolved scene: zeros that follow other fields are replaced.
 SnowMotion estimate_motion(const Scene& scene);
 
 }  // namespace snowshed

@@ -16,16 +16,16 @@ namespace {
 /// Particles that follow on each other lie near to each other.
 constexpr std::size_t particles_in_box = 64;
 
-constexpr double depth_over_resolution = 1e-3;  // that is rounding of files, not an overlap
+constexpr double depth_over_resolution = 1e-3;  // less is rounding of files, not an overlap
 
 /// Where old snow surrounds a point: within this many particle distances there are ...
 constexpr double reach = 2.2;
-constexpr double least_filled = 0.4;  // ... so many of the particles that whole snow would have,
-constexpr double most_aside = 0.28;   // and their centre lies so near, over the reach. On a flat
-                                      // surface it is at 0.38 (3D) and 0.42 (2D).
+constexpr double least_filled = 0.4;  // ... this share of the particles that whole snow would have,
+constexpr double most_aside = 0.28;   // and their centre is nearer than this, over the reach. On a
+                                      // flat surface it is at 0.38 (3D) and 0.42 (2D).
 
-constexpr std::size_t most_notes = 10;  // of the bodies of an event
-constexpr std::size_t most_parts = 3;   // of a sentence
+constexpr std::size_t most_notes = 10;  // notes on the bodies of an event
+constexpr std::size_t most_parts = 3;   // parts in a sentence
 
 struct PointBox {
   Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
@@ -49,7 +49,7 @@ PointBox box_around(const std::vector<Vec3>& points, std::size_t begin, std::siz
   return box;
 }
 
-/// The particles of a body that lie in one thing.
+/// The particles of a body that lie in one obstacle or body.
 struct Part {
   std::string where;
   std::size_t count = 0;
@@ -60,16 +60,16 @@ struct Part {
 class Particles {
  public:
   Particles(const std::vector<Vec3>& positions, int dimension)
-      : positions_(positions), dimension_(dimension), found_(positions.size(), 0) {
+      : positions_(positions), dimension_(dimension), part_of_(positions.size(), 0) {
     for (std::size_t begin = 0; begin < positions.size(); begin += particles_in_box) {
       const std::size_t end = std::min(begin + particles_in_box, positions.size());
       boxes_.push_back(box_around(positions, begin, end));
-      whole_.extend(boxes_.back().low);
-      whole_.extend(boxes_.back().high);
+      box_.extend(boxes_.back().low);
+      box_.extend(boxes_.back().high);
     }
   }
 
-  const PointBox& box() const { return whole_; }
+  const PointBox& box() const { return box_; }
 
   /// Marks the particles where `distance` is below `-depth`, and counts them under a name.
   template <class Distance>
@@ -81,7 +81,7 @@ class Particles {
   template <class Distance>
   std::size_t count_others_within(double depth, const Distance& distance) const {
     std::size_t others = 0;
-    for_each_near(distance, depth, [&](std::size_t i) { others += found_[i] == 0; });
+    for_each_near(distance, depth, [&](std::size_t i) { others += part_of_[i] == 0; });
     return others;
   }
 
@@ -96,7 +96,8 @@ class Particles {
   }
 
   double share() const {
-    return share_of(found_.size() - std::size_t(std::count(found_.begin(), found_.end(), 0u)));
+    return share_of(part_of_.size() -
+                    std::size_t(std::count(part_of_.begin(), part_of_.end(), 0u)));
   }
   double share_of(std::size_t count) const { return double(count) / double(positions_.size()); }
   const std::vector<Part>& parts() const { return parts_; }
@@ -121,16 +122,17 @@ class Particles {
   void count(const std::string& where, std::size_t i) {
     if (parts_.empty() || parts_.back().where != where) parts_.push_back({where, 0, positions_[i]});
     const auto part = std::uint32_t(parts_.size());
-    if (found_[i] == part) return;  // a corner of the domain is beyond two of its sides
-    found_[i] = part;
+    if (part_of_[i] == part) return;  // a corner of the domain is beyond two of its sides
+    part_of_[i] = part;
     ++parts_.back().count;
   }
 
   const std::vector<Vec3>& positions_;
   const int dimension_;
-  std::vector<std::uint32_t> found_;  // by particle, the last part it is of, from 1; 0: none
+  // One per particle: the last part that it is in, from 1; 0: none.
+  std::vector<std::uint32_t> part_of_;
   std::vector<PointBox> boxes_;
-  PointBox whole_;
+  PointBox box_;
   std::vector<Part> parts_;
 };
 
@@ -181,7 +183,7 @@ std::string place(const Vec3& x, int dimension) {
   return text;
 }
 
-/// The obstacles in words, and where they are.
+/// Texts for the obstacles and their places.
 class Obstacles {
  public:
   Obstacles(const Scene& scene, const OccupiedSpace& space)
@@ -210,7 +212,7 @@ class Obstacles {
     });
   }
 
-  /// Adds what is to be told of particles that lie only where obstacles are made thicker.
+  /// Adds sentences on particles that lie only where obstacles are made thicker.
   void find_in_thickening(const Particles& snow, std::vector<std::string>& sentences) const {
     for_each_near(snow, scene_.numerics->resolution(), [&](std::size_t k, const auto& to_body) {
       const Shape& seen = space_.resolved[k].shape;
@@ -315,7 +317,7 @@ std::vector<std::string> check_placement(const Scene& scene, const std::vector<P
     for (const std::string& sentence : sentences) notes.push_back(body.path + ": " + sentence);
     if (snow.parts().empty()) continue;
     const std::string sentence = sentence_of(snow, scene.dimension, space.event);
-    if (snow.share() > most_misplaced && !body.is_told_only &&
+    if (snow.share() > most_misplaced && !body.is_only_noted &&
         scene.misplaced_snow == MisplacedSnow::refuse)
       throw InputError(body.path, sentence + "; move it, or set /misplaced_snow to \"allow\"");
     notes.push_back(body.path + ": " + sentence);

@@ -17,28 +17,29 @@ inline constexpr double most_misplaced = 0.01;
 struct PlacedBody {
   std::string path;                    // in the scene
   const std::vector<Vec3>* positions;  // m, of its particles
-  Shape shape = nullptr;               // that they fill; null where there is none
-  bool is_told_only = false;           // for it lies where the program laid it
+  Shape shape = nullptr;               // solid that they fill; null if there is none
+  bool is_only_noted = false;          // only notes, because the program placed it
 };
 
-/// What new snow must keep out of.
+/// Space that new snow must not enter.
 struct OccupiedSpace {
   const std::vector<Obstacle>& obstacles;  // as they are given
   const std::vector<Obstacle>& resolved;   // the same, as the method sees them
   double time = 0;                         // s, at which moving obstacles are met
-  std::vector<Vec3> particles;             // m, of the snow that is there already
+  std::vector<Vec3> particles;             // m, of the snow that is present already
   double particle_distance = 0;            // m, mean, between these
-  int event = 1;                           // that the new snow is of
+  int event = 1;                           // event of the new snow
 };
 
 /// Looks for particles of new snow that lie more than a thousandth of the scene's resolution inside
 /// an obstacle, beyond the sides of the domain, or in another new body, and for those that old snow
-/// surrounds. (Old snow has no surface. What reaches less than half the distance of two particles
-/// into it is not seen.) Returns a sentence for each body that has such particles, and for those
-/// that lie only where a thin obstacle is made thicker: from there they are pushed out.
+/// surrounds. (Old snow has no surface. Particles that reach less than half the distance of two
+/// particles into it are not seen.) Returns a sentence for each body that has such particles, and
+/// for those that lie only where a thin obstacle is made thicker: from there they are pushed out.
 ///
 /// Throws InputError with share and place where it is more than `most_misplaced` of a body's
-/// particles, not counting the thickening, unless the scene allows that or the body is told only.
+/// particles, not counting the thickening, unless the scene allows that or the body's
+/// `is_only_noted` is set.
 std::vector<std::string> check_placement(const Scene&, const std::vector<PlacedBody>&,
                                          const OccupiedSpace&);
 

@@ -12,7 +12,7 @@
 namespace snowshed {
 namespace {
 
-constexpr double rounding = 1e-6;  // of a cell
+constexpr double rounding = 1e-6;  // share of a cell
 
 /// A cell of the lattice, and how much of it is within the solid.
 struct Cell {
@@ -35,7 +35,7 @@ std::size_t count_for(double volume, int dimension, double spacing) {
 /// The cells of a box, of which the last layer along each edge may be cut.
 std::vector<Cell> cells_of(const OrientedBox& box, int dimension, double spacing) {
   std::array<std::size_t, 3> counts{1, 1, 1}, cut_layer{};
-  std::array<double, 3> part{1, 1, 1};  // of the cut layer that is within
+  std::array<double, 3> part{1, 1, 1};  // share of the cut layer that lies within
   Vec3 center = box.center;
   for (int axis = 0; axis < 3; ++axis) {
     if (axis == 1 && dimension == 2) continue;
@@ -43,7 +43,7 @@ std::vector<Cell> cells_of(const OrientedBox& box, int dimension, double spacing
     const double full = std::floor(layers + rounding), left = layers - full;
     if (left > rounding) part[axis] = left;
     counts[axis] = std::size_t(full) + (left > rounding);
-    // The first layer lies against the lower face, for there may be an obstacle below.
+    // The first layer lies against the lower face, because there may be an obstacle below.
     const double up = box.axes(2, axis) < -rounding ? -1 : 1;
     cut_layer[axis] = up > 0 ? counts[axis] - 1 : 0;
     const double shorter = box.half[axis] - 0.5 * double(counts[axis]) * spacing;
@@ -121,7 +121,8 @@ class CutCells {
   }
 
   std::array<std::size_t, group> ranked(std::size_t begin, std::size_t end) const {
-    std::array<std::size_t, group> order{};  // by share, rounded, so that equal cells are equal
+    // Ordered by share, rounded, so that equal cells are equal.
+    std::array<std::size_t, group> order{};
     for (std::size_t i = begin; i < end; ++i) order[i - begin] = i;
     std::sort(order.begin(), order.begin() + std::ptrdiff_t(end - begin),
               [&](std::size_t a, std::size_t b) {

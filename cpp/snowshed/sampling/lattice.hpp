@@ -1,4 +1,4 @@
-// Filling a solid with the particles of a lattice, each of which stands for a whole cell.
+// Filling a solid with the particles of a lattice, each of which represents a whole cell.
 #pragma once
 
 #include <cstddef>
@@ -16,16 +16,17 @@ struct LatticeFilling {
 };
 
 /// Fills a bounded solid with points of a square or cubic lattice of the given spacing (m), as many
-/// as its volume holds cells, to the nearest whole number (`count_lattice`). So the solid and its
-/// particles have the same volume, whatever the spacing.
+/// as its volume holds cells, to the nearest whole number (`count_lattice`). The solid and its
+/// particles then have the same volume, for any spacing.
 ///
-/// In a box the lattice stands along its edges, and its full layers begin at the lowest corner;
-/// what is left of a layer is at the top. Other solids have a lattice along the world axes, which
-/// begins at the lowest corner of their bounds. Cells that the surface cuts have a point in as many
-/// as their parts within the solid make together: every second one along a face that halves them. A
-/// point that would lie outside is moved to the surface.
+/// In a box the lattice stands along its edges. Its full layers begin at the lowest corner, and a
+/// partial layer is at the top. Other solids have a lattice along the world axes, which begins at
+/// the lowest corner of their bounds. Cells that the surface cuts share points by volume: their
+/// number is that of the cells that their parts within the solid would fill. Along a face that
+/// halves them every second cell has a point. A point that would lie outside is moved to the
+/// surface.
 ///
-/// Throws InputError where the solid holds less than half a cell, or more than `max_particles`, and
+/// Throws InputError if the solid holds less than half a cell, or more than `max_particles`, and
 /// Stopped on request.
 LatticeFilling fill_lattice(const LevelSet& shape, int dimension, double spacing,
                             const StopRequest& stop = {});

@@ -9,9 +9,9 @@
 namespace snowshed {
 
 /// Returns the radius of particles of which `per_voxel` were seeded to a voxel, metres: three
-/// eighths of their mean spacing. Of the radii that were tried, it keeps the volume best (within
-/// 1.5 % for slabs and domes in 2D and 3D, poisson or jittered) and the outline within 0.2 voxels
-/// at each end.
+/// eighths of their mean spacing. This factor keeps the volume best among those that were tried
+/// (within 1.5 % for slabs and domes in 2D and 3D, poisson or jittered), and the outline within 0.2
+/// voxels at each end.
 double particle_radius(int dimension, double voxel, double per_voxel);
 
 /// Returns the solid that a cloud of particles fills. This is the "VDB from particles" of the

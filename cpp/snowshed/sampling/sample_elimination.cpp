@@ -16,12 +16,12 @@ namespace {
 /// distance d clamped to at least 2 r_min (Yuksel, equations 1, 5 and 6).
 class PairWeight {
  public:
-  PairWeight(int dimension, double point_measure, double kept_ratio) {
+  PairWeight(int dimension, double point_measure, double sampled_share) {
     const double r_max = dimension == 2 ? std::sqrt(point_measure / (2 * std::sqrt(3.0)))
                                         : std::cbrt(point_measure / (4 * std::sqrt(2.0)));
     reach_ = 2 * r_max;
     per_reach_ = 1 / reach_;
-    nearest_ = reach_ * 0.65 * (1 - kept_ratio * std::sqrt(kept_ratio));
+    nearest_ = reach_ * 0.65 * (1 - sampled_share * std::sqrt(sampled_share));
   }
 
   double reach() const { return reach_; }
@@ -82,8 +82,8 @@ std::vector<Vec3> eliminate_samples(const Candidates& candidates, std::size_t co
                                     double point_measure, const StopRequest& stop) {
   StopCheck check_stop(stop);
   const std::vector<Vec3>& points = candidates.points;
-  const double kept_ratio = static_cast<double>(count) / candidates.inside_count;
-  const PairWeight pair_weight(dimension, point_measure, kept_ratio);
+  const double sampled_share = static_cast<double>(count) / candidates.inside_count;
+  const PairWeight pair_weight(dimension, point_measure, sampled_share);
   const PointGrid grid(points, pair_weight.reach(), stop);
 
   std::vector<std::int64_t> weights(points.size(), 0);
@@ -105,11 +105,11 @@ std::vector<Vec3> eliminate_samples(const Candidates& candidates, std::size_t co
     });
   }
 
-  std::vector<Vec3> kept;
-  kept.reserve(count);
+  std::vector<Vec3> chosen;
+  chosen.reserve(count);
   for (std::uint32_t i = 0; i < points.size(); ++i)
-    if (candidates.inside[i] && queue.contains(i)) kept.push_back(points[i]);
-  return kept;
+    if (candidates.inside[i] && queue.contains(i)) chosen.push_back(points[i]);
+  return chosen;
 }
 
 }  // namespace snowshed

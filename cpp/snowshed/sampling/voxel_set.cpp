@@ -76,7 +76,7 @@ class Subdivision {
   }
 
   /// Returns whether no point of a cell is within `margin` of the solid. Outside the solid's bounds
-  /// the bounds decide, since distances far from the solid may be too large (those of a sampled
+  /// the bounds decide, because distances far from the solid may be too large (those of a sampled
   /// grid beyond its box, for example).
   bool misses(const Vec3& center, double edge, int levels, double margin) const {
     const Vec3 middle = (bounds_.min + bounds_.max) / 2, half = (bounds_.max - bounds_.min) / 2;

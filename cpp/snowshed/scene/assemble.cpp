@@ -148,9 +148,9 @@ std::vector<Snow> assemble_snows(const Scene& scene) {
 }
 
 int material_id_of(const Snow& snow, const std::vector<Snow>& snows) {
-  const auto found = std::find_if(snows.begin(), snows.end(),
-                                  [&](const Snow& known) { return are_same(known, snow); });
-  return int(found - snows.begin());
+  const auto same = std::find_if(snows.begin(), snows.end(),
+                                 [&](const Snow& known) { return are_same(known, snow); });
+  return int(same - snows.begin());
 }
 
 }  // namespace snowshed

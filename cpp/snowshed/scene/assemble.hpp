@@ -1,4 +1,4 @@
-// From the panel, slab and ground of Figure 3.1.1 to plain obstacles and bodies.
+// Plain obstacles and bodies for the panel, slab and ground of Figure 3.1.1.
 //
 // x points down the slide direction, y across, z up. The origin of x is the panel's centre.
 // The ground passes through the origin with normal (sin psi, 0, cos psi); the panel's face has
@@ -43,13 +43,13 @@ bool is_added_in(const Part& part, int event) {
 
 /// The slab laid at the start of `event`, from the panel upwards, a body for each of its layers.
 /// Its underside is `lift` metres (>= 0) above the panel, measured along the normal: later slabs
-/// lie on what remained there.
+/// lie on the snow that remained there.
 std::vector<BodySpec> assemble_slab(const Scene& scene, int event, double lift = 0.0);
 
 /// Its thickness, m.
 double slab_thickness(const Slab& slab, int event);
 
-/// What appears at the start of `event`: the slab, then the scene's bodies of that event.
+/// The bodies that appear at the start of `event`: the slab, then the scene's bodies of that event.
 std::vector<BodySpec> assemble_bodies(const Scene& scene, int event, double lift = 0.0);
 
 /// The different snows of the slab and the bodies, in order of their first appearance.
@@ -61,7 +61,7 @@ const Snow& snow_of(const Scene& scene, const Part& part) {
   return part.snow ? *part.snow : scene.snow;
 }
 
-/// Where in `snows` a snow is, which must be among them.
+/// Index of a snow in `snows`, which must contain it.
 int material_id_of(const Snow& snow, const std::vector<Snow>& snows);
 
 }  // namespace snowshed

@@ -1,4 +1,4 @@
-// The solids of a scene, ready to be collided with.
+// The solids of a scene with which snow collides.
 #pragma once
 
 #include <filesystem>

@@ -22,7 +22,7 @@ namespace {
 constexpr double largest = 1e9;    // m
 constexpr double smallest = 1e-9;  // m
 
-/// Reads the fields of one ShapeSpec and names the culprit when one is bad.
+/// Reads the fields of one ShapeSpec; errors name the bad field.
 class Builder {
  public:
   Builder(const ShapeSpec& spec, int dimension, const std::string& path,

@@ -1,4 +1,4 @@
-// From the description of a solid in a scene to the solid.
+// Solids from their descriptions in a scene.
 #pragma once
 
 #include <filesystem>
@@ -10,14 +10,14 @@
 
 namespace snowshed {
 
-/// How deep unions, differences and transforms may nest.
+/// Largest depth to which unions, differences and transforms may nest.
 inline constexpr int max_shape_depth = 32;
 
 /// The solid that `spec` describes, for a scene of `dimension` 2 or 3. Files are sought
 /// relative to `base_dir`. In 2D boxes and plates are unbounded along y, and every point and
 /// direction must lie in the plane y = 0.
 ///
-/// What was changed or assumed in files is added to `notes`, if given, a sentence each.
+/// Changes and assumptions about files are added to `notes`, if given, a sentence each.
 ///
 /// Throws InputError with the JSON path (`json_path` + "/radius") of a bad value, or with
 /// the file and place of bad mesh or grid data.

@@ -1,4 +1,4 @@
-// From a scene to what surrounds its snow.
+// The surroundings of a scene's snow.
 #pragma once
 
 #include <filesystem>

@@ -110,7 +110,8 @@ void describe(V& v, ShapeSpec& s) {
     v.list("shapes", s.shapes, between(1, 10000).required(), "The parts");
   }
   if (v.variant("difference", "The first shape without the others")) {
-    v.list("shapes", s.shapes, between(2, 10000).required(), "The body, then what is cut away");
+    v.list("shapes", s.shapes, between(2, 10000).required(),
+           "The body, then the shapes that are cut away");
   }
   if (v.variant("transform", "A shape, rotated about the origin and then moved")) {
     v.list("shapes", s.shapes, exactly(1).required(), "The shape");
@@ -243,7 +244,7 @@ void describe(V& v, TerrainSpec& t) {
          "Areas where forest or the like holds the slide back");
 }
 
-/// Of a loading, so that its curve fits into memory.
+/// Largest number of stages in a loading, so that its curve fits into memory.
 inline constexpr int most_stages = 100;
 
 template <class V>
@@ -311,14 +312,15 @@ void describe(V& v, Output& o) {
   v.number("snapshot_interval", o.snapshot_interval, "s", allowed::time,
            "Simulated time between particle snapshots; 0: only at the end of an event");
   v.flag("film", o.film, "Record the particles over time, for snowshed view");
-  v.number("film_interval", o.film_interval, "s", allowed::time,
-           "Simulated time between frames of the film; 0: chosen by how long an event should last");
+  v.number(
+      "film_interval", o.film_interval, "s", allowed::time,
+      "Simulated time between frames of the film; 0: chosen by the expected duration of an event");
   v.flag("energy", o.energy, "Keep the energy balance");
   v.number("checkpoint_interval", o.checkpoint_interval, "s", allowed::time,
            "Wall time between checkpoints; 0: none");
 }
 
-/// Hands on to a visitor what a method describes of its settings.
+/// Gives a visitor the method's description of its settings.
 template <class V>
 class SettingsAdapter final : public SettingsVisitor {
  public:

@@ -17,7 +17,7 @@ std::vector<json::json_pointer> parts_with_condition(const json& scene) {
   return parts;
 }
 
-/// What version 1 called slip let go of snow, as separate does now.
+/// Renames the condition `slip` of version 1, which released snow as `separate` does now.
 void rename_slip(json& scene, std::vector<std::string>& notes) {
   for (const json::json_pointer& part : parts_with_condition(scene)) {
     const json::json_pointer place = part / "condition";

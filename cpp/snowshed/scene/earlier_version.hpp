@@ -1,4 +1,4 @@
-// Scenes of earlier versions of the form, as the present version says the same.
+// Conversion of scenes from earlier versions of the form to the present one.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -7,8 +7,8 @@
 
 namespace snowshed {
 
-/// Rewrites a scene of an earlier version as one of the present version that does the same. Other
-/// values stay as they are. Returns what has another meaning or name now, a sentence each.
+/// Rewrites a scene of an earlier version as one of the present version with the same meaning.
+/// Other values stay as they are. Returns notes on changed meanings and names, a sentence each.
 std::vector<std::string> update_version(nlohmann::json& scene);
 
 }  // namespace snowshed

@@ -14,12 +14,12 @@
 namespace snowshed {
 namespace {
 
-/// The files of millimetres read as metres, or the reverse, are 1000 times too large or small.
+/// Files in millimetres that are read as metres, or the reverse, are 1000 times too large or small.
 constexpr double too_different = 300;
 
 struct Solid {
   std::string file;  // empty: of no file
-  double size;       // m, its longest edge; infinite or 0 where it has none
+  double size;       // m, its longest edge; infinite or 0 if it has none
 };
 
 /// The first file that a shape is made of.
@@ -73,7 +73,7 @@ void add_notes_on_files(const Scene& scene, const std::filesystem::path& base_di
     const std::string size =
         solid.file + ": the solid is " + show_briefly(solid.size) + " m" + " large, ";
     const std::string question = "; if the unit of the file is another, give its \"scale\"";
-    double largest = 0;  // of all others
+    double largest = 0;  // the largest value of all others
     for (const Solid& other : solids)
       if (&other != &solid && std::isfinite(other.size)) largest = std::max(largest, other.size);
     if (solid.size < cell)

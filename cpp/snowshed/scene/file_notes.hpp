@@ -1,4 +1,4 @@
-// What is odd about the solids that a scene reads from files.
+// Notes on oddities of the solids that a scene reads from files.
 #pragma once
 
 #include <filesystem>
@@ -12,8 +12,8 @@ namespace snowshed {
 
 /// Adds notes on solids from meshes, grids and OpenVDB files whose unit is probably another: they
 /// are smaller than a cell, or at least 300 times larger or smaller than everything else in the
-/// scene. Adds also what reading the files of bodies changed or assumed. `obstacles` are those of
-/// build_obstacles, whose files have been told.
+/// scene. Adds notes on changes and assumptions about the files of bodies, too. `obstacles` are
+/// those of build_obstacles, which has noted their files.
 void add_notes_on_files(const Scene& scene, const std::filesystem::path& base_dir,
                         const std::vector<Obstacle>& obstacles, std::vector<std::string>& notes);
 

@@ -24,14 +24,14 @@ std::string place(const std::string& text, std::size_t position, const std::stri
   return name + ":" + std::to_string(line) + ":" + std::to_string(column);
 }
 
-/// The library's message without its own code and place, in printable characters, and the last
+/// The library's message without its own code and place, in printable characters, and the last text
 /// that it could read.
 std::string plain_message(std::string message, std::string last_read) {
   last_read.erase(0, last_read.find_first_not_of(' '));
   for (const std::string end : {"syntax error ", ": "}) {
-    const std::size_t found = message.find(end);
-    if (found != std::string::npos) {
-      message.erase(0, found + end.size());
+    const std::size_t position = message.find(end);
+    if (position != std::string::npos) {
+      message.erase(0, position + end.size());
       break;
     }
   }
@@ -42,9 +42,9 @@ std::string plain_message(std::string message, std::string last_read) {
          (last_read.empty() ? "" : ", after " + quote(last_read));
 }
 
-/// The same text with spaces for line ends and tabs between values. The parser keeps what it has
-/// read since the last string or number for its message, and there spells each of them "<U+000A>":
-/// megabytes of empty lines would become gigabytes.
+/// The same text with spaces for line ends and tabs between values. For its message the parser
+/// keeps the text since the last string or number, and spells each blank "<U+000A>": megabytes of
+/// empty lines would become gigabytes.
 std::string with_plain_blanks(std::string text) {
   bool quoted = false;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -52,14 +52,14 @@ std::string with_plain_blanks(std::string text) {
     if (c == '"')
       quoted = !quoted;
     else if (c == '\\' && quoted)
-      ++i;  // whatever it is, it does not end the string
+      ++i;  // an escaped character never ends the string
     else if (!quoted && (c == '\n' || c == '\t' || c == '\r'))
       c = ' ';
   }
   return text;
 }
 
-/// The line in which a key stands, of so many in a text that is right until there.
+/// Line of key `number` in a text that is valid JSON up to that key.
 std::size_t line_of_key(const std::string& text, std::size_t number) {
   std::size_t line = 1, line_of_string = 1;
   bool quoted = false, behind_string = false;
@@ -121,7 +121,7 @@ class ValueBuilder {
   }
 
  private:
-  /// Of the value that comes next.
+  /// Path of the value that comes next.
   std::string path() const {
     std::string path;
     for (std::size_t i = 0; i < open_.size(); ++i) {
@@ -171,7 +171,7 @@ class ValueBuilder {
 
 const std::string seal_begins = ",\n  \"checksum\": \"";
 
-/// How an object ends that begins with a text.
+/// The end of an object that begins with this text.
 std::string seal_of(const std::string& text) {
   Crc32 sum;
   sum.update(text.data(), text.size());

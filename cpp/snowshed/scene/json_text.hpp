@@ -1,4 +1,4 @@
-// From untrusted text to a JSON value.
+// A JSON value from untrusted text.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -14,7 +14,8 @@ inline constexpr std::size_t max_values = 1'000'000;  // else 64 MB of "[[],[],.
 /// keys, on numbers too large for a double and beyond the limits above.
 nlohmann::json parse_json(const std::string& text, const std::string& name);
 
-/// Throws InputError where a text that says its own checksum, as `sealed` gives it, has another.
+/// Throws InputError if a text's checksum differs from the one that it contains, as written by
+/// `sealed`.
 void check_seal(const std::string& text, const std::string& name);
 
 /// The indented text of an object, with its checksum (CRC-32) behind its last value.

@@ -1,4 +1,4 @@
-// From one JSON value to one C++ value, or an InputError that says what was found.
+// Converts one JSON value to one C++ value, or throws an InputError that names the given value.
 #pragma once
 
 #include <cmath>

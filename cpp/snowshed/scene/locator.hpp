@@ -12,7 +12,7 @@ class Locator : public PathVisitor<Locator> {
  public:
   /// Writes the JSON pointer of the target to `path`.
   Locator(const void* target, std::type_index type, const int& dimension, std::string& path)
-      : PathVisitor("", dimension), target_(target), type_(type), found_(path) {}
+      : PathVisitor("", dimension), target_(target), type_(type), result_(path) {}
 
   template <class T, class... Rest>
   void number(const char* key, T& value, const Rest&...) {
@@ -39,7 +39,7 @@ class Locator : public PathVisitor<Locator> {
   void text(const char* key, std::string& value, const char*) { compare(at(key), value); }
   void file(const char* key, std::string& value, const char*) { compare(at(key), value); }
   void choice(const char* key, const Choice& value, const char*) {
-    if (value.is_at(target_, type_)) found_ = at(key);
+    if (value.is_at(target_, type_)) result_ = at(key);
   }
   void direction(const char* key, Vec3& value, const char*) { compare(at(key), value); }
   void outline(const char* key, Ring& ring, const char*) { compare(at(key), ring); }
@@ -73,12 +73,12 @@ class Locator : public PathVisitor<Locator> {
   /// Compares types too, because a struct and its first member share an address.
   template <class T>
   void compare(const std::string& path, const T& value) {
-    if (&value == target_ && type_ == typeid(T)) found_ = path;
+    if (&value == target_ && type_ == typeid(T)) result_ = path;
   }
 
   const void* target_;
   std::type_index type_;
-  std::string& found_;
+  std::string& result_;
 };
 
 /// Returns the JSON pointer of a member of the scene, "/" for the scene itself.
@@ -86,7 +86,7 @@ template <class T>
 std::string path_of(const Scene& scene, const T& member) {
   std::string path = "/";
   Locator locator(&member, typeid(T), scene.dimension, path);
-  describe(locator, const_cast<Scene&>(scene));  // visitors may write; this one does not
+  describe(locator, const_cast<Scene&>(scene));  // other visitors may write; this one does not
   return path;
 }
 

@@ -1,5 +1,5 @@
-// Base of the visitors that know where in a scene they are: it keeps the path to the object that is
-// visited, and visits the objects in it.
+// Base of the visitors that need their place in a scene: it keeps the path to the visited object,
+// and visits the objects in it.
 #pragma once
 
 #include <initializer_list>

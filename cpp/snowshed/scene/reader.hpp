@@ -170,12 +170,12 @@ class Reader : public Checker {
   using json = nlohmann::json;
 
   /// The value of `key`, or null if it is not there. A missing required key is reported only in
-  /// `finish`, after unknown ones: a misspelt key is both, and the misspelling is what helps.
+  /// `finish`, after unknown ones: a misspelt key is both, and naming the misspelling helps more.
   const json* take(const char* key, Need need = Need::optional, const std::string& allowed = "") {
     keys_.push_back(key);
     const auto alias = given_alias_.find(key);
-    const auto found = object_.find(alias == given_alias_.end() ? key : alias->second);
-    if (found != object_.end()) return &*found;
+    const auto member = object_.find(alias == given_alias_.end() ? key : alias->second);
+    if (member != object_.end()) return &*member;
     if (is_required(need, dimension_) && !missing_)
       missing_ = InputError(at(key), "missing: " + allowed + " is required");
     return nullptr;
@@ -196,7 +196,7 @@ class Reader : public Checker {
   const json& object_;
   std::vector<std::string> keys_;
   std::vector<std::string> aliases_;
-  std::map<std::string, std::string> given_alias_;  // by the key that it stands for
+  std::map<std::string, std::string> given_alias_;  // alias by the key that it stands for
   std::optional<InputError> missing_;
 };
 

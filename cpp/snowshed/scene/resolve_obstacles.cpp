@@ -30,7 +30,7 @@ std::string note_on(const Thickening& t, const Obstacle& obstacle, const Scene& 
   const std::string name =
       obstacle.name.empty() ? "an obstacle" : "obstacle '" + obstacle.name + "'";
   const std::string least = millimetres(2 * scene.numerics->resolution());
-  if (t.whole)
+  if (t.is_dilated)
     return name + " is " + millimetres(t.thickness) + " thick, less than two " + unit +
            ": it is made " + least + " thick, " + millimetres(t.outward) + " more on each side";
   return name + " has parts thinner than two " + unit + ", down to " + millimetres(t.thickness) +

@@ -10,7 +10,8 @@
 namespace snowshed {
 
 /// Returns the obstacles with their thin parts made as thick as the method resolves, and adds a
-/// note on each that differs: where it is how thin, and by how much its surface moves.
+/// note on each that differs, with its thinnest place, its thickness and the displacement of its
+/// surface.
 std::vector<Obstacle> resolve_obstacles(const Scene& scene, const std::vector<Obstacle>& given,
                                         std::vector<std::string>& notes);
 

@@ -1,5 +1,5 @@
-// What is to be simulated, as plain data in SI units. One JSON form reads and
-// writes exactly these fields (scene_json.hpp); nothing here computes anything.
+// A scene to simulate, as plain data in SI units. One JSON form reads and writes exactly these
+// fields (scene_json.hpp); nothing here computes anything.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,8 @@
 
 namespace snowshed {
 
-inline constexpr int oldest_scene_version = 1;  // that is read, see earlier_version.hpp
+// Oldest version that is read, see earlier_version.hpp.
+inline constexpr int oldest_scene_version = 1;
 inline constexpr int scene_version = 2;
 
 /// A solid. `type` selects which of the other fields count.
@@ -97,7 +98,7 @@ struct Ground {
   double friction = 0.3;
 };
 
-/// What becomes of a scene that seeds more than 1 % of a body of snow where none may be.
+/// Treatment of a scene that seeds more than 1 % of a body of snow where none may be.
 enum class MisplacedSnow { refuse, allow };
 
 struct Domain {
@@ -116,7 +117,7 @@ struct Scene {
   std::optional<Ground> ground;
   std::optional<TerrainSpec> terrain;
   std::optional<SampleSpec> sample;
-  std::vector<LoadingStage> loading;  // of the sample, one after another
+  std::vector<LoadingStage> loading;  // stages of the sample, one after another
   std::optional<Cone> cone;           // none: the default one, if a stage asks for it
   std::vector<ObstacleSpec> obstacles;
   std::vector<BodySpec> bodies;
@@ -127,7 +128,7 @@ struct Scene {
   Output output;
 };
 
-/// What methods may know of a scene, to which it refers.
+/// The methods' view of a scene, to which it refers.
 inline SceneView view_of(const Scene& s) {
   return {s.dimension, s.gravity, s.terrain, s.sample, s.loading, s.cone, s.events, s.output};
 }

@@ -14,7 +14,7 @@
 namespace snowshed {
 namespace {
 
-/// At most one byte more than is allowed, whatever the file is.
+/// At most one byte more than is allowed, even from an endless file.
 std::string read_text(const std::filesystem::path& file) {
   std::error_code failed;
   const auto status = std::filesystem::status(file, failed);
@@ -55,9 +55,9 @@ void add_files(const ShapeSpec& shape, std::vector<std::string>& files) {
 /// Completes snow of a layer or body by the scene's, both as they were given.
 void complete_snow(const nlohmann::json& of_scene, nlohmann::json& part) {
   if (!part.is_object() || !part.contains("snow") || !part["snow"].is_object()) return;
-  nlohmann::json whole = of_scene;
-  whole.update(part["snow"]);
-  part["snow"] = std::move(whole);
+  nlohmann::json complete = of_scene;
+  complete.update(part["snow"]);
+  part["snow"] = std::move(complete);
 }
 
 void complete_snow(nlohmann::json& scene) {

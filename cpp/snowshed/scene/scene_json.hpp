@@ -1,5 +1,5 @@
 // The JSON form of a scene: reading, checking, writing, and its published schema.
-// Every field is described once, in src/scene/describe.hpp.
+// Every field is described once, in scene/describe.hpp.
 #pragma once
 
 #include <filesystem>
@@ -10,15 +10,15 @@
 
 namespace snowshed {
 
-/// Reads and validates a scene. What the snow of a layer or body leaves out is taken from the
-/// scene's. Throws InputError whose `where` is the JSON pointer of the
-/// offending value ("/snow/density", "/" for the whole), or "name:line:column" when the text
-/// is not JSON. The text need not be trusted: its size, depth and number of values are limited.
-/// Of a scene of an earlier version, `notes` (if any) gets what has another name now.
+/// Reads and validates a scene. Missing values of a layer's or a body's snow are those of the
+/// scene's snow. Throws InputError whose `where` is the JSON pointer of the offending value
+/// ("/snow/density", "/" for the whole), or "name:line:column" when the text is not JSON. The text
+/// need not be trusted: its size, depth and number of values are limited. `notes` (if any) gets the
+/// new names of fields in a scene of an earlier version.
 Scene parse_scene(const std::string& text, const std::string& name = "scene",
                   std::vector<std::string>* notes = nullptr);
 
-/// The scene with absolute names of mesh and grid files; relative ones are taken to be in `folder`.
+/// The scene with absolute names of mesh and grid files; relative ones refer to `folder`.
 Scene with_absolute_files(const std::filesystem::path& folder, Scene scene);
 
 /// The mesh and grid files that the shapes of a scene name, as they are written there, without
@@ -30,14 +30,14 @@ std::vector<std::string> shape_files(const Scene& scene);
 Scene load_scene(const std::filesystem::path& file, std::vector<std::string>* notes = nullptr);
 
 /// The complete JSON of a valid scene, defaults included: parse_scene gives back the same scene.
-/// Of a shape only the fields its type uses are written, and in 2D only x and z of a vector.
+/// A shape has only the fields that its type uses, and in 2D only x and z of a vector.
 std::string write_scene(const Scene& scene);
 
 /// The same scene on another number of threads; 0: all.
 Scene with_threads(Scene scene, int threads);
 
-/// A checksum of the values in the text of a scene, but for the number of threads: whatever the
-/// order of keys, and whatever a later version of the program adds.
+/// A checksum of the values in the text of a scene without the number of threads. It depends
+/// neither on the order of keys nor on keys that a later version of the program adds.
 std::string scene_checksum(const std::string& text);
 
 /// The complete JSON of a snow.

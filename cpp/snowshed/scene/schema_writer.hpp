@@ -18,7 +18,8 @@ class SchemaWriter {
  public:
   using json = nlohmann::ordered_json;
 
-  /// Shared by all visitors of one schema: what is referred to, because it contains itself.
+  /// Shared by all visitors of one schema: definitions that contain themselves, and are therefore
+  /// referred to.
   explicit SchemaWriter(json& definitions) : definitions_(definitions) {}
 
   /// The schema of T; its defaults are those of a new T.
@@ -35,7 +36,8 @@ class SchemaWriter {
 
   void number(const char* key, double& value, const char* unit, const Range& range,
               const char* doc) {
-    const json schema = limited("number", range.in(2), unit);  // what either dimension allows
+    // The range that either dimension allows.
+    const json schema = limited("number", range.in(2), unit);
     add(key, with_default(schema, value, range.need), doc, range.need);
   }
 
@@ -105,7 +107,7 @@ class SchemaWriter {
   template <class T>
   void optional(const char* key, std::optional<T>&, const char* doc) {
     json schema = schema_of<T>();
-    if constexpr (std::is_same_v<T, Snow>)  // of a part: there the defaults are the scene's snow
+    if constexpr (std::is_same_v<T, Snow>)  // for a part the defaults are the scene's snow
       for (auto& [name, property] : schema["properties"].items()) property.erase("default");
     add(key, schema, doc);
   }
@@ -244,9 +246,10 @@ class SchemaWriter {
   json properties_ = json::object();
   json required_ = json::array();
   json variants_ = json::array();
-  json methods_ = json::array();    // that take the next part; empty where all do
+  json methods_ = json::array();    // methods that take the next part; empty if all do
   std::set<std::string> accuracy_;  // keys that trade accuracy for time
-  std::map<std::string, std::vector<std::string>> aliases_;  // by the key that they stand for
+  // Aliases by the key that they stand for.
+  std::map<std::string, std::vector<std::string>> aliases_;
   std::string variant_key_, variant_doc_, variant_name_, variant_what_;
 };
 

@@ -7,11 +7,11 @@
 
 namespace snowshed {
 
-/// Axis-aligned box around the shape, infinite for a plane; none where only a file tells.
+/// Axis-aligned box around the shape, infinite for a plane; none if it depends on a file.
 std::optional<Eigen::AlignedBox3d> shape_bounds(const ShapeSpec& shape);
 
-/// Volume in m3 (in 2D the area of the section, m2); none where only a file tells.
-/// An upper bound for unions, whose parts may overlap, and for differences.
+/// Volume in m3 (in 2D the area of the section, m2); none if it depends on a file. An upper bound
+/// for unions, whose parts may overlap, and for differences.
 std::optional<double> shape_volume(const ShapeSpec& shape, int dimension);
 
 }  // namespace snowshed

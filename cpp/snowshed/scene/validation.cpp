@@ -90,10 +90,10 @@ class SceneRules {
     }
     double most = 0.0;
     for (const auto& [event, thickness] : of_event) most = std::max(most, thickness);
-    Scene whole = scene_;
-    whole.slab->layers.clear();
-    whole.slab->thickness = always + most;
-    return assemble_slab(whole, 1).front().shape;
+    Scene single_layer = scene_;
+    single_layer.slab->layers.clear();
+    single_layer.slab->thickness = always + most;
+    return assemble_slab(single_layer, 1).front().shape;
   }
 
   void check_event(const int& event) const {
@@ -123,7 +123,7 @@ class SceneRules {
   }
 
   /// A shape written with its defaults takes up to 13 values, snow fewer. The written scene must
-  /// stay within what the JSON parser reads (max_values), or its run could not be resumed.
+  /// stay within the parser's limit (max_values); otherwise its run could not be resumed.
   void check_number_of_shapes() const {
     constexpr std::size_t most = 50'000;
     std::size_t shapes = 0;
@@ -168,7 +168,7 @@ class SceneRules {
     check_event(body.event);
   }
 
-  /// Whether the method can do what the scene's snow, events and output ask for.
+  /// Whether the method can provide for the scene's snow, events and output.
   void check_snow_and_events() const {
     const MethodFacts& method = scene_.numerics->facts();
     const std::string name = "the method " + quote(method.name);

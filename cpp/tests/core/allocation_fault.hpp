@@ -1,4 +1,4 @@
-// Lets an allocation fail, to see what becomes of the state of whoever asked for memory.
+// Makes an allocation fail, to test the state of the caller afterwards.
 #pragma once
 
 #include <cstdint>

@@ -44,7 +44,7 @@ TEST(RebuildDistance, BeyondTheBand) {
 TEST(RebuildDistance, AllOver) {
   GridSamples ball = clamped_ball(0.5 * spacing);
   rebuild_distance(ball, 0, "ball");
-  expect_ball(ball, 0.35 * spacing);  // near the surface, since only its crossings are known
+  expect_ball(ball, 0.35 * spacing);  // near the surface, because only its crossings are known
 }
 
 TEST(RebuildDistance, NeedsASurface) {

@@ -20,7 +20,7 @@ Vec3 random_in(Random& random, double size, int dimension) {
   return x;
 }
 
-/// Expects that the solid agrees with another at random points outside, but for a share of them.
+/// Expects that the solid agrees with another at random points outside, except for a share of them.
 void expect_same(const LevelSet& shape, const LevelSet& expected, int dimension, double size,
                  double tolerance, double share_off = 0.0) {
   Random random(21);

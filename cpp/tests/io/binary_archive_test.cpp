@@ -183,7 +183,7 @@ TEST_F(BinaryArchiveTest, RefusesForgedTypesAndNames) {
 TEST_F(BinaryArchiveTest, RefusesASectionTwice) {
   std::string bytes = sample();
   bytes.replace(name_at, 5, "speed");
-  EXPECT_NE(load_error(with_valid_sum(bytes)).find("'speed' is there twice"), std::string::npos);
+  EXPECT_NE(load_error(with_valid_sum(bytes)).find("'speed' occurs twice"), std::string::npos);
 }
 
 TEST_F(BinaryArchiveTest, ManySectionsTakeTimeInProportion) {

@@ -29,7 +29,8 @@ TEST(CrackBandLaw, SoftensSoManyTimesFasterOnceSnowHasDilated) {
     const auto law = banded<double>(s);
     for (const double ev : {-2.0, -0.2, begin})  // compacted: (1.2.7)
       EXPECT_DOUBLE_EQ(law.preconsolidation(ev), material<double>(calibrated).preconsolidation(ev));
-    for (const double part : {0.1, 0.5, 0.9})  // of the way to the loss of strength, -e_0/s
+    // Shares of the dilation at which strength is lost, -e_0/s.
+    for (const double part : {0.1, 0.5, 0.9})
       EXPECT_NEAR(law.preconsolidation(begin - part * begin / s),
                   material<double>(calibrated).preconsolidation(begin - part * begin),
                   1e-9 * strength);
@@ -52,7 +53,7 @@ void expect_sound_returns() {
     const double softening = std::pow(10.0, 3 * random.uniform() - 1);  // 0.1 to 100
     const auto law = banded<T>(softening, calibrated, random.uniform() < 0.5 ? 2 : 3);
     const double begin = double(law.band_begin);
-    const double end = begin - begin / softening;  // of strength
+    const double end = begin - begin / softening;  // end of strength
     const T ev_old = T(begin + (random.uniform() - 0.5) * 2.2 * std::abs(begin / softening));
     const double scale = 3e4 * std::pow(10.0, -2 * random.uniform());
     PQ<T> s{T(scale * (2 * random.uniform() - 1)), T(scale * random.uniform())};

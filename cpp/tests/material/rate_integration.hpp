@@ -56,7 +56,7 @@ class RateEquations {
   }
 
   /// Returns the state after a straight strain path. The path is elastic up to the yield surface
-  /// and plastic from there on. Bisection finds the crossing, since y is convex along an elastic
+  /// and plastic from there on. Bisection finds the crossing, because y is convex along an elastic
   /// path.
   template <int D>
   MaterialState<D> integrate(MaterialState<D> x, const Eigen::Matrix<double, D, D>& path) const {

@@ -1,5 +1,5 @@
-// What becomes of a method when memory is short: every allocation of a story, told by two that are
-// the same, fails once in one of them. Each failed call must leave it as the other is.
+// Lack of memory in a method: every allocation of a story, told by two equal methods, fails once in
+// one of them. Each failed call must leave it as the other is.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -22,7 +22,7 @@ const double sine = std::sin(radians(40)), cosine = std::cos(radians(40));
 /// The first time step of a scene at rest, s.
 double first_time_step(const Scene& scene) { return estimate_cost(scene).time_step; }
 
-/// How the snow of a scene moves, and what that costs.
+/// Motion of the snow of a scene, and its cost.
 struct Estimate : CostEstimate, SnowMotion {
   using CostEstimate::event_time;
 };

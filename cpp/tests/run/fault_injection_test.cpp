@@ -1,6 +1,6 @@
-// What becomes of a simulation when memory is short: every allocation of two events fails once.
-// After each failure the simulation goes on to the same bits, and a checkpoint written before it
-// still loads. (Reading a scene from JSON is left out: the JSON library ends the process.)
+// Lack of memory in a simulation: every allocation of two events fails once. After each failure the
+// simulation goes on to the same bits, and a checkpoint written before it still loads. (Reading a
+// scene from JSON is left out: the JSON library ends the process.)
 #include <gtest/gtest.h>
 
 #include <functional>

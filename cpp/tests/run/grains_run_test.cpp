@@ -110,7 +110,8 @@ TEST_F(GrainsRun, PeaksAreThoseOfAllStepsBetweenTwoRows) {
   s.numerics = settings;
   Simulation sim(s);
   sim.begin_event();
-  std::vector<double> largest{carried(grains_of(sim).stresses())};  // by row, of each step
+  // Largest stress by row, over the steps.
+  std::vector<double> largest{carried(grains_of(sim).stresses())};
   std::size_t rows = 1;
   while (!*sim.solver().at_rest()) {
     if (largest.size() == rows) largest.push_back(-1e300);

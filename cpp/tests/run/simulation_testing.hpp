@@ -1,4 +1,4 @@
-// What the tests of simulations share: a small scene, and running it in one go or in pieces.
+// Shared parts of the tests of simulations: a small scene, and running it in one go or in pieces.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -35,7 +35,7 @@ std::string box(int dimension, double x, double z, double length, double height,
          more + "}";
 }
 
-/// What is said of the first event, or the message with which it is refused.
+/// The notes on the first event, or the message with which it is refused.
 std::string said_of(const Scene& scene) try {
   Simulation sim(scene);
   sim.begin_event();

@@ -13,7 +13,7 @@ namespace snowshed {
 namespace {
 
 struct Bad {
-  const char* rest;  // what follows {"snowshed": 2, "bodies": [...]
+  const char* rest;  // text after {"snowshed": 2, "bodies": [...]
   const char* where;
   const char* message;  // all of it, after the path
 };

@@ -92,7 +92,7 @@ TEST(SceneJson, EveryFieldIsRead) {
   EXPECT_TRUE(
       scene.numerics.as<mpm::Settings>() ==
       (mpm::Settings{mpm::Scheme::thesis, 0.02, mpm::Precision::float64, mpm::Transfer::apic, 0.5,
-                     std::nullopt, 0, 0.03, mpm::Contacting::touch, 0.7, mpm::Fields::events, 0.5,
+                     std::nullopt, 0, 0.03, mpm::ContactRule::touch, 0.7, mpm::Fields::events, 0.5,
                      mpm::Basis::cubic, 0.3, 0.1, 0.4, 0.7, 3}));
   EXPECT_TRUE(scene.events == (Events{4, Between::reseed, 3, 0.1, 0.2}));
   EXPECT_TRUE(scene.output == (Output{0.25, false, 0.5, true, 30}));
@@ -259,7 +259,7 @@ TEST(SceneJson, TheMethodIsAChoiceAndTheDefaultGoesWithoutSaying) {
   EXPECT_FALSE(nlohmann::json::parse(write_scene(scene)).contains("method"));
 }
 
-// What version 1 called slip is separate now: a scene of that version must go on as it did.
+// `slip` of version 1 is `separate` now: a scene of that version must go on as it did.
 TEST(SceneJson, SlipOfVersion1IsSeparate) {
   const std::string rest = R"(, "ground": {"condition": "slip"}, "slab": {"thickness": 0.1},
     "panel": {"height": 1, "length": 2, "width": 3, "condition": "slip"},
@@ -307,7 +307,7 @@ TEST(SceneJson, ASchemeSetsItsMechanismsUnlessTheyAreGiven) {
   EXPECT_TRUE(numerics(given) == expected);
   EXPECT_TRUE(numerics(R"("scheme": "thesis")") == mpm::Settings{});
   expected = {};
-  expected.contact = mpm::Contacting::touch;  // a mechanism alone
+  expected.contact = mpm::ContactRule::touch;  // a mechanism alone
   EXPECT_TRUE(numerics(R"("contact": "touch")") == expected);
 }
 

@@ -43,7 +43,7 @@ def test_an_ascii_grid_is_read_from_the_south(tmp_path):
         ("ncols 3", "ncols three", "'three' is not a valid number"),
         ("cellsize 10", "cellsize 0", "cellsize must be above 0"),
         ("4 5", "4 five", "'five' is not a valid number"),
-        ("4 5 ", "4 ", "5 values; the header tells of 6"),
+        ("4 5 ", "4 ", "5 values; the header announces 6"),
         ("ncols 3", "ncols 2.5", "ncols must be a whole number"),
         ("ncols 3", "ncols nan", "'nan' is not a valid number"),
         ("nrows 2", "nrows 1e999", "'1e999' is not a valid number"),

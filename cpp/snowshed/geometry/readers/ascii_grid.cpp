@@ -14,7 +14,7 @@
 namespace snowshed {
 namespace {
 
-// As LARGEST_TERRAIN in python/snowshed/base/limits.py, which says why.
+// Equal to LARGEST_TERRAIN in python/snowshed/base/limits.py, which gives the reason.
 constexpr double most_nodes = 25e6;
 constexpr double largest_side = 50'000;     // nodes
 constexpr double largest_coordinate = 1e8;  // m
@@ -95,8 +95,8 @@ double cell_of(const Header& header, const TextScanner& scanner) {
   return cell;
 }
 
-/// Whether a value is the one that stands for a missing one. GDAL holds both in single precision;
-/// some programs write the largest single number with fewer digits than it needs.
+/// Whether a value marks a missing one. GDAL holds both in single precision; some programs write
+/// the largest single number with fewer digits than it needs.
 bool is_missing(double value, double nodata) {
   if (std::isnan(value) || value == nodata) return true;
   if (std::abs(nodata) > largest_elevation)
@@ -130,8 +130,8 @@ HeightField read_ascii_grid(const std::filesystem::path& file, AsciiGridFacts* f
   const std::string_view mark = "\xEF\xBB\xBF";
   TextScanner scanner(file,
                       std::string_view(text).substr(text.rfind(mark, 0) == 0 ? mark.size() : 0));
-  AsciiGridFacts found;
-  const Header header = read_header(scanner, found.decimal_commas);
+  AsciiGridFacts assumed;
+  const Header header = read_header(scanner, assumed.decimal_commas);
   HeightField field;
   field.columns = count_of(header, "ncols", scanner);
   field.rows = count_of(header, "nrows", scanner);
@@ -142,29 +142,30 @@ HeightField read_ascii_grid(const std::filesystem::path& file, AsciiGridFacts* f
   const double nodata = declared ? header.at("nodata_value") : -9999;
   const std::size_t nodes = std::size_t(field.columns) * std::size_t(field.rows);
   if (double(nodes) > most_nodes)
-    scanner.fail("the header tells of " + std::to_string(nodes) + " cells; at most " +
+    scanner.fail("the header announces " + std::to_string(nodes) + " cells; at most " +
                  std::to_string(std::size_t(most_nodes)) + " are allowed; crop it first");
   // A value takes two bytes at least: a short file cannot ask for much memory.
   if (nodes > text.size())
-    scanner.fail("the header tells of " + std::to_string(nodes) + " values; the file is too short");
+    scanner.fail("the header announces " + std::to_string(nodes) +
+                 " values; the file is too short");
   field.heights.resize(nodes);
   std::size_t read = 0;
   for (bool more = !scanner.words().empty(); more; more = scanner.next_line())
     for (const std::string_view word : scanner.words()) {
-      if (read == nodes) scanner.fail("more values than the header tells of");
-      const double value = number_of(word, scanner, found.decimal_commas);
+      if (read == nodes) scanner.fail("more values than the header announces");
+      const double value = number_of(word, scanner, assumed.decimal_commas);
       const bool missing = is_missing(value, nodata);
       if (!missing && std::abs(value) > largest_elevation)
         scanner.fail("'" + std::string(word.substr(0, 40)) + "' is beyond 1e5 m" +
                      (declared ? "" : "; the header has no nodata_value"));
-      if (missing && !declared && !std::isnan(value)) ++found.undeclared_missing;
+      if (missing && !declared && !std::isnan(value)) ++assumed.undeclared_missing;
       const int row = field.rows - 1 - int(read / std::size_t(field.columns));
       const int column = int(read++ % std::size_t(field.columns));
       field.heights[field.index(column, row)] = missing ? not_known : value;
     }
   if (read != nodes)
-    scanner.fail(std::to_string(read) + " values; the header tells of " + std::to_string(nodes));
-  if (facts) *facts = found;
+    scanner.fail(std::to_string(read) + " values; the header announces " + std::to_string(nodes));
+  if (facts) *facts = assumed;
   return field;
 }
 

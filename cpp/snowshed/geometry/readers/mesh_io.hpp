@@ -10,7 +10,7 @@ namespace snowshed {
 
 /// Reads a .stl (binary or ASCII), .obj or .ply (ASCII or binary) file. Polygons are cut into
 /// triangles, identical vertices are merged, and coordinates are multiplied by `scale`. The surface
-/// must be closed (require_closed); solid_of_shells says what solid it bounds.
+/// must be closed (require_closed); solid_of_shells defines the solid that it bounds.
 ///
 /// Files are untrusted. Every fault gives an InputError that names the file, the line or byte, and
 /// what is allowed. Memory stays in proportion to the size of the file.

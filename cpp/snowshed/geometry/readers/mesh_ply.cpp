@@ -21,14 +21,14 @@ std::optional<Type> type_named(std::string_view name) {
       {"int32", Type::int32},    {"uint", Type::uint32},     {"uint32", Type::uint32},
       {"float", Type::float32},  {"float32", Type::float32}, {"double", Type::float64},
       {"float64", Type::float64}};
-  const auto found = types.find(name);
-  return found == types.end() ? std::nullopt : std::optional<Type>(found->second);
+  const auto entry = types.find(name);
+  return entry == types.end() ? std::nullopt : std::optional<Type>(entry->second);
 }
 
 struct Property {
   std::string name;
   Type type;
-  std::optional<Type> count_type;  // of a list
+  std::optional<Type> count_type;  // type of a list's length
 };
 
 struct Element {
@@ -48,7 +48,7 @@ class Rows {
   [[noreturn]] virtual void fail(const std::string& what) const = 0;
 
   /// Reads a count or an index, which must be a whole number below `below`.
-  std::uint64_t whole(Type type, std::uint64_t below, const char* what) {
+  std::uint64_t integer(Type type, std::uint64_t below, const char* what) {
     const double v = value(type);
     if (!(v >= 0 && v < static_cast<double>(below)) || v != std::floor(v))
       fail(std::string(what) + " must be a whole number below " + std::to_string(below));
@@ -198,7 +198,7 @@ class MeshBuilder {
 
   void read_list(const Property& property, bool of_face) {
     const std::uint64_t count =
-        rows_.whole(*property.count_type, std::uint64_t(1) << 32, "the length of a list");
+        rows_.integer(*property.count_type, std::uint64_t(1) << 32, "the length of a list");
     const bool polygon =
         of_face && (property.name == "vertex_indices" || property.name == "vertex_index");
     if (polygon && count < 3) rows_.fail("a face with fewer than three vertices");
@@ -208,7 +208,7 @@ class MeshBuilder {
         rows_.value(property.type);
       else
         face_.push_back(static_cast<std::uint32_t>(
-            rows_.whole(property.type, vertex_count_, "the vertex of a face")));
+            rows_.integer(property.type, vertex_count_, "the vertex of a face")));
     }
     if (!polygon) return;
     corners_ += count;

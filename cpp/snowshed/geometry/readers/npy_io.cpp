@@ -50,7 +50,7 @@ std::vector<std::size_t> parse_shape(const std::string& tuple) {
   return shape;
 }
 
-/// What an array may hold, as regular expressions and in words.
+/// Types and shapes that an array may have, as regular expressions and as text for messages.
 struct Allowed {
   const char *type, *types, *shape, *shapes;
 };
@@ -132,7 +132,7 @@ NpyArray read_npy(const std::filesystem::path& path) {
 
 namespace {
 
-/// Throws InputError where labels are more than a sample may have, before all are read: a
+/// Throws InputError if labels are more than a sample may have, before all are read: a
 /// file of holes takes no room on the disk. 512 voxels along each edge are more than can be loaded.
 void check_label_count(const std::filesystem::path& path) {
   constexpr std::uintmax_t most_bytes = std::uintmax_t(640) << 20;

@@ -12,7 +12,7 @@ namespace snowshed {
 struct VdbSource {
   std::filesystem::path path;
   std::string grid;        // the name of the grid; empty: the only grid of floats
-  double threshold = 0.5;  // of a fog volume; values above it are solid
+  double threshold = 0.5;  // fog volumes: values above it are solid
   double scale = 1.0;      // metres per unit of the file
 };
 

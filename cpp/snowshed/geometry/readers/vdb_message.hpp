@@ -19,7 +19,7 @@ struct VdbHeader {
   std::uint64_t counts[3] = {};
   double origin[3] = {};
   double spacing = 0;
-  double background = 0;  // of a level set: the width of its narrow band
+  double background = 0;  // level sets: width of the narrow band
   VdbKind kind = VdbKind::level_set;
   std::uint32_t padding = 0;
 };

@@ -6,7 +6,7 @@
 
 SNOWSHED_METHOD_VARIANT_BEGIN(grains)
 
-/// How the second of two spheres has moved in a step, as the first sees it.
+/// Motion of the second of two spheres in a step, as the first sees it.
 template <class V>
 struct ContactMotion {
   V gap;              // m, between the surfaces, now; negative where they overlap
@@ -16,7 +16,7 @@ struct ContactMotion {
   V twist;            // rad, mean rotation of both about the normal in this step
 };
 
-/// What a contact does in a step.
+/// Effect of a contact in a step.
 template <class V, class Mask>
 struct ContactForce {
   V push;           // N, negative in tension
@@ -29,17 +29,18 @@ struct ContactForce {
 /// Linear springs along and across the normal. A bond bears tension up to a limit, and shear up to
 /// a limit plus friction, and is lost for good beyond. Without a bond there is no tension, and
 /// shear is at most friction (Cundall and Strack 1979 for the springs; Hagenmuller, Chambon and
-/// Naaim 2015 for bonds between grains of snow. The tables of the latter are not at hand: that
-/// shear of a bond is raised by friction, and that all of a pair's cohesion is lost at once, are
-/// inferred).
+/// Naaim 2015 for bonds between grains of snow. We have not seen the tables of the latter. Two
+/// rules are therefore inferred: friction raises the shear strength of a bond, and a broken bond
+/// leaves its pair no cohesion).
 struct BondLaw {
   double normal_stiffness = 0, shear_stiffness = 0;  // N/m
   double tension_limit = 0, shear_limit = 0;         // N
   double friction = 0;                               // Coulomb coefficient
 
   /// Updates the shear displacement `u` (m) and whether there is a bond. The displacement turns
-  /// with the contact. What is lost is what the mean of the forces before and after does, less what
-  /// the springs store of it: so energies close with a trapezoidal integration of the motion.
+  /// with the contact. The lost energy is the work of the mean of the forces before and after the
+  /// step, less the energy that the springs store. With a trapezoidal integration of the motion the
+  /// energy balance then closes.
   template <class V, class Mask>
   SNOWSHED_INLINE ContactForce<V, Mask> operator()(const ContactMotion<V>& m, SimdVec<V>& u,
                                                    Mask& bonded) const {
@@ -59,8 +60,8 @@ struct BondLaw {
 
     const Mask slips = (holds == 0) & (V(ks * length) > cap);
     const V least = broadcast<V>(1e-300);
-    const V kept = select(slips, V(cap / max(V(ks * length), least)), broadcast<V>(1.0));
-    u = V(select(f.touching, kept, zero)) * trial;
+    const V share = select(slips, V(cap / max(V(ks * length), least)), broadcast<V>(1.0));
+    u = V(select(f.touching, share, zero)) * trial;
     f.drag = ks * u;
 
     const V lost = V(0.5 * ks) * dot(before + u, trial - u);
@@ -75,7 +76,7 @@ struct BondLaw {
   }
 
  private:
-  /// A displacement in the plane of the contact as it is now, of the same length.
+  /// A displacement turned into the present plane of the contact, of the same length.
   template <class V>
   static SNOWSHED_INLINE SimdVec<V> turned(const ContactMotion<V>& m, const SimdVec<V>& u) {
     const SimdVec<V> twisted = u + m.twist * cross(m.normal, u);

@@ -1,4 +1,4 @@
-// What surrounds the grains and how it moves: plates, side walls or periods, the cone.
+// Surroundings of the grains and their motion: plates, side walls or periods, the cone.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace snowshed::grains {
 
-/// What a grain can meet besides grains, numbered after the last of them.
+/// Partners of a grain in contacts besides grains, numbered after the last grain.
 enum class Partner : std::uint32_t { bottom_plate, top_plate, west, east, south, north, cone };
 inline constexpr std::uint32_t partners = 7;
 
@@ -20,7 +20,7 @@ struct Boundary {
   Vec3 plate_velocity[2] = {Vec3::Zero(), Vec3::Zero()};
   double side[4] = {0, 0, 0, 0};  // m: west, east, south, north; periodic sides are a period apart
   double side_velocity[4] = {0, 0, 0, 0};
-  Vec3 tip = Vec3::Zero();  // of the cone
+  Vec3 tip = Vec3::Zero();  // tip of the cone
   Vec3 tip_velocity = Vec3::Zero();
   bool has_top = true, has_cone = false;
 
@@ -34,7 +34,7 @@ struct Boundary {
     return side_velocity[2 * axis + 1] - side_velocity[2 * axis];
   }
   void move(double dt);
-  /// The farthest that a part has come since an earlier time, m.
+  /// The largest displacement of a part since an earlier time, m.
   double travel_since(const Boundary& earlier) const;
   double top_speed() const;  // m/s, of the fastest part
 
@@ -66,7 +66,7 @@ struct SurfaceContact {
   Vec3 normal;  // into the surface
 };
 
-/// Where a cone with a shaft is met by a sphere whose centre lies at `centre` from the tip.
+/// Contact of a cone with a shaft and a sphere whose centre lies at `centre` from the tip.
 SurfaceContact meet_cone(const Cone&, const Vec3& centre, double radius);
 
 /// The wall that a sphere with this centre meets.

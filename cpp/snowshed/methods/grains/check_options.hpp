@@ -1,4 +1,4 @@
-// Whether settings, sample and loading of grains fit each other.
+// Checks that settings, sample and loading of grains fit each other.
 #pragma once
 
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace snowshed::grains {
 
-/// Throws InputError where they do not.
+/// Throws InputError if they do not.
 void check_grains(const Options&);
 
 /// Throws InputError where a stage cannot follow those before it: what it undoes must have been

@@ -12,7 +12,7 @@
 namespace snowshed::grains {
 namespace {
 
-/// A pair of spheres as an archive has it.
+/// A pair of spheres in an archive.
 struct StoredPair {
   std::array<std::uint32_t, 4> key;  // bodies, spheres
   std::array<std::int32_t, 2> shift;
@@ -20,7 +20,7 @@ struct StoredPair {
   std::uint8_t bonded;
 };
 
-/// What an archive holds besides the state: of the boundaries their flags.
+/// Contents of an archive besides the state: the flags of the boundaries.
 struct Stored {
   std::vector<StoredPair> pairs;
   std::vector<Boundary> now, listed;  // one each
@@ -81,7 +81,7 @@ Boundary checked_boundary(const StateReader& archive, Boundary b, std::int64_t f
   return b;
 }
 
-/// Of bodies and poses.
+/// Checks bodies and poses.
 template <class Poses>
 void check_poses(const StateReader& archive, const Poses& poses, const Model& model) {
   for (const auto& pose : poses) {
@@ -108,7 +108,7 @@ std::vector<PairHistory> checked_pairs(const StateReader& archive,
     h.key = {pair.key[0], pair.key[1], {pair.shift[0], pair.shift[1]}, pair.key[2], pair.key[3]};
     h.shear = pair.shear;
     h.bonded = pair.bonded == 1;
-    h.kept = true;
+    h.always_listed = true;
     const bool of_grain = h.key.second < grains;
     const bool sound =
         pair.bonded <= 1 && h.shear.allFinite() && h.key.a < spheres && h.key.first < grains &&

@@ -43,8 +43,8 @@ void for_each_ice(const LabelImage& image, const Visit& visit) {
         if (image.labels[voxel] != 0) visit(voxel, i, j, k);
 }
 
-/// Whether a voxel shares a face with air or another grain. What lies around the image counts as
-/// air: there the plates and walls touch the grains.
+/// Whether a voxel shares a face with air or another grain. Outside of the image there is air: the
+/// plates and walls touch the grains there.
 bool is_interface(const LabelImage& image, std::size_t i, std::size_t j, std::size_t k) {
   const std::int32_t own = image.at(i, j, k);
   const auto [nx, ny, nz] = image.size;
@@ -71,7 +71,7 @@ void for_each_bond(const LabelImage& image, const Visit& visit) {
       });
 }
 
-/// Which clump each label is: labels in rising order.
+/// Index of the clump of each label; labels are in rising order.
 class ClumpOfLabel {
  public:
   explicit ClumpOfLabel(const LabelImage& image) {
@@ -134,7 +134,7 @@ SampleSize measure_sample(const LabelImage& image) {
     size.spheres += is_interface(image, i, j, k);
   });
   for_each_bond(image, [&](std::size_t, std::size_t) { ++size.bonds; });
-  // What the solver holds, and as much again for pairs while it looks for them, as measured.
+  // Memory of the solver, and as much again for pairs during their search, as measured.
   size.bytes = 160 * size.spheres + 450 * size.bonds + 1500 * size.grains;
   return size;
 }

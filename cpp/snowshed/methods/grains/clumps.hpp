@@ -31,10 +31,10 @@ struct Sample {
   std::vector<Clump> clumps;
   std::vector<Vec3> spheres;  // m, centres in space
   std::vector<BondedPair> bonds;
-  LabelPieces pieces;  // of the image, if they were counted
+  LabelPieces pieces;  // pieces in the image, if they were counted
 };
 
-/// How large the sample of an image will be, to be told before it is made.
+/// Size of the sample of an image, known before it is made.
 struct SampleSize {
   std::size_t grains = 0, spheres = 0, bonds = 0, bytes = 0;
 };
@@ -43,8 +43,8 @@ SampleSize measure_sample(const LabelImage&);
 /// Diameters of grains of snow, m: no grain of real snow is smaller or larger.
 inline constexpr double smallest_grain = 2e-5, largest_grain = 1e-2;
 
-/// Throws InputError unless the median diameter of grains, m, is that of snow. It is not where the
-/// size of a voxel is in another unit than metres.
+/// Throws InputError unless the median diameter of grains, m, is that of snow. It is not if the
+/// voxel size is in another unit than metres.
 void check_grain_diameter(double median);
 
 /// The median over the grains of the diameter of spheres with their volumes, m.

@@ -1,4 +1,4 @@
-// The pairs of a list, one by one: for what is measured now and then.
+// The pairs of a list, one by one, for measurements between steps.
 #pragma once
 
 #include "snowshed/methods/grains/state.hpp"
@@ -12,13 +12,13 @@ struct PairGeometry {
   Vec3 arm_a, arm_b;  // m, from the centres of the bodies to the contact, in space
 };
 
-/// Of a sphere at `from_a` from the centre of its grain, whose pose is given, with whatever its
-/// group is paired with. `second` is the pose of the second grain, if it is one.
+/// Contact of a sphere with its group's partner. `position_a` and `rotation_a` are the pose of the
+/// sphere's grain. `second` is the pose of the second grain, if the partner is one.
 PairGeometry pair_geometry(const Model&, const Boundary&, const PairList&, const PairGroup&,
                            std::size_t pair, const Vec3& position_a, const Mat3& rotation_a,
                            const GrainPose* second);
 
-/// Calls visit(group, pair, geometry) for all pairs of a list, but for those that only fill it up.
+/// Calls visit(group, pair, geometry) for all pairs of a list without those that only fill it up.
 template <class PoseOf, class Visit>
 void for_each_listed_pair(const Model& model, const Boundary& boundary, const PairList& list,
                           const PoseOf& pose_of, const Visit& visit) {

@@ -1,4 +1,4 @@
-// What a loading test of grains will cost, by its time and its spheres, and which features it uses.
+// Cost of a loading test of grains, by its time and its spheres, and the features that it uses.
 #pragma once
 
 #include <vector>
@@ -8,14 +8,14 @@
 
 namespace snowshed::grains {
 
-/// The time that the stages take on a sample of that height (m), if none ends before its strain, s;
-/// to hold takes none.
+/// The time (s) that the stages take on a sample of this height (m) if none ends before its strain;
+/// `hold` counts as zero.
 double loading_time(const std::vector<LoadingStage>&, double height);
 
-/// Throws InputError where that is longer than the scene's events may be.
+/// Throws InputError if that is longer than an event of the scene may last.
 void check_loading_time(const SceneView&, double height);
 
-/// The part of the loading that is done: strain by strain, each weighted with the time it takes.
+/// The finished part of the loading, by strain; stages are weighted with their times.
 double loading_progress(const std::vector<LoadingStage>&, int stage, double strain);
 
 /// The first time step and the memory are those of `grains`, which hold the sample.

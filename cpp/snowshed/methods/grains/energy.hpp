@@ -12,10 +12,10 @@ struct State;
 /// steps. The balance closes when `residual` is small beside the work.
 struct Energy {
   double kinetic = 0;            // with the scaled masses
-  double potential = 0;          // of the weight
+  double potential = 0;          // energy of the weight
   double normal = 0, shear = 0;  // elastic
   double friction = 0, damping = 0;
-  double broken = 0;    // that bonds held as they broke
+  double broken = 0;    // energy that bonds held as they broke
   double boundary = 0;  // work of plates, sides and the cone on the grains
   double added = 0;     // brought by grains that were added, or taken with the top plate
 
@@ -30,7 +30,7 @@ NamedEnergies named_energies(const Energy&);
 /// The kinetic energy of all grains, J.
 double kinetic_energy(const Model&, const State&);
 
-/// Fills in what is stored now.
+/// Fills in the energy that is stored now.
 void store_energy(const Model&, const State&, Energy&);
 
 }  // namespace snowshed::grains

@@ -1,4 +1,4 @@
-// What the solver tells of its grains.
+// Fields of the solver of grains.
 #include <cmath>
 
 #include "snowshed/core/angles.hpp"

@@ -126,7 +126,7 @@ Vec3 damping_of(double share, const Vec3& force, const Vec3& velocity) {
   return damping;
 }
 
-/// Adds up what the groups do to a grain, in their order.
+/// Adds up the forces of the groups on a grain, in their order.
 void gather(const Model& model, State& state, const Work& work, std::size_t i) {
   GrainBody& body = state.bodies[i];
   body.force = Vec3(0, 0, -model.grains[i].weight);
@@ -145,7 +145,7 @@ void gather(const Model& model, State& state, const Work& work, std::size_t i) {
   body.torque += body.spin_damping;
 }
 
-/// What the grains do to plates, sides and the cone, and what was lost, group by group.
+/// Sums the forces on plates, sides and the cone, and the losses, group by group.
 void sum_up(const Model& model, State& state, const Work& work) {
   Boundary& b = state.boundary;
   for (Vec3* f : {&b.plate_force[0], &b.plate_force[1], &b.cone_force}) f->setZero();

@@ -1,13 +1,13 @@
-// What acts on the grains.
+// Forces on the grains.
 #pragma once
 
 #include "snowshed/methods/grains/state.hpp"
 
 namespace snowshed::grains {
 
-/// Finds the forces on all grains and on what surrounds them, moves the contacts by a time step of
-/// length dt (s), breaks bonds and counts what they lose. The velocities are those of the middle of
-/// the step. Throws nothing.
+/// Finds the forces on all grains and on their surroundings, moves the contacts by a time step of
+/// length dt (s), breaks bonds and counts their energy as lost. The velocities are those of the
+/// middle of the step. Throws nothing.
 void evaluate_forces(const Model&, State&, Work&, double dt);
 
 }  // namespace snowshed::grains

@@ -11,7 +11,7 @@
 namespace snowshed::grains {
 namespace {
 
-/// Throws InputError where the image holds no grain, or its clumps do not fit into memory.
+/// Throws InputError if the image holds no grain, or its clumps do not fit into memory.
 void check_size(const LabelImage& image) {
   const SampleSize size = image.labels.empty() ? SampleSize{} : measure_sample(image);
   if (size.grains == 0)
@@ -20,8 +20,8 @@ void check_size(const LabelImage& image) {
   if (double(size.bytes) > available)
     throw InputError("", "its " + std::to_string(size.spheres) + " spheres need " +
                              show_rounded(double(size.bytes) / 1e9) +
-                             " GB of memory, of which there are " + show_rounded(available / 1e9) +
-                             "; give a smaller image, or one of larger voxels");
+                             " GB of memory; available are " + show_rounded(available / 1e9) +
+                             " GB; give a smaller image, or one of larger voxels");
 }
 
 Sample read_sample(const SampleSpec& spec, const std::filesystem::path& base_dir) {

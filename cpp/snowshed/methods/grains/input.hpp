@@ -1,4 +1,4 @@
-// What grains read from a file: their sample.
+// Input of grains from a file: their sample.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// What the solver of grains and its kernels agree on: raw views, and a table of functions. The
+// Interface between the solver of grains and its kernels: raw views, and a table of functions. The
 // kernels are compiled once for each instruction set (cmake/KernelVariants.cmake), so nothing here
 // depends on one.
 #pragma once
@@ -8,24 +8,24 @@
 
 namespace snowshed::grains {
 
-/// Sphere pairs are taken so many at a time: each group of them fills a multiple of it.
+/// Number of sphere pairs that kernels take at a time; each group of them fills a multiple of it.
 inline constexpr std::uint32_t pairs_at_once = 4;
 
-/// Where a body is and how it moves: grains, and plates, which do not turn.
+/// Pose and motion of a body: a grain, or a plate, which does not turn.
 struct BodyFrame {
   double position[3], velocity[3], spin[3];  // m, m/s, rad/s, in space
   double rotation[9];                        // from its frame to space, by rows
 };
 
-/// The sphere pairs of a grain and what it meets: another grain (or its image, so many periods
-/// away), a plate, a wall, the cone.
+/// The sphere pairs of a grain and its partner: another grain (or its image, `shift` periods away),
+/// a plate, a wall, the cone.
 struct PairGroup {
   std::uint32_t first, second;  // bodies
   std::int32_t shift[2];        // periods in x and y by which the second's image is away
   std::uint32_t begin, end;     // pairs
 };
 
-/// What the pairs of a group do to the two bodies.
+/// Forces of a group's pairs on the two bodies.
 struct GroupForce {
   double force[3];                                 // N, on the first
   double torque_on_first[3], torque_on_second[3];  // N m, about their centres
@@ -36,12 +36,12 @@ struct GroupForce {
 struct View {
   const BodyFrame* bodies;
   const PairGroup* groups;
-  // Of each pair: centres of the spheres in their bodies' frames, m; shear displacement, m;
+  // One value per pair: centres of the spheres in their bodies' frames, m; shear displacement, m;
   // whether there is a bond.
   const double *ax, *ay, *az, *bx, *by, *bz;
   double *ux, *uy, *uz;
   std::uint8_t* bonded;
-  GroupForce* results;  // of each group
+  GroupForce* results;  // one per group
 
   double diameter;          // m, of all spheres
   double time_step;         // s

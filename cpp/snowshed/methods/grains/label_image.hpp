@@ -1,4 +1,4 @@
-// A segmented image of snow: which grain each voxel belongs to.
+// A segmented image of snow: the grain that each voxel belongs to.
 #pragma once
 
 #include <array>

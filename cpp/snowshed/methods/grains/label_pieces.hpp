@@ -8,21 +8,21 @@
 
 namespace snowshed::grains {
 
-/// How many labels an image has, and of how many pieces they are. Voxels of one label are one piece
-/// where they share a face, an edge or a corner.
+/// Number of labels in an image, and of the pieces that they consist of. Voxels of one label are
+/// one piece where they share a face, an edge or a corner.
 struct LabelPieces {
   std::size_t labels = 0;
   std::size_t pieces = 0;
   std::size_t scattered = 0;  // labels of several pieces
-  std::size_t voxels = 0;     // of all labels
+  std::size_t voxels = 0;     // voxels of all labels
 };
 LabelPieces count_pieces(const LabelImage&);
 
-/// Throws InputError where what should be labels are grey values, which change from voxel to voxel.
+/// Throws InputError if the labels are grey values, which change from voxel to voxel.
 void check_labels(const LabelPieces&);
 
-/// What should be known of them, with or without `split_pieces`; empty where each label is one
-/// piece.
+/// Note for the user about labels in several pieces, with or without `split_pieces`. Returns an
+/// empty text if each label is one piece.
 std::string label_note(const LabelPieces&, bool split);
 
 /// Makes each piece a label of its own, from 1 on in the order of storage.

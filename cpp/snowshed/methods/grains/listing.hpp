@@ -1,4 +1,4 @@
-// The list of near pairs, and what follows from it.
+// The list of near pairs, and the data that follow from it.
 #pragma once
 
 #include "snowshed/methods/grains/state.hpp"
@@ -23,7 +23,7 @@ Listing listing_of(const Model&, std::vector<GrainPose>, const Boundary&,
 std::vector<PairHistory> initial_bonds(const Model&, const std::vector<GrainPose>&,
                                        const Boundary&);
 
-/// Poses of grains that stand in a state, or where they began.
+/// Poses of the grains in a state, or at the beginning.
 std::vector<GrainPose> poses_of(const std::vector<GrainBody>&);
 
 }  // namespace snowshed::grains

@@ -40,7 +40,8 @@ void for_each_stress(Stresses& s, const Visit& visit) {
 }
 constexpr std::size_t peak_columns = 7;
 
-/// What a checkpoint of a version without peaks holds, as rows of now: each row is its own peak.
+/// Rows of a checkpoint from a version without peaks, in the present form: each row is its own
+/// peak.
 std::vector<double> with_peaks(const ArrayView<double>& values, std::size_t columns,
                                const std::vector<std::string>& names) {
   std::vector<double> filled;
@@ -70,19 +71,20 @@ LoadingCurve::LoadingCurve(std::vector<LoadingStage> stages, double height,
   for_each_stress(
       none, [this](const char* name, double) { columns_.push_back(std::string("peak_") + name); });
   for (const auto& energy : energies) columns_.push_back(energy.first);
-  // So that no row is lost for lack of memory.
+  // No row is then lost if memory runs out.
   values_.reserve((stages_.size() * (points + 1) + 1) * columns_.size());
 }
 
-/// When the present stage reaches its next point; one that holds has the times of its strain, too.
+/// Time at which the present stage reaches its next point; `hold` uses the times of its strain,
+/// too.
 double LoadingCurve::next_time() const {
   const LoadingStage& stage = stages_[std::size_t(stage_)];
   const double part = double(points_done_ + 1) / points;
   return begun_ + part * part * stage.strain * height_ / stage.speed;
 }
 
-/// What the sample carries in the stage whose rows are being added, which the step that ends it
-/// belongs to.
+/// Load on the sample in the stage whose rows are being added. The step that ends a stage belongs
+/// to it.
 double LoadingCurve::carried(const LoadingStresses& s) const {
   const std::size_t stage = std::min(std::size_t(stage_), stages_.size() - 1);
   switch (stages_[stage].kind) {
@@ -170,7 +172,7 @@ void LoadingCurve::load(const BinaryReader& in) {
     values_.assign(values.begin(), values.end());
   } else {
     const std::vector<double> filled = with_peaks(values, columns, columns_);
-    values_.assign(filled.begin(), filled.end());  // keeps what is reserved
+    values_.assign(filled.begin(), filled.end());  // keeps the reserved memory
   }
   peak_.reset();
   if (!peak.empty()) {

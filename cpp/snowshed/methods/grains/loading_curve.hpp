@@ -1,4 +1,4 @@
-// What a loading test measures, as a table that grows while the test runs.
+// Measurements of a loading test, as a table that grows while the test runs.
 #pragma once
 
 #include <optional>
@@ -10,20 +10,19 @@
 namespace snowshed::grains {
 
 /// Rows of instantaneous values at the beginning of the test, at `points` strains of each stage,
-/// and where a stage ends. The strains are (k / points)^2 of that at which the stage ends: a
-/// brittle sample is elastic for a thousandth of it only. The rows depend on the steps alone:
-/// neither on the number of threads nor on whether the run was resumed.
+/// and at the end of each stage. The strains are (k / points)^2 of the stage's final strain,
+/// because a brittle sample is elastic for a thousandth of it only. The rows depend on the steps
+/// alone: neither on the number of threads nor on whether the run was resumed.
 ///
 /// Each row also has the strains and stresses of the step, since the row before, in which the
 /// sample carried most: the strength is the largest stress of all steps, not that of the rows.
-/// What counts as carried depends on the stage: the smaller stress of the two plates (`compress`,
-/// `isotropic`, `unload`, `hold`; of `stretch` the smaller tension), the shear stress, the force on
-/// the cone.
+/// The load depends on the stage: the smaller stress of the two plates (`compress`, `isotropic`,
+/// `unload`, `hold`; in `stretch` the smaller tension), the shear stress, the force on the cone.
 class LoadingCurve final : public Curve {
  public:
   static constexpr int points = 300;
 
-  /// For the stages of a sample of that initial height (m); with the energies, if any are named.
+  /// A curve for the stages of a sample with this initial height (m), and for the named energies.
   LoadingCurve(std::vector<LoadingStage>, double height, const NamedEnergies& energies);
 
   void record(const Method& grains) override;
@@ -45,10 +44,10 @@ class LoadingCurve final : public Curve {
   bool energy_;
   std::vector<std::string> columns_;
   std::vector<double> values_;
-  int stage_ = 0;                        // that is being loaded
+  int stage_ = 0;                        // stage that is being loaded
   double begun_ = 0;                     // s, when it began
-  int points_done_ = -1;                 // of it; before the beginning of the test -1
-  std::optional<LoadingStresses> peak_;  // of the steps since the last row, if there was one
+  int points_done_ = -1;                 // points of the stage; -1 before the beginning of the test
+  std::optional<LoadingStresses> peak_;  // peak of the steps since the last row, if there was one
 };
 
 }  // namespace snowshed::grains

@@ -5,11 +5,11 @@
 namespace snowshed::grains {
 namespace {
 
-/// The plate then acts as a dashpot, which takes energy and cannot make the snow swing; explicit
-/// steps of it are stable from one on.
+/// The plate then acts as a dashpot, which takes energy and cannot excite vibrations; explicit
+/// steps are stable for values from one on.
 constexpr double servo_steps = 5;
 
-/// Upward, so that the force on the top plate comes near to what the stage asks for.
+/// Upward velocity with which the force on the top plate approaches that of the stage.
 double servo_speed(const LoadingStage& stage, const LoadedSample& sample, const Boundary& b,
                    double dt) {
   const double excess = b.plate_force[1].z() - stage.stress * sample.box.x() * sample.box.y();

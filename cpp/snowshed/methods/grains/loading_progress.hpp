@@ -1,4 +1,4 @@
-// Where a loading test stands, and how it moves what surrounds the grains.
+// Progress of a loading test, and the motion of the grains' surroundings.
 #pragma once
 
 #include <vector>
@@ -15,13 +15,13 @@ struct LoadingProgress {
   double peak_kinetic = 0;  // J, the same
 };
 
-/// What a test measures to know when a stage ends.
+/// Measurements that decide when a stage ends.
 struct LoadingGauge {
   double top_stress = 0, mean_stress = 0;  // Pa
   double kinetic = 0;                      // J; only needed while a stage holds
 };
 
-/// What the loading knows of the sample.
+/// State of the sample as the loading sees it.
 struct LoadedSample {
   Vec3 box;                  // m, at the beginning
   double radius;             // m, of the spheres
@@ -34,17 +34,17 @@ inline constexpr double rest_per_peak = 1e-4;
 /// The plates, sides and cone of a sample that is not loaded yet.
 Boundary initial_boundary(const LoadedSample&);
 
-/// Prepares what the present stage needs: penetration takes the top plate away and brings the cone.
+/// Prepares the present stage: penetration takes the top plate away and brings the cone.
 void begin_stage(const std::vector<LoadingStage>&, const LoadedSample&, const LoadingProgress&,
                  Boundary&);
 
-/// Sets the velocities for a step of this length. A normal stress in shear is kept by the top
-/// plate's speed: the error of the force over the stiffness of the plate's contacts is mended
-/// within five steps, at the stage's speed at most.
+/// Sets the velocities for a step of this length. The top plate's speed keeps the normal stress in
+/// shear: it corrects the error of the force over the stiffness of the plate's contacts within five
+/// steps, with at most the stage's speed.
 void set_velocities(const std::vector<LoadingStage>&, const LoadedSample&, const LoadingProgress&,
                     double dt, Boundary&);
 
-/// Counts a step, and goes on to the next stage where this one has ended.
+/// Counts a step, and begins the next stage if this one has ended.
 void count_step(const std::vector<LoadingStage>&, const LoadedSample&, const LoadingGauge&,
                 double dt, LoadingProgress&, Boundary&);
 

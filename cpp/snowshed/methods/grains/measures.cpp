@@ -1,4 +1,4 @@
-// What a loading test measures, the contacts between grains, and what is shown of their spheres.
+// Measurements of a loading test, the contacts between grains, and the fields of their spheres.
 #include <algorithm>
 
 #include "snowshed/methods/grains/contacts.hpp"
@@ -23,7 +23,7 @@ LoadingStresses SolverImpl::stresses() const {
   return m;
 }
 
-/// How much nearer the plates are than at the beginning, m.
+/// Approach of the plates since the beginning, m.
 double SolverImpl::shortened_by() const {
   const Boundary& b = state_.boundary;
   const double r = model_.radius;
@@ -80,8 +80,8 @@ std::unique_ptr<Curve> SolverImpl::empty_curve() const {
                                         model_.keeps_energy ? energies() : NamedEnergies{});
 }
 
-/// The spheres, with what is known of the grain that each belongs to: its number, its velocity, how
-/// many grains it touches and is bonded to, and half the sum of its contact forces.
+/// The spheres, with fields of the grain that each belongs to: its number, its velocity, how many
+/// grains it touches and is bonded to, and half the sum of its contact forces.
 PointCloud SolverImpl::snapshot() const {
   const std::vector<std::uint32_t>& of = model_.spheres.grain;
   std::vector<std::int32_t> touching(size(), 0), bonded(size(), 0);

@@ -1,4 +1,4 @@
-// From a sample to what never changes of it.
+// The constants of a sample.
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 

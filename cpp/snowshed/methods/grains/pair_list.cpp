@@ -10,7 +10,7 @@ bool same_group(const PairGroup& g, const PairKey& k) {
          g.shift[1] == k.shift[1];
 }
 
-/// Fills a list whose memory is there.
+/// Fills a list whose memory is reserved.
 class ListWriter {
  public:
   ListWriter(const PairSearch& search, PairList& list) : search_(search), list_(list) {}
@@ -67,7 +67,7 @@ void for_each_listed(const std::vector<PairKey>& pairs, const std::vector<PairHi
   std::size_t h = 0;
   const auto skip_until = [&](const PairKey* key) {
     for (; h < past.size() && (!key || past[h].key < *key); ++h)
-      if (past[h].kept) visit(past[h].key, &past[h]);
+      if (past[h].always_listed) visit(past[h].key, &past[h]);
   };
   for (const PairKey& key : pairs) {
     skip_until(&key);

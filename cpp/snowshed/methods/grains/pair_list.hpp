@@ -1,4 +1,5 @@
-// Which spheres of two bodies are so near that they may touch before the list is made again.
+// Pairs of spheres of two bodies that are so near that they may touch before the list is made
+// again.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +16,7 @@ namespace snowshed::grains {
 /// Spheres as parts of rigid bodies.
 struct SphereBodies {
   std::vector<Vec3> offsets;         // m, in the bodies' frames
-  std::vector<std::uint32_t> grain;  // of each sphere
+  std::vector<std::uint32_t> grain;  // grain of each sphere
 };
 
 struct GrainPose {
@@ -23,11 +24,11 @@ struct GrainPose {
   Orientation orientation{1, 0, 0, 0};
 };
 
-/// Stands for the sphere of an entry that only fills up its group.
+/// Sphere number of an entry that only fills up its group.
 inline constexpr std::uint32_t no_sphere_index = 0xffffffff;
 
-/// A pair by which it is found again: bodies (grains, then `Partner`s), periods by which the
-/// second's image is away, spheres. Spheres of plates are numbered by their places in the grid.
+/// Key of a pair: bodies (grains, then `Partner`s), periods by which the second's image is away,
+/// spheres. Spheres of plates are numbered by their places in the grid.
 struct PairKey {
   std::uint32_t first, second;
   std::int32_t shift[2];
@@ -41,11 +42,10 @@ struct PairHistory {
   PairKey key;
   Vec3 shear = Vec3::Zero();  // m
   bool bonded = false;
-  bool kept = false;  // in the list however far apart the spheres are
+  bool always_listed = false;  // in the list however far apart the spheres are
 };
 
-/// Groups ordered by bodies, pairs within them by spheres: the order does not tell how they were
-/// found.
+/// Groups ordered by bodies, pairs within them by spheres: the order is independent of the search.
 struct PairList {
   std::vector<PairGroup> groups;
   AlignedVector<double> ax, ay, az, bx, by, bz, ux, uy, uz;  // see View
@@ -65,14 +65,14 @@ struct PairList {
   std::size_t bytes() const;
 };
 
-/// What the search needs to know.
+/// Input of the search.
 struct PairSearch {
   const SphereBodies& spheres;
   std::uint32_t grains;
   double radius, skin;  // m
   bool periodic;
   Cone cone;
-  std::size_t most_pairs;  // that memory is taken for
+  std::size_t most_pairs;  // number that memory is reserved for
   int threads;
 };
 
@@ -80,17 +80,17 @@ struct PairSearch {
 /// sphere may move before the list is made anew.
 inline constexpr double skin_per_radius = 0.4;
 
-/// Where the centre of a plate's sphere lies from the plate's origin, m.
+/// Centre of a plate's sphere relative to the plate's origin, m.
 Vec3 plate_sphere(std::uint32_t number, double radius);
 
-/// All pairs nearer than the skin, ordered. Throws SimulationError where they are more than
-/// `most_pairs`, or the period too short.
+/// All pairs nearer than the skin, ordered. Throws SimulationError if they are more than
+/// `most_pairs`, or if the period is too short.
 std::vector<PairKey> find_pairs(const PairSearch&, const std::vector<GrainPose>&, const Boundary&);
 
-/// A list of these pairs, and of those to be kept, however far apart.
+/// A list of these pairs, and of the pairs in the history, at any distance.
 PairList make_list(const PairSearch&, const std::vector<PairKey>&, const std::vector<PairHistory>&);
 
-/// For each grain, in the order of the list: twice the group, and one more where it is second.
+/// Groups of each grain in list order, coded as 2 · group + (1 if the grain is second).
 struct BodyGroups {
   std::vector<std::uint32_t> begin, entry;
 };

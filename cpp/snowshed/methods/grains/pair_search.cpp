@@ -16,8 +16,8 @@ std::uint32_t plate_number(int i, int j) {
   return std::uint32_t(i + half_grid) << 16 | std::uint32_t(j + half_grid);
 }
 
-/// Cells at least as wide as pairs are far apart. What lies outside of the box belongs to the
-/// cells of its border, or to those of its image where the box is periodic.
+/// Cells at least as wide as pairs are far apart. Spheres outside of the box belong to the cells of
+/// its border, or to those of their images where the box is periodic.
 class SphereCells {
  public:
   SphereCells(const PairSearch& s, const std::vector<Vec3>& centres, const Boundary& b,
@@ -46,7 +46,7 @@ class SphereCells {
   }
   std::uint32_t begin(std::size_t cell) const { return begin_[cell]; }
   std::uint32_t end(std::size_t cell) const { return begin_[cell + 1]; }
-  /// By how many periods a sphere lies away from the box.
+  /// Number of periods by which a sphere lies away from the box.
   int wrap(const Vec3& x, int axis) const {
     return periodic_ ? int(std::floor((x[axis] - low_[axis]) / boundary_.period(axis))) : 0;
   }
@@ -133,7 +133,7 @@ class Finder {
   }
 
  private:
-  /// Layer by layer: pairs are sorted afterwards, whichever thread finds them.
+  /// The search runs layer by layer. Pairs are sorted afterwards, so that threads do not matter.
   void find_grains() {
     std::vector<std::vector<PairKey>> layers(std::size_t(cells_.count(2)));
     parallel_for(cells_.count(2), s_.threads, 1, [&](std::ptrdiff_t k) {
@@ -149,8 +149,8 @@ class Finder {
     }
   }
 
-  /// A row of cells along x, whose spheres stand one after another, with itself and with the four
-  /// rows beside it that come after it.
+  /// Compares a row of cells along x, whose spheres are consecutive, with itself and with the four
+  /// later rows beside it.
   void find_along(int j, int k, std::vector<PairKey>& pairs) const {
     const int ahead[4][2] = {{1, 0}, {-1, 1}, {0, 1}, {1, 1}};
     find_between(j, k, j, 0, true, pairs);
@@ -192,14 +192,14 @@ class Finder {
     const std::uint32_t of_e = grain_[e], of_f = grain_[f];
     if (of_e == of_f && !s_.periodic) return;
     int shift[2] = {0, 0};
-    Vec3 way = places_[f] - places_[e];
+    Vec3 separation = places_[f] - places_[e];
     if (s_.periodic) {
       shift[0] = px + cells_.wrap(places_[e], 0) - cells_.wrap(places_[f], 0);
       shift[1] = py + cells_.wrap(places_[e], 1) - cells_.wrap(places_[f], 1);
       if (of_e == of_f && shift[0] == 0 && shift[1] == 0) return;
-      way += Vec3(shift[0] * b_.period(0), shift[1] * b_.period(1), 0);
+      separation += Vec3(shift[0] * b_.period(0), shift[1] * b_.period(1), 0);
     }
-    if (way.squaredNorm() >= reach_ * reach_) return;
+    if (separation.squaredNorm() >= reach_ * reach_) return;
     const bool forward = of_e != of_f ? of_e < of_f : shift[0] != 0 ? shift[0] > 0 : shift[1] > 0;
     check_number(pairs.size());
     const std::uint32_t a = cells_.sphere(e), b = cells_.sphere(f);

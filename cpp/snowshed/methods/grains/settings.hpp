@@ -1,4 +1,4 @@
-// What a scene may choose of the discrete elements of snow.
+// Settings of the discrete elements of snow in a scene.
 #pragma once
 
 namespace snowshed::grains {
@@ -7,23 +7,24 @@ namespace snowshed::grains {
 enum class Sides { walls, periodic };
 
 /// Settings of the grains: rigid clumps of spheres with bonds that break (Hagenmuller, Chambon and
-/// Naaim 2015, doi:10.5194/tc-9-1969-2015). Its table of parameters is not at hand; the defaults
-/// are of the literature, see docs/methods/grains.md.
+/// Naaim 2015, doi:10.5194/tc-9-1969-2015). We have not seen its table of parameters; the defaults
+/// come from other publications, see docs/methods/grains.md.
 struct Settings {
   double elastic_modulus = 1e9;   // Pa, E of the contact law
   double stiffness_ratio = 0.3;   // shear over normal stiffness of a contact
   double tensile_strength = 1e6;  // Pa, of bonds
   double shear_strength = 1e6;    // Pa, of bonds
-  double friction = 0.2;        // Coulomb coefficient between grains, and between grains and plates
-  double density = 917;         // kg/m3, of ice
-  double density_scaling = 1;   // of the grains' inertia, to take longer steps; not of their weight
+  double friction = 0.2;  // Coulomb coefficient between grains, and between grains and plates
+  double density = 917;   // kg/m3, of ice
+  // Factor of the grains' inertia, for longer steps; their weight stays.
+  double density_scaling = 1;
   double damping = 0.2;         // local, of unbalanced forces
   double courant_factor = 0.3;  // time step over the root of mass over stiffness
   Sides sides = Sides::walls;
   bool bonded_plates = false;  // the snow is frozen to the plates
   int threads = 0;             // 0: all
 
-  /// The size of the smallest thing the method resolves, m; 0 where the sample's file decides.
+  /// The size of the smallest thing the method resolves, m; 0 if the sample's file decides.
   double resolution() const { return 0; }
 };
 

@@ -31,12 +31,12 @@ State empty_state(const Model& model) {
   return state;
 }
 
-/// The work that velocities and a force do while it speeds a grain up, for half a step.
+/// Work of a force at a velocity that it changes, for half a step.
 double work_of(const Vec3& force, const Vec3& before, const Vec3& after, double half_step) {
   return 0.5 * half_step * force.dot(before + after);
 }
 
-/// Lets force and torque act for half a step; returns what damping takes, J.
+/// Applies force and torque for half a step; returns the energy that damping takes, J.
 double push(const GrainConstants& grain, GrainBody& body, double half_step) {
   const Mat3 rotation = body.orientation.toRotationMatrix();
   const auto spin = [&] { return angular_velocity(rotation, body.spin_momentum, grain.inertia); };
@@ -49,7 +49,7 @@ double push(const GrainConstants& grain, GrainBody& body, double half_step) {
 
 constexpr std::ptrdiff_t bodies_in_push = 32;
 
-/// What the grains do to their surroundings does work on them, for half a step.
+/// Work of the grains on their surroundings in half a step.
 double boundary_work(const Boundary& b, double half_step) {
   double power = b.cone_force.dot(b.tip_velocity);
   for (int p = 0; p < 2; ++p) power += b.plate_force[p].dot(b.plate_velocity[p]);
@@ -135,7 +135,8 @@ void SolverImpl::add(const std::vector<ParticleBatch>& batches, const StopReques
   if (std::all_of(batches.begin(), batches.end(),
                   [](const ParticleBatch& b) { return b.positions.empty(); }))
     return;
-  if (!state_.bodies.empty()) throw InputError("particles", "the grains of the sample are there");
+  if (!state_.bodies.empty())
+    throw InputError("particles", "the grains of the sample are already there");
   State next = with_batches(batches);
   next.next_id = std::uint32_t(next.bodies.size());
   accept(std::move(next), {});
@@ -179,7 +180,7 @@ void SolverImpl::drift(double dt) {
                   });
 }
 
-/// Throws where a grain has gone astray.
+/// Throws if a grain has left its surroundings.
 void SolverImpl::check_places() const {
   const double farthest = 5e4 * model_.radius + 10 * model_.box.maxCoeff();
   for (std::size_t i = 0; i < work_.next.size(); ++i) {
@@ -243,7 +244,7 @@ void SolverImpl::step() {
   end_step(moved, dt);
 }
 
-/// From here on nothing throws but for forces that are not finite.
+/// Throws only if forces are not finite.
 void SolverImpl::end_step(const Boundary& moved, double dt) {
   state_.energy.boundary += boundary_work(moved, 0.5 * dt);  // with the forces of before
   std::swap(state_.bodies, work_.next);

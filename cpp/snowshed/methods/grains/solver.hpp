@@ -25,7 +25,7 @@ struct Options {
 };
 
 /// Strains and stresses, now. Stresses are positive in compression, over the initial area; they are
-/// those of the present moment, no means over time.
+/// instantaneous, not means over time.
 struct LoadingStresses {
   double axial_strain = 0;  // shortening over the initial height, since the beginning
   double shear_strain = 0;
@@ -35,10 +35,10 @@ struct LoadingStresses {
   double cone_force = 0;                     // N
 };
 
-/// What a loading test measures, now.
+/// Present measurements of a loading test.
 struct LoadingMeasures : LoadingStresses {
-  int stage = 0;           // that is being loaded; the number of stages when all are done
-  double strain = 0;       // of this stage: displacement over the initial height
+  int stage = 0;           // stage being loaded; the number of stages when all are done
+  double strain = 0;       // strain of this stage: displacement over the initial height
   std::int64_t bonds = 0;  // pairs of spheres still bonded
   std::int64_t broken_in_tension = 0, broken_in_shear = 0;
   std::int64_t contacts = 0;  // pairs of spheres that touch
@@ -53,20 +53,20 @@ struct GrainContact {
   bool bonded;
 };
 
-/// Grains as a method, and what only they have. Its particles are the grains; `seed` gives those of
-/// the sample, at rest, and `add` takes these and no other.
+/// Grains as a method, with their own additions. Its particles are the grains; `seed` gives those
+/// of the sample, at rest, and `add` takes these and no other.
 class Solver : public Method, public SeedsItself, public KeepsEnergy, public HasCurve {
  public:
   virtual std::size_t count_spheres() const = 0;
   virtual LoadingMeasures measures() const = 0;
-  virtual LoadingStresses stresses() const = 0;                  ///< of measures(), at once
-  virtual int stage() const = 0;                                 ///< measures().stage, at once
+  virtual LoadingStresses stresses() const = 0;  ///< the stresses of measures(), without the rest
+  virtual int stage() const = 0;                 ///< measures().stage, without the rest
   virtual std::vector<GrainContact> grain_contacts() const = 0;  ///< ordered by grains
   virtual std::vector<Vec3> sphere_positions() const = 0;        ///< m, in the order of the sample
   virtual std::vector<std::uint32_t> sphere_grains() const = 0;
 };
 
-/// Throws InputError where settings, sample and loading do not fit each other.
+/// Throws InputError if settings, sample and loading do not fit each other.
 std::unique_ptr<Solver> make_solver(Options);
 
 }  // namespace snowshed::grains

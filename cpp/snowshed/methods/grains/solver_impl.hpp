@@ -1,4 +1,4 @@
-// The solver of grains: what it holds, and how its parts go together.
+// The solver of grains: its data, and the order of its parts.
 #pragma once
 
 #include "snowshed/methods/grains/state.hpp"
@@ -52,7 +52,7 @@ class SolverImpl final : public Solver {
   std::vector<std::uint32_t> sphere_grains() const override { return model_.spheres.grain; }
 
  private:
-  /// What an archive holds.
+  /// Contents of an archive.
   struct Restored {
     State state;
     Work work;

@@ -1,5 +1,5 @@
-// What grains are made of: a model that never changes, a state that steps change, and a workspace
-// that may be thrown away.
+// Parts of a simulation of grains: a model that never changes, a state that steps change, and a
+// workspace that may be thrown away.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@
 
 namespace snowshed::grains {
 
-/// What moves of a grain, and what acts on it.
+/// Motion of a grain, and the forces on it.
 struct GrainBody {
   Vec3 position = Vec3::Zero(), velocity = Vec3::Zero();  // m, m/s, of the centre of mass
   Orientation orientation{1, 0, 0, 0};
@@ -26,7 +26,7 @@ struct GrainBody {
   Vec3 damping = Vec3::Zero(), spin_damping = Vec3::Zero();  // N, N m; part of the above
 };
 
-/// What a grain is.
+/// Constants of a grain.
 struct GrainConstants {
   double volume, inertial_mass, weight;  // m3; kg, scaled; N, downward
   Vec3 inertia;                          // kg m2, principal, scaled
@@ -56,7 +56,8 @@ struct Model {
   BondLaw law;
   double solid_volume;  // m3
 
-  /// Threads for steps of so many pairs: one that has little to do costs more time than it saves.
+  /// Threads for steps with this number of pairs: a thread with little work costs more time than it
+  /// saves.
   int threads_for(std::size_t pairs) const {
     return snowshed::threads_for(pairs, pairs_per_thread, threads);
   }
@@ -72,7 +73,7 @@ struct State {
   Boundary boundary;
   LoadingProgress loading;
   PairList pairs;
-  std::vector<GrainPose> listed;  // of the grains as the pairs were looked for
+  std::vector<GrainPose> listed;  // poses of the grains at the last search for pairs
   Boundary listed_boundary;
   double time = 0, dt = 0;  // s
   std::int64_t bonds = 0, broken_in_tension = 0, broken_in_shear = 0;
@@ -82,9 +83,9 @@ struct State {
 
 struct Work {
   std::vector<GrainBody> next;      // where grains will be at the end of a step
-  std::vector<BodyFrame> frames;    // of grains and plates
-  std::vector<GroupForce> results;  // of the groups of pairs
-  BodyGroups groups_of;             // of each grain
+  std::vector<BodyFrame> frames;    // one per grain and plate
+  std::vector<GroupForce> results;  // one per group of pairs
+  BodyGroups groups_of;             // groups of each grain
   double longest_step = 0;          // s, for the pairs that are listed
   std::vector<double> damped;       // J, of each grain in a step
 };

@@ -14,7 +14,7 @@ namespace snowshed::grains {
 double longest_step(const Model&, const Boundary&, const PairList&, const std::vector<GrainPose>&);
 
 /// A step no longer than that, in which nothing moves farther than a tenth of a sphere's diameter.
-/// Throws SimulationError where it falls to nothing.
+/// Throws SimulationError if it would be zero.
 double choose_step(const Model&, const State&, double longest);
 
 }  // namespace snowshed::grains

@@ -1,5 +1,5 @@
-// Which blocks of the grid exist, which particles belong to each, and who is whose neighbour.
-// The grid is sparse and unbounded: only blocks that particles can reach are there.
+// Blocks of the grid that exist, the particles that belong to each, and the neighbours of each. The
+// grid is sparse and unbounded: it has only blocks that particles can reach.
 #pragma once
 
 #include <array>
@@ -60,7 +60,8 @@ struct BlockLayout {
   std::vector<BlockKey> particle_blocks;
   std::vector<std::int32_t> first;
 
-  /// Blocks with nodes that particles may reach: the above and all around them, ascending.
+  /// Blocks with nodes that particles may reach: the particle blocks and all blocks around them,
+  /// ascending.
   std::vector<BlockKey> grid_blocks;
 
   /// For each particle block, the grid blocks around it (always present), lexicographic.
@@ -69,8 +70,8 @@ struct BlockLayout {
   std::vector<Neighbours> around_nodes;
 
   /// Places where several fields have blocks of nodes: the place i has the grid blocks
-  /// meeting_blocks[k], meeting_first[i] <= k < meeting_first[i + 1]. By grid block whether it is
-  /// one of these; empty where there is no such place.
+  /// meeting_blocks[k], meeting_first[i] <= k < meeting_first[i + 1]. `meets` has a flag for each
+  /// grid block that is one of these; it is empty if there is no such place.
   std::vector<std::int32_t> meeting_first{0}, meeting_blocks;
   std::vector<std::uint8_t> meets;
 

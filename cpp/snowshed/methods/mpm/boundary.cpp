@@ -53,7 +53,7 @@ VecD<D> block_centre(const BlockCoord<D>& block, double dx) {
 
 template <class T, int D>
 void Boundary<T, D>::find(BlockKey key, double time, bool moving,
-                          std::vector<Contact<T>>& found) const {
+                          std::vector<Contact<T>>& contacts) const {
   const BlockCoord<D> block = block_coord<D>(key);
   const double reach = 0.5 * block_edge<D> * dx_ * std::sqrt(double(D));
   const double on_surface = 1e-6 * dx_;  // a node on the surface belongs to the obstacle
@@ -82,7 +82,7 @@ void Boundary<T, D>::find(BlockKey key, double time, bool moving,
         c.velocity[d] = T(v[d]);
       }
       c.release = release(obstacle.law.condition, n[D - 1]);
-      found.push_back(c);
+      contacts.push_back(c);
     }
   }
 }
@@ -91,13 +91,13 @@ template <class T, int D>
 template <class Find>
 Contacts<T, D> Contacts<T, D>::gathered(const std::vector<BlockKey>& blocks, int threads,
                                         Find find) {
-  std::vector<std::vector<Contact<T>>> found(blocks.size());
+  std::vector<std::vector<Contact<T>>> by_block(blocks.size());
   parallel_for(std::ptrdiff_t(blocks.size()), threads, 8,
-               [&](std::ptrdiff_t b) { find(std::size_t(b), found[b]); });
+               [&](std::ptrdiff_t b) { find(std::size_t(b), by_block[b]); });
   Contacts all;
   all.blocks_ = blocks;
   all.first_.reserve(blocks.size() + 1);
-  for (const auto& block : found) {
+  for (const auto& block : by_block) {
     all.contacts_.insert(all.contacts_.end(), block.begin(), block.end());
     all.first_.push_back(all.contacts_.size());
   }
@@ -108,14 +108,14 @@ template <class T, int D>
 Contacts<T, D> Contacts<T, D>::relocated(const Boundary<T, D>& boundary,
                                          const std::vector<BlockKey>& grid_blocks, double time,
                                          int threads) const {
-  return gathered(grid_blocks, threads, [&](std::size_t b, std::vector<Contact<T>>& found) {
+  return gathered(grid_blocks, threads, [&](std::size_t b, std::vector<Contact<T>>& contacts) {
     const auto old = std::lower_bound(blocks_.begin(), blocks_.end(), grid_blocks[b]);
     if (old != blocks_.end() && *old == grid_blocks[b]) {
       const std::size_t o = std::size_t(old - blocks_.begin());
-      found.assign(contacts_.begin() + first_[o], contacts_.begin() + first_[o + 1]);
+      contacts.assign(contacts_.begin() + first_[o], contacts_.begin() + first_[o + 1]);
     } else {
-      boundary.find(grid_blocks[b], time, false, found);
-      if (boundary.any_motion()) boundary.find(grid_blocks[b], time, true, found);
+      boundary.find(grid_blocks[b], time, false, contacts);
+      if (boundary.any_motion()) boundary.find(grid_blocks[b], time, true, contacts);
     }
   });
 }
@@ -123,14 +123,14 @@ Contacts<T, D> Contacts<T, D>::relocated(const Boundary<T, D>& boundary,
 template <class T, int D>
 void Contacts<T, D>::follow(const Boundary<T, D>& boundary, double time, int threads) {
   if (!boundary.any_motion()) return;
-  *this = gathered(blocks_, threads, [&](std::size_t b, std::vector<Contact<T>>& found) {
+  *this = gathered(blocks_, threads, [&](std::size_t b, std::vector<Contact<T>>& contacts) {
     const auto begin = contacts_.begin() + first_[b], end = contacts_.begin() + first_[b + 1];
-    std::copy_if(begin, end, std::back_inserter(found),
+    std::copy_if(begin, end, std::back_inserter(contacts),
                  [&](const Contact<T>& c) { return !boundary.is_moving(c); });
-    const std::size_t still = found.size();
-    boundary.find(blocks_[b], time, true, found);
-    for (std::size_t i = still; i < found.size(); ++i) {
-      Contact<T>& c = found[i];
+    const std::size_t still = contacts.size();
+    boundary.find(blocks_[b], time, true, contacts);
+    for (std::size_t i = still; i < contacts.size(); ++i) {
+      Contact<T>& c = contacts[i];
       const auto before = std::find_if(begin, end, [&](const Contact<T>& old) {
         return old.node == c.node && old.obstacle == c.obstacle;
       });
@@ -149,17 +149,17 @@ bool Contacts<T, D>::moves(std::size_t block) const {
 }
 
 template <class T, int D>
-void Contacts<T, D>::find_pushing_shares(PushingShares<T>& found) const {
-  std::fill(found.pushed.begin(), found.pushed.end(), T(0));
-  std::fill(found.shares.begin(), found.shares.end(), T(0));
+void Contacts<T, D>::find_pushing_shares(PushingShares<T>& result) const {
+  std::fill(result.pushed.begin(), result.pushed.end(), T(0));
+  std::fill(result.shares.begin(), result.shares.end(), T(0));
   for (const Contact<T>& c : contacts_) {
     if (c.release != Release::never) continue;
-    found.pushed[c.obstacle] += std::max(c.next_normal_impulse, T(0));
-    found.shares[c.obstacle] += c.next_normal_impulse;
+    result.pushed[c.obstacle] += std::max(c.next_normal_impulse, T(0));
+    result.shares[c.obstacle] += c.next_normal_impulse;
   }
-  for (std::size_t i = 0; i < found.shares.size(); ++i)
-    found.shares[i] =
-        found.pushed[i] > 0 ? std::max(found.shares[i], T(0)) / found.pushed[i] : T(1);
+  for (std::size_t i = 0; i < result.shares.size(); ++i)
+    result.shares[i] =
+        result.pushed[i] > 0 ? std::max(result.shares[i], T(0)) / result.pushed[i] : T(1);
 }
 
 template <class T, int D>

@@ -4,8 +4,8 @@
 // - Friction acts on the running mean of the net normal impulse (see NodeKernels::apply), so the
 //   contacts have a memory that outlives a step.
 // - `separate` holds snow down where gravity presses it on, against a pull that is shorter-lived
-//   than the push before it, so that a slab that vibrates stays on its panel. Elsewhere it lets go
-//   at once, so that snow never hangs from a panel's back.
+//   than the push before it, so that a slab that vibrates stays on its panel. Elsewhere it releases
+//   snow at once, so that snow never hangs from a panel's back.
 #pragma once
 
 #include <algorithm>
@@ -18,19 +18,19 @@
 
 namespace snowshed::mpm {
 
-/// A solid as the grid must see it: parts thinner than two cells would slip between the nodes, so
+/// A solid as the grid must see it. Parts thinner than two cells would slip between the nodes, so
 /// their surface is moved out until they are two cells thick.
 ThickSolid as_grid_sees(Shape shape, double dx, int dimension);
 Obstacle thick_enough(Obstacle obstacle, double dx, int dimension);
 
-/// A normal in the section, of length 1; upwards where the section has none of it.
+/// The unit normal in the section; upwards if the normal is perpendicular to it.
 template <int D>
 VecD<D> normal_in_section(const Vec3& normal) {
   const VecD<D> n = section<D>(normal);
   return n.norm() > 1e-9 ? VecD<D>(n.normalized()) : VecD<D>(VecD<D>::Unit(D - 1));
 }
 
-/// When an obstacle lets go of snow, where its outward normal rises by `upward`.
+/// Rule by which an obstacle releases snow where its outward normal rises by `upward`.
 inline Release release(Condition condition, double upward) {
   if (condition == Condition::slip) return Release::never;
   return upward > 0 ? Release::after_push : Release::at_once;
@@ -41,8 +41,8 @@ template <class T, int D>
 class Boundary {
  public:
   /// `surfaces` are the obstacles as they are given, before thin parts were made thicker; without
-  /// them the obstacles themselves are. Nodes within a `margin` (m) outside these have contacts,
-  /// too.
+  /// them the obstacles themselves are used. Nodes within a `margin` (m) outside these have
+  /// contacts, too.
   Boundary(std::vector<Obstacle> obstacles, double dx, std::vector<Shape> surfaces = {},
            double margin = 0);
 
@@ -79,17 +79,17 @@ class Boundary {
   }
 
   /// Appends a block's contacts at a time: with the obstacles that move, or with those at rest.
-  void find(BlockKey block, double time, bool moving, std::vector<Contact<T>>& found) const;
+  void find(BlockKey block, double time, bool moving, std::vector<Contact<T>>& contacts) const;
 
  private:
   std::vector<Obstacle> obstacles_;
-  std::vector<Shape> surfaces_;  // of the obstacles as they are given
+  std::vector<Shape> surfaces_;  // the obstacles as they are given
   std::vector<ContactLaw> laws_;
   double dx_, margin_;
   bool any_motion_ = false;
 };
 
-/// By obstacle, see Contacts::find_pushing_shares.
+/// Shares of friction by obstacle, see Contacts::find_pushing_shares.
 template <class T>
 struct PushingShares {
   explicit PushingShares(std::size_t obstacles) : shares(obstacles, T(1)), pushed(obstacles) {}
@@ -132,7 +132,7 @@ class Contacts {
   /// positive; 1 for obstacles that let snow leave. Slip holds some nodes of a body against pull,
   /// while internal forces press it more strongly on others. Friction on the pushed nodes alone
   /// would be too large.
-  void find_pushing_shares(PushingShares<T>& found) const;
+  void find_pushing_shares(PushingShares<T>& result) const;
 
   /// A contact with stored impulse (N s), for checkpoints.
   struct StoredImpulse {
@@ -144,7 +144,8 @@ class Contacts {
   void restore(const std::vector<StoredImpulse>& stored_impulses);
 
  private:
-  /// The contacts of some blocks, of which `find(index of a block, found)` appends a block's own.
+  /// The contacts of some blocks, where `find(index of a block, contacts)` appends those of a
+  /// block.
   template <class Find>
   static Contacts gathered(const std::vector<BlockKey>& blocks, int threads, Find find);
 

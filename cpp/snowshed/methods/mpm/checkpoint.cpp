@@ -9,7 +9,7 @@
 namespace snowshed::mpm {
 namespace {
 
-/// What a checkpoint holds of contacts and sleep, besides the particles and the numbers.
+/// Contents of a checkpoint about contacts and sleep, besides the particles and the numbers.
 template <class T, int D>
 struct Stored {
   std::vector<typename Contacts<T, D>::StoredImpulse> impulses;
@@ -26,7 +26,7 @@ void visit_particles(Archive& archive, Particles& particles, std::size_t materia
   particles.for_each_array([&](const char* name, auto& array) {
     const std::string section = std::string("particles/") + name;
     if (materials > 1 && is_of_several_snows(name))
-      archive.optional_array(section, array, n);  // without it all are of the first snow
+      archive.optional_array(section, array, n);  // without it all particles are of the first snow
     else
       archive.array(section, array, n);
   });

@@ -25,8 +25,8 @@ constexpr Storage storage(int dimension, Precision precision) {
   return single ? Storage{150.0, 48.0} : Storage{300.0, 96.0};
 }
 
-/// Of a contact between a node and an obstacle, which is there twice while blocks are sorted, and
-/// of an obstacle with its shape, apart from files.
+/// Bytes per node-obstacle contact (twice its size, because sorting copies it) and per obstacle
+/// with its shape (without its file).
 struct ObstacleStorage {
   double bytes_per_contact, bytes_per_obstacle;
 };
@@ -43,12 +43,12 @@ constexpr double grid_spread = 4.0;
 /// in the laboratory scene and on the wide stacks of chapter 5.
 constexpr double woken_share = 0.5;
 
-/// Work of an update where snow has flown apart in clumps, each with grid blocks of its own, over
-/// that in a slab: 13 to 16 in 3D after 125 m. A particle all alone takes 40.
+/// Work of an update of scattered clumps, each with grid blocks of its own, over that in a slab: 13
+/// to 16 in 3D after 125 m. A particle all alone takes 40.
 constexpr double scattered_snow(int dimension) { return dimension == 2 ? 4.0 : 15.0; }
 
 /// Nodes of the grid blocks around the snow of an event, were each body compact: many small bodies
-/// far apart use more of them than the volume of their snow tells.
+/// far apart use more of them than their volume suggests.
 double count_nodes(const Settings& n, const std::vector<double>& volumes, int dimension) {
   constexpr double reached = 1.5;  // blocks beyond its own that the splines of a body reach
   const double edge = (dimension == 2 ? block_edge<2> : block_edge<3>)*n.dx;
@@ -133,7 +133,7 @@ std::vector<Feature> features_of(const Settings& n, const SceneView& scene,
       {"FLIP with affine velocities", n.transfer == Transfer::affine_flip},
       {"damping over a length", n.damps_over_length()},
       {"crack band", n.crack_band_length > 0},
-      {"contact by touch", n.contact == Contacting::touch},
+      {"contact by touch", n.contact == ContactRule::touch},
       {"fields of events", n.fields == Fields::events},
       {"cubic B-splines", n.basis == Basis::cubic}};
   for (const auto& [condition, name] : EnumNames<Condition>::list) {

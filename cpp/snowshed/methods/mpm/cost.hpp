@@ -1,4 +1,4 @@
-// What a run of the material point method will cost, and which of its features a scene uses.
+// Cost of a run of the material point method, and the features that a scene uses.
 #pragma once
 
 #include <vector>

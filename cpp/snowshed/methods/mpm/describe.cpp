@@ -15,31 +15,31 @@ void describe(SettingsVisitor& v, Settings& n) {
   v.choice("scheme", n.scheme,
            "Mechanisms that belong together: objective sets transfer affine_flip, damping_rate 380 "
            "1/s, damping_length and crack_band_length 0.01 m, contact touch and fields of events, "
-           "unless they are "
-           "given; thesis sets what these settings are by default");
-  if (n.scheme != before) n.adopt(n.scheme);  // what is read next may differ from it
+           "unless they are given; thesis keeps the defaults of these settings");
+  if (n.scheme != before) n.adopt(n.scheme);  // fields that are read next may differ from it
   v.choice("precision", n.precision, "Floating-point type of the particles and the grid");
   v.choice("transfer", n.transfer, "Transfer of velocities between particles and grid");
   v.number(
       "flip_ratio", n.flip_ratio, "", fraction,
       "Share of FLIP in FLIP/PIC in each step, so that shorter steps damp more; 0 is pure PIC");
   v.number_instead("damping_rate", n.damping_rate, "flip_ratio", "1/s", non_negative.up_to(1e9),
-                   "In place of flip_ratio: rate of the damping, whatever the step");
+                   "Rate of the damping, independent of the time step, in place of flip_ratio");
   v.number("damping_length", n.damping_length, "m", allowed::size_or_zero,
-           "Length over which velocities are averaged to damp them at the damping rate, whatever "
-           "the grid, with affine_flip; 0: the damping is PIC's, over dx");
+           "Length over which affine_flip averages velocities to damp them at the damping rate, "
+           "independent of the grid; 0: the damping is PIC's, over dx");
   v.number("crack_band_length", n.crack_band_length, "m", allowed::size_or_zero,
-           "Snow that dilates softens dx over this length as fast as its law says, so that cracks "
-           "take the same energy per area on any grid; 0: the law itself");
-  v.choice("contact", n.contact,
-           "When an obstacle's node acts on snow: once its splines reach the node (kernel), or "
-           "once a particle with weight there touches the obstacle itself (touch)");
+           "Width of a crack: dilating snow softens dx/width times as fast as its law, so that a "
+           "crack takes the same energy per area on any grid; 0: the law itself");
+  v.choice(
+      "contact", n.contact,
+      "Snow on which a node of an obstacle acts: all whose splines reach the node (kernel), or "
+      "only if one of its particles touches the obstacle itself (touch)");
   v.number("contact_radius", n.contact_radius, "", positive.up_to(1.0),
            "Radius of the particles that touch, over half the spacing of particles");
   v.choice(
       "fields", n.fields,
-      "Velocity fields of the grid: one for all snow, which sticks together where it meets, or "
-      "one for the snow of each event, which touches, slides and separates");
+      "Velocity fields of the grid: one for all snow, which then sticks together on contact, or "
+      "one for the snow of each event, which then touches, slides and separates");
   v.number("event_friction", n.event_friction, "", allowed::coefficient,
            "Friction between the snow of different events, with fields of events, over that of the "
            "snow itself at the critical state, M/sqrt(3)");
@@ -51,7 +51,7 @@ void describe(SettingsVisitor& v, Settings& n) {
   v.number("sleep_speed", n.sleep_speed, "m/s", non_negative.up_to(1e4),
            "Snow slower than this drops out of the steps until something moves it; 0: never");
   v.number("sleep_time", n.sleep_time, "s", allowed::time,
-           "Duration for which it must have been slower without speeding up");
+           "Time for which snow must stay below sleep_speed without speeding up");
   v.integer("threads", n.threads, non_negative.up_to(4096), "Threads; 0: all");
 }
 

@@ -21,9 +21,9 @@ struct EnumNames<mpm::Transfer> {
 };
 
 template <>
-struct EnumNames<mpm::Contacting> {
-  static constexpr Named<mpm::Contacting> list[] = {{mpm::Contacting::kernel, "kernel"},
-                                                    {mpm::Contacting::touch, "touch"}};
+struct EnumNames<mpm::ContactRule> {
+  static constexpr Named<mpm::ContactRule> list[] = {{mpm::ContactRule::kernel, "kernel"},
+                                                     {mpm::ContactRule::touch, "touch"}};
 };
 
 template <>

@@ -1,5 +1,5 @@
-// What others do to the snow between steps: adding, replacing, pushing and settling it. The new
-// state is built beside the old one, which stays where anything fails.
+// Changes of the snow from outside between steps: adding, replacing, pushing and settling it. The
+// new state is built beside the old one, which stays where anything fails.
 #include <cmath>
 
 #include "snowshed/core/errors.hpp"
@@ -8,7 +8,7 @@
 namespace snowshed::mpm {
 namespace {
 
-/// Appends the batches to a state and makes all else follow.
+/// Appends the batches to a state and updates all that depends on them.
 template <class T, int D>
 void add_to(State<T, D>& state, const Model<T, D>& model,
             const std::vector<ParticleBatch>& batches) {

@@ -11,7 +11,8 @@ template <class T, int D>
 void SolverImpl<T, D>::update_energy_balance() noexcept {
   Progress& p = state_.progress;
   double kinetic = 0, elastic = 0, plastic = 0, damping = 0;
-  for (const BlockStats& s : work_.grid.block_stats) {  // of sleeping blocks as they fell asleep
+  // Energies of sleeping blocks as they fell asleep.
+  for (const BlockStats& s : work_.grid.block_stats) {
     kinetic += s.kinetic;
     elastic += s.elastic;
     plastic += s.plastic;
@@ -27,7 +28,7 @@ void SolverImpl<T, D>::update_energy_balance() noexcept {
     p.energy.sticking += s.sticking;
     p.energy.impact += s.impact;
   }
-  // What particles to grid and grid to particles took.
+  // Energy lost by particles to grid and grid to particles.
   p.energy.transfer += (p.energy.kinetic - before) + (after - kinetic) - damping;
   p.energy.damping += damping;
   // Velocities are those of half a step ago; taken at the time of the positions, the transfer

@@ -10,10 +10,10 @@ namespace snowshed::mpm {
 
 template <class T>
 struct FieldContact {
-  BlockKey first_key, second_key;  // of the blocks of nodes, the first in the order of keys
+  BlockKey first_key, second_key;  // keys of the two blocks of nodes, in ascending order
   std::int32_t node;
   std::int32_t first, second;  // the blocks' places in the layout
-  bool touches;                // else it has come off since, and only owes friction
+  bool touches;                // otherwise it has come off since, and only friction is due
   T normal[3];                 // from the first field to the second
   T impulse;       // stored normal impulse, N s, that friction has yet to be charged for
   T next_impulse;  // the same after the step being tried

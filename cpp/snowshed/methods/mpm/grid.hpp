@@ -29,7 +29,7 @@ struct Grid {
     touched.resize(nodes);
   }
 
-  /// What the arrays held is not kept: all of it is computed anew after a change of layout.
+  /// The arrays' contents are not kept: all of it is computed anew after a change of layout.
   static void make_room(AlignedVector<T>& values, std::size_t n) {
     if (n > values.capacity()) {
       AlignedVector<T>().swap(values);
@@ -41,13 +41,13 @@ struct Grid {
   /// Finds the tiles of the particle blocks around a grid block that reach it; null for the others.
   /// Returns whether any does.
   bool tiles_reaching(const BlockLayout<D>& layout, std::size_t grid_block,
-                      const T* (&found)[neighbour_count<D>]) {
+                      const T* (&reaching)[neighbour_count<D>]) {
     bool any = false;
     for (int k = 0; k < neighbour_count<D>; ++k) {
       const std::int32_t block = layout.around_nodes[grid_block][k];
       constexpr int last = neighbour_count<D> - 1;  // seen from there, the neighbour opposite
       const bool reached = block >= 0 && reaches<D>(block_stats[block].reach, last - k);
-      found[k] = reached ? tile(std::size_t(block)) : nullptr;
+      reaching[k] = reached ? tile(std::size_t(block)) : nullptr;
       any = any || reached;
     }
     return any;

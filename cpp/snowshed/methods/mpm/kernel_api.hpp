@@ -1,6 +1,6 @@
-// What the solver and the kernels agree on: raw views, and one table of functions per combination
-// of features. The kernels are compiled once for each instruction set (cmake/KernelVariants.cmake),
-// so nothing here depends on one.
+// Interface between the solver and the kernels: raw views, and one table of functions per
+// combination of features. The kernels are compiled once for each instruction set
+// (cmake/KernelVariants.cmake), so nothing here depends on one.
 #pragma once
 
 #include <cstdint>
@@ -60,31 +60,32 @@ struct ParticleView {
   T* be_minus_identity[6];  // b_e the elastic left Cauchy-Green tensor
   T* plastic;               // volumetric plastic strain; plastic laws only
   T* mass;
-  const std::uint8_t* material_id;  // which snow; only with several materials
+  const std::uint8_t* material_id;  // snow of each particle; only with several materials
 };
 
 /// Values per node of the coarse grid over which velocities are averaged: mass and momentum (3), or
-/// something and the mean velocity (3).
+/// an unused value and the mean velocity (3).
 inline constexpr int average_values = 4;
 
-/// That grid as far as the particles of a block reach. Its nodes are `edge` along each direction.
+/// The part of that grid that the particles of a block reach. Its nodes are `edge` along each
+/// direction.
 template <class T>
 struct AverageTile {
   T* values;
   int edge;
   T cell;       // dx over its spacing
-  T origin[3];  // of the block, in spacings from its first node
-  T share;      // of the difference from the average that a particle loses
+  T origin[3];  // origin of the block, in spacings from its first node
+  T share;      // share of the difference from the average that a particle loses
 };
 
-/// What the kernels need of a snow. C is a scalar, or a SIMD pack: one value for each particle of a
-/// chunk.
+/// Constants of a snow for the kernels. C is a scalar, or a SIMD pack: one value for each particle
+/// of a chunk.
 template <class C>
 struct MaterialConstants {
   C lambda, mu, bulk;         // Pa, see Elasticity
   C m2, beta, xi, hardening;  // see CamClay
   C specific_volume;          // m3/kg, before any deformation
-  C softening, band_begin;    // of a crack band, see CamClayLaw
+  C softening, band_begin;    // crack band, see CamClayLaw
 };
 
 template <class T>
@@ -92,8 +93,8 @@ struct StepParameters {
   T dt, dx, gravity, flip_ratio;
   T friction_rate;                    // dt over the friction memory, see NodeKernels::apply
   T friction_rate_per_speed;          // s/m, the same for each m/s at which snow slides
-  const MaterialConstants<T>* snows;  // by material_id
-  const T* pushing;  // by obstacle: part of the friction of pushed nodes that remains, see
+  const MaterialConstants<T>* snows;  // indexed by material_id
+  const T* pushing;  // indexed by obstacle: part of the friction of pushed nodes that remains, see
                      // Contacts::find_pushing_shares
 };
 
@@ -126,19 +127,19 @@ constexpr bool reaches(int reach, int neighbour) {
   return true;
 }
 
-/// What a kernel reports of one block of particles.
+/// A kernel's report on one block of particles.
 struct BlockStats {
   double speed_squared = 0;   // largest, of velocity and of motion, m2/s2
   double strain = 0;          // largest |dt grad v| component; of `probe` only
-  int reach = 0;              // which blocks around it hold nodes that its particles touch
+  int reach = 0;              // blocks around it whose nodes its particles touch
   bool escaped = false;       // a particle left the tile: the sums are not valid, sort first
   std::int32_t unsound = -1;  // a particle strained beyond `elastic_strain_limit`, or not finite
-  double elastic_strain = 0;  // of that particle
+  double elastic_strain = 0;  // elastic strain of that particle
   double kinetic = 0, elastic = 0, plastic = 0;  // J; with the energy balance only
   double damping = 0;       // J, kinetic energy that damping towards the average took
   double stress_power = 0;  // W, of the new stresses along the motion just made
 
-  /// Of particles of which only this is known.
+  /// Statistics of particles of which only the reach is known.
   static BlockStats reaching(int reach) {
     BlockStats stats;
     stats.reach = reach;
@@ -146,21 +147,23 @@ struct BlockStats {
   }
 };
 
-/// What a kernel reports of one block of nodes.
+/// A kernel's report on one block of nodes.
 struct NodeStats {
   double low[3], high[3];  // bounds of the new velocities; low > high: no snow here
-  double kinetic_before = 0, kinetic_after = 0;   // of the grid, J; before forces, after contact
+  // Energy of the grid, J: before forces, after contact.
+  double kinetic_before = 0, kinetic_after = 0;
   double friction = 0, sticking = 0, impact = 0;  // taken by contact, J
   double stress_work = 0;  // J, of the stresses at the velocities before the step
 };
 
-/// How the nodes of a step would have moved a block of particles that sleeps: means over its mass.
+/// Motion that the nodes of a step would have given to a block of sleeping particles: means over
+/// its mass.
 struct CarriedMotion {
   double speed_squared = 0;            // m2/s2
-  double change[3] = {0.0, 0.0, 0.0};  // of its velocity in the step, by all forces, m/s
+  double change[3] = {0.0, 0.0, 0.0};  // change of its velocity in the step by all forces, m/s
 };
 
-/// When a contact lets go of snow that is pulled off the obstacle.
+/// Rule by which a contact releases snow that is pulled off the obstacle.
 enum class Release : std::uint8_t {
   never,       // slip
   after_push,  // separate, where gravity presses snow on: once pull has used up the push before it
@@ -172,9 +175,9 @@ template <class T>
 struct Contact {
   std::int32_t node;
   std::int32_t obstacle;
-  T normal[3];            // of the face that snow touches, else as `outward`
+  T normal[3];            // normal of the face that snow touches; `outward` if it touches none
   T outward[3];           // normal of the obstacle at the node
-  T velocity[3];          // of the obstacle at the node
+  T velocity[3];          // velocity of the obstacle at the node
   T normal_impulse;       // stored normal impulse, N s, that friction has yet to be charged for;
                           // with slip, which holds against any pull, it may be negative
   T next_normal_impulse;  // the same after the step being tried
@@ -192,7 +195,7 @@ struct Kernels {
   /// tile holds nothing beyond. With an `average` (null: none) velocities are damped towards it.
   void (*g2p2g)(const StepParameters<T>&, const ParticleView<T>&, int first, int count,
                 const T* const* velocities, const AverageTile<T>* average, T* tile, BlockStats&);
-  /// Mass and momentum of a block's particles onto the coarse grid. Null but with affine FLIP.
+  /// Adds mass and momentum of a block's particles to the coarse grid. Null without affine FLIP.
   void (*scatter_average)(const ParticleView<T>&, int first, int count, const AverageTile<T>&);
   /// Only the largest |dt grad v| that `g2p2g` would impose, of particles in `BlockStats::reach`.
   void (*probe)(const StepParameters<T>&, const ParticleView<T>&, int first, int count,
@@ -206,8 +209,8 @@ struct Kernels {
   void (*update_free)(const StepParameters<T>&, const T* sums, T* velocities);
   void (*finish)(const StepParameters<T>&, const T* sums, T* velocities, Contact<T>* contacts,
                  int contact_count, const ContactLaw*, NodeStats&);
-  /// What the 3^D blocks of nodes around (null: at rest) would do to the snow on a tile, as far as
-  /// its particles reach.
+  /// Motion that the 3^D blocks of nodes around (null: at rest) would give to the snow on a tile,
+  /// as far as its particles reach.
   void (*carried_motion)(const T* tile, int reach, const T* const* sums, const T* const* velocities,
                          CarriedMotion&);
 };
@@ -216,15 +219,15 @@ struct KernelChoice {
   int dimension;
   Transfer transfer;
   Basis basis;
-  SnowModel model;  // of the only snow
+  SnowModel model;  // the model of the only snow
   bool several_materials = false;
   bool energy = false;
   bool crack_band = false;
 
-  /// Whether the kernels are those for checks, which know everything. Without an affine FLIP only
-  /// they know the crack band.
+  /// Whether the kernels are those for checks, which have all features. Without affine FLIP only
+  /// they have the crack band.
   bool checks() const { return energy || (crack_band && transfer != Transfer::affine_flip); }
-  /// Whether the kernels look up each particle's material, of whatever model. Those for checks
+  /// Whether the kernels look up each particle's material, whose model may be any. Those for checks
   /// always do, which saves kernels of each model.
   bool material_per_particle() const { return several_materials || checks(); }
 };

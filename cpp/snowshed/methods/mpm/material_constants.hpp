@@ -1,4 +1,4 @@
-// What the solver derives, once, of each of a run's snows.
+// Constants that the solver derives once from each snow of a run.
 #pragma once
 
 #include "snowshed/material/cam_clay.hpp"
@@ -12,7 +12,7 @@ namespace snowshed::mpm {
 struct Material {
   Elasticity<double> elastic;
   double density = 0;                 // kg/m3, initial
-  double initial_plastic_strain = 0;  // volumetric; elastic snow has none
+  double initial_plastic_strain = 0;  // volumetric; not used for elastic snow
   BandedCamClay<double> law;          // all zero for elastic snow
   double elastic_time_step = 0;       // s
 

@@ -10,7 +10,7 @@
 namespace snowshed::mpm {
 namespace {
 
-/// kg. Nodes that a field barely reaches tell nothing of its surface.
+/// kg. Nodes that a field barely reaches say nothing about its surface.
 constexpr double least_shared_mass = 1e-12;
 
 /// Place of an index in an array of `edge` elements along each direction, the first at `low`.
@@ -70,7 +70,7 @@ void Meetings<T, D>::update(const Model<T, D>& model, State<T, D>& state, Grid<T
 }
 
 /// Sums of a block of nodes, which `room` holds where the block takes no part in the step; null
-/// where no snow reaches it.
+/// if no snow reaches it.
 template <class T, int D>
 const T* Meetings<T, D>::sums_of(const State<T, D>& state, Grid<T, D>& grid,
                                  const Kernels<T>& kernels, std::int32_t g,
@@ -114,7 +114,8 @@ typename Meetings<T, D>::Masses Meetings<T, D>::masses_of(const State<T, D>& sta
 }
 
 /// The normal of a node is that of the difference of the two masses, smoothed over the nodes around
-/// it. A raw one points anywhere at the corners of a body, where it would push it forward.
+/// it. Without smoothing it points anywhere at the corners of a body, and would push the body
+/// forward.
 template <class T, int D>
 void Meetings<T, D>::find_normals(const Masses& a, const Masses& b, Nodes& nodes) {
   struct Raw {
@@ -159,7 +160,8 @@ void Meetings<T, D>::find_normals(const Masses& a, const Masses& b, Nodes& nodes
   });
 }
 
-/// How far the particles of a field reach, with their radius, that have weight at the nodes.
+/// Distance to which the particles of a field reach, with their radius; only particles that have
+/// weight at the nodes count.
 template <class T, int D>
 void Meetings<T, D>::find_reach(const Model<T, D>& model, const State<T, D>& state, std::int32_t g,
                                 bool first, Nodes& nodes) const {
@@ -251,8 +253,8 @@ void Meetings<T, D>::exchange(const StepParameters<T>& step, double friction, St
   }
 }
 
-/// The same between two fields. Friction that is due at a node beyond what stops it there, because
-/// little snow moves with the node, slows the nodes around it that still slide.
+/// The same between two fields. If little snow moves with a node, less friction than is due stops
+/// it. The rest slows the nodes around it that still slide.
 template <class T, int D>
 void Meetings<T, D>::exchange(const StepParameters<T>& step, T friction, Grid<T, D>& grid,
                               FieldContact<T>* begin, FieldContact<T>* end) const {

@@ -3,8 +3,9 @@
 // particle of one touches a particle of the other; elsewhere they do not feel each other.
 //
 // The impulse along the normal and the friction are those of the contact with obstacles
-// (NodeKernels::apply): pushes fill a store, pulls empty it, friction is charged for what drains.
-// What one field gets the other loses, in pairs also where three or more meet.
+// (NodeKernels::apply): pushes fill a store, pulls empty it, friction is charged for the impulse
+// that drains. Each impulse acts on the two fields of a pair with opposite signs, also where three
+// or more meet.
 #pragma once
 
 #include <array>
@@ -24,9 +25,9 @@ class Meetings {
   /// After a change of the layout or of the order of the particles: nothing is known any more.
   void forget(const Model<T, D>& model, const State<T, D>& state, int threads);
 
-  /// Finds the contacts between the fields, where snow may have moved far enough since the last
-  /// time for them to be others. `moved` is how far (m) the fastest snow has come since the last
-  /// call. The sums of active blocks must be present.
+  /// Finds the contacts between the fields again, if snow may have moved far enough since the last
+  /// time to change them. `moved` is the distance (m) by which the fastest snow has moved since the
+  /// last call. The sums of active blocks must be present.
   void update(const Model<T, D>& model, State<T, D>& state, Grid<T, D>& grid, double moved,
               int threads);
 
@@ -46,23 +47,23 @@ class Meetings {
   static constexpr int margin = smoothing + 1;  // nodes around a block whose masses are needed
   static constexpr int padded_edge = B + 2 * margin;
   static constexpr int padded_nodes = padded_edge * padded_edge * (D == 3 ? padded_edge : 1);
-  using Masses = std::vector<T>;  // of a field at the nodes of a place and around it
+  using Masses = std::vector<T>;  // masses of a field at the nodes of a place and around it
   static std::array<int, D> filled(int value) {
     std::array<int, D> index;
     index.fill(value);
     return index;
   }
-  struct Nodes {                                            // of a block, that two fields share
-    std::uint64_t shared = 0;                               // a bit for each node
-    std::array<int, D> begin = filled(B), end = filled(0);  // of the box around these
+  struct Nodes {               // nodes of a block that two fields share
+    std::uint64_t shared = 0;  // a bit for each node
+    std::array<int, D> begin = filled(B), end = filled(0);  // box around these
     T normal[64][3];                                        // from the first field to the second
-    T first[64], second[64];  // how far along it the fields reach, towards each other, cells
+    T first[64], second[64];  // reach of the fields along the normal, towards each other, cells
   };
 
-  struct Impulses {  // of a step at a node, N s
+  struct Impulses {  // impulses of a step at a node, N s
     T push;          // from the first field to the second, along the normal
     T friction;      // due
-    T stopping;      // that ends the slip
+    T stopping;      // impulse that ends the slip
     T slip[D];       // its direction
   };
   using Stores = std::vector<const FieldContact<T>*>;  // in the order of names
@@ -83,8 +84,8 @@ class Meetings {
                        T* const (&velocities)[2], FieldContact<T>& contact) const;
 
   int support_;
-  std::vector<T> radius_;               // of each particle, cells
-  std::vector<std::int32_t> first_{0};  // of the contacts of each place
+  std::vector<T> radius_;               // radius of each particle, cells
+  std::vector<std::int32_t> first_{0};  // first contact of each place
   double since_measured_ = 0;           // m, that the fastest snow has moved
   bool measured_ = false;
 };

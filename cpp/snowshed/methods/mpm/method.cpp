@@ -34,7 +34,7 @@ void check_scheme(const Settings& n) {
   };
   require(n.transfer == Transfer::affine_flip, "transfer",
           "\"" + std::string(name_of(n.transfer)) + "\"", "\"affine_flip\"");
-  require(n.contact == Contacting::touch, "contact", "\"" + std::string(name_of(n.contact)) + "\"",
+  require(n.contact == ContactRule::touch, "contact", "\"" + std::string(name_of(n.contact)) + "\"",
           "\"touch\"");
   require(n.fields == Fields::events, "fields", "\"one\"", "\"events\"");
   require(n.damps_over_length(), "damping_length", "0", "a length");
@@ -63,7 +63,7 @@ class Descriptor final : public DescriptorOf<Descriptor, Settings> {
         "cells",
         names_of(named_energies(EnergyBalance{})),
         {{"volume_ratio", "1", "Current over initial volume"},
-         // Without a step: a film does not keep them, which would be larger by half.
+         // Without a step for films, because a film would be larger by half with them.
          {"deviatoric_stress", "Pa", "Deviatoric stress, von Mises equivalent of Kirchhoff's"},
          {"preconsolidation_pressure", "Pa",
           "Preconsolidation pressure, hardened or softened; 0: none, or elastic snow"},

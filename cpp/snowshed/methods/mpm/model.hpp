@@ -1,4 +1,4 @@
-// What a run of the solver is about and never changes: options, snows, obstacles, kernels.
+// Constants of a run of the solver: options, snows, obstacles, kernels.
 #pragma once
 
 #include <algorithm>
@@ -15,8 +15,8 @@ namespace snowshed::mpm {
 /// Fewer particles than this are not worth waking another thread for, twice a step.
 inline constexpr int particles_per_thread = 2000;
 
-/// Nodes so many cells outside an obstacle that acts by touch hold snow, too: on average the nodes
-/// then stand on its surface, wherever that lies between them.
+/// Nodes up to this distance (in cells) outside an obstacle that acts by touch hold snow, too: on
+/// average the nodes then stand on its surface, wherever that lies between them.
 inline constexpr double touch_margin = 0.5;
 
 template <class T, int D>
@@ -28,10 +28,10 @@ struct Model {
   Kernels<T> kernels;
   int max_threads;
   Boundary<T, D> boundary;
-  std::vector<Material> materials;              // of options.snows
+  std::vector<Material> materials;              // one per snow of options.snows
   std::vector<MaterialConstants<T>> constants;  // the same for the kernels
 
-  /// Coulomb's coefficient between the fields of events: of the snow that has least.
+  /// Coulomb's coefficient between the fields of events: that of the snow with the least.
   double event_friction() const {
     double slope = options.snows.front().critical_state_slope;
     for (const Snow& snow : options.snows) slope = std::min(slope, snow.critical_state_slope);
@@ -39,12 +39,12 @@ struct Model {
   }
 
   bool has_affine() const { return options.settings.has_affine(); }
-  bool touches() const { return options.settings.contact == Contacting::touch; }
+  bool touches() const { return options.settings.contact == ContactRule::touch; }
   bool has_plastic() const {
     return material_per_particle || options.snows.front().model == SnowModel::cam_clay;
   }
 
-  /// Threads worth using for so many particles.
+  /// Threads worth using for this number of particles.
   int threads(std::int64_t particles) const {
     return int(std::min<std::int64_t>(max_threads, particles / particles_per_thread + 1));
   }

@@ -32,7 +32,7 @@ bool lies_within(T x) {
   return x >= T(0) && x < T(block_edge<D>);
 }
 
-/// How many blocks a cell coordinate lies beyond its own.
+/// Number of blocks by which a cell coordinate lies beyond its own.
 template <class T, int D>
 double blocks_beyond(T x) {
   return std::floor(double(x) / block_edge<D>);

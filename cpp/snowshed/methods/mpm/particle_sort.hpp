@@ -28,13 +28,13 @@ VecD<D> position_of(const Particles<T, D>& particles, std::size_t i, BlockKey bl
 }
 
 /// Sorts particles that have moved back into blocks; stable, so the result does not depend on the
-/// number of threads. All that can fail is done as it is made, all that alters particles as it is
-/// applied.
+/// number of threads. The constructor does all that can fail, and `apply` all that alters
+/// particles.
 template <class T, int D>
 class ParticleSort {
  public:
   /// Finds where the particles belong. `blocks` holds the block that each one's `cell` refers to,
-  /// `present` the layout before. Throws SimulationError where one has left the addressable grid
+  /// `present` the layout before. Throws SimulationError if one has left the addressable grid
   /// (2^20 blocks to each side) or is not finite.
   ParticleSort(const Particles<T, D>&, std::vector<BlockKey> blocks, const BlockLayout<D>& present,
                int threads);
@@ -42,7 +42,7 @@ class ParticleSort {
   /// The layout of the particles once they are sorted; it may be moved away.
   BlockLayout<D> layout;
 
-  /// Sorts the particles it was made of. Once only.
+  /// Sorts the particles that it was made from. Call it once only.
   void apply(Particles<T, D>&) noexcept;
 
  private:
@@ -51,7 +51,7 @@ class ParticleSort {
   typename Particles<T, D>::Spare spare_;
 };
 
-/// The block of each particle as the layout has it.
+/// The block of each particle in the layout.
 template <int D>
 std::vector<BlockKey> blocks_of_particles(const BlockLayout<D>&);
 

@@ -38,7 +38,7 @@ struct Particles {
 
   std::size_t size() const { return mass.size(); }
 
-  /// Calls f(name, array) for every array in use: the one list of what a particle is.
+  /// Calls f(name, array) for every array in use: the only list of a particle's values.
   template <class F>
   void for_each_array(F f) {
     each(*this, f);
@@ -116,7 +116,7 @@ struct Particles {
     return order_by_id_;
   }
 
-  /// Rearranges: the new particle i is the old particle order[i]. `spare` is of as many particles.
+  /// Rearranges: the new particle i is the old particle order[i]. `spare` has the same size.
   void permute(const std::vector<std::uint32_t>& order, Spare& spare, int threads) noexcept {
     order_by_id_.clear();
     for_each_array([&](const char*, auto& array) {

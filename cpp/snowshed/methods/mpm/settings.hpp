@@ -1,4 +1,4 @@
-// What a scene may choose of the material point method.
+// Settings of the material point method in a scene.
 #pragma once
 
 #include <cmath>
@@ -10,7 +10,7 @@ namespace snowshed::mpm {
 enum class Precision { float32, float64 };
 enum class Transfer { flip, apic, affine_flip };
 enum class Basis { quadratic, cubic };
-enum class Contacting { kernel, touch };
+enum class ContactRule { kernel, touch };
 enum class Scheme { thesis, objective };
 enum class Fields { one, events };
 
@@ -21,22 +21,22 @@ struct Settings {
   Precision precision = Precision::float32;
   Transfer transfer = Transfer::flip;
   double flip_ratio = 0.99;            // share of FLIP in each step; PIC has the rest and damps
-  std::optional<double> damping_rate;  // 1/s, in place of flip_ratio, whatever the step
+  std::optional<double> damping_rate;  // 1/s, in place of flip_ratio, independent of the step
   double damping_length = 0;           // m, over which the damping averages; 0: by PIC, over dx
   double crack_band_length = 0;        // m, see `softening`; 0: none
-  Contacting contact = Contacting::kernel;
-  double contact_radius = 0.6;  // of a particle that touches, over half the particles' spacing
+  ContactRule contact = ContactRule::kernel;
+  double contact_radius = 0.6;  // radius of a touching particle, over half the particles' spacing
   Fields fields = Fields::one;
   double event_friction = 1;  // between the fields of events, over M/sqrt(3) of the snow
   Basis basis = Basis::quadratic;
   double courant_factor = 0.9;  // time step over the largest stable one
   double strain_limit = 0.2;    // largest |dt grad v| a step may impose on a particle
   double sleep_speed = 0.02;    // m/s, snow slower than this drops out of the steps; 0: never
-  double sleep_time = 0.04;     // s, for how long it must have been slower
+  double sleep_time = 0.04;     // s, time for which it must stay slower
   int threads = 0;              // 0: all
 
-  /// Sets the mechanisms of a scheme, which its name stands for; all else stays. `thesis` is that
-  /// of the thesis; the results of `objective` depend less on the grid.
+  /// Sets the mechanisms of a scheme; all other settings stay. `thesis` is that of the thesis; the
+  /// results of `objective` depend less on the grid.
   void adopt(Scheme chosen) {
     const Settings thesis;
     scheme = chosen;
@@ -53,7 +53,7 @@ struct Settings {
     transfer = Transfer::affine_flip;
     damping_rate = 380.0;
     damping_length = crack_band_length = 0.01;
-    contact = Contacting::touch;
+    contact = ContactRule::touch;
     fields = Fields::events;
   }
 
@@ -65,20 +65,20 @@ struct Settings {
   /// Whether velocities are damped towards their average over a length, not by PIC.
   bool damps_over_length() const { return damping_length > 0; }
 
-  /// FLIP's share in a step of dt seconds. What the grid does not resolve keeps this part of its
-  /// velocity, so that exp(-rate t) of it is left after a time t of steps of any length.
+  /// FLIP's share in a step of dt seconds. Motion that the grid does not resolve keeps this part of
+  /// its velocity, so that exp(-rate t) of it is left after a time t of steps of any length.
   double flip_share(double dt) const {
     if (damps_over_length()) return 1.0;
     return damping_rate ? std::exp(-*damping_rate * dt) : flip_ratio;
   }
 
-  /// How many times faster than the snow's own law snow softens as it dilates beyond its initial
-  /// volume: cracks are a few cells wide, and so take the same energy per area on any grid.
+  /// Factor by which snow that dilates beyond its initial volume softens faster than its own law.
+  /// Cracks are a few cells wide, and then take the same energy per area on any grid.
   double softening() const { return crack_band_length > 0 ? dx / crack_band_length : 1.0; }
 
-  /// The mean rate (1/s) at which velocities were damped over so many steps in so much time (s), by
-  /// PIC -ln(share)/dt. Nothing for APIC, which has no such share, for pure PIC, which leaves
-  /// nothing, and before the first step.
+  /// The mean rate (1/s) at which velocities were damped over `steps` steps in `time` (s); PIC's is
+  /// -ln(share)/dt. Nothing for APIC, which has no such share, for pure PIC, which leaves nothing,
+  /// and before the first step.
   std::optional<double> mean_damping_rate(std::int64_t steps, double time) const {
     if (transfer == Transfer::apic) return std::nullopt;
     if (damping_rate) return damping_rate;

@@ -9,7 +9,7 @@
 namespace snowshed::mpm {
 namespace {
 
-/// How much faster than the limit a single particle of a slow block may be.
+/// Largest speed of a single particle in a slow block, over the limit.
 constexpr double most_over_mean = 5;
 
 /// Growth of the mean velocity from one half of a quiet spell to the other, along the latter and
@@ -20,7 +20,7 @@ constexpr double noise = 0.005;
 /// must be in flight.
 constexpr double flight = 0.5;
 
-/// Samples that the mean of a half takes, however long the steps are.
+/// Samples in the mean of a half, for any length of the steps.
 constexpr double least_samples = 4;
 
 template <int D>
@@ -53,7 +53,7 @@ Sleep<D> Sleep<D>::relocated(const BlockLayout<D>& layout, double now) const {
     if (old == keys_.size()) break;
     if (keys_[old] != layout.particle_blocks[b]) continue;
     states[b] = states_[old];
-    // Snow that sleeps does not leave its block, so any change is snow that came.
+    // Sleeping snow does not leave its block, so any change is snow that came.
     if (states[b].asleep && counts[b] != counts_[old]) states[b] = awake_since(now);
   }
   return restored(layout, std::move(states));
@@ -115,7 +115,7 @@ bool Sleep<D>::is_slow(double rms_speed, double fastest) const {
 }
 
 /// Whether the awake snow beside a sleeping block moves it, or presses harder than it withstands.
-/// Its own snow does not answer to forces, so these are summed up, older ones fading.
+/// Its own snow does not move by forces, so these are summed up, and older ones fade.
 template <int D>
 bool Sleep<D>::is_pushed(State& s, int steps, double dt, const CarriedMotion& carried) const {
   s.sum *= std::max(0.0, 1.0 - steps * dt / time_);
@@ -184,7 +184,7 @@ template class Sleep<3>;
 
 // --- how the solver lets snow sleep --------------------------------------------------------------
 
-/// Blocks that fall asleep come to rest: what is left of their motion is lost.
+/// Blocks that fall asleep come to rest: the rest of their motion is lost.
 template <class T, int D>
 void SolverImpl<T, D>::let_sleep() noexcept {
   if (!state_.sleep.allowed() || counters().steps % steps_between_checks != 0) return;

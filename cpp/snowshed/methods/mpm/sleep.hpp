@@ -1,17 +1,17 @@
-// Snow at rest: which blocks of particles sleep, and which blocks of nodes are then not needed.
+// Snow at rest: blocks of particles that sleep, and blocks of nodes that are then not needed.
 //
 // A block of particles falls asleep when it has been slower than a limit for some time, and its
 // snow did not speed up along its motion meanwhile, nor change its velocity as snow in flight does:
-// what is just setting off, or turns in the air, is slow, too. Its speed is the
-// root of the mean square over its particles; no single one may be several times faster. A sleeping
-// block takes no part in a step, but keeps its mass and its stresses on its tile, so that its
-// neighbours rest on it. It wakes when nodes that it shares with awake snow would carry it faster
-// than the limit, or when the forces at them, left to act for as long as it takes to fall asleep,
-// would make it so; when particles come to it; and when an obstacle moves through its nodes.
+// snow that is just setting off, or turns in the air, is slow, too. Its speed is the root of the
+// mean square over its particles; no single one may be several times faster. A sleeping block takes
+// no part in a step, but keeps its mass and its stresses on its tile, so that its neighbours rest
+// on it. It wakes when nodes that it shares with awake snow would carry it faster than the limit,
+// or when the forces at them would do so in the time that it takes to fall asleep. It also wakes
+// when particles come to it, and when an obstacle moves through its nodes.
 //
 // The particles of a sleeping block lie within it: a block in which one has strayed beyond falls
-// asleep only after the next sort. So sorting takes no particle from a sleeping block, and one that
-// holds another number of them than before has got some.
+// asleep only after the next sort. Sorting therefore takes no particle from a sleeping block, and a
+// block with another number of particles than before has gained some.
 #pragma once
 
 #include <cstdint>
@@ -26,18 +26,20 @@ namespace snowshed::mpm {
 template <int D>
 class Sleep {
  public:
-  /// Speed limit (m/s; 0: nothing ever sleeps), time (s), and gravity (m/s2), which tells flight.
+  /// Speed limit (m/s; 0: nothing ever sleeps), time (s), and gravity (m/s2), by which flight is
+  /// recognised.
   Sleep(double speed, double time, double gravity)
       : limit_(speed), time_(time), gravity_(gravity) {}
 
-  /// What must be known of a particle block to let it fall asleep or to wake it.
+  /// Measurements of a particle block that decide when it falls asleep or wakes.
   struct BlockProbe {
-    std::function<double(std::int32_t)> fastest;         // speed of its fastest particle, m/s
-    std::function<double(std::int32_t)> speed;           // root of the mean square, m/s
-    std::function<VecD<D>(std::int32_t)> velocity;       // mean, m/s
-    std::function<CarriedMotion(std::int32_t)> carried;  // how its nodes would have moved it
-    std::function<bool(std::int32_t)> obstacle_moves;    // whether one does, through its nodes
-    std::function<bool(std::int32_t)> holds_its_snow;    // whether its particles lie within it
+    std::function<double(std::int32_t)> fastest;    // speed of its fastest particle, m/s
+    std::function<double(std::int32_t)> speed;      // root of the mean square, m/s
+    std::function<VecD<D>(std::int32_t)> velocity;  // mean, m/s
+    // Motion that its nodes would have given it.
+    std::function<CarriedMotion(std::int32_t)> carried;
+    std::function<bool(std::int32_t)> obstacle_moves;  // whether one does, through its nodes
+    std::function<bool(std::int32_t)> holds_its_snow;  // whether its particles lie within it
   };
 
   /// Checks all blocks at the time `now`, after some steps of dt; returns the blocks that fall
@@ -49,7 +51,7 @@ class Sleep {
   /// awake.
   Sleep relocated(const BlockLayout<D>& layout, double now) const;
 
-  /// Everything awake, from now on.
+  /// Wakes everything.
   void wake_all(const BlockLayout<D>& layout, double now) noexcept;
 
   /// Whether anything can sleep at all.
@@ -62,7 +64,7 @@ class Sleep {
   const std::vector<std::int32_t>& idle() const { return idle_; }
   std::int64_t awake_particles() const { return awake_particles_; }
 
-  /// What is known of one block of particles.
+  /// State of one block of particles.
   struct State {
     bool asleep = false;
     double since = 0;  // start of the present quiet spell, s
@@ -85,12 +87,12 @@ class Sleep {
   void list_blocks(const BlockLayout<D>& layout) noexcept;
 
   double limit_, time_, gravity_;
-  std::vector<BlockKey> keys_;        // of the layout that `states_` belongs to
+  std::vector<BlockKey> keys_;        // keys of the layout that `states_` belongs to
   std::vector<std::int32_t> counts_;  // particles in each of its blocks
   std::vector<State> states_;
   // The lists have room for all blocks, so that no step needs memory for them.
   std::vector<std::int32_t> awake_, active_, idle_, fallen_;
-  std::vector<bool> touched_;         // by awake snow: whether a grid block is active
+  std::vector<bool> touched_;         // whether awake snow touches a grid block
   std::vector<std::int32_t> border_;  // sleeping blocks that share nodes with awake snow
   std::int64_t awake_particles_ = 0;
 };

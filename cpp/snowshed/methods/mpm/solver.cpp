@@ -13,10 +13,11 @@
 namespace snowshed::mpm {
 namespace {
 
-/// Memory of the contacts' friction for fast snow, in cells that it slides over. The impulse it
-/// pressed with stays at the node, and what is not charged when it has left is lost. Of chunks of
-/// two cells and more, at 5 to 15 m/s, half a cell loses at most 2 % of the friction, a whole cell
-/// 11 %. Less than half charges the pushes of a chunk that vibrates before the pulls have come.
+/// Memory of the contacts' friction for fast snow, in cells that it slides over. The impulse of its
+/// push stays at the node, and the part that is not charged when the snow has left is lost. With
+/// half a cell, chunks of two cells and more at 5 to 15 m/s lose at most 2 % of the friction; with
+/// a whole cell, 11 %. Less than half charges the pushes of a chunk that vibrates before the pulls
+/// have come.
 constexpr double friction_reach = 0.5;
 
 }  // namespace
@@ -59,7 +60,7 @@ void SolverImpl<T, D>::step() {
   let_sleep();
 }
 
-/// All of a step that can fail for want of time step or memory; particles move last.
+/// The parts of a step that can fail (time step too long, no memory). Particles move last.
 template <class T, int D>
 double SolverImpl<T, D>::try_step() {
   if (!work_.tiles_valid) {
@@ -135,7 +136,7 @@ void SolverImpl<T, D>::scatter_block(const StepParameters<T>& step, const Partic
                          work_.grid.block_stats[b]);
 }
 
-/// First half of a step: the node sums, and at once the node velocities for a step of dt.
+/// First half of a step: the node sums and, in the same loop, the node velocities for a step of dt.
 template <class T, int D>
 void SolverImpl<T, D>::gather_and_update(double dt) {
   state_.contacts.follow(model_.boundary, time(), threads());
@@ -207,7 +208,7 @@ void SolverImpl<T, D>::update_block(const StepParameters<T>& step, std::ptrdiff_
                         model_.boundary.laws().data(), work_.grid.node_stats[g]);
 }
 
-/// No particle touches these nodes, so nobody asks for their velocities.
+/// No particle touches these nodes, so their velocities are not used.
 template <class T, int D>
 void SolverImpl<T, D>::leave_empty(std::ptrdiff_t g) {
   std::fill_n(work_.grid.node_stats[g].low, D, infinity);
@@ -239,7 +240,7 @@ double SolverImpl<T, D>::shorten_to_limits(double dt) {
 
 /// The largest velocity gradient (1/s) the particles will see. B-spline derivatives average nodal
 /// differences, so the range of the nodal velocities bounds it: of all nodes, or of those around a
-/// block. Only where these bounds are too large are the particles themselves asked.
+/// block. The particles themselves are examined only if these bounds are too large.
 template <class T, int D>
 double SolverImpl<T, D>::largest_strain() {
   const double dx = model_.options.settings.dx;
@@ -326,7 +327,7 @@ void SolverImpl<T, D>::record_damping(double dt) noexcept {
   p.undamped_time = damped ? 0.0 : p.undamped_time + dt;
 }
 
-/// Throws where a particle is not sound any more. The step cannot be taken back: the particles have
+/// Throws if a particle is not sound any more. The step cannot be taken back: the particles have
 /// moved, and a copy of them in each step would cost more than it is worth.
 template <class T, int D>
 void SolverImpl<T, D>::check_particles() {
@@ -349,8 +350,8 @@ std::string SolverImpl<T, D>::describe_unsound(std::int32_t b) const {
   for (int d = 1; d < D; ++d) message << ", " << x[d];
   message << ") m, t = " << time() << " s: ";
   if (std::isfinite(s.elastic_strain))
-    message << "its elastic strain has come to " << s.elastic_strain
-            << ", beyond what can be resolved (" << elastic_strain_limit
+    message << "its elastic strain has reached " << s.elastic_strain
+            << ", more than can be resolved (" << elastic_strain_limit
             << "); snow.youngs_modulus is too small for such speeds";
   else
     message << "its state is no longer finite; try a smaller numerics.courant_factor or double "

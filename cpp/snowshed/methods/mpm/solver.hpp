@@ -14,15 +14,15 @@ namespace snowshed::mpm {
 struct Options {
   int dimension = 3;
   double gravity = 9.81;            // m/s2, along -z
-  std::vector<Snow> snows{Snow()};  // by material_id; at least one, at most `max_materials`
+  std::vector<Snow> snows{Snow()};  // indexed by material_id; at least one, at most `max_materials`
   Settings settings;
   std::vector<Obstacle> obstacles;
-  std::vector<Shape> surfaces;  // of the obstacles, before thin parts were made
-                                // thicker; or none
-  bool energy = false;          // whether to keep the energy balance
+  // Surfaces of the obstacles, before thin parts were made thicker; or none.
+  std::vector<Shape> surfaces;
+  bool energy = false;  // whether to keep the energy balance
 };
 
-/// MPM as a method, and what only it has.
+/// MPM as a method, with its own additions.
 class Solver : public Method, public Settles, public KeepsEnergy, public Sleeps {
  public:
   virtual EnergyBalance energy() const = 0;
@@ -30,8 +30,8 @@ class Solver : public Method, public Settles, public KeepsEnergy, public Sleeps 
 };
 
 inline constexpr int steps_between_sorts = 64;
-/// Fewer where each particle has more contacts than this: where thousands of obstacles overlap,
-/// steps take long, and a run that is to stop would wait for its safe point.
+/// Fewer steps if each particle has more contacts than this: with thousands of overlapping
+/// obstacles steps take long, and a run that shall stop would wait for its safe point.
 inline constexpr double contacts_per_particle = 100;
 
 std::unique_ptr<Solver> make_solver(Options);

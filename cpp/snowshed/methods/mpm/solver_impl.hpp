@@ -16,7 +16,7 @@
 
 namespace snowshed::mpm {
 
-/// What can be computed from a state before any sort, and be thrown away then.
+/// Data that can be computed from a state before any sort, and thrown away then.
 template <class T, int D>
 struct Workspace {
   Workspace(const Settings& n, std::size_t obstacles)

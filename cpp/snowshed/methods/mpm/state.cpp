@@ -16,10 +16,10 @@ namespace {
 /// vibration of a slab a few cells thick.
 constexpr double friction_memory_steps = 40;
 
-/// Loose snow is not taken for larger than this, over its initial volume, where it touches.
+/// Largest volume of loose snow in contacts, over its initial volume.
 constexpr double most_expansion = 1.5;
 
-/// Velocity fields of events at once; with more events the oldest share one.
+/// Largest number of velocity fields; with more events the oldest share one.
 constexpr int fields_at_once = 8;
 
 }  // namespace
@@ -98,14 +98,15 @@ int State<T, D>::field_of_event(int event, std::vector<BlockKey>& blocks) {
   while (field < fields_at_once && is_taken(field)) ++field;
   if (field == fields_at_once) {
     // The two oldest fields become one.
-    const int kept = event_fields.begin()->second;
-    const auto other = std::find_if(event_fields.begin(), event_fields.end(),
-                                    [&](const auto& of_event) { return of_event.second != kept; });
+    const int oldest_field = event_fields.begin()->second;
+    const auto other =
+        std::find_if(event_fields.begin(), event_fields.end(),
+                     [&](const auto& of_event) { return of_event.second != oldest_field; });
     field = other->second;
     for (auto& of_event : event_fields)
-      if (of_event.second == field) of_event.second = kept;
+      if (of_event.second == field) of_event.second = oldest_field;
     for (BlockKey& key : blocks)
-      if (field_of(key) == field) key = block_key<D>(block_coord<D>(key), kept);
+      if (field_of(key) == field) key = block_key<D>(block_coord<D>(key), oldest_field);
   }
   event_fields[event] = field;
   return field;
@@ -127,7 +128,7 @@ void State<T, D>::arrange(const Model<T, D>& model, std::vector<BlockKey> blocks
   if (sort.layout.grid_blocks != layout.grid_blocks)
     relocated = contacts.relocated(model.boundary, sort.layout.grid_blocks, progress.time, threads);
   Sleep<D> sleep_after = sleep.relocated(sort.layout, progress.time);
-  // All is at hand: nothing from here on fails.
+  // All memory is reserved: nothing fails from here on.
   sort.apply(particles);
   layout = std::move(sort.layout);
   if (relocated) contacts = std::move(*relocated);

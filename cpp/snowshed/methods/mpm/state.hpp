@@ -1,4 +1,5 @@
-// All that a step changes and a checkpoint holds. What can be computed from it is in the workspace.
+// The state that steps change and checkpoints hold. The workspace has the data that can be computed
+// from it.
 #pragma once
 
 #include <cstdint>
@@ -38,13 +39,14 @@ struct State {
   Particles<T, D> particles;
   BlockLayout<D> layout;
   Contacts<T, D> contacts;
-  std::vector<FieldContact<T>> field_contacts;  // of the layout, once Meetings has updated them
+  // Contacts of the layout, once Meetings has updated them.
+  std::vector<FieldContact<T>> field_contacts;
   Sleep<D> sleep;
   Progress progress;
 
-  std::map<int, int> event_fields;  // by event
+  std::map<int, int> event_fields;  // field of each event
 
-  // What the snows that particles are of, or all while there are none, allow.
+  // Limits of the snows that are present, or of all snows while there are no particles.
   double elastic_limit = 0;    // s, time step of the stiffest
   double friction_memory = 0;  // s, by the slowest
 
@@ -80,7 +82,7 @@ struct State {
   double elastic_energy(const Model<T, D>& model) const;
   /// The energy balance up to now.
   EnergyBalance energy(const Model<T, D>& model) const;
-  /// Enters the present energies and, as added, what they are over `before` (J).
+  /// Enters the present energies, and their excess over `before` (J) as added.
   void record_added(const Model<T, D>& model, double before);
 };
 

@@ -13,7 +13,7 @@ constexpr double stability_number(Basis basis) { return basis == Basis::quadrati
 /// With R from the grid's velocities to the particles' and R* back, a mode u of the grid is stable
 /// if dt^2 |strain rate of u|^2 <= 2 |u|^2 + 2 |R u|^2, in the norms of the elastic and the kinetic
 /// energy. All three are sums over particles, so that a lone particle is the worst case again.
-/// FLIP's R u has no part along the gradient. APIC's has, along the arm of the nodes, where
+/// FLIP's R u has no part along the gradient. APIC's has one, along the arm of the nodes, where
 /// sum_i (dN_i)^2/N_i is the inverse of its inertia; only the rest is damped. Affine FLIP hands
 /// back the same affine velocity, and a lone particle's velocity takes no part in its strain.
 constexpr double transfer_stability_number(Transfer transfer, Basis basis) {

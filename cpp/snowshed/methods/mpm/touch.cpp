@@ -33,10 +33,10 @@ std::uint64_t nodes_in_box(const int (&begin)[D], int size) {
   return nodes;
 }
 
-/// A node within a thin plate works for the side that it lies on, except where so many times more
+/// A node within a thin plate works for the side that it lies on, unless this many times more
 /// particles touch the other one: the few have crossed the middle.
 constexpr int crossed = 10;
-/// Faces that look as much the same way count as one.
+/// Faces count as one if the cosine between their normals is larger than this.
 constexpr double cosine_of_one_face = 0.99;
 
 template <class T, int D, int size>
@@ -107,7 +107,7 @@ void Touch<T, D>::measure(const Model<T, D>& model, const State<T, D>& state, st
       block.touchers.push_back(toucher);
     }
   }
-  // What touches may cease to, but that matters little sooner or later.
+  // A particle may cease to touch earlier; it does not matter if this is noticed a little later.
   block.next = travel_ + std::max(nearest, contact_tolerance * n.dx);
   if (!block.touchers.empty()) block.next = travel_ + contact_tolerance * n.dx;
 }

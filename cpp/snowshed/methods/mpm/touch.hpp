@@ -1,8 +1,8 @@
 // Contact by touch: an obstacle holds a node only once the surface of a particle with weight there
 // has come to the obstacle as it is, not as the grid sees it. Without it the snow whose splines
-// reach the obstacle's nodes is held already, a cell before it is there, or past the obstacle's
-// edge. The node pushes along the normal of the face that is touched: at the end of a plate its own
-// looks along the plate, against snow that starts to slide.
+// reach the obstacle's nodes is held too early, a cell before it arrives, or past the obstacle's
+// edge. The node pushes along the normal of the face that is touched: at the end of a plate the
+// node's own normal points along the plate, against snow that starts to slide.
 //
 // Particles are measured again once they may have moved so far that another one touches.
 #pragma once
@@ -22,34 +22,34 @@ class Touch {
   /// After a change of the layout or of the order of the particles: nothing is known any more.
   void forget(const Model<T, D>& model, const State<T, D>& state);
 
-  /// Says of each contact whether it acts. `moved` is how far (m) the fastest snow has come since
-  /// the last call.
+  /// Decides for each contact whether it acts. `moved` is the distance (m) by which the fastest
+  /// snow has moved since the last call.
   void update(const Model<T, D>& model, State<T, D>& state, double moved, int threads);
 
  private:
   /// A particle that touches an obstacle.
   struct Toucher {
     std::int32_t particle, obstacle;
-    T normal[D];  // of the obstacle where it touches
+    T normal[D];  // normal of the obstacle where it touches
   };
-  struct Face {  // of an obstacle, that some particles touch
+  struct Face {  // face of an obstacle that some particles touch
     T normal[D];
     std::uint64_t nodes;  // a bit for each node where they have weight
     std::int32_t particles;
   };
   struct Block {
-    std::vector<Toucher> touchers;  // by obstacle
+    std::vector<Toucher> touchers;  // ordered by obstacle
     double next = 0;                // m, of travel, when to measure again
   };
 
   void measure(const Model<T, D>& model, const State<T, D>& state, std::int32_t block);
   void mark(const Model<T, D>& model, State<T, D>& state, std::int32_t grid_block) const;
-  /// The faces of an obstacle that particles touch which have weight in a block of nodes.
+  /// The faces of an obstacle that are touched by particles with weight in a block of nodes.
   std::vector<Face> faces(const State<T, D>& state, std::int32_t grid_block,
                           std::int32_t obstacle) const;
 
   int support_;
-  std::vector<Block> blocks_;  // of particles
+  std::vector<Block> blocks_;  // one per block of particles
   double largest_radius_ = 0;  // m, of any particle
   double travel_ = 0;          // m, of the fastest snow since `forget`
   bool measured_ = false;

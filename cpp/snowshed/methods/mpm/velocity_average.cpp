@@ -46,7 +46,7 @@ void VelocityAverage<T, D>::find_blocks(const BlockLayout<D>& layout) {
   tiles_of_.resize(blocks);
   first_nodes_.resize(blocks);
   settled_.resize(blocks);
-  struct Sharing {  // of a coarse block, which each velocity field has of its own
+  struct Sharing {  // share in a coarse block, which each velocity field has of its own
     int field;
     Coord coarse;
     std::int32_t block;
@@ -99,7 +99,8 @@ template <class T, int D>
 template <class Row>
 void VelocityAverage<T, D>::for_each_shared_row(std::int32_t coarse_block, std::int32_t block,
                                                 Row row) const {
-  int low[3] = {0, 0, 0}, high[3] = {1, 1, 1}, shift[3] = {0, 0, 0};  // of the coarse block
+  // Range within the coarse block.
+  int low[3] = {0, 0, 0}, high[3] = {1, 1, 1}, shift[3] = {0, 0, 0};
   for (int d = 0; d < D; ++d) {
     const int k = d + 3 - D;
     shift[k] = coarse_blocks_[coarse_block][d] * edge - first_nodes_[block][d];

@@ -1,9 +1,10 @@
 // Velocities averaged over a length, towards which they are damped: sums of mass and momentum on a
-// coarse grid whose spacing is that length, whatever the cells. The grid's own PIC damps over dx.
+// coarse grid whose spacing is that length, independent of the cells. The grid's own PIC damps over
+// dx.
 //
 // As the sums of a step, those of a block's particles go to a tile of its own; the coarse grid, in
-// blocks, gathers the tiles in fixed order; the mean velocities come back to the tiles. Nothing of
-// it outlives a step but the tiles of sleeping blocks, which do not change.
+// blocks, gathers the tiles in fixed order; the mean velocities come back to the tiles. Only the
+// tiles of sleeping blocks, which do not change, outlive a step.
 #pragma once
 
 #include <array>
@@ -31,7 +32,7 @@ class VelocityAverage {
   void connect(const BlockLayout<D>& layout);
 
   /// Averages the velocities of all particles. `share` is the part of the difference from the
-  /// average that they lose. No other call may come between this and the `tile`s.
+  /// average that they lose. No other call is allowed before the calls of `tile`.
   void update(const Kernels<T>& kernels, const ParticleView<T>& view, const BlockLayout<D>& layout,
               const Sleep<D>& sleep, double share, int threads) noexcept;
 
@@ -55,10 +56,10 @@ class VelocityAverage {
   double spacing_, per_cell_, share_of_length_;
   double slack_;  // cells from the block's first node down to its lowest particle
   int tile_edge_, tile_size_;
-  std::vector<BlockKey> keys_;            // of the particle blocks that all below belongs to
-  std::vector<AverageTile<T>> tiles_of_;  // by particle block
-  std::vector<Coord> first_nodes_;        // of the tiles, by particle block
-  std::vector<std::uint8_t> settled_;     // by particle block: the tile holds sums that stay
+  std::vector<BlockKey> keys_;  // keys of the particle blocks that all arrays below belong to
+  std::vector<AverageTile<T>> tiles_of_;  // one per particle block
+  std::vector<Coord> first_nodes_;        // first nodes of the tiles, one per particle block
+  std::vector<std::uint8_t> settled_;     // one per particle block: the tile holds sums that stay
   int around_size_;
   std::vector<std::int32_t> around_;  // the coarse blocks of each particle block
   std::vector<Coord> coarse_blocks_;

@@ -17,7 +17,7 @@ class AndersonMixing {
  public:
   using Vectors = AlignedVector<VecD<D>>;
 
-  /// Replaces the result of an iteration from a point by the point to go on from.
+  /// Replaces the result of an iteration from a point by the next point.
   void mix(const Vectors& point, Vectors& result) {
     const std::size_t n = result.size();
     Vectors residual(n), plain = result;
@@ -26,7 +26,7 @@ class AndersonMixing {
       residual[i] = result[i] - point[i];
       square += residual[i].squaredNorm();
     }
-    if (square < last_square_) {  // what diverges is not extrapolated
+    if (square < last_square_) {  // a diverging sequence is not extrapolated
       for (std::size_t i = 0; i < n; ++i) {
         const VecD<D> change = residual[i] - last_residual_[i];
         changed += change.squaredNorm();
@@ -43,7 +43,7 @@ class AndersonMixing {
 
  private:
   static constexpr double most_extrapolation = 10;
-  double last_square_ = 0;  // of the residual; 0: there is none
+  double last_square_ = 0;  // last square of the residual; 0: there is none
   Vectors last_residual_, last_result_;
 };
 

@@ -1,4 +1,4 @@
-// Which particles are near which walls.
+// Search for the particles near each wall.
 #pragma once
 
 #include <cstdint>
@@ -21,12 +21,12 @@ template <int D>
 struct WallContact {
   std::uint32_t obstacle;
   double distance;   // m
-  double thickness;  // m, of the obstacle there, at most
+  double thickness;  // m, upper bound for the obstacle there
   VecD<D> normal;    // out of the obstacle
   VecD<D> velocity;  // m/s, of the obstacle's surface
 };
 
-/// An obstacle where it is at some time.
+/// An obstacle at its place at some time.
 struct PlacedObstacle {
   const Obstacle* obstacle;
   std::uint32_t number;

@@ -7,7 +7,7 @@
 namespace snowshed::mps {
 namespace {
 
-/// Of a particle with its neighbours, measured in 2D and 3D.
+/// Bytes of a particle with its neighbours, measured in 2D and 3D.
 constexpr double bytes_per_particle[] = {1200, 3000};
 
 }  // namespace

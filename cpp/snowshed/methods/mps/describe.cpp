@@ -55,7 +55,7 @@ void describe(SettingsVisitor& v, Settings& s) {
   v.number("pressure_tolerance", s.pressure_tolerance, "", positive.up_to(0.1),
            "Residual of the pressure equation over its right-hand side");
   v.number("viscosity_tolerance", s.viscosity_tolerance, "", positive.up_to(0.1),
-           "Residual of the viscous equation over what gravity adds in a step");
+           "Residual of the viscous equation over the change by gravity in a step");
   v.integer("max_iterations", s.max_iterations, between(1, 100000),
             "Iterations after which a run ends with an error");
   v.integer("threads", s.threads, non_negative.up_to(4096), "Threads; 0: all");

@@ -1,4 +1,4 @@
-// What others do to the snow between steps. The new state is built beside the old one.
+// Changes of the snow from outside between steps. The new state is built beside the old one.
 #include <cmath>
 #include <string>
 
@@ -8,9 +8,10 @@
 namespace snowshed::mps {
 namespace {
 
-/// Particles push each other as if they stood for the same mass, that of a cell. Those of a body
-/// whose volume is no whole number of cells differ from it by half a particle in all, so the
-/// momentum that bodies exchange does, too. More than that in a single particle is another snow.
+/// Particles push each other as if all had the mass of a cell. The particles of a body whose volume
+/// is not a whole number of cells differ from it by up to half a particle in total, and so does the
+/// momentum that bodies exchange. A single particle that differs by more is refused as another
+/// snow.
 void check_mass(double mass, double of_cell) {
   constexpr double least = 0.5, most = 1.5;
   if (mass < least * of_cell * (1 - 1e-6) || mass > most * of_cell * (1 + 1e-6))
@@ -57,7 +58,7 @@ void SolverImpl<D>::append(State<D>& state, const ParticleBatch& batch) const {
   }
 }
 
-/// Takes over a state; the balance counts what it holds beyond the present one as added.
+/// Takes over a state; the balance counts its energy beyond the present one as added.
 template <int D>
 void SolverImpl<D>::accept(State<D> next) {
   CellOrder<D>().update(next.particles.position, model_.reach(), model_.options.period);

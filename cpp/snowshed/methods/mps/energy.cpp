@@ -16,7 +16,7 @@ EnergyBalance stored_energy(const Model<D>& model, const Particles<D>& particles
 
 /// The work of each force of the step is its impulse times the mean of the velocities before and
 /// after: the sum of all is the change of the kinetic energy. Gravity's work differs from the
-/// change of its potential, since particles move with the velocity after the step; that is the
+/// change of its potential, because particles move with the velocity after the step; that is the
 /// residual.
 template <int D>
 void SolverImpl<D>::book_energy(State<D>& next, double dt) const {

@@ -4,7 +4,7 @@
 namespace snowshed::mps {
 namespace {
 
-/// Snow is deposited on what is no farther away than this, in l0.
+/// Largest distance, in l0, over which snow is deposited on snow at rest or a wall.
 constexpr double touching = 1.5;
 
 /// The fastest particle among the neighbours, and whether one of them, or a wall, can carry it.
@@ -29,9 +29,9 @@ struct NearSnow {
 }  // namespace
 
 /// Equation (23) is lost; its form is inferred: an erodible particle begins to move where the
-/// pressure is above p_e and a neighbour faster than u_e; a moving one is deposited on what is at
-/// rest where the pressure is below p_d and its speed below u_d. p_d < p_e and u_d < u_e, so that
-/// it does not change its mind at once.
+/// pressure is above p_e and a neighbour faster than u_e; a moving one is deposited on snow at rest
+/// or a wall where the pressure is below p_d and its speed below u_d. p_d < p_e and u_d < u_e, so
+/// that a particle does not change back at once.
 template <int D>
 void erode_and_deposit(const Model<D>& model, Particles<D>& particles, Work<D>& work) {
   const Settings& s = model.settings();

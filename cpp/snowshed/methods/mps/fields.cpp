@@ -1,4 +1,4 @@
-// What the MPS method tells of its particles.
+// Fields of the particles of the MPS method.
 #include <cmath>
 
 #include "snowshed/methods/field_sources.hpp"

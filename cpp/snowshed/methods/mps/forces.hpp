@@ -1,4 +1,4 @@
-// What acts on the particles during a step, in the order in which it does.
+// Forces on the particles during a step, in the order in which they act.
 #pragma once
 
 #include <cmath>
@@ -7,13 +7,13 @@
 
 namespace snowshed::mps {
 
-/// Sorts the particles by cells, and finds neighbours, walls, number densities and the free surface
-/// where they stand.
+/// Sorts the particles by cells, and finds neighbours, walls, number densities and the free
+/// surface.
 template <int D>
 void find_neighbours(const Model<D>&, Particles<D>&, double time, Work<D>&);
 
-/// The slope of each pair, but zero where the neighbour is a wall of this kind or one farther in;
-/// until it is asked for the next time.
+/// The slope of each pair, set to zero if the neighbour is a wall of this kind or one farther in.
+/// The array is valid until the next call.
 template <int D>
 const float* slope_without(Kind, const Model<D>&, const Particles<D>&, Neighbourhood<D>&);
 
@@ -27,7 +27,7 @@ double shear_rate(const Eigen::Matrix<double, D, D>& gradient) {
   return (gradient + gradient.transpose()).norm() / std::sqrt(2.0);
 }
 
-/// Makes ready what find_rates needs of the places where particles stand.
+/// Prepares find_rates for the present places of the particles.
 template <int D>
 void prepare_rates(const Model<D>&, const Particles<D>&, Work<D>&);
 
@@ -43,12 +43,12 @@ void find_rates(const Model<D>&, Particles<D>&, Work<D>&);
 template <int D>
 void find_viscosities(const Model<D>&, Particles<D>&, const Work<D>&);
 
-/// What every particle gains in a step by gravity, m/s.
+/// Change of every particle's velocity in a step by gravity, m/s.
 template <int D>
 void add_gravity(const Model<D>&, double dt, Particles<D>&);
 
-/// Replaces the velocities by those that viscosity leaves after a step, which are implicit in
-/// equation (10). A solve that has not converged leaves them unsound.
+/// Replaces the velocities by those after a step with viscosity, which is implicit in equation
+/// (10). A solve that has not converged leaves them unsound.
 template <int D>
 SolveReport apply_viscosity(const Model<D>&, double dt, Particles<D>&, Work<D>&);
 
@@ -60,8 +60,8 @@ void prepare_pressure(const Model<D>&, const Particles<D>&, Work<D>&);
 template <int D>
 SolveReport solve_pressure(const Model<D>&, double dt, Particles<D>&, Work<D>&);
 
-/// Adds to the velocities what the pressure does to them, equation (15), and keeps particles from
-/// entering walls within the step. What was added is left in `change`.
+/// Adds the effect of the pressure to the velocities, equation (15), and keeps particles from
+/// entering walls within the step. `change` holds the change of the velocities.
 template <int D>
 void apply_pressure(const Model<D>&, double dt, Particles<D>&, Work<D>&);
 

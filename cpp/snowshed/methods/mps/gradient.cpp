@@ -1,4 +1,4 @@
-// What the pressure does to the velocities.
+// Effect of the pressure on the velocities.
 #include <algorithm>
 #include <cmath>
 
@@ -21,12 +21,12 @@ double least_pressure(const Particles<D>& particles, const Neighbourhood<D>& nea
   return least;
 }
 
-/// What is added to the neighbours' pressures in a gradient, Pa: the particle's own, so that each
-/// pair has equal and opposite forces; less its own, so that pressures that are linear have their
-/// gradient, once it is corrected; or less the least pressure around, as in equation (4). At the
-/// surface what is missing has the opposite pressure, as in the pressure equation: with it the
-/// second is the first. (A particle that rises above others would be pushed up the more by the
-/// second.)
+/// Pressure that a gradient adds to the neighbours' pressures, Pa. `conservative`: the particle's
+/// own, so that each pair has equal and opposite forces. `corrected`: minus its own, so that linear
+/// pressures have their exact gradient once it is corrected. `published`: minus the least pressure
+/// around, as in equation (4). At the surface the missing neighbours have the opposite pressure, as
+/// in the pressure equation, and the rule of `conservative` holds. (`corrected` would push a
+/// particle that rises above others up even more.)
 template <int D>
 double base_pressure(const Model<D>& model, const Particles<D>& particles,
                      const Neighbourhood<D>& near, std::size_t i) {
@@ -52,8 +52,8 @@ void find_base_pressures(const Model<D>& model, const Particles<D>& particles, W
 }
 
 /// The sum of (p_j + base) w r/r^2 over the neighbours, which include particles of walls: dummies
-/// have the pressure of the particle itself where pairs are to have equal and opposite forces, and
-/// else no part.
+/// have the pressure of the particle itself if pairs shall have equal and opposite forces, and
+/// otherwise no part.
 template <int D>
 void sum_beside_wall_particles(const Model<D>& model, const Particles<D>& particles,
                                Work<D>& work) {
@@ -82,14 +82,14 @@ void sum_pressures(const Model<D>& model, const Particles<D>& particles, Work<D>
   work.pressure_sum.resize(n);
   if (model.has_wall_particles()) return sum_beside_wall_particles(model, particles, work);
   for_each_piece(n, model.threads_for(n), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    model.kernels.sum_ways(near.rows(), near.offsets().data(), near.slope.data(),
-                           particles.pressure.data(), work.base_pressure.data(),
-                           work.pressure_sum.data()->data(), begin, end);
+    model.kernels.sum_separations(near.rows(), near.offsets().data(), near.slope.data(),
+                                  particles.pressure.data(), work.base_pressure.data(),
+                                  work.pressure_sum.data()->data(), begin, end);
   });
 }
 
-/// The part of the images behind walls. Their pressure grows along the normal as it must to stop
-/// what moves into the wall; a wall never pulls.
+/// The part of the images behind walls. Their pressure grows along the normal as much as stops a
+/// motion into the wall; a wall never pulls.
 template <int D>
 VecD<D> gradient_at_walls(const Model<D>& model, const Particles<D>& particles,
                           const Neighbourhood<D>& near, std::size_t i, double base, double dt) {
@@ -118,7 +118,7 @@ VecD<D> gradient_at_walls(const Model<D>& model, const Particles<D>& particles,
   return sum;
 }
 
-/// Takes from a velocity what would bring the particle too near to a wall within the step.
+/// Removes the part of a velocity that would bring the particle too near to a wall within the step.
 template <int D>
 void keep_out(const WallContact<D>& c, double spacing, double dt, VecD<D>& velocity) {
   const double approach = (velocity - c.velocity).dot(c.normal);

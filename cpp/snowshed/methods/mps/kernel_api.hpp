@@ -1,7 +1,7 @@
-// What the MPS solver and its kernels agree on: raw views, and a table of functions. The kernels
-// are compiled once for each instruction set (cmake/KernelVariants.cmake), so nothing here depends
-// on one. All take the rows [begin, end): particles, whose pairs follow on each other. The order in
-// which a row is summed depends on the instruction set only.
+// Interface between the MPS solver and its kernels: raw views, and a table of functions. The
+// kernels are compiled once for each instruction set (cmake/KernelVariants.cmake), so nothing here
+// depends on one. All take the rows [begin, end). A row is a particle, and its pairs are
+// consecutive. The order in which a row is summed depends on the instruction set only.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@ namespace snowshed::mps {
 
 /// The pairs of all particles, in compressed rows.
 struct PairRows {
-  const std::uint32_t *first, *index;  // of each row; the neighbour of each pair
+  const std::uint32_t *first, *index;  // first pair of each row; neighbour of each pair
 };
 
 /// The sums of a row of which corrections are made: of slope r r^T, weight r r^T (the upper halves
@@ -52,17 +52,17 @@ struct Kernels {
                         const double* velocity, double* gradient, std::ptrdiff_t begin,
                         std::ptrdiff_t end);
   /// The sum of slope (value_j + base_i) r of each row; without values that of slope r.
-  void (*sum_ways)(const PairRows&, const float* const* offset, const float* slope,
-                   const double* value, const double* base, double* sum, std::ptrdiff_t begin,
-                   std::ptrdiff_t end);
+  void (*sum_separations)(const PairRows&, const float* const* offset, const float* slope,
+                          const double* value, const double* base, double* sum,
+                          std::ptrdiff_t begin, std::ptrdiff_t end);
   /// The sum of e v over the neighbours nearer than `limit`, e the direction to each and v the
   /// speed of approach where it is not negative, times `share` of the neighbour, m/s.
   void (*sum_approaches)(const PairRows&, const float* const* offset, const double* velocity,
                          const double* share, double limit, double* sum, std::ptrdiff_t begin,
                          std::ptrdiff_t end);
-  /// The shear rate midway of each pair whose neighbour comes after the particle, 1/s: that of the
-  /// mean of both gradients but for its part along the separation, which is the difference of
-  /// velocities.
+  /// The shear rate midway of each pair whose neighbour comes after the particle, 1/s. It is that
+  /// of the mean of both gradients, except along the separation, where the difference of the
+  /// velocities counts.
   void (*pair_rates)(const PairRows&, const float* const* offset, const double* velocity,
                      const double* gradient, float* rate, std::ptrdiff_t begin, std::ptrdiff_t end);
 };

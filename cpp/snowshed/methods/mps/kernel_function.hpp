@@ -1,12 +1,11 @@
-// The weight function of the MPS method, and what follows from it on a lattice.
+// The weight function of the MPS method, and its sums on a lattice.
 #pragma once
 
 #include <cmath>
 
 namespace snowshed::mps {
 
-/// Number of axes over which Koshizuka and Oka's operators are normalised, with the constants of a
-/// regular lattice, in units of the spacing l0.
+/// Constants of Koshizuka and Oka's operators for a regular lattice, in units of the spacing l0.
 struct KernelConstants {
   double radius;          // r_e
   double number_density;  // n0, equation (7)
@@ -20,8 +19,9 @@ inline double kernel_weight(double r, double radius) { return r < radius ? radiu
 /// Wendland's function (1995, doi:10.1007/BF02123482) of w(r) as above; 1 at r = 0. Its sum over a
 /// particle and its neighbours says how much of the room around is filled, however they lie: in
 /// hexagons it is 1.0005 times that of squares that fill as much, and in disorder 1.001 to 1.01
-/// times. The sum of w, which is the more curved, is 0.993 times it, or 1.003 to 1.025 times (2D,
-/// radius 2.1): snow of which that is n0 takes up more room than on its lattice.
+/// times. The sum of w, which is more curved, is 0.993 times it, or 1.003 to 1.025 times (2D,
+/// radius 2.1). Disordered snow whose sum of w is n0 therefore takes up more room than on its
+/// lattice.
 inline double filling_weight(double w) {
   const double q = 1 / (1 + w), rest = (1 - q) * (1 - q);
   return rest * rest * (1 + 4 * q);
@@ -45,8 +45,8 @@ inline KernelConstants kernel_constants(int dimension, double radius) {
   return {radius, n, moment / n, filling};
 }
 
-/// Calls visit(w, z) for what the second layer of a lattice would see beyond the layer next to it,
-/// where z is the distance across in l0: behind a wall, or above a surface.
+/// Calls visit(w, z) for the points that the second layer of a lattice would see beyond the layer
+/// next to it, where z is the distance across in l0: behind a wall, or above a surface.
 template <class Visit>
 void visit_beyond_second_layer(int dimension, const KernelConstants& k, const Visit& visit) {
   const int reach = int(std::ceil(k.radius)), across = dimension == 3 ? reach : 0;
@@ -56,8 +56,8 @@ void visit_beyond_second_layer(int dimension, const KernelConstants& k, const Vi
         visit(kernel_weight(std::sqrt(double(x * x + y * y + z * z)), k.radius), z);
 }
 
-/// 2 d/(lambda n0) sum of w z over what is behind a wall, for the second layer of a lattice above
-/// it, where z is the distance along the normal in l0; for all layers it is one.
+/// 2 d/(lambda n0) sum of w z over the points behind a wall, for the second layer of a lattice
+/// above it, where z is the distance along the normal in l0; for all layers it is one.
 inline double second_layer_share(int dimension, const KernelConstants& k) {
   double sum = 0;
   visit_beyond_second_layer(dimension, k, [&](double w, int z) { sum += w * z; });

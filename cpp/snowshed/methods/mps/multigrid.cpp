@@ -8,8 +8,8 @@
 namespace snowshed::mps {
 namespace {
 
-constexpr float jacobi_damping = 0.9f;  // of Jacobi sweeps
-// Of corrections that are constant within aggregates: of particles, and of aggregates.
+constexpr float jacobi_damping = 0.9f;  // damping of Jacobi sweeps
+// Enlargement of corrections that are constant within aggregates: of particles, and of aggregates.
 constexpr float first_enlargement = 1.4f, enlargement = 1.8f;
 constexpr std::size_t most_direct = 64;  // unknowns of the level that is solved directly
 constexpr std::size_t most_levels = 24;
@@ -25,7 +25,7 @@ void for_each_row(std::size_t n, int threads, F f) {
                   });
 }
 
-/// Where among the 3^D aggregates around one another of them lies.
+/// Number of an aggregate among the 3^D around another one.
 template <std::size_t D>
 int slot_of(const std::array<std::int32_t, D>& from, const std::array<std::int32_t, D>& to,
             std::int32_t period) {
@@ -91,8 +91,8 @@ void Multigrid<D, C>::make_next() {
   level.child_first.push_back(std::uint32_t(keys_.size()));
 }
 
-/// Makes the rows of a level: visit(c, add_diagonal, add) adds what the unknowns in aggregate c
-/// have on the diagonal, and their couplings with those in other aggregates, or in c itself.
+/// Makes the rows of a level: visit(c, add_diagonal, add) adds the diagonal of the unknowns in
+/// aggregate c, and their couplings with those in other aggregates, or in c itself.
 template <int D, int C>
 template <class Visit>
 void Multigrid<D, C>::fill(Level& level, const Visit& visit) {
@@ -157,7 +157,8 @@ void Multigrid<D, C>::fill_next(const Level& below, Level& level) {
   });
 }
 
-/// A little on the diagonal keeps rounding, and a fluid without a free surface, from spoiling it.
+/// A small increase of the diagonal makes the factor safe against rounding, and against a fluid
+/// without a free surface.
 template <int D, int C>
 void Multigrid<D, C>::factor_coarsest() {
   const Level& level = levels_.back();
@@ -225,7 +226,7 @@ void Multigrid<D, C>::sweep(Level& level) {
                [&](std::size_t i) { level.x[i] += level.inverse[i] * level.r[i]; });
 }
 
-/// Improves x of a level, whose b is given; from zero, or from what is there.
+/// Improves x of a level for a given b, from zero or from the present x.
 template <int D, int C>
 void Multigrid<D, C>::cycle(std::size_t l, bool from_zero) {
   Level& level = levels_[l];

@@ -31,7 +31,7 @@ class Multigrid {
   /// z = M^-1 r, for one unknown.
   void apply(const double* r, double* z);
 
-  /// Adds to the particles' unknowns what the levels above make of their residuals.
+  /// Corrects the particles' unknowns by their residuals on the levels above.
   template <class T>
   void correct(const T* residual, T* x);
 
@@ -46,7 +46,7 @@ class Multigrid {
   /// A level above the particles: rows of at most `stencil` entries, itself among them.
   struct Level {
     std::vector<Coordinates> at;
-    std::vector<std::uint32_t> child_first;  // of the level below, whose `child` they list
+    std::vector<std::uint32_t> child_first;  // ranges of `child` for the level below
     std::vector<std::uint32_t> child;
     std::vector<std::uint32_t> parent;   // in the level above
     AlignedVector<float> value;          // stencil of each row, positive couplings

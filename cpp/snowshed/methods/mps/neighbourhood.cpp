@@ -15,10 +15,10 @@ namespace {
 constexpr double least_asymmetry = 0.12;
 /// The same for inner walls, on a lattice 0.05 where the surface meets the wall.
 constexpr double least_wall_asymmetry = 0.03;
-/// Below this ratio of number densities a particle is at a surface whatever is around it.
+/// Below this ratio of number densities a particle is at a surface, with any neighbours.
 constexpr double sparse = 0.75;
-/// Of the matrix of a particle's neighbours, below which gradients are not corrected; 1 on a
-/// lattice, 0.4 at its surface.
+/// Least determinant of the matrix of a particle's neighbours for which gradients are corrected; it
+/// is 1 on a lattice, 0.4 at its surface.
 constexpr double least_determinant = 0.1;
 
 template <int D>
@@ -47,8 +47,8 @@ void weigh_pairs(const Model<D>& model, Neighbourhood<D>& near, int threads) {
   });
 }
 
-/// Walls are at the surface only where snow is: else disorder of the snow beside a wall would let
-/// all pressure out through it.
+/// Walls are at the surface only if the snow there is; otherwise disorder of the snow beside a wall
+/// would release all pressure through it.
 template <int D>
 void leave_walls_within(const Particles<D>& particles, Neighbourhood<D>& near, int threads) {
   const auto is_snow_at_surface = [&](std::size_t j) {
@@ -173,8 +173,8 @@ void leave_dry_walls(Particles<D>& particles, Neighbourhood<D>& near, int thread
   });
 }
 
-/// Inner walls are made anew in each step: what their pressure will be near, the hydrostatic one
-/// of the snow around.
+/// Inner walls are made anew in each step. The hydrostatic pressure of the snow around is a first
+/// guess of theirs.
 template <int D>
 void guess_wall_pressures(const Model<D>& model, Particles<D>& particles,
                           const Neighbourhood<D>& near) {

@@ -9,8 +9,8 @@
 
 namespace snowshed::mps {
 
-/// The kinds of particles of Saito and others. All but the moving ones keep their places; dummy
-/// walls only fill the space behind a wall, so that it is not taken for a free surface.
+/// The kinds of particles of Saito and others. Only moving particles change their places. Dummy
+/// walls fill the space behind a wall, so that it is not taken for a free surface.
 enum class Kind : std::uint8_t { moving, erodible, inner_wall, dummy_wall };
 
 /// One array for each quantity, all of one length.
@@ -29,7 +29,7 @@ struct Particles {
   AlignedVector<VecD<D>> shear;  // m/s2, by viscosity, in the last step
   AlignedVector<Kind> kind;
   AlignedVector<std::uint32_t> id;
-  AlignedVector<std::uint16_t> event;  // of wall particles: the number of the obstacle
+  AlignedVector<std::uint16_t> event;  // for wall particles, the number of the obstacle
 
   std::size_t size() const { return position.size(); }
   bool moves(std::size_t i) const { return kind[i] == Kind::moving; }

@@ -9,7 +9,7 @@ namespace snowshed::mps {
 namespace {
 
 /// Inner walls conduct pressure as snow does. In divergences they therefore move as the snow around
-/// them does; that nothing flows into the wall is what dummies behind them say (ours).
+/// them does; the dummies behind them ensure that nothing flows into the wall (ours).
 template <int D>
 void find_slip(const Model<D>& model, const Particles<D>& particles, Neighbourhood<D>& near) {
   near.slip.resize(particles.size());
@@ -28,8 +28,8 @@ void find_slip(const Model<D>& model, const Particles<D>& particles, Neighbourho
   });
 }
 
-/// The divergence beside walls of particles, 1/s, in which inner walls move as `slip` says, and
-/// dummies tell what flows into the wall.
+/// The divergence beside walls of particles, 1/s. Inner walls move with `slip`, and dummies add the
+/// flow into the wall.
 template <int D>
 double slip_divergence(const Model<D>& model, const Particles<D>& particles,
                        const Neighbourhood<D>& near, const Eigen::Matrix<double, D, D>& correction,
@@ -50,7 +50,7 @@ double slip_divergence(const Model<D>& model, const Particles<D>& particles,
 }
 
 /// The share of walls' images in the divergence, 1/s. They move along the wall as the particles do.
-/// What flows through the wall counts as the pressure's slope does in the Laplacian, so that both
+/// The flow through the wall counts as the pressure's slope does in the Laplacian, so that both
 /// cancel at rest.
 template <int D>
 double image_divergence(const Model<D>& model, const Particles<D>& particles,
@@ -84,7 +84,7 @@ double divergence(const Model<D>& model, const Particles<D>& particles, const Wo
          image_divergence(model, particles, near, correction, i);
 }
 
-/// What `divergence` needs of the present velocities; the published source has none.
+/// Sums over the present velocities for `divergence`; the published source needs none.
 template <int D>
 void prepare_divergence(const Model<D>& model, const Particles<D>& particles, Work<D>& work) {
   if (model.settings().source == Source::published) return;
@@ -96,8 +96,8 @@ void prepare_divergence(const Model<D>& model, const Particles<D>& particles, Wo
 
 /// The time in which the density's error is taken away by the share `compensation`, s: the step, or
 /// the time in which a particle of usual speed moves by the Courant factor times l0 where that is
-/// longer. With the step alone, snow that one fast particle slows down would be pushed the harder,
-/// the shorter the step. (Ours.)
+/// longer. With the step alone a single fast particle, which shortens the step, would raise the
+/// pressure of all snow. (Ours.)
 template <int D>
 double compensation_time(const Model<D>& model, double dt, const Particles<D>& particles) {
   const Settings& s = model.settings();
@@ -109,18 +109,17 @@ double compensation_time(const Model<D>& model, double dt, const Particles<D>& p
                    : dt;
 }
 
-/// Sources smaller than this part of what the weight of a particle makes are rounding errors: no
-/// equation is solved to a part of them.
+/// Sources smaller than this share of the source by a particle's weight are rounding errors, and
+/// set no tolerance.
 constexpr double least_source = 1e-8;
 
-/// Of densities below the surface, which need not be a lattice's.
+/// Tolerance of densities below the surface, where particles need not form a lattice.
 constexpr double surface_tolerance = 0.002;
 
-/// How much denser the snow is than on a lattice, for the compensation (ours): by how its room is
-/// filled; beside wall particles by its number density, which grows faster where particles come
-/// near to the wall. At the surface neighbours are missing, and below it at most as many as below
-/// that of a lattice: what is missing beyond that counts, so that room that is made there does not
-/// stay.
+/// Excess of density over a lattice, for the compensation (ours). Inside the snow it comes from the
+/// filled share of the room; beside wall particles from the number density, which grows faster near
+/// a wall. At the surface neighbours are missing; only those missing beyond a lattice's surface
+/// count, so that gaps close.
 template <int D>
 double compensated_excess(const Model<D>& model, const Particles<D>& particles,
                           const Neighbourhood<D>& near, std::size_t i) {
@@ -150,8 +149,8 @@ double source(const Model<D>& model, double dt, double compensation_time,
              compensated_excess(model, particles, near, i);
 }
 
-/// A fluid without a free surface knows its pressure up to a constant: takes the mean from the
-/// sources, so that there is a solution.
+/// Subtracts the mean from the sources. The pressure of a fluid without a free surface is defined
+/// up to a constant, and its equation has a solution only if the mean of the sources is zero.
 template <int D>
 void balance_sources(Work<D>& work, std::size_t n) {
   double sum = 0, count = 0;
@@ -188,7 +187,7 @@ void prepare_pressure(const Model<D>& model, const Particles<D>& particles, Work
       else if (mirrored && near.dry[j] && particles.is_wall(i))
         sum += 2 * double(near.coupling[e]);
     }
-    // What is missing at a free surface has the pressure of the particle with the opposite sign.
+    // Missing neighbours at a free surface have the particle's pressure with the opposite sign.
     if (near.surface[i]) sum += 2 * std::max(0.0, n0 - near.density[i]);
     work.diagonal[i] = std::max(sum, 1e-3 * n0);
   });
@@ -201,7 +200,7 @@ void prepare_pressure(const Model<D>& model, const Particles<D>& particles, Work
 
 namespace {
 
-/// Solves for work.pressure from what stands there.
+/// Solves for work.pressure, from its present values.
 template <int D>
 SolveReport solve(const Model<D>& model, Work<D>& work) {
   const Settings& s = model.settings();
@@ -240,7 +239,8 @@ SolveReport solve_pressure(const Model<D>& model, double dt, Particles<D>& parti
   const std::size_t n = particles.size();
   prepare_divergence(model, particles, work);
   const double relaxation = compensation_time(model, dt, particles);
-  // What the Laplacian would make of a linear pressure, since neighbours do not lie evenly around.
+  // The Laplacian of a linear pressure, which is not zero because neighbours do not lie evenly
+  // around.
   const bool corrected = model.settings().gradient == Gradient::corrected;
   work.source.resize(n);
   work.pressure.resize(n);

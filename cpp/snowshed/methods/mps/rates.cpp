@@ -8,7 +8,7 @@
 namespace snowshed::mps {
 namespace {
 
-/// Nearer to a wall than this, in l0, the velocity behind it grows no further.
+/// Distance from a wall, in l0, below which the velocity behind it grows no further.
 constexpr double nearest_no_slip = 0.25;
 
 /// The difference of velocities between a particle and one behind a wall's surface over that
@@ -45,8 +45,8 @@ void visit_walls(const Model<D>& model, const Particles<D>& particles, const Nei
   }
 }
 
-/// What makes velocity gradients right for linear velocities however the neighbours lie (as
-/// find_corrections).
+/// Matrices that make velocity gradients right for linear velocities in any arrangement of the
+/// neighbours (as find_corrections).
 template <int D>
 Eigen::Matrix<double, D, D> rate_correction(const Model<D>& model, const Particles<D>& particles,
                                             const Neighbourhood<D>& near, std::size_t i) {

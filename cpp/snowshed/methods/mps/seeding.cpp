@@ -11,9 +11,9 @@ namespace {
 
 std::string in_millimetres(double metres) { return show_rounded(1000 * metres) + " mm"; }
 
-/// Says what becomes of a body that is too small for a lattice of particles of equal mass.
-void tell_of_coarse_lattice(const LevelSet& shape, const Settings& settings, double mass_ratio,
-                            std::size_t particles, std::vector<std::string>& notes) {
+/// Adds a note on a body that is too small for a lattice of particles of equal mass.
+void note_coarse_lattice(const LevelSet& shape, const Settings& settings, double mass_ratio,
+                         std::size_t particles, std::vector<std::string>& notes) {
   constexpr double most_uneven = 0.02;
   const double thickness = 2 * shape.inradius();
   const std::string count =
@@ -39,7 +39,7 @@ void seed_on_lattice(const Settings& s, const LevelSet& shape, int dimension,
   batch.positions = std::move(filling.positions);
   batch.mass = s.density * filling.volume / double(count);
   const double cell = std::pow(s.spacing, dimension);
-  tell_of_coarse_lattice(shape, s, filling.volume / (cell * double(count)), count, notes);
+  note_coarse_lattice(shape, s, filling.volume / (cell * double(count)), count, notes);
 }
 
 }  // namespace snowshed::mps

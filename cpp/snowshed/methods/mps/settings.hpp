@@ -1,11 +1,11 @@
-// What a scene may choose of the moving particle semi-implicit method.
+// Settings of the moving particle semi-implicit method in a scene.
 #pragma once
 
 namespace snowshed::mps {
 
 /// Laws of the shear stress, see rheology.hpp.
 enum class ShearLaw { newtonian, bingham, bingham_dilatant };
-/// How the yield stress is approached at small shear rates.
+/// Form of the yield stress at small shear rates.
 enum class Regularisation { papanastasiou, bi_viscous };
 /// Right-hand side of the pressure equation: Koshizuka and Oka (1996); Tanaka and Masunaga (2010).
 enum class Source { published, compensated };
@@ -21,9 +21,9 @@ enum class Coupling { none, stiff, always };
 enum class Surface { published, mirrored };
 /// When particles move: before the pressure is solved, or once at the end of the step.
 enum class Order { published, single_move };
-/// What keeps particles apart besides the pressure.
+/// Rule besides the pressure that keeps particles apart.
 enum class SpacingLaw { none, collision, shifting };
-/// What walls are made of: images of the particles near them, or particles of their own.
+/// Representation of walls: images of the particles near them, or particles of their own.
 enum class Walls { mirrors, particles };
 /// Preconditioner of the pressure equation.
 enum class Preconditioner { jacobi, incomplete_cholesky, multigrid };

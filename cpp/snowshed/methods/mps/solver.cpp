@@ -11,8 +11,8 @@
 namespace snowshed::mps {
 namespace {
 
-/// A particle that would move farther than this in a step, in l0, has it repeated with half its
-/// length: it could pass through a wall. So often it is halved.
+/// If a particle would move farther than this (in l0), the step is repeated with half its length,
+/// at most `most_halvings` times: the particle could pass through a wall.
 constexpr double longest_distance = 0.5;
 constexpr int most_halvings = 20;
 
@@ -23,20 +23,21 @@ constexpr int most_halvings = 20;
 constexpr double pressure_courant = 0.5;
 
 /// The share of the last step's viscous force that the pressure of flowing snow expects. Without it
-/// stiff fluids are compressed more, since viscosity acts last; with 0.9 the pressure of a column
+/// stiff fluids are compressed more, because viscosity acts last; with 0.9 the pressure of a column
 /// of 1e4 Pa s at rest was 1.4 % too low (ours).
 constexpr double expected_shear = 0.5;
 
-/// Pressure and viscosity are found together where a step's plastic viscosity over rho l0^2/dt is
-/// at least this, and the fluid creeps. Its root mean square of speeds u, over that of a fall that
-/// viscosity slows down within l0, rho g l0^2/eta, is more than this: in a stiff fluid at rest
-/// errors of the gradients would ask for large pressures, since these hardly move it. And
-/// rho u^3/(eta g), the square of the Reynolds number of a body so high that it flows at u, is less
-/// than this: fast flows lose no volume to viscosity, and need not pay, however small l0 is.
+/// Pressure and viscosity are solved together under three conditions, with the root mean square u
+/// of the speeds. The plastic viscosity eta is at least `least_stiffness` rho l0^2/dt. The fluid
+/// moves: u is more than `least_fall` times rho g l0^2/eta, the speed of a fall that viscosity
+/// slows down within l0. (In a stiff fluid at rest errors of the gradients would cause large
+/// pressures, because these hardly move it.) The fluid creeps: rho u^3/(eta g), the square of the
+/// Reynolds number of a body so high that it flows at u, is less than `most_inertia`. Fast flows
+/// lose no volume to viscosity, and are solved the cheaper way for any l0.
 constexpr double least_stiffness = 2, least_fall = 2, most_inertia = 1e-3;
-/// That iteration begins with this share of the last step's viscous force, so that errors of the
-/// pressure die out; ends when the force changes by less than this part of gravity; and stops where
-/// it does not, since any number of its iterations is better than one.
+/// The iteration begins with this share of the last step's viscous force; errors of the pressure
+/// then die out. It ends when the force changes by less than this part of gravity. It also ends if
+/// it diverges; the iterations made until then are kept, because they are better than one.
 constexpr double first_shear = 0.9, coupling_tolerance = 3e-3;
 constexpr int most_couplings = 20;
 
@@ -170,10 +171,10 @@ bool SolverImpl<D>::couples(double dt) const {
          s.density * speed * speed * speed < most_inertia * s.viscosity * g;
 }
 
-/// The pressure balances what it can before viscosity acts, so that snow that does not yield stays
-/// where it is. It expects a viscous force where snow flows: a share of the last step's. What
-/// viscosity compresses nevertheless, the pressure of the next step takes away; or, where they are
-/// coupled, both act anew until the force is the expected one, accelerated. Ours.
+/// The pressure acts before viscosity, so that snow that does not yield stays where it is. It
+/// expects a viscous force where snow flows: a share of the last step's. Viscosity may still
+/// compress the snow. The pressure of the next step undoes this; or, where they are coupled, both
+/// act anew until the force is the expected one, accelerated. Ours.
 template <int D>
 void SolverImpl<D>::act_after_pressure(double dt, State<D>& next) {
   Particles<D>& p = next.particles;
@@ -318,7 +319,8 @@ Report SolverImpl<D>::report() const {
   return r;
 }
 
-/// How well the equations were solved, in the last step and on average, and how dense the snow is.
+/// Quality of the solutions of the equations, in the last step and on average, and density of the
+/// snow.
 template <int D>
 ReportsRun::Section SolverImpl<D>::run_section() const {
   const Report r = report();

@@ -27,19 +27,19 @@ struct Report {
   double pressure_residual = 0, viscosity_residual = 0;  // relative
   double mean_pressure_iterations = 0, mean_viscosity_iterations = 0;
   double density_error = 0;    // root mean square of n/n0 - 1 within the snow
-  double largest_density = 0;  // of n/n0
+  double largest_density = 0;  // largest n/n0
 };
 
-/// MPS as a method, and what only it has.
+/// MPS as a method, with its own additions.
 class Solver : public Method, public KeepsEnergy, public ReportsRun {
  public:
   virtual Report report() const = 0;
 };
 
-/// Throws InputError where the parts of a step cannot follow each other as the settings say.
+/// Throws InputError if the parts of a step cannot follow each other in the order of the settings.
 void check_order(const Settings&);
 
-/// Throws InputError where the settings do not fit each other.
+/// Throws InputError if the settings do not fit each other.
 std::unique_ptr<Solver> make_solver(Options);
 
 }  // namespace snowshed::mps

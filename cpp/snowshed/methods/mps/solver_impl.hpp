@@ -1,4 +1,4 @@
-// The solver of the MPS method: what it holds, and how its parts go together.
+// The solver of the MPS method: its data, and the order of its parts.
 #pragma once
 
 #include "snowshed/methods/mps/forces.hpp"

@@ -1,4 +1,4 @@
-// What keeps particles apart besides the pressure.
+// Rules besides the pressure that keep particles apart.
 #include <algorithm>
 #include <cmath>
 
@@ -7,13 +7,13 @@
 namespace snowshed::mps {
 namespace {
 
-/// Particles nearer to each other than this, in l0, bounce; so much of their speed is left.
+/// Particles nearer to each other than this (in l0) bounce, and keep this share of their speed.
 struct Collision {
   double distance, restitution;
 };
 /// As is common in MPS codes.
 constexpr Collision common{0.5, 0.2};
-/// With shifting they only stop approaching each other, but from the spacing of the lattice on
+/// With shifting they only stop approaching each other, beginning at the spacing of the lattice
 /// (ours, after the dynamic stabilisation of Tsuruta and others 2013, Computers & Fluids 82):
 /// velocities that alternate between neighbours have no divergence and would otherwise stay. With
 /// 0.8 water at rest boils after 5 s.
@@ -42,14 +42,14 @@ void collide(const Model<D>& model, const Collision& law, Particles<D>& particle
   });
 }
 
-/// d/n0 times the sum of w r/r^2: from where there are fewer particles, 1/m.
+/// d/n0 times the sum of w r/r^2, which points from fewer to more particles, 1/m.
 template <int D>
 void find_concentration_gradients(const Model<D>& model, std::size_t n, Work<D>& work) {
   const Neighbourhood<D>& near = work.near;
   work.concentration.resize(n);
   for_each_piece(n, model.threads_for(n), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    model.kernels.sum_ways(near.rows(), near.offsets().data(), near.slope.data(), nullptr, nullptr,
-                           work.concentration.data()->data(), begin, end);
+    model.kernels.sum_separations(near.rows(), near.offsets().data(), near.slope.data(), nullptr,
+                                  nullptr, work.concentration.data()->data(), begin, end);
   });
   for_each_particle(n, model.threads_for(n), [&](std::size_t i) {
     VecD<D>& gradient = work.concentration[i];
@@ -71,10 +71,9 @@ VecD<D> inward(const AlignedVector<VecD<D>>& gradients, const Neighbourhood<D>& 
   return sum.stableNormalized();
 }
 
-/// Towards where there are fewer particles; at the surface only along it, and below it not towards
-/// it: the surface would rise. Also snow at rest is
-/// shifted, at the speed of a fall over l0: the corrected gradient does not keep its particles
-/// apart (ours).
+/// Shifts particles to where there are fewer; at the surface only along it, and below it not
+/// towards it, because the surface would rise. Snow at rest is shifted, too, at the speed of a fall
+/// over l0: the corrected gradient does not keep its particles apart (ours).
 template <int D>
 void shift(const Model<D>& model, double dt, Particles<D>& particles, Work<D>& work) {
   const Neighbourhood<D>& near = work.near;

@@ -1,5 +1,5 @@
-// What the MPS method is made of: a model that never changes, a state that steps change, and a
-// workspace that follows from both and may be thrown away.
+// Parts of the MPS method: a model that never changes, a state that steps change, and a workspace
+// that follows from both and may be thrown away.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +22,7 @@
 
 namespace snowshed::mps {
 
-/// How many particles a thread is started for: one that has little to do costs more than it saves.
+/// Least number of particles per thread: a thread with little work costs more than it saves.
 inline constexpr std::size_t particles_per_thread = 500;
 
 template <int D>
@@ -44,7 +44,7 @@ struct Model {
   VecD<D> gravity;  // m/s2
   KernelConstants kernel;
   double second_layer;       // see second_layer_share
-  SurfaceLack surface_lack;  // below a surface that is no lattice's
+  SurfaceLack surface_lack;  // below a surface that is not that of a lattice
   Rheology rheology;
   const Kernels<D>& kernels = chosen_kernels<D>();
   int threads;
@@ -54,13 +54,13 @@ struct Model {
     return options.obstacles[c.obstacle].law.condition == Condition::sticky;
   }
 
-  /// Threads for a step of so many particles.
+  /// Threads for a step of this number of particles.
   int threads_for(std::size_t particles) const {
     return snowshed::threads_for(particles, particles_per_thread, threads);
   }
 };
 
-/// How well the equations of a step were solved.
+/// Quality of the solutions of a step's equations.
 struct Solves {
   SolveReport pressure, viscosity;
 };
@@ -72,38 +72,39 @@ struct State {
   std::uint32_t next_id = 0;
   StepCounters counters;
   EnergyBalance energy;                                            // its sums over steps
-  Solves solves;                                                   // of the last step
-  std::int64_t pressure_iterations = 0, viscosity_iterations = 0;  // of all steps
+  Solves solves;                                                   // those of the last step
+  std::int64_t pressure_iterations = 0, viscosity_iterations = 0;  // sums over all steps
 };
 
-/// What a step finds out about the particles where they stand.
+/// Geometry of the particles at their present places, found in each step.
 template <int D>
 struct Neighbourhood {
   CellOrder<D> cells;
   NeighbourLists<D> lists;
   RowLists<WallContact<D>> contacts;
   WallImages<D> images;
-  // Of each pair of particles, in the order of the lists.
+  // One value per pair of particles, in the order of the lists.
   AlignedVector<float> weight;       // w(r)
   AlignedVector<float> coupling;     // the sum of w over the neighbour and its images behind walls
   AlignedVector<float> slope;        // w(r)/r^2, 1/m2
   AlignedVector<float> snow_slope;   // the same, 0 if the neighbour is a wall particle
   AlignedVector<float> even_weight;  // w(r), corrected for the spread of both, for viscosity
 
-  // Of each particle, summed over its pairs.
-  AlignedVector<float> weight_sum;                        // of w(r)
-  AlignedVector<float> filling_sum;                       // of filling_weight(r)
-  AlignedVector<RowMoments<D>> moments;                   // of w(r)
-  AlignedVector<double> density;                          // number density
-  AlignedVector<double> filling;                          // the filling over that of a lattice
-  AlignedVector<VecD<D>> asymmetry;                       // of w(r) r, m; 0 at the free surface
-  AlignedVector<Eigen::Matrix<double, D, D>> correction;  // of gradients, find_corrections
-  AlignedVector<std::array<float, RowMoments<D>::half>> spread;  // of Laplacians: upper half of B
+  // One value per particle, summed over its pairs.
+  AlignedVector<float> weight_sum;       // sum of w(r)
+  AlignedVector<float> filling_sum;      // sum of filling_weight(r)
+  AlignedVector<RowMoments<D>> moments;  // moments of w(r)
+  AlignedVector<double> density;         // number density
+  AlignedVector<double> filling;         // the filling over that of a lattice
+  AlignedVector<VecD<D>> asymmetry;      // sum of w(r) r, m; 0 at the free surface
+  // Correction of gradients, see find_corrections.
+  AlignedVector<Eigen::Matrix<double, D, D>> correction;
+  AlignedVector<std::array<float, RowMoments<D>::half>> spread;  // upper half of B, for Laplacians
 
-  // What each particle is.
+  // Kind of each particle.
   AlignedVector<std::uint8_t> surface;        // at the free surface
   AlignedVector<std::uint8_t> below_surface;  // a neighbour of one at the free surface
-  AlignedVector<std::uint8_t> dry;            // of an inner wall that no snow touches
+  AlignedVector<std::uint8_t> dry;            // inner wall that no snow touches
   AlignedVector<VecD<D>> slip;                // velocity of a wall particle as snow sees it, m/s
 
   /// A particle's contact with an obstacle, or null.
@@ -126,37 +127,37 @@ struct Neighbourhood {
 
 template <int D>
 struct Work {
-  WallParticles<D> walls;  // where the settings say so
-  State<D> next, start;    // of a step, and what it begins with once walls are there
+  WallParticles<D> walls;  // if the settings ask for them
+  State<D> next, start;    // the step's result, and its beginning with the present walls
   Particles<D> spare;
   Neighbourhood<D> near;
   AlignedVector<VecD<D>> velocity;                    // right-hand side, m/s
   AlignedVector<VecD<D>> before, viscous, projected;  // velocities of a step, m/s; for the energy
-  AlignedVector<VecD<D>> predicted_velocity;          // by gravity alone, m/s
+  AlignedVector<VecD<D>> predicted_velocity;          // with gravity alone, m/s
   AlignedVector<VecD<D>> expected_shear, shear;       // viscous force over mass, m/s2
-  AlignedVector<std::uint8_t> flowing;                // whether a particle is expected to have one
-  AlignedVector<VecD<D>> viscous_change;              // of velocities by viscosity, m/s
+  AlignedVector<std::uint8_t> flowing;                // whether a viscous force is expected
+  AlignedVector<VecD<D>> viscous_change;              // change of velocities by viscosity, m/s
   AlignedVector<std::uint8_t> moved;                  // whether a particle could move in the step
-  AlignedVector<double> drag;                         // of each contact with a wall, 1/s
-  AlignedVector<double> yielding;                     // share of a collision that the other takes
-  AlignedVector<double> base_pressure;                // Pa, see find_base_pressures
-  AlignedVector<VecD<D>> pressure_sum;                // over the neighbours, of their pressures
-  AlignedVector<double> share, hold;                  // of walls' friction, see find_shares
-  AlignedVector<VecD<D>> concentration;               // its gradient, 1/m, for shifting
-  AlignedVector<VecD<D>> change;                      // of velocities by the pressure, m/s
+  AlignedVector<double> drag;                         // one per contact with a wall, 1/s
+  AlignedVector<double> yielding;        // share of a collision that the other particle takes
+  AlignedVector<double> base_pressure;   // Pa, see find_base_pressures
+  AlignedVector<VecD<D>> pressure_sum;   // sum of the neighbours' pressures
+  AlignedVector<double> share, hold;     // walls' friction, see find_shares
+  AlignedVector<VecD<D>> concentration;  // gradient of the concentration, 1/m, for shifting
+  AlignedVector<VecD<D>> change;         // change of velocities by the pressure, m/s
   AlignedVector<Eigen::Matrix<double, D, D>> block, inverse_block;
   AlignedVector<Eigen::Matrix<double, D, D>> velocity_gradient;  // 1/s
-  AlignedVector<Eigen::Matrix<double, D, D>> rate_correction;    // of velocity gradients
-  AlignedVector<float> coupling;                                 // of velocities, of each pair
-  const float* snow_slope = nullptr;                             // near.slope without walls
-  AlignedVector<float> pair_rate;                                // 1/s, midway between a pair
-  AlignedVector<double> smooth_pressure;                         // Pa
+  AlignedVector<Eigen::Matrix<double, D, D>> rate_correction;    // correction of velocity gradients
+  AlignedVector<float> coupling;          // coupling of velocities, one per pair
+  const float* snow_slope = nullptr;      // near.slope without walls
+  AlignedVector<float> pair_rate;         // 1/s, midway between a pair
+  AlignedVector<double> smooth_pressure;  // Pa
   AlignedVector<double> diagonal, source, pressure;
-  AlignedVector<std::uint8_t> fixed;  // whose pressure is no unknown
+  AlignedVector<std::uint8_t> fixed;  // whether the pressure is given
   bool enclosed = false;              // whether there is no free surface
   double pressure_scale = 0;          // norm of the right-hand side of the step's pressure
   CgWork cg;
-  Multigrid<D, 1> multigrid;           // of pressures
+  Multigrid<D, 1> multigrid;           // solves for pressures
   Multigrid<D, D> velocity_multigrid;  // made where it is needed
   AlignedVector<double> velocity_diagonal;
   AlignedVector<VecD<D>> velocity_residual;  // m/s

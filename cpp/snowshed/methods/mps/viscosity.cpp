@@ -9,7 +9,7 @@
 namespace snowshed::mps {
 namespace {
 
-/// Nearer to a wall than this, in l0, its friction grows no further.
+/// Distance from a wall, in l0, below which its friction grows no further.
 constexpr double nearest_friction = 0.25;
 
 /// The share of the wall's shear stress that acts on a particle at a distance, in l0: that of the
@@ -21,8 +21,8 @@ double share_of_mirror(double distance, double second) {
   return (1 - 2 * second) * falls(0.75, 1.25) + second * falls(1.75, 2.25);
 }
 
-/// How much of a wall particle's friction a particle takes that touches its obstacle, m; none where
-/// the wall particle is not of the layer at the surface.
+/// Weight of a wall particle's friction on a particle that touches its obstacle, m; 0 if the wall
+/// particle is not in the layer at the surface.
 template <int D>
 double hold(const Model<D>& model, float weight, const VecD<D>& to_wall, const WallContact<D>& c) {
   const double below = -to_wall.dot(c.normal);
@@ -30,8 +30,8 @@ double hold(const Model<D>& model, float weight, const VecD<D>& to_wall, const W
   return at_surface ? double(weight) * std::max(0.0, below) : 0.0;
 }
 
-/// What the particles that touch a wall particle's obstacle take of its friction together, but not
-/// less than most of what they do on a lattice: a wall particle beside the snow has less friction.
+/// Sum of these weights over the particles that touch a wall particle's obstacle, but at least most
+/// of that on a lattice: a wall particle beside the snow has less friction.
 template <int D>
 double hold_of_all(const Model<D>& model, const Particles<D>& particles,
                    const Neighbourhood<D>& near, std::size_t wall) {
@@ -43,12 +43,13 @@ double hold_of_all(const Model<D>& model, const Particles<D>& particles,
     if (c) sum += hold(model, near.weight[e], VecD<D>(-near.separation(e)), *c);
   }
   constexpr double touched = 0.8;
-  const double whole = (1 - model.second_layer) / (model.laplacian() * model.settings().spacing);
-  return std::max(sum, touched * whole);
+  const double on_lattice =
+      (1 - model.second_layer) / (model.laplacian() * model.settings().spacing);
+  return std::max(sum, touched * on_lattice);
 }
 
-/// The share of each contact with a wall in the wall's shear stress. That of a wall particle acts
-/// on the particles around it, and is theirs wholly.
+/// The share of each contact with a wall in the wall's shear stress. The particles around a wall
+/// particle share all of its friction.
 template <int D>
 void find_shares(const Model<D>& model, const Particles<D>& particles, Work<D>& work) {
   const Neighbourhood<D>& near = work.near;
@@ -124,19 +125,20 @@ void find_couplings(const Model<D>& model, double factor, const Particles<D>& pa
 template <int D>
 using Velocities = AlignedVector<VecD<D>>;
 
-/// The apparent viscosities of a step are found when velocities change by less than this part of
-/// them from one iteration to the next.
+/// The iterations for the apparent viscosities of a step end when the velocities change by less
+/// than this share from one to the next.
 constexpr double yield_tolerance = 1e-3;
-/// Where these iterations begin: so far on the way from the velocities before the step to those
-/// that all but viscosity makes.
+/// The iterations begin at this fraction of the way from the velocities before the step to those
+/// predicted without viscosity.
 constexpr double first_guess = 0.01;
 
-/// The equation of an iteration is solved the better the less changed in the one before: at first
-/// so well, relative to what gravity adds in a step, and then to this share of the change.
+/// Tolerances of an iteration's equation: in the first iteration relative to the change by gravity
+/// in a step, and then as a share of the change in the iteration before.
 constexpr double loosest_solve = 0.1, solve_share = 0.03;
 
-/// Few iterations suffice with the diagonal alone where viscosity does not reach far in a step;
-/// after so many multigrid takes over. Its sweeps of the particles' velocities are damped by this.
+/// With the diagonal alone few iterations suffice if viscosity does not reach far in a step. After
+/// `most_by_diagonal` iterations multigrid takes over. Its sweeps of the particles' velocities are
+/// damped by `sweep_damping`.
 constexpr int most_by_diagonal = 12;
 constexpr double sweep_damping = 0.9;
 
@@ -161,7 +163,7 @@ double wall_drag(const Model<D>& model, const Particles<D>& particles, double sh
   return share * viscosity / (s.density * s.spacing * height);
 }
 
-/// The levels above the particles know their walls' drag as if it acted in all directions alike.
+/// On the levels above the particles the walls' drag acts equally in all directions.
 template <int D>
 void prepare_velocity_multigrid(const Model<D>& model, const Particles<D>& particles,
                                 Work<D>& work) {
@@ -258,8 +260,7 @@ SolveReport solve_viscosity(const Model<D>& model, double dt, const Velocities<D
   return {first.iterations + second.iterations, second.residual, second.converged};
 }
 
-/// What residuals and changes of all velocities are compared with: what gravity adds in a step,
-/// m/s.
+/// Scale of residuals and changes of all velocities: the change by gravity in a step, m/s.
 template <int D>
 double velocity_scale(const Model<D>& model, double dt, const Particles<D>& particles) {
   double speed2 = 0;
@@ -296,8 +297,9 @@ template <int D>
 SolveReport apply_viscosity(const Model<D>& model, double dt, Particles<D>& particles,
                             Work<D>& work) {
   const Settings& s = model.settings();
-  // From nearly the velocities before the step, not from those that forces have driven apart: what
-  // creeps comes to rest. Nor quite from rest, which viscosity would keep for too many iterations.
+  // The iterations begin near the velocities before the step, not at those that forces have driven
+  // apart, so that creeping snow comes to rest. They do not begin quite at rest, because viscosity
+  // would keep it for too many iterations.
   const Velocities<D> start = particles.velocity;
   const bool newtonian = model.rheology.is_newtonian();
   if (!newtonian)
@@ -319,9 +321,9 @@ SolveReport apply_viscosity(const Model<D>& model, double dt, Particles<D>& part
     tolerance = std::max(tolerance, s.viscosity_tolerance);
     if (!newtonian) find_rates(model, particles, work);
     last = particles.velocity;
-    const SolveReport one = solve_viscosity(model, dt, start, tolerance, scale, particles, work);
-    report = {report.iterations + one.iterations, one.residual, one.converged};
-    if (!one.converged || newtonian || last_chance) break;
+    const SolveReport solve = solve_viscosity(model, dt, start, tolerance, scale, particles, work);
+    report = {report.iterations + solve.iterations, solve.residual, solve.converged};
+    if (!solve.converged || newtonian || last_chance) break;
     const double change = distance<D>(particles.velocity, last);
     const double limit =
         yield_tolerance * (norm<D>(particles.velocity) + s.viscosity_tolerance * scale);

@@ -7,7 +7,7 @@ namespace snowshed::mps {
 namespace {
 
 constexpr std::size_t particles_with_images = 256;
-/// Nearer to a wall than this, in l0, a particle's image keeps away.
+/// Least distance of a particle's image from a wall, in l0.
 constexpr double nearest_image = 0.1;
 /// Two walls make a corner, with images behind both, if the cosine between their normals is
 /// smaller.

@@ -1,4 +1,4 @@
-// Walls as mirrors: what a particle sees of itself and of its neighbours in them.
+// Walls as mirrors: images of a particle and of its neighbours in them.
 #pragma once
 
 #include "snowshed/methods/mps/boundary.hpp"
@@ -15,7 +15,7 @@ struct WallImage {
   std::uint32_t of;          // k, which may be i itself
   float weight, slope;       // w, and w/r'^2 in 1/m2
   VecD<D> separation;        // from i to the image, m
-  std::uint32_t contact[2];  // of i, among all contacts; both the same where there is one wall
+  std::uint32_t contact[2];  // indices of i among all contacts; both the same if there is one wall
   double rise[2];            // twice the distance of k from each wall, m; 0 for the second of one
 };
 

@@ -6,10 +6,11 @@
 namespace snowshed::mps {
 namespace {
 
-/// Wall particles nearer to each other than this, in l0, push each other apart, so often.
+/// Wall particles nearer to each other than this (in l0) push each other apart, in this number of
+/// rounds.
 constexpr double closest = 0.8;
 constexpr int pushes = 8;
-/// The middle of a layer is met within this, in l0; a solid that is not so deep has no such layer.
+/// Tolerance of the middle of a layer, in l0; a solid that is less deep has no such layer.
 constexpr double layer_tolerance = 0.25;
 
 Mat3 frame_with(const Vec3& normal, int dimension) {
@@ -149,7 +150,7 @@ void WallParticles<D>::push_apart(const LevelSet& shape, std::vector<VecD<D>>& p
   }
 }
 
-/// Where a point of a lattice goes, if it lies in a layer.
+/// New place of a point of a lattice, if it lies in a layer.
 template <int D>
 typename WallParticles<D>::Placed WallParticles<D>::place(const LevelSet& shape,
                                                           const Vec3& x) const {
@@ -179,8 +180,8 @@ void WallParticles<D>::make(std::uint32_t number, const Cell& cell, Points& to) 
   // The lattice points in the ball around the cell and those near to it.
   const double around = edge_ * std::sqrt(double(D)) / 2 + 1.5 * spacing_;
   const double deepest = layers_ * spacing_;
-  const double there = shape.distance(middle);
-  if (there > around + spacing_ || (there < -deepest - around)) return;
+  const double distance = shape.distance(middle);
+  if (distance > around + spacing_ || (distance < -deepest - around)) return;
   const Vec3 centre = lattice.axes.transpose() * (middle - lattice.origin) / spacing_;
   const int n = int(std::ceil(around / spacing_)) + 1;
   std::vector<VecD<D>> points;
@@ -191,8 +192,8 @@ void WallParticles<D>::make(std::uint32_t number, const Cell& cell, Points& to) 
     for (int d = 0; d < D; ++d) index[d] = k[std::size_t(d)] + 0.5;
     const Vec3 x = lattice.origin + spacing_ * (lattice.axes * embed(index));
     if ((x - middle).norm() > around) return;
-    const auto [found, is_new] = lattice.placed.try_emplace(k);
-    Placed& placed = found->second;
+    const auto [entry, is_new] = lattice.placed.try_emplace(k);
+    Placed& placed = entry->second;
     if (is_new) placed = place(shape, x);
     if (!placed.exists) return;
     points.push_back(placed.position);
@@ -210,15 +211,15 @@ void WallParticles<D>::make(std::uint32_t number, const Cell& cell, Points& to) 
   }
 }
 
-/// Where obstacles of a group lie in each other, the first one has the wall particles. Their normal
-/// is that of the obstacle in which they are deepest, as of the union of all; it is zero where two
-/// are as deep.
+/// If obstacles of a group overlap, the first one has the wall particles there. Their normal is
+/// that of the obstacle in which they are deepest, as of the union of all; it is zero if two are
+/// as deep.
 template <int D>
 const typename WallParticles<D>::Points& WallParticles<D>::points_in(Group& group,
                                                                      const Cell& cell) {
-  const auto found = group.made.find(cell);
-  if (found != group.made.end()) return found->second;
-  Points all, kept;
+  const auto entry = group.made.find(cell);
+  if (entry != group.made.end()) return entry->second;
+  Points all, points;
   for (const std::uint32_t k : group.obstacles) make(k, cell, all);
   for (Point& p : all) {
     const Vec3 x = embed(p.position);
@@ -237,15 +238,15 @@ const typename WallParticles<D>::Points& WallParticles<D>::points_in(Group& grou
       }
     }
     if (deepest > spacing_) p.kind = Kind::dummy_wall;
-    if (is_first) kept.push_back(p);
+    if (is_first) points.push_back(p);
   }
-  return group.made.emplace(cell, std::move(kept)).first->second;
+  return group.made.emplace(cell, std::move(points)).first->second;
 }
 
 template <int D>
 bool WallParticles<D>::is_near_wall(Group& group, const Cell& cell) {
-  const auto found = group.near.find(cell);
-  if (found != group.near.end()) return found->second;
+  const auto entry = group.near.find(cell);
+  if (entry != group.near.end()) return entry->second;
   bool near = false;
   VecD<D> centre;
   for (int d = 0; d < D; ++d) centre[d] = (cell[std::size_t(d)] + 0.5) * edge_;
@@ -272,7 +273,7 @@ void WallParticles<D>::append_group(Group& group, const RigidPose& pose, double 
     for (const Point& p : points_in(group, c)) {
       const VecD<D> x = moves ? section<D>(pose.to_world(embed(p.position))) : p.position;
       if (period > 0 && (x[0] < 0 || x[0] >= period)) continue;
-      bool inside = false;  // of an obstacle at rest
+      bool inside = false;  // inside an obstacle at rest
       if (moves)
         for (const std::uint32_t k : groups_.front().obstacles)
           inside = inside || (*obstacles_)[k].shape->distance(embed(x)) < 0;
@@ -323,14 +324,14 @@ std::size_t WallParticles<D>::bytes() const {
 
 template <int D>
 void remove_walls(Particles<D>& particles) {
-  std::size_t kept = 0;
+  std::size_t count = 0;
   for (std::size_t i = 0; i < particles.size(); ++i) {
     if (particles.is_wall(i)) continue;
-    if (kept != i)
-      particles.for_each_array([&](const char*, auto& array) { array[kept] = array[i]; });
-    ++kept;
+    if (count != i)
+      particles.for_each_array([&](const char*, auto& array) { array[count] = array[i]; });
+    ++count;
   }
-  particles.resize(kept);
+  particles.resize(count);
 }
 
 template class WallParticles<2>;

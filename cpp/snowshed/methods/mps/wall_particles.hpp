@@ -14,12 +14,12 @@ namespace snowshed::mps {
 /// Wall particles of obstacles, made where snow comes near.
 ///
 /// They stand in layers half a spacing, one and a half, ... below the surface. Those of the first
-/// are inner walls, the others dummy walls, so many that the particles at the surface miss nothing
-/// within the radius [P]. They are the points of a lattice, moved along the normal to the middle of
-/// their layer; the lattice follows the faces of boxes and planes, which are so covered evenly.
-/// Where others lie nearer than `closest`, they push each other apart along the surface (ours).
-/// Obstacles thinner than a particle have one layer, in the middle. Those too thin for dummies
-/// between the inner walls of both sides have dummies only: no pressure goes through them (ours).
+/// are inner walls, the others dummy walls, as many as fill the radius of the particles at the
+/// surface [P]. They are the points of a lattice, moved along the normal to the middle of their
+/// layer; the lattice follows the faces of boxes and planes, which are so covered evenly. Where
+/// others lie nearer than `closest`, they push each other apart along the surface (ours). Obstacles
+/// thinner than a particle have one layer, in the middle. Those too thin for dummies between the
+/// inner walls of both sides have dummies only: no pressure goes through them (ours).
 template <int D>
 class WallParticles {
  public:
@@ -77,7 +77,7 @@ class WallParticles {
   const std::vector<Obstacle>* obstacles_ = nullptr;
   double spacing_ = 0, edge_ = 0;
   int layers_ = 0;
-  std::vector<Lattice> lattices_;  // of each obstacle
+  std::vector<Lattice> lattices_;  // one per obstacle
   std::vector<Group> groups_;      // those at rest first
 };
 

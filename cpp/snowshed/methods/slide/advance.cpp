@@ -31,10 +31,10 @@ namespace {
 /// Keeps the entries of an array whose particles stay.
 template <class Array>
 void keep(const std::vector<std::uint32_t>& new_place, Array& array) {
-  std::size_t kept = 0;
+  std::size_t count = 0;
   for (std::size_t i = 0; i < new_place.size(); ++i)
-    if (new_place[i] != gone) array[kept++] = array[i];
-  array.resize(kept);
+    if (new_place[i] != gone) array[count++] = array[i];
+  array.resize(count);
 }
 
 /// Puts the entries of an array into an order; the scratch has room for all of them.
@@ -56,9 +56,9 @@ void remove_marked(State& state, Work& work) {
   Particles& p = state.particles;
   std::vector<std::uint32_t>& new_place = work.new_places;
   new_place.resize(p.size());
-  std::uint32_t kept = 0;
+  std::uint32_t count = 0;
   for (std::size_t i = 0; i < p.size(); ++i) {
-    new_place[i] = work.removed[i] ? gone : kept++;
+    new_place[i] = work.removed[i] ? gone : count++;
     if (!work.removed[i]) continue;
     state.balance.left += p.mass[i];
     ++state.balance.particles_left;
@@ -72,8 +72,8 @@ void remove_marked(State& state, Work& work) {
 
 namespace {
 
-/// Gives the particles from `begin` on, which have the ids of those they split from, ids of their
-/// own, in the order of these: the order in which particles are stored must not tell.
+/// Gives new ids to the particles from `begin` on, which still have the ids of those they split
+/// from. The new ids follow the order of these, so that they do not depend on the order of storage.
 void number_new(State& state, Work& work, std::size_t begin) {
   Particles& p = state.particles;
   std::vector<std::uint32_t>& order = work.new_places;

@@ -15,8 +15,8 @@ void remove_marked(State&, Work&);
 /// Splits particles that have become too heavy.
 void split_heavy(const Model&, State&, Work&);
 
-/// Stores the particles in the order of their cells. Of the workspace only the cells' order is
-/// read; it does not follow. All or nothing.
+/// Stores the particles in the order of their cells. It reads only the cells' order from the
+/// workspace, which does not follow. All or nothing.
 void sort_by_cell(State&, Work&);
 
 }  // namespace snowshed::slide

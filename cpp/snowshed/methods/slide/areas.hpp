@@ -14,19 +14,19 @@ namespace snowshed::slide {
 struct Area {
   std::string name;
   Polygon polygon;
-  double thickness = 0;  // m of snow, normal to the ground; unused where there is resistance only
+  double thickness = 0;  // m of snow, normal to the ground; unused for areas of resistance
   /// In place of that: the thickness in the cells around nodes. Only of releases.
   std::shared_ptr<const HeightField> map;
-  double max_thickness = 100;  // m, that the map may tell of
+  double max_thickness = 100;  // m, that the map may give
 };
 
 struct Areas {
   std::vector<Area> release, entrainment, resistance;
 };
 
-/// How far around an area a node still belongs to it.
+/// Distance around an area within which a node still belongs to it.
 enum class Reach {
-  edge,      // on the outline, but for rounding
+  edge,      // on the outline, except for rounding
   one_cell,  // so near that snow of the area may lie in the node's cell
 };
 
@@ -35,9 +35,9 @@ enum class Reach {
 std::vector<double> thickness_at_nodes(const std::vector<Area>& areas, const Terrain& terrain,
                                        Reach reach);
 
-/// Returns the outline of an area, widened by half of `radius` as AvaFrame 2.1 does it. Which side
-/// is outside follows from the sense of rotation that most corners show as seen from the first one.
-/// For some outlines with deep bays this sense is wrong, and they become narrower.
+/// Returns the outline of an area, widened by half of `radius` as AvaFrame 2.1 does it. The outside
+/// follows from the sense of rotation that most corners show as seen from the first one. For some
+/// outlines with deep bays this sense is wrong. The result is then narrower than the area.
 Ring widened_as_avaframe(const Ring& outline, double radius);
 
 }  // namespace snowshed::slide

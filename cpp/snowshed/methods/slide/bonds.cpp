@@ -175,30 +175,30 @@ double longest_bond_step(const Bonds& bonds, const Particles& particles,
 }
 
 void renumber(Bonds& bonds, const std::vector<std::uint32_t>& new_place) {
-  std::size_t kept = 0;
+  std::size_t count = 0;
   for (std::size_t b = 0; b < bonds.size(); ++b) {
     const std::uint32_t first = new_place[bonds.first[b]], second = new_place[bonds.second[b]];
     if (first == gone || second == gone) continue;
-    bonds.first[kept] = first;
-    bonds.second[kept] = second;
-    bonds.rest_length[kept++] = bonds.rest_length[b];
+    bonds.first[count] = first;
+    bonds.second[count] = second;
+    bonds.rest_length[count++] = bonds.rest_length[b];
   }
-  bonds.first.resize(kept);
-  bonds.second.resize(kept);
-  bonds.rest_length.resize(kept);
+  bonds.first.resize(count);
+  bonds.second.resize(count);
+  bonds.rest_length.resize(count);
 }
 
 void remove_bonds(Bonds& bonds, const std::vector<char>& marked) {
-  std::size_t kept = 0;
+  std::size_t count = 0;
   for (std::size_t b = 0; b < bonds.size(); ++b) {
     if (marked[b]) continue;
-    bonds.first[kept] = bonds.first[b];
-    bonds.second[kept] = bonds.second[b];
-    bonds.rest_length[kept++] = bonds.rest_length[b];
+    bonds.first[count] = bonds.first[b];
+    bonds.second[count] = bonds.second[b];
+    bonds.rest_length[count++] = bonds.rest_length[b];
   }
-  bonds.first.resize(kept);
-  bonds.second.resize(kept);
-  bonds.rest_length.resize(kept);
+  bonds.first.resize(count);
+  bonds.second.resize(count);
+  bonds.rest_length.resize(count);
 }
 
 void BondLists::update(const Bonds& bonds, std::size_t particles) {

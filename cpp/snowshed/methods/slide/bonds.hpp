@@ -11,7 +11,7 @@
 
 namespace snowshed::slide {
 
-/// The bonds that hold, each between two particles (by where they are stored).
+/// The bonds that hold, each between two particles (by their places in storage).
 struct Bonds {
   std::vector<std::uint32_t> first, second;
   std::vector<double> rest_length;  // m
@@ -41,17 +41,17 @@ Bonds bonds_between(const Particles& particles, std::size_t begin, double spacin
 inline constexpr std::uint32_t gone = 0xffffffff;
 void renumber(Bonds& bonds, const std::vector<std::uint32_t>& new_place);
 
-/// Returns the longest step in which bonds do not vibrate ever more, s; infinite without bonds.
-/// A bond has the stiffness k = E h / sqrt(3). A particle of mass m whose bonds have the stiffness
-/// K in all vibrates with omega^2 <= 2 K / m (Gershgorin), and forces at the end points of the
-/// velocities before are stable where omega dt <= sqrt(2).
+/// Returns the longest step in which the vibration of bonds does not grow, s; infinite without
+/// bonds. A bond has the stiffness k = E h / sqrt(3). A particle of mass m whose bonds have the
+/// stiffness K in all vibrates with omega^2 <= 2 K / m (Gershgorin), and forces at the end points
+/// of the velocities before are stable where omega dt <= sqrt(2).
 double longest_bond_step(const Bonds& bonds, const Particles& particles,
                          const AlignedVector<double>& thickness, double modulus);
 
 /// Removes the bonds that are marked.
 void remove_bonds(Bonds& bonds, const std::vector<char>& marked);
 
-/// For each particle its bonds, as sums over them need it.
+/// The bonds of each particle, for sums over them.
 class BondLists {
  public:
   void reserve(std::size_t particles, std::size_t bonds) {
@@ -60,8 +60,8 @@ class BondLists {
   }
   void update(const Bonds& bonds, std::size_t particles);
 
-  /// The bonds of particle i are entries [begins()[i], begins()[i + 1]): each twice the place of
-  /// the bond, and one more where the particle is the second of the bond.
+  /// The bonds of particle i are entries [begins()[i], begins()[i + 1]): coded as 2 · bond + (1 if
+  /// the particle is its second).
   const std::uint32_t* begins() const { return begin_.data(); }
   const std::uint32_t* entries() const { return entry_.data(); }
 

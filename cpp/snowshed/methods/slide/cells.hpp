@@ -1,4 +1,4 @@
-// Which particles lie in which cell of the terrain.
+// Lists of the particles in each cell of the terrain.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ class CellLists {
   /// `column` and `row` are those of the particles' cells.
   void update(const AlignedVector<std::int32_t>& column, const AlignedVector<std::int32_t>& row);
 
-  /// Makes room for so many particles anywhere on the terrain.
+  /// Reserves memory for this number of particles anywhere on the terrain.
   void reserve(std::size_t particles, const Terrain& terrain);
 
   /// The rectangle of cells, its margin included.
@@ -37,7 +37,7 @@ class CellLists {
   const std::vector<std::uint32_t>& order() const { return order_; }
   const std::uint32_t* begins() const { return begin_.data(); }
 
-  // What loops over neighbours read, in the order of the entries; filled in by `sum_on_nodes`
+  // Arrays for loops over neighbours, in the order of the entries; filled in by `sum_on_nodes`
   // (kernel_api.hpp). Entries beyond the last one are zero.
   double* x() { return x_.data(); }
   double* y() { return y_.data(); }

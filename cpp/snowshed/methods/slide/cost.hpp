@@ -1,4 +1,4 @@
-// What a snow slide will cost, and which of its features a scene uses.
+// Cost of a snow slide, and the features that a scene uses.
 #pragma once
 
 #include <vector>

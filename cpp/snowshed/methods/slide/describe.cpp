@@ -39,7 +39,7 @@ void describe(SettingsVisitor& v, Settings& s) {
   v.number("entrainment_work", s.entrainment_work, "J/kg", non_negative.up_to(1e12),
            "Work that breaks up the snow that is taken up");
   v.number("split_ratio", s.split_ratio, "", Range{1.0, 1e6, true, false, Need::optional},
-           "Mass over that of a fresh particle beyond which a particle splits");
+           "A particle splits when its mass exceeds this multiple of a fresh particle's");
   v.number("stop_ratio", s.stop_ratio, "", fraction,
            "The slide stops at this share of its largest kinetic energy");
   v.integer("threads", s.threads, non_negative.up_to(4096), "Threads; 0: all");

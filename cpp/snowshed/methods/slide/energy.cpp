@@ -47,7 +47,7 @@ double cover_of(const Particles& p, const CellLists& cells, const Places& places
   return sum;
 }
 
-/// The integral of what pressure is raised by, from 0 to n neighbours; see FewNeighbours.
+/// The integral of the factor on the pressure from 0 to n neighbours; see FewNeighbours.
 double raised_integral(double n) {
   const double rest = 1 - few_neighbours.power;
   const double twofold = std::pow(few_neighbours.factor, 1 / few_neighbours.power);  // up to here

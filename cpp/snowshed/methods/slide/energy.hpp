@@ -1,4 +1,4 @@
-// Where the energy of a slide went.
+// The energy balance of a slide.
 #pragma once
 
 #include <vector>
@@ -13,16 +13,16 @@ struct State;
 struct Work;
 
 /// The energy of a slide, J. The first three are the present store; the others are sums over all
-/// steps of what left it. The balance closes when `residual` is small beside the drop of potential
-/// energy.
+/// steps of the energy that left it. The balance closes when `residual` is small beside the drop of
+/// potential energy.
 struct Energy {
   double kinetic = 0, potential = 0;  // the latter with that of the snow's thickness
   double bonds = 0;                   // elastic
   double coulomb = 0, turbulent = 0;  // friction with the ground: mu sigma, and rho g u^2 / xi
-  double resistance = 0;              // of forest and the like
+  double resistance = 0;              // loss to forest and the like
   double viscosity = 0;               // artificial
   double entrainment = 0;             // to bring snow up to speed, and to break it loose
-  double broken = 0;                  // that bonds held as they broke
+  double broken = 0;                  // energy that bonds held as they broke
   double left = 0;                    // carried beyond the terrain
   double added = 0;                   // brought by snow that was released or taken up
 
@@ -36,13 +36,12 @@ struct Energy {
 /// Returns the balance as tables have it, names with units.
 NamedEnergies named_energies(const Energy&);
 
-/// Fills in what is stored now.
+/// Fills in the energy that is stored now.
 void store_energy(const Model&, const State&, const Work&, Energy&);
 
-/// Follows the energy through a step: called between its parts, it looks at velocities and loads
-/// and changes nothing. What acts on a particle does the work of its force times the particle's
-/// way, and all of these works add up to the change of kinetic energy, whatever the length of the
-/// step.
+/// Audits the energy of a step: it is called between its parts, reads velocities and loads, and
+/// changes nothing. The work of a force is its product with the particle's displacement. The works
+/// add up to the change of kinetic energy for any length of the step.
 class EnergyAudit {
  public:
   void reserve(std::size_t particles) {

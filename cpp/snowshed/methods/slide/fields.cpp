@@ -1,4 +1,4 @@
-// What a slide tells of its particles.
+// Fields of the particles of a slide.
 #include <cmath>
 
 #include "snowshed/core/compensated_sum.hpp"
@@ -87,7 +87,7 @@ PointCloud SolverImpl::snapshot() const {
   return cloud;
 }
 
-/// What was released and taken up, and where it is: the sums differ by rounding alone.
+/// Mass that was released and taken up, and where it is: the sums differ by rounding alone.
 ReportsRun::Section SolverImpl::run_section() const {
   const MassBalance& m = state_.balance;
   const double on_terrain = compensated_sum(state_.particles.mass.data(), size());

@@ -9,7 +9,7 @@ namespace snowshed::slide {
 /// Changes velocities, and masses where snow is entrained.
 void apply_ground(const Model&, State&, Work&);
 
-/// What particles do to each other: the gradient of the snow's own pressure by smoothed particle
+/// Forces between particles: the gradient of the snow's own pressure by smoothed particle
 /// hydrodynamics, along the ground or, in compatible mode, along the map (see
 /// kernels/surface_pressure.hpp and kernels/map_pressure.hpp), and the forces of the bonds. Marks
 /// those that are strained too much.

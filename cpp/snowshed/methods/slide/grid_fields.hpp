@@ -17,20 +17,20 @@ struct PeakFields {
   explicit PeakFields(std::size_t nodes = 0) : thickness(nodes, 0.0), speed(nodes, 0.0) {}
 };
 
-/// Thickness and velocity at the nodes within the cells' rectangle, from masses and momenta that
-/// the particles hand on bilinearly.
+/// Thickness and velocity at the nodes within the cells' rectangle, from the particles' masses and
+/// momenta, bilinearly.
 class GridFields {
  public:
   struct Node {
-    double thickness;   // m; mass (kg) while they are handed on
-    double vx, vy, vz;  // m/s; momentum (kg m/s) while they are handed on
+    double thickness;   // m; mass (kg) during the sums
+    double vx, vy, vz;  // m/s; momentum (kg m/s) during the sums
   };
 
-  /// Makes room for snow anywhere on the terrain, and for sums where they are kept.
+  /// Reserves memory for snow anywhere on the terrain, and for sums if they are kept.
   void reserve(const Terrain& terrain, bool keeps_sums);
 
-  /// Takes over the cells' rectangle; what is at its nodes is to be found (`sum_on_nodes` in
-  /// kernel_api.hpp).
+  /// Takes over the cells' rectangle; `sum_on_nodes` (kernel_api.hpp) must then compute the values
+  /// at its nodes.
   void take_shape(const CellLists& cells);
 
   /// The nodes of the rectangle, row by row, and where it begins on the terrain.

@@ -35,7 +35,7 @@ std::vector<Area> areas_of(const std::vector<AreaSpec>& specs, const HeightField
   return areas;
 }
 
-/// Throws where the ground under a release, or anywhere, is as no ground is.
+/// Throws if the ground under a release, or anywhere, has an impossible cliff.
 void check_cliff(const std::string& where, const std::string& cliff, double max_slope) {
   if (cliff.empty()) return;
   throw InputError(where, "elevations of " + cliff + "; are some missing? At most " +

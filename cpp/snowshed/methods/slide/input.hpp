@@ -1,4 +1,4 @@
-// What a slide reads from files: its terrain, and the areas on it.
+// Input of a slide from files: its terrain, and the areas on it.
 #pragma once
 
 #include <filesystem>

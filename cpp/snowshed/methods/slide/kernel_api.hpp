@@ -1,4 +1,4 @@
-// What the slide's solver and its kernels agree on: raw views, and a table of functions. The
+// Interface between the slide's solver and its kernels: raw views, and a table of functions. The
 // kernels are compiled once for each instruction set (cmake/KernelVariants.cmake), so nothing here
 // depends on one.
 #pragma once
@@ -8,29 +8,29 @@
 
 namespace snowshed::slide {
 
-/// How friction acts within a step.
+/// Effect of friction within a step.
 enum class FrictionScheme {
   set_valued,         // Coulomb friction stops and holds snow
-  avaframe_implicit,  // a rate that divides by the speed of before
+  avaframe_implicit,  // a rate that divides by the earlier speed
   avaframe_explicit
 };
 
-/// By how much the kernel's sum over few neighbours falls short of the pressure of snow: where a
-/// particle sees n of its like within the kernel, pressure is raised by 1 + factor n^-power, at
-/// most twofold. In a triangular lattice with N particles within the kernel the sum gives n = N - 5
-/// N^-0.4, within a few percent for N above 10; this is its inverse, to 2 %.
+/// Correction of the pressure for few neighbours. With n neighbours in the kernel the pressure is
+/// multiplied by 1 + factor n^-power, at most by 2. In a triangular lattice with N particles within
+/// the kernel the sum gives n = N - 5 N^-0.4, within a few percent for N above 10; this is its
+/// inverse, to 2 %.
 struct FewNeighbours {
   double factor, power;
 };
 inline constexpr FewNeighbours few_neighbours{3.7, 1.32};
 
-/// Thinner snow counts as so thick where something is divided by it, m.
+/// Least thickness by which anything is divided, m.
 inline constexpr double least_thickness = 1e-6;
 
-/// Entries that may be read, whatever they hold, after those of the sorted arrays.
+/// Number of entries that may be read after those of the sorted arrays; their values are not used.
 inline constexpr std::size_t sorted_padding = 8;
 
-/// Arrays of one value for each particle, and what all of them have in common.
+/// Arrays with one value for each particle, and constants.
 struct View {
   // The ground: records of height, slopes along x and y, and area at the nodes, row by row.
   const double* ground;
@@ -41,7 +41,7 @@ struct View {
   const double* flow;
   int flow_column, flow_row, flow_columns;  // the first node, counted from that of the ground
 
-  // The same records while they are found, and the peaks that they raise, at the nodes of the
+  // The same records while they are computed, and the peaks that they raise at the nodes of the
   // terrain, or null.
   double *nodes, *peak_thickness, *peak_speed;
   double* sums;        // default mode: mass and momentum on the nodes, kept for mean_speed.hpp
@@ -51,13 +51,13 @@ struct View {
   double *x, *y, *z, *ux, *uy, *uz;
   const double* mass;
 
-  // Where they are: cells and how far within these, normals of the ground, thickness of the snow.
+  // Places: cells and positions within these, normals of the ground, thickness of the snow.
   std::int32_t *column, *row;
   double *east, *north;
   double *nx, *ny, *nz;
   double* thickness;
 
-  // What acts on them.
+  // Accelerations by the loads.
   double *ax, *ay, *az;  // m/s2
   double* yield;         // m/s2, deceleration by friction that does not depend on the speed
   double* drag;          // 1/m, deceleration over the square of the speed
@@ -66,14 +66,15 @@ struct View {
   double* pushed;        // records of force by the snow's pressure (N) and 0
   char* removed;         // set for those that left the terrain
 
-  // Particles in the order of their cells; default mode: z, and what pressure is multiplied by.
+  // Particles in the order of their cells; in the default mode with z and the factor on the
+  // pressure.
   double *sorted_x, *sorted_y, *sorted_z, *sorted_mass, *sorted_pressing;
   const std::uint32_t* sorted_particle;
-  const std::uint32_t* cell_begin;  // of the cells of a rectangle with a margin, row by row
+  const std::uint32_t* cell_begin;  // entries of the cells of a rectangle with a margin, row by row
   int cell_columns, cell_rows;
 
-  // Bonds, and for each particle its bonds: twice the bond's place, and one more where it is
-  // second. Null without bonds.
+  // Bonds, and for each particle its bonds, coded as 2 · bond + (1 if the particle is its second).
+  // Null without bonds.
   const std::uint32_t *bond_first, *bond_second;
   const double* rest_length;
   char* broken;
@@ -92,9 +93,9 @@ struct View {
 struct Kernels {
   /// Finds the places of the particles, all on the terrain, and the normals there.
   void (*locate)(const View&, std::ptrdiff_t begin, std::ptrdiff_t end);
-  /// Mixes velocities with those of the snow around and finds how the ground acts.
+  /// Mixes velocities with those of the snow around and finds the forces of the ground.
   void (*ground)(const View&, std::ptrdiff_t begin, std::ptrdiff_t end);
-  /// Default mode: finds for the particles of a row of cells what pressure is multiplied by.
+  /// Default mode: finds the factor on the pressure for the particles of a row of cells.
   void (*weigh_pressure)(const View&, int row);
   /// Finds the force by the snow's pressure on the particles of a row of cells: along the ground,
   /// or along the map as AvaFrame does it.
@@ -102,11 +103,11 @@ struct Kernels {
   void (*map_pressure)(const View&, int row);
   /// Finds the forces of bonds; returns whether one breaks.
   bool (*stretch_bonds)(const View&, std::ptrdiff_t begin, std::ptrdiff_t end);
-  /// Moves the particles by all that acts on them; returns their kinetic energy, J.
+  /// Moves the particles by the forces on them; returns their kinetic energy, J.
   double (*advance)(const View&, std::ptrdiff_t begin, std::ptrdiff_t end);
-  /// Sums mass and momentum of the particles of a row of cells on the nodes, and copies what their
-  /// neighbours will read of them. The odd rows follow when all even ones are done; they turn the
-  /// sums into thickness and velocity, and raise the peaks.
+  /// Sums mass and momentum of the particles of a row of cells on the nodes, and copies the values
+  /// that their neighbours will read. The odd rows follow when all even ones are done; they turn
+  /// the sums into thickness and velocity, and raise the peaks.
   void (*sum_on_nodes)(const View&, int row);
   /// Default mode: raises the peak speed along a row of nodes, from two rows before the rectangle
   /// to two rows after it, when all sums are done.

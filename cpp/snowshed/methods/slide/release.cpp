@@ -11,9 +11,10 @@
 namespace snowshed::slide {
 namespace {
 
-const double row_distance = std::sqrt(3.0) / 2;  // of a triangular lattice of side 1
+/// Distance of rows in a triangular lattice of side 1.
+const double row_distance = std::sqrt(3.0) / 2;
 
-/// The side of a triangular lattice with so many points per area.
+/// The side of a triangular lattice with this number of points per area.
 double lattice_side(double area, double points) { return std::sqrt(area / points / row_distance); }
 
 [[noreturn]] void refuse_area(std::size_t index, const std::string& name, const std::string& why) {
@@ -86,9 +87,10 @@ std::vector<ParticleBatch> seed_as_avaframe(const Settings& s, const Terrain& te
       for_lattice_points_near(
           column, row, cell, lattice_side(cell * cell, points), [&](double x, double y) {
             give_up();
-            const bool kept = std::any_of(outlines.begin(), outlines.end(),
-                                          [&](const Ring& ring) { return contains(ring, {x, y}); });
-            if (kept) place_on_ground(terrain, x, y, mass, batch);
+            const bool is_inside =
+                std::any_of(outlines.begin(), outlines.end(),
+                            [&](const Ring& ring) { return contains(ring, {x, y}); });
+            if (is_inside) place_on_ground(terrain, x, y, mass, batch);
           });
     }
   if (batch.positions.empty()) refuse_area(0, areas[0].name, "holds no particle");
@@ -145,7 +147,7 @@ SnowOfMap snow_of(const HeightField& map) {
   return snow;
 }
 
-/// The mean of a map's thickness over an area. Throws where it does not say it everywhere.
+/// The mean of a map's thickness over an area. Throws if the map does not cover all of it.
 double mean_thickness(const Area& area, const Terrain& terrain, std::size_t index) {
   if (!area.map) return area.thickness;
   const HeightField& m = *area.map;
@@ -190,7 +192,7 @@ MapPoint centroid(const Ring& ring) {
   return {o[0] + x / sum, o[1] + y / sum};
 }
 
-/// What the ground is like under an area, from points half a cell apart.
+/// Properties of the ground under an area, from points half a cell apart.
 struct Ground {
   double stretch = 0;          // sloping over projected area, mean
   double east = 1, north = 0;  // unit vector of the mean fall line
@@ -245,8 +247,8 @@ void for_lattice_points(const Ring& ring, const MapPoint& origin, const Ground& 
     }
 }
 
-/// Throws where a point lies within two areas: it is not clear how much snow is released there.
-/// Areas may touch.
+/// Throws if a point lies within two areas, because the amount of snow there is not defined. Areas
+/// may touch.
 void refuse_overlap(const Terrain& terrain, const std::vector<Area>& areas, std::size_t index,
                     const ParticleBatch& batch) {
   const double aside = 1e-6 * terrain.cell();
@@ -291,7 +293,7 @@ ParticleBatch seed_area(const Settings& s, const Terrain& terrain, const Area& a
                        seeded += share;
                      });
   if (batch.positions.empty())
-    refuse_area(index, area.name, "holds no particle: it is smaller than the room of one");
+    refuse_area(index, area.name, "holds no particle: it is smaller than the area of one particle");
   for (double& share : batch.masses) share *= mass / seeded;
   return batch;
 }
@@ -304,7 +306,7 @@ double mass_per_particle(const Settings& s, double cell) {
 
 void check_effort(const Settings& s, const Terrain& terrain, const std::vector<Area>& areas) {
   constexpr double most_particles = 2e6;    // they take a gigabyte and some seconds
-  constexpr double most_comparisons = 3e9;  // of a particle with a corner, some seconds
+  constexpr double most_comparisons = 3e9;  // comparisons of a particle with a corner: some seconds
   const double cell = terrain.cell();
   double particles = 0, corners = 0;
   const HeightField* map = nullptr;  // all areas share one

@@ -18,8 +18,8 @@ double mass_per_particle(const Settings& settings, double cell);
 /// sample. 0 for a single particle.
 double lattice_spacing(const ParticleBatch& batch);
 
-/// Throws InputError where the release would be more particles than a slide is set up with in
-/// seconds and a gigabyte, or has so many corners that they take longer.
+/// Throws InputError if the release has so many particles or corners that setting it up takes more
+/// than seconds or a gigabyte.
 void check_effort(const Settings& settings, const Terrain& terrain, const std::vector<Area>& areas);
 
 /// Returns the particles of all release areas, on triangular lattices, a batch for each area.
@@ -31,7 +31,7 @@ void check_effort(const Settings& settings, const Terrain& terrain, const std::v
 /// Compatible mode: one lattice begins at the grid's origin. The mean slope of all areas decides
 /// the number of particles per cell. The particles of a cell share its mass. All are in one batch.
 ///
-/// Throws InputError where an area holds no particle, or, in compatible mode, is too thin for one.
+/// Throws InputError if an area holds no particle, or, in compatible mode, is too thin for one.
 ///
 /// Throws Stopped on request.
 std::vector<ParticleBatch> seed_release(const Settings& settings, const Terrain& terrain,

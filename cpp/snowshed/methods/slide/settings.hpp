@@ -1,9 +1,9 @@
-// What a scene may choose of the snow slide.
+// Settings of the snow slide in a scene.
 #pragma once
 
 namespace snowshed::slide {
 
-/// `improved` mends the known faults of com5SnowSlide; `compatible` does what AvaFrame 2.1 does.
+/// `improved` mends the known faults of com5SnowSlide; `compatible` follows AvaFrame 2.1.
 enum class Mode { improved, compatible };
 
 /// Laws of friction between snow and ground, see friction.hpp.
@@ -26,7 +26,7 @@ struct Settings {
   double artificial_viscosity = 100;
 
   bool bonds = true;
-  double max_strain = 0.2;        // of a bond, in tension or compression
+  double max_strain = 0.2;        // largest strain of a bond, in tension or compression
   double bond_modulus = 50000;    // Pa
   double min_bond_length = 1e-3;  // m, below which a bond exerts no force
 
@@ -39,7 +39,7 @@ struct Settings {
   double stop_ratio = 0.01;  // kinetic energy over its peak at which the slide has stopped
   int threads = 0;           // 0: all
 
-  /// The size of the smallest thing the method resolves, m; 0 where the terrain decides.
+  /// The size of the smallest thing the method resolves, m; 0 if the terrain decides.
   double resolution() const { return cell; }
 };
 

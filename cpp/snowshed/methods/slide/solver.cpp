@@ -15,7 +15,7 @@
 namespace snowshed::slide {
 namespace {
 
-/// Between two times that particles are stored anew in the order of their cells.
+/// Steps between two sorts of the particles by their cells.
 constexpr int steps_between_sorts = 32;
 
 /// Where a node lies on the map, m.
@@ -26,7 +26,7 @@ std::string on_map(const Terrain& terrain, int column, int row) {
   return text;
 }
 
-/// Throws where a cell under an area lacks a height at one of its nodes.
+/// Throws if a cell under an area lacks a height at one of its nodes.
 void check_no_hole(const Terrain& terrain, const Polygon& area, const std::string& where) {
   double low[2] = {area.outline[0][0], area.outline[0][1]}, high[2] = {low[0], low[1]};
   for (const MapPoint& p : area.outline)
@@ -47,7 +47,7 @@ void check_no_hole(const Terrain& terrain, const Polygon& area, const std::strin
     }
 }
 
-/// Steps that stiff bonds may need in place of one.
+/// Largest number of steps that stiff bonds may need in place of one.
 constexpr double most_parts = 100;
 
 void check_on_terrain(const Terrain& terrain, const std::vector<Area>& areas,
@@ -113,8 +113,8 @@ void SolverImpl::append(State& state, const ParticleBatch& batch, const StopRequ
   state.bonds_made += std::int64_t(bonds.size());
 }
 
-/// Shortens the steps to what the bonds need; snow may pile up to four times its thickness before
-/// they become too stiff even so. Compatible mode takes the step that was asked for.
+/// Shortens the steps for the bonds. With these steps snow may pile up to four times its thickness
+/// before bonds become too stiff. Compatible mode takes the given step.
 void SolverImpl::choose_step(State& next, const Work& work) const {
   const Settings& s = model_.settings;
   if (model_.compatible()) return;
@@ -131,7 +131,7 @@ void SolverImpl::choose_step(State& next, const Work& work) const {
   next.counters.smallest_dt = std::min(next.counters.smallest_dt, next.step);
 }
 
-/// What a change from outside brings, beyond what there is now.
+/// Counts the energy that a change from outside adds to the present one.
 void SolverImpl::count_as_added(const State& next, const Work& work, Energy& sums) const {
   if (!model_.keeps_energy) return;
   Energy before, after;
@@ -140,7 +140,7 @@ void SolverImpl::count_as_added(const State& next, const Work& work, Energy& sum
   sums.added += after.stored() - before.stored();
 }
 
-/// Takes over a state whose workspace must follow.
+/// Takes over a state and updates the workspace.
 void SolverImpl::accept(State next) {
   Work work;
   refresh(model_, next, work, &next.peaks);
@@ -190,7 +190,7 @@ void SolverImpl::add_velocity(const std::vector<Vec3>& changes) {
 }
 
 /// In the order of their cells particles find their neighbours faster. All or nothing: the
-/// workspace has room for all that follows.
+/// workspace has the memory for this.
 void SolverImpl::sort_now_and_then() {
   if (state_.counters.steps % steps_between_sorts != 0) return;
   if (std::is_sorted(work_.cells.order().begin(), work_.cells.order().end())) return;

@@ -21,11 +21,11 @@ struct Options {
   bool energy = false;    // whether to keep the energy balance
 };
 
-/// A slide as a method, and what only a slide has. `seed` gives the particles of the release areas
+/// A slide as a method, with its own additions. `seed` gives the particles of the release areas
 /// (`seed_release`).
 class Solver : public Method, public SeedsItself, public KeepsEnergy, public ReportsRun {
  public:
-  /// How many particles `seed` gives.
+  /// Number of particles that `seed` gives.
   virtual std::size_t count_seeds() const = 0;
   virtual const Terrain& terrain() const = 0;
   virtual const PeakFields& peaks() const = 0;
@@ -35,7 +35,7 @@ class Solver : public Method, public SeedsItself, public KeepsEnergy, public Rep
   virtual const MassBalance& mass_balance() const = 0;
 };
 
-/// Throws InputError where an area does not lie on known terrain.
+/// Throws InputError if an area does not lie on known terrain.
 std::unique_ptr<Solver> make_solver(Options);
 
 }  // namespace snowshed::slide

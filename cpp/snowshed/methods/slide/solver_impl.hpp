@@ -1,4 +1,4 @@
-// The slide's solver: what it holds, and how its parts go together.
+// The slide's solver: its data, and the order of its parts.
 #pragma once
 
 #include "snowshed/methods/particle_method.hpp"

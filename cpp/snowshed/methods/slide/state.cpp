@@ -129,7 +129,7 @@ void view_places(const Model& model, Work& work, View& v) {
   v.cell_rows = work.cells.rows();
 }
 
-/// Whoever sees a state that must not change only reads it.
+/// Kernels only read the view of a constant state.
 void view_particles(const State& state, View& v) {
   const Particles& p = state.particles;
   v.x = const_cast<double*>(p.x.data());
@@ -203,7 +203,7 @@ void refresh(const Model& model, const State& state, Work& work, PeakFields* rai
 
 namespace {
 
-/// Of a particle's mass: where there is less snow around a node, its speed fades.
+/// The speed at a node fades if the mass there is less than this share of a particle's mass.
 constexpr double share_of_fading = 0.15;
 
 /// The mass of the lightest particle as it was seeded, kg; 0 without particles.
@@ -227,7 +227,7 @@ void refresh_fields(const Model& model, const State& state, Work& work, PeakFiel
     view.peak_speed = raised->speed.data();
     if (!model.compatible()) view.sums = &work.fields.sums()->thickness;
   }
-  // Two rows of cells hand on to the same row of nodes: every other row at a time, so that no two
+  // Two rows of cells add to the same row of nodes: every other row at a time, so that no two
   // threads meet and the sums do not depend on how many there are.
   for (const int parity : {0, 1})
     parallel_pieces((work.cells.rows() + 1 - parity) / 2, work.threads, 1,

@@ -1,5 +1,5 @@
-// What a slide is made of: a model that never changes, a state that steps change, and a workspace
-// that follows from both and may be thrown away.
+// Parts of a slide: a model that never changes, a state that steps change, and a workspace that
+// follows from both and may be thrown away.
 #pragma once
 
 #include <algorithm>
@@ -25,14 +25,14 @@ namespace snowshed::slide {
 
 /// The fewest particles that a thread is started for.
 inline constexpr std::size_t particles_per_thread = 400;
-/// Steps of fewer particles find out by trial whether threads make them faster.
+/// For steps with fewer particles a trial decides whether threads make them faster.
 inline constexpr std::size_t particles_for_threads = 20000;
 
 struct Model {
   Model(const Settings&, double gravity, const HeightField&, Areas, bool keeps_energy);
 
   bool compatible() const { return settings.mode == Mode::compatible; }
-  /// The most threads for a step of so many particles.
+  /// The most threads for a step of this number of particles.
   int threads_for(std::size_t particles) const {
     return snowshed::threads_for(particles, particles_per_thread, threads);
   }
@@ -47,7 +47,7 @@ struct Model {
   bool keeps_energy;
 };
 
-/// What left the terrain, and the snow it took up on its way.
+/// Snow that left the terrain, and snow that was taken up.
 struct MassBalance {
   double released = 0, entrained = 0, left = 0;  // kg
   std::int64_t particles_left = 0;
@@ -71,7 +71,7 @@ struct State {
   Energy energy;  // its sums over steps
 };
 
-/// Where particles lie in the grid, and the normal of the ground there.
+/// Places of the particles in the grid, and the normals of the ground there.
 struct Places {
   AlignedVector<std::int32_t> column, row;
   AlignedVector<double> east, north;  // within the cell, 0 to 1
@@ -96,7 +96,7 @@ struct Places {
   }
 };
 
-/// What acts on each particle during a step; see View.
+/// Loads on each particle during a step; see View.
 struct Loads {
   AlignedVector<double> ax, ay, az, yield, drag, speed;
 
@@ -116,7 +116,7 @@ struct Work {
   AlignedVector<double> predicted;   // records of four for each particle, see View
   AlignedVector<double> pushed;      // records of four for each particle
   AlignedVector<double> bond_force;  // records of four for each bond
-  std::vector<double> entrained;     // kg, by each particle in this step; empty where there is none
+  std::vector<double> entrained;     // kg, by each particle in this step; empty without entrainment
   std::vector<char> removed;         // particles that left the terrain
   std::vector<char> broken;          // bonds
   bool bonds_break = false;          // whether any of them does in this step
@@ -124,31 +124,31 @@ struct Work {
   std::vector<double> piece_sums;
   bool none_splits = false;  // no particle is too heavy, and none becomes heavier
   EnergyAudit audit;
-  int threads = 1;  // that share the loops
+  int threads = 1;  // threads that share the loops
   ThreadChoice thread_choice;
 
-  /// Makes room for all that a step of this state can need, so that nothing fails amid it.
+  /// Reserves all memory that a step of this state can need, so that a step cannot fail half-way.
   void make_room(const Model&, State&);
 };
 
 /// Iterations that a thread takes at a time.
 inline constexpr std::ptrdiff_t particles_in_piece = 64;
 
-/// What the kernels see of a slide, until an array of it changes its size.
+/// The kernels' view of a slide, valid until an array of it changes its size.
 View view_of(const Model&, State&, Work&);
 
-/// Calls f(begin, end) for pieces of so many particles or bonds.
+/// Calls f(begin, end) for pieces of this number of particles or bonds.
 template <class F>
 void for_each_piece(const Work& work, std::size_t count, F f) {
   parallel_pieces(std::ptrdiff_t(count), work.threads, particles_in_piece, f);
 }
 
-/// Makes the workspace follow from the particles: places, cells, fields, bonds. The fields raise
-/// the peaks that are given.
+/// Updates the workspace from the particles: places, cells, fields, bonds. The fields raise the
+/// given peaks.
 void refresh(const Model&, const State&, Work&, PeakFields* raised = nullptr);
 /// The places of the particles [begin, end), which the workspace has room for.
 void refresh_places(const Model&, const State&, Work&, std::size_t begin, std::size_t end);
-/// The same as `refresh` where bonds and the particles' places are known already.
+/// The same as `refresh` if bonds and the particles' places are known already.
 void refresh_fields(const Model&, const State&, Work&, PeakFields* raised);
 
 }  // namespace snowshed::slide

@@ -9,8 +9,8 @@ struct Slope {
   double x, y;
 };
 
-/// The slope of the bilinear surface in the middle of a cell: half the sum of what its diagonals
-/// rise (AvaFrame's normal by the cross product of the diagonals).
+/// The slope of the bilinear surface in the middle of a cell: half the sum of its diagonals' rises
+/// (AvaFrame's normal by the cross product of the diagonals).
 Slope cell_slope(const HeightField& f, int column, int row) {
   const double z00 = f.height(column, row), z10 = f.height(column + 1, row),
                z01 = f.height(column, row + 1), z11 = f.height(column + 1, row + 1);

@@ -1,4 +1,4 @@
-// The ground that snow slides on, with what interpolation needs at each node.
+// The ground that snow slides on, with the values for interpolation at each node.
 #pragma once
 
 #include <cmath>
@@ -18,7 +18,7 @@ enum class BorderSlope { one_sided, level_in_the_south_west };
 class Terrain {
  public:
   struct Node {
-    double height;            // m; NaN where nothing is known
+    double height;            // m; NaN if nothing is known
     double slope_x, slope_y;  // the normal is (slope_x, slope_y, 1), not normalised
     double area;              // m2, of the ground within half a cell of the node
   };

@@ -142,8 +142,8 @@ TEST(GrainLoading, APeriodThatShrinksPressesLikeWalls) {
     load_all(*grains, 100000);
     const LoadingMeasures m = grains->measures();
     EXPECT_GT(m.top_stress, 0);
-    // As many springs in a row in all directions, but for the seam: walls and plates press on
-    // both ends, the period closes with one spring.
+    // There are as many springs in a row in all directions, except at the seam: walls and plates
+    // press on both ends, the period closes with one spring.
     const double springs = sides == Sides::walls ? 3 : 2;
     const double side_stress = o.settings.elastic_modulus * 0.5 * test_voxel *
                                (8 * test_voxel * 2e-4 / springs) / (test_voxel * test_voxel);

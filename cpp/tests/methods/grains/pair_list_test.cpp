@@ -129,7 +129,7 @@ TEST(GrainPairs, KeepTheirPastAndTheirBondsFromListToList) {
   PairList broken = list;
   std::fill(broken.bonded.begin(), broken.bonded.end(), std::uint8_t(0));
   EXPECT_EQ(make_list(strewn.search(), found, broken.all()).a, list.a);
-  for (PairHistory& h : past) h.kept = h.bonded = false;
+  for (PairHistory& h : past) h.always_listed = h.bonded = false;
   EXPECT_EQ(make_list(strewn.search(), found, past).all().size(), found.size());
 }
 

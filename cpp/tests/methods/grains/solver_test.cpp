@@ -33,7 +33,8 @@ TEST(Grains, FlyFreelyWithConstantEnergyAndVelocity) {
 TEST(Grains, FallAsNewtonSays) {
   Options o = grains_of(lonely(2, 2, 2));
   o.gravity = 9.81;
-  o.settings.density_scaling = 1e4;  // of inertia: then weight moves it ten thousand times slower
+  // It scales the inertia: then weight moves it ten thousand times slower.
+  o.settings.density_scaling = 1e4;
   const auto grains = filled(o);
   take_steps(*grains, 500);
   EXPECT_NEAR(grains->state().velocities[0].z() / (-9.81e-4 * grains->time()), 1, 1e-10);
@@ -144,7 +145,7 @@ struct Slider {
   std::unique_ptr<Solver> grains;
 };
 
-/// What presses is the weight, less what lifts the grain: its impulse is m (g t - v_z).
+/// The pressing force is the weight, less the lifting force: its impulse is m (g t - v_z).
 void expect_coulomb(const Slider& s) {
   const double lost = s.mu * (s.g * s.grains->time() - s.velocity().z());
   EXPECT_NEAR((s.v0 - s.velocity().x()) / lost, 1, 1e-3);

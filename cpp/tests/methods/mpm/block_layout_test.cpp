@@ -60,7 +60,7 @@ TYPED_TEST(Layout, ConnectsEveryBlockWithAllAroundIt) {
     BlockCoord<D> c;
     for (int d = 0; d < D; ++d) c[d] = int(random.uniform() * 6) - 3;
     keys.insert(block_key<D>(c));
-    if (D == 2 && keys.size() == 30) break;  // of 36 possible
+    if (D == 2 && keys.size() == 30) break;  // 30 of 36 possible ones
   }
   std::vector<BlockKey> blocks(keys.begin(), keys.end());
   std::vector<std::int32_t> starts(blocks.size() + 1);

@@ -21,7 +21,7 @@ struct Slide {
   Transfer transfer = Transfer::flip;
 };
 
-/// A slab 5 cm thick that is let go on a ramp of 40 degrees.
+/// A slab 5 cm thick that is released on a ramp of 40 degrees.
 std::unique_ptr<Solver> slab_on_ramp(const Slide& slide) {
   const Options o = options_for({2, Precision::float32, slide.transfer});
   auto solver = make_solver(
@@ -177,7 +177,7 @@ TEST(ThickEnough, LeavesThickBodiesAloneAndPadsThinOnes) {
 struct Throw {
   int dimension;
   Precision precision;
-  double turn;  // of the panel, degrees
+  double turn;  // turn of the panel, degrees
 };
 
 TEST(ThinPanel, LetsNoSnowThrough) {

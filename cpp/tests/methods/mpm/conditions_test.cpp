@@ -1,5 +1,5 @@
-// What tells sticky, slip and separate from each other: snow that is pulled off an obstacle, and a
-// slab that reaches beyond an edge.
+// Differences between sticky, slip and separate: snow that is pulled off an obstacle, and a slab
+// that reaches beyond an edge.
 #include <gtest/gtest.h>
 
 #include "methods/mpm/solver_testing.hpp"
@@ -39,7 +39,7 @@ struct Pulled {
   Vec3 foot, velocity;  // m, how far the lowest layer has come; m/s, mean of all
 };
 
-/// What becomes of snow that is thrown up and along the ground.
+/// Motion of snow that is thrown up and along the ground.
 Pulled pulled_off(Condition condition, double duration) {
   const auto solver = block_on({condition, 0.0}, 0.0, Vec3(0.3, 0, 0.3));
   const ParticleState start = solver->state();

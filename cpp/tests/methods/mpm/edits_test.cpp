@@ -1,4 +1,4 @@
-// What is done to the snow between steps, and what a method tells of its particles.
+// Changes of the snow between steps, and a method's fields of its particles.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -7,7 +7,7 @@
 namespace snowshed::mpm {
 namespace {
 
-/// What has changed hands: the weight's work, or the energy that was there.
+/// Energy that was converted: the weight's work, or the energy at the start.
 double turnover(const EnergyBalance& now, double gravitational_at_start) {
   return std::max({gravitational_at_start - now.gravitational, now.kinetic, now.spent()});
 }

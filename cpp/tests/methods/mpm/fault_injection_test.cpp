@@ -1,6 +1,6 @@
-// What becomes of the solver when a call fails. Where memory is short, at every allocation of a run
-// with everything in it, the call must leave the state as it was, and the run must end with the
-// same bits.
+// The solver after a call that fails. Where memory is short, at every allocation of a run with
+// everything in it, the call must leave the state as it was, and the run must end with the same
+// bits.
 #include <sys/resource.h>
 
 #include <csignal>
@@ -58,7 +58,7 @@ void expect_same(const Seen& now, const Seen& before) {
 
 struct Case {
   int threads;
-  double spacing;  // of the particles, m
+  double spacing;  // spacing of the particles, m
   int steps;       // until the snow is hit, and so many may let it fall asleep
   bool moving;     // whether an obstacle moves, which takes memory in each step
 };

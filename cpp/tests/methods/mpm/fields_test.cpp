@@ -65,7 +65,7 @@ TEST_P(ParticleFields, StressesAreThoseOfTheLaw) {
                             snow.cohesion, snow.hardening_factor, dimension);
   const FieldView q = solver_->field("deviatoric_stress");
   const FieldView strength = solver_->field("preconsolidation_pressure");
-  double largest = -1;  // of y over M^2 p0^2, which is -1/4 at least within the surface
+  double largest = -1;  // largest y over M^2 p0^2, which is at least -1/4 within the surface
   for (std::size_t k = 0; k < q.count; ++k) {
     const std::size_t place = solver_->order_by_id()[k];
     const double p0 = *strength.at<double>(place);

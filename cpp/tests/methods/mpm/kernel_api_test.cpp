@@ -17,7 +17,7 @@
 namespace snowshed::mpm {
 namespace {
 
-/// Of up to four obstacles.
+/// Shares of friction of up to four obstacles, all of which are pushed.
 template <class T>
 constexpr T all_pushing[] = {1, 1, 1, 1};
 
@@ -52,7 +52,7 @@ struct GridSums {
   }
 };
 
-/// What the blocks around gather of one tile, those to which its particles reach.
+/// The sums that the blocks around gather from one tile, as far as its particles reach.
 template <class T, int D>
 GridSums<D> gathered(const Kernels<T>& kernels, const T* tile, int reach) {
   GridSums<D> result;
@@ -118,7 +118,7 @@ void expect_exact_sums(const Way& way, const Spread& spread) {
 
   const GridSums<D> grid = gathered<T, D>(kernels, tile.data(), stats.reach);
   const double eps = way.epsilon();
-  EXPECT_NEAR(grid.sums[0], mass, 16 * eps * mass);  // of some hundred nodes
+  EXPECT_NEAR(grid.sums[0], mass, 16 * eps * mass);  // sum of some hundred nodes
   for (int d = 0; d < D; ++d) {
     EXPECT_NEAR(grid.sums[1 + d], momentum[d], 8 * eps * grid.absolute[1 + d]);
     EXPECT_NEAR(grid.sums[4 + d], 0.0, 8 * eps * grid.absolute[4 + d]);  // internal forces
@@ -167,7 +167,7 @@ TEST(Scatter, SaysWhenAParticleHasLeftTheTile) {
   }
 }
 
-/// In a process of its own, since the choice is made once.
+/// In a process of its own, because the choice is made once.
 [[noreturn]] void choose_kernels(const char* name) {
   setenv("SNOWSHED_KERNELS", name, 1);
   try {

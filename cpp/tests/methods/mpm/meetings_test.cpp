@@ -123,7 +123,7 @@ TEST(Meetings, SnowOfDifferentEventsDoesNotStick) {
   EXPECT_GT(speed_of_lower(Fields::one), 0.02);
 }
 
-/// Of ten events the first three share a field.
+/// With ten events the first three share a field.
 TEST(Meetings, TheNewestEventSharesNoField) {
   for (const int lower : {3, 9}) {
     const auto solver = weightless_solver();

@@ -51,7 +51,7 @@ class ParticleSorting : public testing::Test {
   using T = typename C::Scalar;
   Particles<T, D> particles;
   std::vector<BlockKey> blocks;
-  std::map<std::uint32_t, VecD<D>> where;  // by id
+  std::map<std::uint32_t, VecD<D>> where;  // position by id
 
   void add_random(std::size_t n, double reach) {
     Random random(9);

@@ -226,7 +226,7 @@ TEST(MaterialPerParticle, EnergyBooksClose) {
 }
 
 TEST(MaterialPerParticle, ElasticEnergyIsThatOfEachParticlesOwnSnow) {
-  // What add() counts from the particles must be what the kernels record.
+  // The energy that add() counts must be the energy that the kernels record.
   const auto solver = thrown_halves({2, Precision::float64}, {Snow(), soft_snow()}, 1);
   run_steps(*solver, 100);
   const double booked = solver->energy().elastic;

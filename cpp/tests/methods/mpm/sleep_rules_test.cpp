@@ -10,7 +10,7 @@ namespace {
 constexpr double speed_limit = 0.02, time_to_sleep = 0.04, step = 1e-4;
 constexpr int steps_between_checks = 8;
 
-/// What a check of the quiet block finds.
+/// Result of a check of the quiet block.
 struct QuietBlock {
   double speed = 0, fastest = 0;
   CarriedMotion carried;

@@ -124,7 +124,7 @@ TEST_F(SolverFiles, ApicKeepsAngularMomentum) {
   }
 }
 
-/// Of noise affine FLIP keeps it as far as its affine velocities are those of its velocities.
+/// Affine FLIP keeps as much of the noise as its affine velocities are those of its velocities.
 TEST_F(SolverFiles, AffineFlipKeepsTheAngularMomentumOfASpin) {
   const Way way{2, Precision::float64, Transfer::affine_flip};
   Options o = options_for(way);
@@ -164,7 +164,8 @@ TEST_F(SolverFiles, ADiscKeepsSpinning) {
     double worst = 0;
     for (std::size_t i = 0; i < after.positions.size(); ++i)
       worst = std::max(worst, (after.positions[i] - turn * before.positions[i]).norm());
-    // Of the way the rim has come; FLIP's rim lags a little, for it is not quite affine there.
+    // The limit is relative to the distance that the rim has moved. FLIP's rim lags a little,
+    // because it is not quite affine there.
     EXPECT_LT(worst, (transfer == Transfer::flip ? 0.03 : 0.01) * angle * radius) << way.name();
   }
 }

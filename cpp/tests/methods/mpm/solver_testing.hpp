@@ -1,4 +1,4 @@
-// What the tests of the solver share: options, blocks of particles, and sums over them.
+// Shared parts of the tests of the solver: options, blocks of particles, and sums over them.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -14,7 +14,7 @@ Options touching_options(const Way& way, double dx = 0.01) {
   o.settings.transfer = Transfer::affine_flip;
   o.settings.damping_length = 0.01;
   o.settings.damping_rate = 380;
-  o.settings.contact = Contacting::touch;
+  o.settings.contact = ContactRule::touch;
   return o;
 }
 
@@ -25,7 +25,7 @@ double lowest(const ParticleState& s) {
 }
 
 /// Height of the snow's surface over the ground, in cells, of a slab that came down on it.
-double resting_gap(const Way& way, double dx, Contacting contact, const Obstacle& ground,
+double resting_gap(const Way& way, double dx, ContactRule contact, const Obstacle& ground,
                    double surface) {
   Options o = touching_options(way, dx);
   o.settings.contact = contact;
@@ -51,21 +51,21 @@ TEST_P(RestingGap, IsLessThanATenthOfACell) {
           fixed(make_box(Vec3(0, 0, surface - dx / 4), Vec3(2, 2, dx / 2)), condition, 0.3);
       const Way way{2, Precision::float32};
       for (const Obstacle& obstacle : {ground, plate})
-        EXPECT_NEAR(resting_gap(way, dx, Contacting::touch, obstacle, surface), 0, 0.11)
+        EXPECT_NEAR(resting_gap(way, dx, ContactRule::touch, obstacle, surface), 0, 0.11)
             << dx << " m, " << surface;
-      if (surface == 0) EXPECT_GT(resting_gap(way, dx, Contacting::kernel, ground, surface), 0.8);
+      if (surface == 0) EXPECT_GT(resting_gap(way, dx, ContactRule::kernel, ground, surface), 0.8);
     }
 }
 
 TEST_P(RestingGap, IsAsSmallInThreeDimensions) {
   const Condition condition = GetParam();
   const Obstacle ground = fixed(make_plane(Vec3(0, 0, 0.002), Vec3::UnitZ()), condition, 0.3);
-  EXPECT_NEAR(resting_gap({3, Precision::float32}, 0.01, Contacting::touch, ground, 0.002), 0,
+  EXPECT_NEAR(resting_gap({3, Precision::float32}, 0.01, ContactRule::touch, ground, 0.002), 0,
               0.11);
 }
 
 /// Speed along z (m/s) of a small chunk that falls beside the edge of a plate.
-double speed_beside_edge(Contacting contact, double clearance) {
+double speed_beside_edge(ContactRule contact, double clearance) {
   Options o = touching_options({2, Precision::float64});
   o.settings.contact = contact;
   const auto solver = make_solver(
@@ -77,8 +77,8 @@ double speed_beside_edge(Contacting contact, double clearance) {
 
 TEST(Touch, SnowPastAnEdgeIsNotCarried) {
   const double free_fall = -9.81 * 0.06;
-  EXPECT_NEAR(speed_beside_edge(Contacting::touch, 0.001), free_fall, 0.01);
-  EXPECT_GT(speed_beside_edge(Contacting::kernel, 0.001),
+  EXPECT_NEAR(speed_beside_edge(ContactRule::touch, 0.001), free_fall, 0.01);
+  EXPECT_GT(speed_beside_edge(ContactRule::kernel, 0.001),
             0.8 * free_fall);  // the grid carries it
 }
 

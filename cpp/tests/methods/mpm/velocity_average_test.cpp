@@ -113,8 +113,8 @@ TEST(VelocityAverage, AChunkStopsTurningAsFastOnAnyGrid) {
   for (const double w : {0.02, 0.04, 0.08}) {
     double least = 1e9, most = 0;
     for (const double dx : {0.02, 0.01, 0.007, 0.005, 0.0025}) {
-      // Of a cell by half a cell, three particles: their affine velocities hold five sixths of the
-      // angular momentum, and the average knows nothing of these.
+      // A cell by half a cell holds three particles. Their affine velocities have five sixths of
+      // the angular momentum, which the average lacks.
       if (w < 1.5 * dx || w > 16 * dx) continue;
       const double found = decay_rate(2, w, dx);
       least = std::min(least, found);
@@ -195,7 +195,7 @@ TEST(VelocityAverage, BooksOfATurningChunkClose) {
   add_turning_chunk(*solver, 2, 0.04, 0.004, 0.4, 10);
   run_until(*solver, 0.02);
   const EnergyBalance e = solver->energy();
-  EXPECT_GT(e.damping, 0.5 * e.added);  // what the average took, not the transfer
+  EXPECT_GT(e.damping, 0.5 * e.added);  // energy taken by the average, not by the transfer
   EXPECT_NEAR(e.residual(), 0, 0.01 * e.added);
 }
 
@@ -277,7 +277,7 @@ TEST_F(VelocityAverageFiles, GivesTheSameBitsOnAnyNumberOfThreadsAndFromACheckpo
   expect_resumes(*one, *thrown_chunk(1), path("state"), 300);
 }
 
-/// What sleeping snow adds to the averages is not in a checkpoint.
+/// A checkpoint does not hold the averages' sums of sleeping snow.
 TEST_F(VelocityAverageFiles, GoesOnFromACheckpointBesideSnowThatSleeps) {
   const auto solver = thrown_chunk(1);
   for (int i = 0; i < 4; ++i) {

@@ -38,8 +38,8 @@ double tensile_strength(const Snow& snow, int dimension) {
 
 constexpr double column_length = 0.2;
 
-/// How far the lower half of a column has come down that hangs from a sticky ceiling. Its weight
-/// grows slowly until it strains the ceiling with a part of the column's strength, and then stays.
+/// Fall of the lower half of a column that hangs from a sticky ceiling. Its weight grows slowly
+/// until it strains the ceiling with a part of the column's strength, and then stays.
 double fall_of_column(int dimension, double part_of_strength) {
   Options o = options_for({dimension, Precision::float32});
   Snow& snow = o.snows[0] = test_snow();
@@ -67,7 +67,7 @@ double fall_of_column(int dimension, double part_of_strength) {
   return before - middle();
 }
 
-/// It breaks a little early, since the stress of particles scatters about that of the column.
+/// It breaks a little early, because the stress of particles scatters about that of the column.
 TEST(HangingColumn, BreaksAtItsTensileStrength) {
   for (int dimension : {2, 3}) {
     EXPECT_LT(fall_of_column(dimension, 0.85), 5e-4) << dimension;

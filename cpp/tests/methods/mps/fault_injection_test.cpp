@@ -1,6 +1,6 @@
-// What becomes of a fluid of particles when memory is short: every allocation of a run with
-// erosion, both kinds of walls and a checkpoint fails once. Each failed call must leave the snow as
-// it was, and the run must end with the same bits.
+// Lack of memory with a fluid of particles: every allocation of a run with erosion, both kinds of
+// walls and a checkpoint fails once. Each failed call must leave the snow as it was, and the run
+// must end with the same bits.
 #include "io/temporary_folder.hpp"
 #include "methods/fault_story.hpp"
 #include "methods/mps/mps_testing.hpp"

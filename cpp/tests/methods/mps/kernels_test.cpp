@@ -102,7 +102,8 @@ TYPED_TEST(KernelsOf, WeighPairsByTheirDirection) {
   cloud.for_each_pair([&](std::size_t i, std::size_t j, std::size_t e) {
     const VecD<D> separation = cloud.separation(i, j).normalized();
     const double factor =
-        0.5 * separation.dot((symmetric<D>(spread[i].data()) + symmetric<D>(spread[j].data())) * separation);
+        0.5 * separation.dot((symmetric<D>(spread[i].data()) + symmetric<D>(spread[j].data())) *
+                             separation);
     ++within[factor < 0.5 ? 0 : factor < 2 ? 1 : 2];
     EXPECT_NEAR(even[e], double(cloud.weight[e]) * std::clamp(factor, 0.5, 2.0),
                 1e-4 * (1 + double(cloud.weight[e])));
@@ -177,13 +178,13 @@ TYPED_TEST(KernelsOf, SumWaysAndApproaches) {
     base[i] = cloud.velocity[i][1];
     share[i] = i % 3 == 0 ? 1.0 : 0.5;
   }
-  AlignedVector<VecD<D>> ways(150), weighted(150), approaches(150);
-  const auto sum_ways = [&](const double* values, AlignedVector<VecD<D>>& sums) {
-    chosen_kernels<D>().sum_ways(cloud.rows, cloud.offset.data(), cloud.slope.data(), values,
-                                 base.data(), sums.data()->data(), 0, cloud.size());
+  AlignedVector<VecD<D>> separations(150), weighted(150), approaches(150);
+  const auto sum_separations = [&](const double* values, AlignedVector<VecD<D>>& sums) {
+    chosen_kernels<D>().sum_separations(cloud.rows, cloud.offset.data(), cloud.slope.data(), values,
+                                        base.data(), sums.data()->data(), 0, cloud.size());
   };
-  sum_ways(nullptr, ways);
-  sum_ways(value.data(), weighted);
+  sum_separations(nullptr, separations);
+  sum_separations(value.data(), weighted);
   chosen_kernels<D>().sum_approaches(cloud.rows, cloud.offset.data(), cloud.velocity.data()->data(),
                                      share.data(), limit, approaches.data()->data(), 0,
                                      cloud.size());
@@ -203,7 +204,7 @@ TYPED_TEST(KernelsOf, SumWaysAndApproaches) {
       expected_approaches[i] += share[j] * approach * r.normalized();
   });
   for (std::size_t i = 0; i < 150; ++i) {
-    EXPECT_LT((ways[i] - expected[i]).norm(), 1e-6 * (1 + sizes[i]));
+    EXPECT_LT((separations[i] - expected[i]).norm(), 1e-6 * (1 + sizes[i]));
     EXPECT_LT((weighted[i] - expected_weighted[i]).norm(), 1e-6 * (1 + sizes[i]));
     EXPECT_LT((approaches[i] - expected_approaches[i]).norm(), 1e-5);
   }

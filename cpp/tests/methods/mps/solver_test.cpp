@@ -14,7 +14,7 @@
 namespace snowshed::mps {
 namespace {
 
-// Of the regular lattice, by hand and by others.
+// Constants of the regular lattice, by hand and by others.
 TEST(MpsKernel, ConstantsOfALattice) {
   const struct {
     int dimension;
@@ -107,7 +107,7 @@ double highest(const Method& method) {
   return z;
 }
 
-// What particles at the surface leave behind below it would make the water rise, and then boil.
+// Gaps that particles at the surface leave behind would make the water rise, and then boil.
 TEST(MpsSolver, AColumnOfWaterDoesNotRise) {
   Options o = tank(2, 0.2, 0.01);
   o.settings.viscosity = 1e-3;

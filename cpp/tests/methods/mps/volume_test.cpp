@@ -1,4 +1,4 @@
-// That a body of snow keeps its volume as it flows.
+// A body of snow keeps its volume as it flows.
 
 #include <gtest/gtest.h>
 

@@ -105,7 +105,7 @@ TEST(MpsWallParticles, OfABallStandApartInTheMiddleOfLayers) {
   EXPECT_NEAR(double(inner) * spacing * spacing, area, 0.1 * area);
 }
 
-// What is thinner than a particle has a single layer, through which no pressure goes.
+// A wall thinner than a particle has a single layer, through which no pressure goes.
 TEST(MpsWallParticles, OfAThinBoardStandInItsMiddle) {
   Options o = tank(2, 1, 0.01);
   o.obstacles = {{"board",

@@ -123,7 +123,7 @@ struct Roll {
     slide = released(o);
     while (slide->time() < 1.5) slide->step();
   }
-  /// Of the speeds, over their mean.
+  /// Standard deviation of the speeds, over their mean.
   double spread() const {
     double mean = 0, square = 0;
     const ParticleState s = slide->state();

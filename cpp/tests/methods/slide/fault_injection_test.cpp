@@ -1,6 +1,6 @@
-// What becomes of a slide when memory is short: every allocation of a run that entrains snow and
-// loses some over the edge of the terrain fails once. Each failed call must leave the snow as it
-// was, and the run must end with the same bits.
+// Lack of memory with a slide: every allocation of a run that entrains snow and loses some over the
+// edge of the terrain fails once. Each failed call must leave the snow as it was, and the run must
+// end with the same bits.
 #include "io/temporary_folder.hpp"
 #include "methods/fault_story.hpp"
 #include "methods/slide/slide_testing.hpp"

@@ -40,7 +40,7 @@ SNOWSHED_INLINE void store_mask(std::uint8_t* flags, const QuadMask& mask) {
   for (int i = 0; i < 4; ++i) flags[i] = std::uint8_t(mask[i] & 1);
 }
 
-/// How the second of two bodies moves relative to the first.
+/// Motion of the second of two bodies relative to the first.
 struct PairedBodies {
   const BodyFrame &a, &b;
   double apart[3], parting[3];  // m, m/s, of their centres, or the second's image

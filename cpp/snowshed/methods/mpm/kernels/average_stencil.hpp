@@ -1,5 +1,5 @@
 // The nodes of a coarse grid around a chunk's particles, over which velocities are averaged: with
-// quadratic splines, whatever the spline of the grid.
+// quadratic splines, independent of the spline of the grid.
 #pragma once
 
 #include <algorithm>
@@ -39,7 +39,7 @@ class AverageStencil {
     });
   }
 
-  /// The weighted sum of what the nodes hold.
+  /// The weighted sum of the nodes' values.
   SNOWSHED_INLINE Half sum(int lane) const {
     Half total{};
     for_each_node(lane, [&](const T* node, T weight)

@@ -13,8 +13,8 @@ struct Stencil {
   using V = SimdPack<T>;
   static constexpr int S = support(basis);
   static constexpr int W = simd_width<T>;
-  V fraction[D];                        // of a cell, past the lowest node plus base_offset
-  alignas(64) std::int32_t address[W];  // of the lowest node, in values
+  V fraction[D];                        // in cells, past the lowest node plus base_offset
+  alignas(64) std::int32_t address[W];  // address of the lowest node, in values
   bool inside;                          // every particle's nodes lie in the tile
   SimdMask<T> reach;                    // in each lane, the bits of BlockStats::reach
 

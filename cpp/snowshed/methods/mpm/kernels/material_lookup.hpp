@@ -50,7 +50,7 @@ struct MaterialPerParticle {
 
   explicit MaterialPerParticle(const MaterialConstants<T>* snows) : snows(snows) {}
 
-  /// Of `n` particles from `first`; as in `load`, lanes beyond repeat the first.
+  /// Constants of `n` particles from `first`; as in `load`, lanes beyond repeat the first.
   SNOWSHED_INLINE Chunk of(const ParticleView<T>& p, int first, int n) const {
     const MaterialConstants<T>* own[simd_width<T>];
     for (int l = 0; l < simd_width<T>; ++l) own[l] = &snows[p.material_id[first + (l < n ? l : 0)]];

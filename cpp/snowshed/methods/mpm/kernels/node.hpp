@@ -1,5 +1,6 @@
-// The eight values of a grid node, in as few registers as hold them, and in halves of four: what is
-// carried (mass and momentum, or the velocity), and what acts (force, or the change of velocity).
+// The eight values of a grid node, in as few registers as hold them, and in halves of four: a
+// carried half (mass and momentum, or the velocity), and an acting half (force, or the change of
+// velocity).
 #pragma once
 
 #include "snowshed/core/simd_pack.hpp"
@@ -36,16 +37,17 @@ SNOWSHED_INLINE void store_half(T* values, const NodeHalf<T>& half) {
   std::memcpy(values, &half, sizeof half);
 }
 
-/// Which registers of a node hold values of a half. A register that holds both belongs to both.
+/// Halves of a node whose values a register holds. A register that holds both belongs to both.
 enum class Halves { both, first, second };
 
-/// A node's values, or what each of them is multiplied by.
+/// A node's values, or a factor for each of them.
 template <class T>
 struct Node {
   using Part = typename NodeTypes<T>::part;
   static constexpr int parts = node_values * int(sizeof(T)) / int(sizeof(Part));
   static constexpr int part_values = node_values / parts;
-  static constexpr int first_parts = parts == 1 ? 1 : parts / 2;  // that hold the first half
+  // Number of registers that hold the first half.
+  static constexpr int first_parts = parts == 1 ? 1 : parts / 2;
   Part part[parts];
 
   /// All values, or those of the first half.
@@ -77,7 +79,7 @@ struct Node {
       for (int i = 0; i < parts; ++i) n.part[i] = (i < parts / 2 ? low : high) - Part{};
     return n;
   }
-  /// Each half from memory, or zero where there is none.
+  /// Each half from memory, or zero for a null pointer.
   static SNOWSHED_INLINE Node of_halves(const T* low, const T* high) {
     Node n{};
     if constexpr (parts == 1) {
@@ -130,7 +132,7 @@ SNOWSHED_INLINE void add_scaled_first(Node<T>& sum, const Node<T>& weight, const
   for (int i = 0; i < Node<T>::parts; ++i)
     sum.part[i] += weight.part[i] * node.part[i % Node<T>::first_parts];
 }
-/// a - b, in the registers of some halves; nothing is said of the others.
+/// a - b, in the registers of some halves; the others are undefined.
 template <Halves halves = Halves::both, class T>
 SNOWSHED_INLINE Node<T> difference(const Node<T>& a, const Node<T>& b) {
   Node<T> r;

@@ -30,7 +30,7 @@ struct NodeKernels {
                      Contact<T>* contacts, int contact_count, const ContactLaw* laws,
                      NodeStats& stats) {
     Range range;
-    let_free(step, sums, velocities, range);
+    apply_forces(step, sums, velocities, range);
     constrain(step, sums, velocities, contacts, contact_count, laws, stats, range);
     range.store(stats);
     if constexpr (energy) record_kinetic_energy(step, sums, velocities, stats);
@@ -38,7 +38,7 @@ struct NodeKernels {
 
   static void update_free(const StepParameters<T>& step, const T* sums, T* velocities) {
     Range range;
-    let_free(step, sums, velocities, range);
+    apply_forces(step, sums, velocities, range);
   }
 
   static void finish(const StepParameters<T>& step, const T* sums, T* velocities,
@@ -92,9 +92,9 @@ struct NodeKernels {
     }
   };
 
-  /// What forces and gravity do.
-  static SNOWSHED_INLINE void let_free(const StepParameters<T>& step, const T* sums, T* velocities,
-                                       Range& range) {
+  /// Applies forces and gravity.
+  static SNOWSHED_INLINE void apply_forces(const StepParameters<T>& step, const T* sums,
+                                           T* velocities, Range& range) {
     Half gravity{};
     gravity[D - 1] = -step.dt * step.gravity;
     for (int k = 0; k < block_nodes<D>; ++k) {
@@ -111,7 +111,7 @@ struct NodeKernels {
     }
   }
 
-  /// What obstacles do.
+  /// Applies the conditions of obstacles.
   static SNOWSHED_INLINE void constrain(const StepParameters<T>& step, const T* sums, T* velocities,
                                         Contact<T>* contacts, int contact_count,
                                         const ContactLaw* laws, NodeStats& stats, Range& range) {
@@ -135,7 +135,7 @@ struct NodeKernels {
     const Half momentum = __builtin_shufflevector(load_half(sum), Half{}, 1, 2, 3, 4);
     return momentum / sum[0];
   }
-  /// What the particles' velocities take from the node goes into its second half.
+  /// The second half gets the values that the particles' velocities take from the node.
   static SNOWSHED_INLINE void store_velocity(T* node, const Half& now, const Half& old) {
     store_half(node, now);
     store_half(node + 4, takes_change ? Half(now - old) : now);
@@ -156,10 +156,10 @@ struct NodeKernels {
     }
   }
 
-  /// Energy that a contact took which brought a node, or one direction of it, to a velocity of its
-  /// own. Over the step the node's velocity went from `before` to `after`; without the contact it
-  /// would have been `free`. Particles move with `after`, so that stresses and gravity did the work
-  /// m (free - before) . after; the contact took what of this is not kinetic energy now.
+  /// Energy lost in a contact that set the velocity of a node, or of one of its directions. Over
+  /// the step the node's velocity went from `before` to `after`; without the contact it would have
+  /// been `free`. Particles move with `after`, so that stresses and gravity did the work m (free -
+  /// before) . after; the contact took the part of this that is not kinetic energy now.
   static double taken_by_holding(T mass, const T (&before)[D], const T (&free)[D],
                                  const T (&after)[D]) {
     double sum = 0;
@@ -170,7 +170,7 @@ struct NodeKernels {
     return double(mass) * sum;
   }
 
-  /// The same of a bounded impulse, which leaves the node free to answer to the stresses: minus its
+  /// The same for a bounded impulse, after which the node still reacts to the stresses: minus its
   /// work at the mean velocity.
   static double taken_by_impulse(T mass, const T (&before)[D], const T (&free)[D],
                                  const T (&after)[D]) {
@@ -222,21 +222,21 @@ struct NodeKernels {
     return c.acts ? drain_rate(step, sliding_speed) : T(1);
   }
 
-  /// The pull that a contact cancels in a step, as a negative push (N s); more is let go. `stored`
-  /// is what is left of the push before.
+  /// The pull that a contact cancels in a step, as a negative push (N s); a larger pull is
+  /// released. `stored` is the rest of the push before.
   static T least_push(const Contact<T>& c, T stored) {
     if (c.release == Release::never) return std::numeric_limits<T>::lowest();
     return c.release == Release::after_push ? -stored : T(0);
   }
 
   /// Sticky, slip, separate (thesis 1.2.3), with Coulomb friction on the running mean of the net
-  /// normal impulse. Each contact has a store of normal impulse: what presses on the obstacle
-  /// fills it, pull empties it, and it drains at the rate 1/(friction memory); friction is charged
-  /// for what drains. Over time every newton-second of net push is charged once. Charging each
-  /// step's push as it comes, the usual rule, overestimates the friction of a slab that vibrates
-  /// on its panel (slip cancels the pulls but forgets them), up to holding it where it should
-  /// slide. Slip cancels any pull: its store may become a debt, which draws no friction and which
-  /// later pushes must pay back. Separate lets go of pull beyond the store.
+  /// normal impulse. Each contact has a store of normal impulse: pushes on the obstacle fill it,
+  /// pulls empty it, and it drains at the rate 1/(friction memory). Friction is charged for the
+  /// impulse that drains. Over time every newton-second of net push is charged once. Charging each
+  /// step's push as it comes, the usual rule, overestimates the friction of a slab that vibrates on
+  /// its panel (slip cancels the pulls but forgets them), up to holding it where it should slide.
+  /// Slip cancels any pull: its store may become a debt, which draws no friction and which later
+  /// pushes must pay back. Separate releases snow when the pull exceeds the store.
   ///
   /// The store stays at the node while the snow moves on, so fast snow must be charged before it
   /// has left: the store drains at least in the time that the snow takes to slide over a given part

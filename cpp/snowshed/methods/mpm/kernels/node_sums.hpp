@@ -1,5 +1,5 @@
-// What a particle takes from its nodes and gives to them: weighted sums, one direction after the
-// other. How a transfer weights the derivatives is its own rule (transfer_rules.hpp).
+// Weighted sums of a particle over its nodes, to and from the grid, one direction after the other.
+// The rule of a transfer (transfer_rules.hpp) weights the derivatives.
 #pragma once
 
 #include "snowshed/methods/mpm/kernels/node.hpp"
@@ -21,8 +21,8 @@ struct NodeSums {
 };
 
 /// The nodes along a line, as the second one and the steps from each node to the next. Weights add
-/// up to one, and their derivatives to nothing: sums over steps are exact for what does not vary,
-/// and take fewer multiplications. Only `halves` of the values count.
+/// up to one, and their derivatives to nothing: sums over steps are exact for constant values, and
+/// take fewer multiplications. Only `halves` of the values count.
 template <class T, int S, Halves halves>
 struct Line {
   Node<T> second, step[S - 1];
@@ -31,7 +31,8 @@ struct Line {
     for (int k = 0; k + 1 < S; ++k) step[k] = difference<halves>(nodes[k + 1], nodes[k]);
   }
 
-  /// The weighted sum along direction d, for the particle in a lane; `weights` are of the steps.
+  /// The weighted sum along direction d, for the particle in a lane; `weights` are those of the
+  /// steps.
   template <class Weights>
   SNOWSHED_INLINE Node<T> value(const Weights& weights, int d, int lane) const {
     Node<T> sum = second;
@@ -48,7 +49,8 @@ SNOWSHED_INLINE NodeSums<T, D> interpolate_nodes(const typename Rule::Interpolat
   using Values = Line<T, S, Rule::taken>;
   using Derivatives = Line<T, S, Rule::interpolated>;
   nodes = in_register(nodes);
-  Node<T> value[S], along[D][S];  // of the lines, planes beyond each node along the first direction
+  // Weights of the lines and planes beyond each node along the first direction.
+  Node<T> value[S], along[D][S];
   const auto along_last = [&](const T* row, Node<T>& a, Node<T>& b) SNOWSHED_INLINE_LAMBDA {
     Node<T> node[S];
     for (int k = 0; k < S; ++k)
@@ -78,8 +80,8 @@ SNOWSHED_INLINE NodeSums<T, D> interpolate_nodes(const typename Rule::Interpolat
 }
 
 /// Adds to each node of the particle in a lane its share of `sums`: the value times the weight, and
-/// what is along a direction times the weight's derivative there. Outside the halves that the rule
-/// scatters, along[d] is zero.
+/// the value along a direction times the weight's derivative there. Outside the halves that the
+/// rule scatters, along[d] is zero.
 template <class Rule, class T, int D, Basis basis>
 SNOWSHED_INLINE void scatter_nodes(const typename Rule::Scattering& weights, int lane,
                                    const NodeSums<T, D>& sums, T* nodes) {

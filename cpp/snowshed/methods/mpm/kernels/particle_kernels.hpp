@@ -192,7 +192,7 @@ struct ParticleKernels {
   };
 
   /// Stress of the present elastic strain; for plastic laws after bringing the strain back to the
-  /// yield surface, unless `committed` says that it is there already.
+  /// yield surface, unless `committed` says that this is done.
   SNOWSHED_INLINE Stress stress(State& s, const Snow& snow, int n, bool committed) const {
     const auto& el = snow.law.elastic;
     Tensor e = hencky_strain(s.be_minus_identity);
@@ -242,7 +242,7 @@ struct ParticleKernels {
     }
   }
 
-  /// Of the new stresses along the motion just made.
+  /// Adds the power of the new stresses along the motion just made.
   void record_stress_power(const State& s, const Motion& m, const Tensor& tau, const Snow& snow,
                            int n) const {
     V work = broadcast<V>(T(0));
@@ -290,7 +290,7 @@ struct ParticleKernels {
     }
   }
 
-  /// Notes a particle whose strain is beyond the limit; what is not finite is, too.
+  /// Notes a particle whose strain is not finite or beyond the limit.
   SNOWSHED_INLINE void check(const V& strain_squared, int at, int n) const {
     const auto sound = strain_squared <= T(elastic_strain_limit * elastic_strain_limit);
     if (!any(sound == 0)) return;
@@ -310,7 +310,7 @@ struct ParticleKernels {
       f(at, first + count - at < W ? first + count - at : W);
   }
 
-  /// Makes room for a chunk in the tile; true if its nodes lie there.
+  /// Clears the part of the tile that a chunk needs; true if its nodes lie in the tile.
   SNOWSHED_INLINE bool make_room(const Stencil<T, D, basis>& stencil, SimdMask<T>& reach,
                                  Tile& tile) const {
     reach |= stencil.reach;

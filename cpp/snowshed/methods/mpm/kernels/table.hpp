@@ -1,4 +1,4 @@
-// From a choice of features to the functions compiled for exactly them.
+// The functions that are compiled for a choice of features.
 #pragma once
 
 #include "snowshed/methods/mpm/kernels/node_kernels.hpp"
@@ -9,8 +9,8 @@ SNOWSHED_METHOD_VARIANT_BEGIN(mpm)
 template <class T, int D, Transfer transfer, Basis basis, class Snows, bool energy>
 Kernels<T> kernels_for() {
   using P = ParticleKernels<T, D, transfer, basis, Snows, energy>;
-  using Motion =
-      ParticleKernels<T, D, transfer, basis, SingleMaterial<T, Elastic>, false>;  // of any snow
+  // Motion is the same for any snow.
+  using Motion = ParticleKernels<T, D, transfer, basis, SingleMaterial<T, Elastic>, false>;
   using G = NodeKernels<T, D, basis, transfer != Transfer::apic, energy>;
   Kernels<T> kernels{&P::scatter, &P::g2p2g,       nullptr,    &Motion::probe,    &G::gather,
                      &G::update,  &G::update_free, &G::finish, &G::carried_motion};
@@ -19,7 +19,7 @@ Kernels<T> kernels_for() {
   return kernels;
 }
 
-/// `Law` is the Cam-Clay law that the kernels not for checks know.
+/// `Law` is the Cam-Clay law of the kernels that are not for checks.
 template <class T, int D, Transfer transfer, Basis basis, template <class> class Law>
 Kernels<T> with_law(const KernelChoice& c) {
   if (c.checks())

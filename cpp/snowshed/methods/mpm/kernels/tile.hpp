@@ -1,5 +1,5 @@
-// Where the nodes of a block's tile come from: the ranges that a tile shares with each of the
-// 3^D blocks around it. Written once for two and three dimensions.
+// Origin of the nodes of a block's tile: the ranges that a tile shares with each of the 3^D blocks
+// around it. Written once for two and three dimensions.
 #pragma once
 
 #include <cstring>
@@ -19,7 +19,7 @@ struct Overlap {
       : begin(offset < 0 ? block_edge<D> - 1 : 0),
         end(offset > 0 ? support(basis) : block_edge<D>),
         shift(offset * block_edge<D> + 1) {}
-  /// Of a direction that there is not.
+  /// The overlap along a direction that the dimension lacks.
   static constexpr Overlap none() { return Overlap(0, 1, 0); }
 
  private:
@@ -57,7 +57,7 @@ SNOWSHED_INLINE void for_each_shared_row(Wanted wanted, Row row) {
       along_last(Range(x), Range::none());
 }
 
-/// The neighbours whose nodes particles touch that set these bits of `BlockStats::reach`.
+/// The neighbours whose nodes are touched by particles with these bits of `BlockStats::reach`.
 template <int D>
 SNOWSHED_INLINE auto touched_by(int reach) {
   return [reach](int neighbour) { return reaches<D>(reach, neighbour); };
@@ -78,7 +78,7 @@ class TileSums {
   /// The bits of `BlockStats::reach` of the nodes that are cleared.
   int cleared() const { return cleared_; }
 
-  /// Clears what particles touch, too, that set these bits.
+  /// Clears the nodes that particles with these bits touch, too.
   void extend(int reach) {
     const auto before = touched_by<D>(cleared_), after = touched_by<D>(cleared_ | reach);
     clear([&](int neighbour) { return after(neighbour) && !before(neighbour); });

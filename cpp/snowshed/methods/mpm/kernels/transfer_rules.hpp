@@ -1,4 +1,4 @@
-// What FLIP and APIC do differently. A rule says how a transfer weights the nodes, what particles
+// Differences between FLIP and APIC. A rule says how a transfer weights the nodes, what particles
 // carry beside their velocity, what they take from the sums over their nodes, and what they give.
 //
 // FLIP: a node holds its velocity and the change of it; particles take the change, and a share of
@@ -34,7 +34,7 @@ struct FlipRule {
   /// Weights of the steps between nodes.
   struct Interpolation {
     LaneWeights<T, D, S - 1> value;
-    LaneWeights<T, D, S - 2> slope;  // but for the first step: the weights add up to one
+    LaneWeights<T, D, S - 2> slope;  // without the first step: the weights add up to one
 
     SNOWSHED_INLINE explicit Interpolation(const Stencil<T, D, basis>& stencil) {
       SNOWSHED_UNROLL
@@ -78,7 +78,7 @@ struct FlipRule {
     SNOWSHED_INLINE T derived(int d, int k, int lane) const { return slope(d, k, lane); }
   };
 
-  /// What particles carry beside their velocity: nothing.
+  /// Particles carry nothing beside their velocity.
   struct Carried {
     SNOWSHED_INLINE void read(const ParticleView<T>&, int, int) {}
     SNOWSHED_INLINE void write(const ParticleView<T>&, int, int) const {}
@@ -88,7 +88,7 @@ struct FlipRule {
     SNOWSHED_INLINE void give(V*, const V&, T) const {}
   };
 
-  /// What particles take from the sums, beside the velocity and its gradient.
+  /// Values that particles take from the sums, beside the velocity and its gradient.
   struct Taken {
     V change[D];
     SNOWSHED_INLINE void read(const V* value, const V*, T) {
@@ -103,7 +103,7 @@ struct FlipRule {
     }
   };
 
-  /// What goes to the nodes with the derivative along j, from the halves of a row.
+  /// Values given to the nodes with the derivative along j, from the halves of a row.
   SNOWSHED_INLINE static Node<T> given(const T* row, int j) {
     const T* nothing = nullptr;
     return Node<T>::of_halves(nothing, row + half_node * (1 + j));

@@ -55,14 +55,14 @@ struct Rows {
     for (std::ptrdiff_t i = begin; i < end; ++i)
       sum_row_gradients<D>(rows, offset, slope, velocity, gradient, std::size_t(i));
   }
-  static void sum_ways(const PairRows& rows, const float* const* offset, const float* slope,
-                       const double* value, const double* base, double* sum, std::ptrdiff_t begin,
-                       std::ptrdiff_t end) {
+  static void sum_separations(const PairRows& rows, const float* const* offset, const float* slope,
+                              const double* value, const double* base, double* sum,
+                              std::ptrdiff_t begin, std::ptrdiff_t end) {
     for (std::ptrdiff_t i = begin; i < end; ++i)
       if (value)
-        sum_row_ways<D, true>(rows, offset, slope, value, base[i], sum, std::size_t(i));
+        sum_row_separations<D, true>(rows, offset, slope, value, base[i], sum, std::size_t(i));
       else
-        sum_row_ways<D, false>(rows, offset, slope, value, 0.0, sum, std::size_t(i));
+        sum_row_separations<D, false>(rows, offset, slope, value, 0.0, sum, std::size_t(i));
   }
   static void sum_approaches(const PairRows& rows, const float* const* offset,
                              const double* velocity, const double* share, double limit, double* sum,
@@ -78,9 +78,9 @@ struct Rows {
   }
 
   static constexpr Kernels<D> table{
-      &search,   &weigh,          &sum_moments,         &even_weights,
-      &apply,    &residual,       &apply_to_velocities, &sum_gradients,
-      &sum_ways, &sum_approaches, &pair_rates};
+      &search,          &weigh,          &sum_moments,         &even_weights,
+      &apply,           &residual,       &apply_to_velocities, &sum_gradients,
+      &sum_separations, &sum_approaches, &pair_rates};
 };
 
 }  // namespace

@@ -5,8 +5,8 @@
 
 SNOWSHED_METHOD_VARIANT_BEGIN(mps)
 
-/// The sum of weight x over the neighbours of a row. Rows are short and unknowns far apart: to
-/// gather lanes costs more than some sums side by side, none of which waits for the one before.
+/// The sum of weight x over the neighbours of a row. Rows are short and unknowns far apart:
+/// gathering lanes costs more than some independent sums side by side.
 template <class T>
 SNOWSHED_INLINE T sum_row(const PairRows& rows, const float* weight, const T* x, std::size_t row) {
   const std::size_t end = rows.first[row + 1];

@@ -5,7 +5,7 @@
 
 SNOWSHED_METHOD_VARIANT_BEGIN(mps)
 
-/// The ways of some pairs and how velocities change along them.
+/// Separations of some pairs, and the change of velocity along them.
 template <int D>
 struct PairMotion {
   using V = SimdPack<double>;
@@ -45,9 +45,9 @@ SNOWSHED_INLINE void sum_row_gradients(const PairRows& rows, const float* const*
 }
 
 template <int D, bool with_values>
-SNOWSHED_INLINE void sum_row_ways(const PairRows& rows, const float* const* offset,
-                                  const float* slope, const double* value, double base, double* sum,
-                                  std::size_t row) {
+SNOWSHED_INLINE void sum_row_separations(const PairRows& rows, const float* const* offset,
+                                         const float* slope, const double* value, double base,
+                                         double* sum, std::size_t row) {
   using V = SimdPack<double>;
   V total[D] = {};
   for_each_pack<V>(rows, row, [&](const RowPack<V>& pack) SNOWSHED_INLINE_LAMBDA {

@@ -6,7 +6,7 @@
 
 SNOWSHED_METHOD_VARIANT_BEGIN(mps)
 
-/// Which lanes of a mask of doubles are set, the first one lowest.
+/// Bits of the lanes of a mask of doubles, the first lane lowest.
 SNOWSHED_INLINE unsigned lane_bits(const SimdMask<double>& mask) {
 #if defined(__AVX512DQ__)
   return _mm512_movepi64_mask((__m512i)mask);
@@ -19,8 +19,8 @@ SNOWSHED_INLINE unsigned lane_bits(const SimdMask<double>& mask) {
 #endif
 }
 
-/// Writes `from` plus the places of set bits, in order; returns how many. What stands behind them
-/// may change.
+/// Writes `from` plus the places of set bits, in order; returns how many. Values behind the written
+/// ones may change.
 SNOWSHED_INLINE std::size_t write_places(unsigned bits, std::uint32_t from, std::uint32_t* to) {
 #if defined(__AVX512VL__)
   const __m256i all =

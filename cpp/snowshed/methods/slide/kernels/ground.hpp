@@ -1,4 +1,4 @@
-// How the ground acts on snow: weight, friction, curvature.
+// Effects of the ground on snow: weight, friction, curvature.
 #pragma once
 
 #include "snowshed/methods/slide/kernels/places.hpp"
@@ -15,7 +15,7 @@ SNOWSHED_INLINE PackVec mixed(const View& s, const PackVec& u, const PackVec& ar
   return Pack(1.0 / (1.0 + f)) * (u + f * v);
 }
 
-/// Velocities mixed with those of the snow around, and where they lead without forces.
+/// Velocities mixed with those of the snow around, and the places that they lead to without forces.
 struct PackAhead {
   PackVec velocity, place;
   PackReprojection on_ground;
@@ -35,7 +35,7 @@ SNOWSHED_INLINE void mix(const View& s, const Lanes& l, PackAhead& ahead) {
   l.store_records(s.predicted, {ahead.place.x, ahead.place.y, ahead.place.z, thickness});
 }
 
-/// Weight and friction, with the mean of the ground's normals at both ends of the way.
+/// Weight and friction, with the mean of the ground's normals at both ends of the path.
 SNOWSHED_INLINE void load_ground(const View& s, const Lanes& l, const PackAhead& ahead) {
   const PackVec here = l.load(s.nx, s.ny, s.nz);
   const PackMask stays = ahead.on_ground.on_ground.inside & ahead.ground.known;
@@ -43,7 +43,7 @@ SNOWSHED_INLINE void load_ground(const View& s, const Lanes& l, const PackAhead&
   const PackVec mean = inverse_sqrt(dot(sum, sum)) * sum;
   const Pack curvature = dot(ahead.velocity, end - here) * (1 / s.time_step);
   const Pack along_normal = -s.gravity * mean.z;
-  // Snow that leaves the ground is not held back by it.
+  // Friction does not act on snow that leaves the ground.
   const Pack pressing = max(Pack{}, Pack(-(along_normal + curvature)));  // m/s2
   const Pack h = max(l.load(s.thickness), broadcast<Pack>(least_thickness));
   const Pack drag = select(pressing > 0.0, Pack(s.friction_drag / (s.density * h)), Pack{});

@@ -1,4 +1,4 @@
-// The pressure of the snow around as AvaFrame 2.1 has it: the gradient of thickness on the map.
+// The pressure of the snow around as in AvaFrame 2.1: the gradient of thickness on the map.
 #pragma once
 
 #include "snowshed/methods/slide/kernels/neighbours.hpp"

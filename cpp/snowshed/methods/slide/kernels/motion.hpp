@@ -1,4 +1,4 @@
-// The end of a step: velocities after all that acts, and particles on their way over the ground.
+// The end of a step: velocities after all forces, and new places of the particles on the ground.
 #pragma once
 
 #include "snowshed/methods/slide/kernels/bond_forces.hpp"
@@ -6,16 +6,16 @@
 SNOWSHED_METHOD_VARIANT_BEGIN(slide)
 
 inline constexpr double least_slide_speed = 1e-6;  // m/s
-inline constexpr double at_rest = 2e-15;           // m/s, above what a root makes of zero
+inline constexpr double at_rest = 2e-15;           // m/s, above the rounding error of a root
 
-/// A velocity after friction, and for how long the particle moves, s.
+/// A velocity after friction, and the time for which the particle moves, s.
 struct PackSlowed {
   PackVec velocity;
   Pack moving;
 };
 
-/// Coulomb friction as a set-valued law: it stops snow, and holds it where what drives it is less.
-/// The part that grows with the square of the speed is implicit: s' + drag dt s'^2 = s.
+/// Coulomb friction as a set-valued law: it stops snow, and holds it while the driving force is
+/// less. The part that grows with the square of the speed is implicit: s' + drag dt s'^2 = s.
 SNOWSHED_INLINE PackSlowed slowed(const View& s, const PackVec& u, const Pack& yield,
                                   const Pack& drag) {
   const Pack dt = broadcast<Pack>(s.time_step);
@@ -26,7 +26,7 @@ SNOWSHED_INLINE PackSlowed slowed(const View& s, const PackVec& u, const Pack& y
   return {Pack(after * per_speed) * u, dt};
 }
 
-/// As AvaFrame does it by default: a rate that divides by the speed of before.
+/// AvaFrame's default friction: a rate that divides by the earlier speed.
 SNOWSHED_INLINE PackSlowed slowed_implicitly(const View& s, const PackVec& u, const Pack& stress,
                                              const Pack& speed) {
   const Pack dt = broadcast<Pack>(s.time_step);
@@ -53,22 +53,22 @@ SNOWSHED_INLINE PackSlowed slowed_by(const View& s, const Lanes& l, const PackVe
                                                        : slowed_explicitly(s, u, stress, speed);
 }
 
-/// The velocity along the ground, at its speed of before.
+/// The velocity along the ground, with its earlier speed.
 SNOWSHED_INLINE PackVec along_ground(const PackVec& u, const PackVec& normal, double added_speed) {
   const PackVec tangential = u - dot(u, normal) * normal;
   const Pack speed = length_from(dot(tangential, tangential));
   return Pack(length_from(dot(u, u)) / (speed + added_speed)) * tangential;
 }
 
-/// A velocity after all that acts, and where it leads.
+/// A velocity after all forces, and the place that it leads to.
 struct PackMotion {
   PackVec velocity;
   PackVec to;
-  PackMask moves;  // what rests stays where it is, to the last bit
+  PackMask moves;  // resting snow stays where it is, to the last bit
   PackReprojection on_ground;
 };
 
-/// The acceleration by all but friction, which is kept.
+/// The acceleration by all loads except friction, which acts later.
 SNOWSHED_INLINE PackVec acceleration(const View& s, const Lanes& l) {
   const PackRecord force = taken_apart([&](int k) SNOWSHED_INLINE_LAMBDA {
     const std::ptrdiff_t i = l.first + (k < l.count ? k : 0);
@@ -90,7 +90,7 @@ SNOWSHED_INLINE void accelerate(const View& s, const Lanes& l, PackMotion& motio
   motion.to = l.load(s.x, s.y, s.z) + Pack(0.5 * slow.moving) * twice;
 }
 
-/// Puts particles where they came to; returns their kinetic energy, J.
+/// Stores the new places of particles; returns their kinetic energy, J.
 SNOWSHED_INLINE Pack arrive(const View& s, const Lanes& l, const PackMotion& motion) {
   const PackReprojection& r = motion.on_ground;
   const PackGround ground = ground_at(s, r.on_ground);

@@ -25,7 +25,7 @@ SNOWSHED_INLINE V load_beyond(const double* p) {
   return v;
 }
 
-/// Some neighbours, from entry e on in the order of cells, where they are.
+/// Positions of some neighbours, from entry e on in the order of cells.
 template <class V>
 struct Neighbours {
   V x, y, z;
@@ -52,7 +52,7 @@ SNOWSHED_INLINE V within(const V& values, std::uint32_t e, std::uint32_t end) {
 }
 
 /// weight (R - r)^2 / r from the square of the distance r, and 0 from the radius R on: the gradient
-/// of the kernel, over the distance and but for its constant.
+/// of the kernel over the distance, without its constant.
 template <class V>
 SNOWSHED_INLINE V spiky_gradient(const V& weight, const V& square, double radius) {
   const double least = 1e-3 * radius, most = radius * radius;
@@ -86,11 +86,12 @@ SNOWSHED_INLINE Quad sums_of(const V& a, const V& b, const V& c, const V& d) {
 struct EntryRun {
   std::uint32_t begin, end;
 };
-/// Those that the neighbours of the particles of a cell are in.
+/// The runs that hold the neighbours of a cell's particles.
 using Neighbourhood = EntryRun[3];
 
 /// Calls visit(e, n) for the particles of a cell with their neighbourhood: the entry e, and where n
-/// is Two the next one, too. Two particles that are treated together share what is read.
+/// is Two the next one, too. Two particles that are treated together share the values that are
+/// read.
 using One = std::integral_constant<int, 1>;
 using Two = std::integral_constant<int, 2>;
 template <class Visit>

@@ -87,10 +87,10 @@ SNOWSHED_INLINE PackRows put_together(const PackRecord& r) {
 
 SNOWSHED_INLINE Pack load_whole_pack(const double* p) { return load_pack<Pack>(p, pack_lanes); }
 
-/// What is read of the records of the four nodes around a place.
+/// Part of the records of the four nodes around a place that is read.
 enum class NodeRecord {
   mean,             // the bilinear mean
-  mean_and_known,   // the same, but the last value is NaN where the first one of node 0 is
+  mean_and_known,   // the same, but the last value is NaN if the first one of node 0 is
   mean_and_middle,  // the bilinear mean of the first value, the plain means of the others
 };
 
@@ -104,7 +104,7 @@ struct NodeWeights {
 template <NodeRecord record>
 SNOWSHED_INLINE Pack node_record(const Pack& south, const Pack& north, const Pack& south_weights,
                                  const Pack& north_weights) {
-  // The same height to the last bit, whatever else is read: snow at rest must not creep.
+  // The height is the same to the last bit with any other values: snow at rest must not creep.
   const Pack parts = (Pack)_mm512_fmadd_pd((__m512d)south_weights, (__m512d)south,
                                            _mm512_mul_pd((__m512d)north_weights, (__m512d)north));
   if constexpr (record == NodeRecord::mean) return parts;
@@ -130,12 +130,13 @@ SNOWSHED_INLINE PackRecord records_of(const double* nodes, int columns, const Pa
         load_whole_pack(south), load_whole_pack(south + 4 * std::ptrdiff_t(columns)),
         four_of(weights.of[0], weights.of[1], lane), four_of(weights.of[2], weights.of[3], lane));
   }
-  const auto whole = [&](int i) SNOWSHED_INLINE_LAMBDA {  // lanes i and i + 4, west and east added
-    const Pack &a = parts[i], &b = parts[i + 4];
-    return Pack(__builtin_shufflevector(a, b, 0, 1, 2, 3, 8, 9, 10, 11) +
-                __builtin_shufflevector(a, b, 4, 5, 6, 7, 12, 13, 14, 15));
-  };
-  return transposed({whole(0), whole(1), whole(2), whole(3)});
+  const auto record_of =
+      [&](int i) SNOWSHED_INLINE_LAMBDA {  // lanes i and i + 4, west and east added
+        const Pack &a = parts[i], &b = parts[i + 4];
+        return Pack(__builtin_shufflevector(a, b, 0, 1, 2, 3, 8, 9, 10, 11) +
+                    __builtin_shufflevector(a, b, 4, 5, 6, 7, 12, 13, 14, 15));
+      };
+  return transposed({record_of(0), record_of(1), record_of(2), record_of(3)});
 }
 #else
 template <NodeRecord record>

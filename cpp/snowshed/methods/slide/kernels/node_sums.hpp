@@ -1,4 +1,4 @@
-// The snow on the nodes of the grid, from the masses and momenta that particles hand on to the four
+// The snow on the nodes of the grid, from the masses and momenta of particles, which go to the four
 // nodes around them.
 #pragma once
 
@@ -11,10 +11,10 @@ struct NodePair {
   Quad south, north;
 };
 
-/// What the particles of a cell hand on to the nodes to the west and to the east; adds to them, and
-/// copies what their neighbours will read.
-SNOWSHED_INLINE void hand_on(const View& s, std::uint32_t begin, std::uint32_t end, NodePair& west,
-                             NodePair& east) {
+/// Adds the mass and momentum of a cell's particles to the nodes in the west and in the east, and
+/// copies the values that their neighbours will read.
+SNOWSHED_INLINE void add_to_nodes(const View& s, std::uint32_t begin, std::uint32_t end,
+                                  NodePair& west, NodePair& east) {
   for (std::uint32_t e = begin; e < end; ++e) {
     const std::uint32_t i = s.sorted_particle[e];
     const double mass = s.mass[i];
@@ -61,7 +61,7 @@ SNOWSHED_INLINE void finish_nodes(const View& s, int row) {
   }
 }
 
-/// Hands on what a row of cells holds to the rows of nodes south and north of it. Every other row
+/// Adds the sums of a row of cells to the rows of nodes south and north of it. Every other row
 /// comes first, and begins the sums of all nodes; the rows between add to them and finish them.
 SNOWSHED_INLINE void sum_on_nodes(const View& s, int row) {
   const bool begins = row % 2 == 0, has_north = row + 1 < s.cell_rows;
@@ -71,7 +71,7 @@ SNOWSHED_INLINE void sum_on_nodes(const View& s, int row) {
   NodePair west{};
   for (int column = 0; column < s.cell_columns; ++column) {
     NodePair east{};
-    hand_on(s, begin[column], begin[column + 1], west, east);
+    add_to_nodes(s, begin[column], begin[column + 1], west, east);
     const std::ptrdiff_t at = 4 * std::ptrdiff_t(column);
     store_row(south + at, begins ? west.south : Quad(load_row(south + at) + west.south));
     if (has_north)

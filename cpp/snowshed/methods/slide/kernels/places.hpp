@@ -1,4 +1,4 @@
-// Some particles at a time, a pack of them: where they lie on the ground, and what lies there.
+// A pack of particles: their places on the ground, and the values of the ground there.
 #pragma once
 
 #include "snowshed/core/simd_vec.hpp"
@@ -9,7 +9,7 @@ SNOWSHED_METHOD_VARIANT_BEGIN(slide)
 
 using PackVec = SimdVec<Pack>;
 
-/// Below it a square counts as zero where a root is taken.
+/// Smaller squares count as zero in roots.
 inline constexpr double least_square = 1e-30;
 SNOWSHED_INLINE Pack length_from(const Pack& square) {
   const Pack s = max(square, broadcast<Pack>(least_square));
@@ -125,7 +125,7 @@ SNOWSHED_INLINE PackVec upward(const Pack& slope_x, const Pack& slope_y) {
   return {slope_x * z, slope_y * z, z};
 }
 
-/// The height of the ground and a normal. Known is where the south-west node of the cell is.
+/// The height of the ground and a normal. It is known if the south-west node of the cell is.
 struct PackGround {
   Pack height;
   PackVec normal;
@@ -142,7 +142,7 @@ SNOWSHED_INLINE PackGround cell_ground(const View& s, const PackPlace& p) {
 }
 
 /// Points brought onto the ground along the normals of the cells they come through, up to five
-/// times, as AvaFrame and SamosAT do it. They are not inside where they left the grid.
+/// times, as in AvaFrame and SamosAT. Points that left the grid are not inside.
 struct PackReprojection {
   Pack x, y;
   PackPlace on_ground;

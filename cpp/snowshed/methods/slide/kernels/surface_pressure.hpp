@@ -1,12 +1,12 @@
-// The pressure of the snow around, as the default mode has it: along the ground, not along the map.
+// The pressure of the snow around in the default mode: along the ground, not along the map.
 //
 // A particle has the thickness h_k = sum_l (m_l / rho) W(r_kl), with the spiky kernel W and the
 // distance r_kl in space, so that h is normal to the ground. Snow has the potential energy
-// sum_k m_k g n_z h_k / 2, with the ground's normal n. What it exerts along the ground follows from
-// it: two particles push each other with opposite forces (Monaghan 2005,
+// sum_k m_k g n_z h_k / 2, with the ground's normal n. The force along the ground follows from it:
+// two particles push each other with opposite forces (Monaghan 2005,
 // doi:10.1088/0034-4885/68/8/R01). Where a particle has so few neighbours that the sum falls short
-// of the integral, its pressure is raised by what is missing, at most twofold. That depends on h_k
-// alone, so that it has a potential, too.
+// of the integral, its pressure is raised to correct this, at most twofold. The correction depends
+// on h_k alone, so that it has a potential, too.
 #pragma once
 
 #include "snowshed/core/simd_math.hpp"
@@ -29,20 +29,22 @@ SNOWSHED_INLINE void count_neighbours_of(const View& s, std::uint32_t first,
   using V = SimdPack<double>;
   V sum[2]{};
   for_each_neighbour(around, [&](std::uint32_t e, std::uint32_t end) SNOWSHED_INLINE_LAMBDA {
-    const Neighbours<V> there(s, e);
+    const Neighbours<V> sources(s, e);
     const V mass = within(load_beyond<V>(s.sorted_mass + e), e, end);
     for (int k = 0; k < count; ++k) {
-      const V square = max(Separation<V>(s, first + k, there).square(), broadcast<V>(least_square));
+      const V square =
+          max(Separation<V>(s, first + k, sources).square(), broadcast<V>(least_square));
       const V inside = max(V{}, V(s.cell - square * inverse_sqrt(square)));
       sum[k] += mass * inside * inside * inside;
     }
   });
-  const double constant = 10 / (s.cell * s.cell * s.cell);  // of the kernel, over a disc's area
+  // Constant of the kernel, over a disc's area.
+  const double constant = 10 / (s.cell * s.cell * s.cell);
   const Quad sums = constant * sums_of(sum[0], sum[1], V{}, V{});
   for (int k = 0; k < count; ++k) s.sorted_pressing[first + k] = sums[k] / s.sorted_mass[first + k];
 }
 
-/// Finds what the pressure of the particles of a row is multiplied by.
+/// Finds the factor on the pressure for the particles of a row.
 SNOWSHED_INLINE void weigh_row(const View& s, int row) {
   for_each_neighbourhood(s, row,
                          [&](std::uint32_t e, auto count, const Neighbourhood& around)
@@ -67,11 +69,11 @@ SNOWSHED_INLINE void surface_pressure_on(const View& s, double factor, std::uint
   using V = SimdPack<double>;
   V sx[2]{}, sy[2]{}, sz[2]{};
   for_each_neighbour(around, [&](std::uint32_t e, std::uint32_t end) SNOWSHED_INLINE_LAMBDA {
-    const Neighbours<V> there(s, e);
+    const Neighbours<V> sources(s, e);
     const V mass = within(load_beyond<V>(s.sorted_mass + e), e, end);
     const V theirs = mass * load_beyond<V>(s.sorted_pressing + e);
     for (int k = 0; k < count; ++k) {
-      const Separation<V> separation(s, first + k, there);
+      const Separation<V> separation(s, first + k, sources);
       const V pressing = theirs + mass * s.sorted_pressing[first + k];
       const V w = spiky_gradient(pressing, separation.square(), s.cell);
       sx[k] += w * separation.x;
