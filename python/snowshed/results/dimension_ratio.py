@@ -6,8 +6,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from snowshed._core import InputError
+from snowshed.base.paths import PathLike
 from snowshed.results.folder import read_events
-from snowshed.scene.scene import PathLike, ResolvedScene
+from snowshed.scene.scene import ResolvedScene
 
 if TYPE_CHECKING:
     import pandas as pd

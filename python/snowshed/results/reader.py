@@ -12,6 +12,7 @@ import numpy as np
 import snowshed._core as _core
 from snowshed._core import InputError
 from snowshed.base.extras import require
+from snowshed.base.paths import PathLike
 from snowshed.base.units import unit_of_column
 from snowshed.io.csv_table import read_csv
 from snowshed.io.film import FILM, Film
@@ -26,7 +27,7 @@ from snowshed.results.film import film_dataset, run_film
 from snowshed.results.folder import ENERGY, EVENTS, read_events
 from snowshed.results.grid import grid_dataset, stored_grid
 from snowshed.results.particle_dataset import particle_dataset
-from snowshed.scene.scene import PathLike, ResolvedScene
+from snowshed.scene.scene import ResolvedScene
 from snowshed.snow.stack.measure import StackMeasure
 
 if TYPE_CHECKING:

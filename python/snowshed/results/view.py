@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, Optional
 
 import numpy as np
 
-from snowshed._core import InputError
-from snowshed.io.film import FILM, Film
+from snowshed.base.paths import PathLike
+from snowshed.io.film import Film
 from snowshed.io.run_files import read_record
 from snowshed.methods.registry import method_of
 from snowshed.plot.caption import scene_caption
@@ -20,7 +20,7 @@ from snowshed.plot.solids import scene_solids
 from snowshed.results.folder import read_events
 from snowshed.results.reader import Results
 from snowshed.results.season_folder import SeasonFolder
-from snowshed.scene.scene import PathLike, ResolvedScene
+from snowshed.scene.scene import ResolvedScene
 from snowshed.scene.terrain_grid import slide_terrain
 from snowshed.snow.stack.measure import level
 
@@ -217,4 +217,4 @@ def _table(table: Optional[pd.DataFrame]) -> Optional[Grid]:
     return Grid(tuple(known), rows, "r" * (len(known) - 1) + "l")
 
 
-__all__ = ["FILM", "PAGE", "InputError", "shown_results", "view_content", "write_view"]
+__all__ = ["PAGE", "shown_results", "view_content", "write_view"]

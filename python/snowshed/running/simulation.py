@@ -21,13 +21,14 @@ from snowshed.base.arrays import (
     positive,
     whole_number,
 )
+from snowshed.base.paths import PathLike
 from snowshed.results.fields import Fields
 from snowshed.results.grid import grid_dataset, scene_grid
 from snowshed.results.particle_dataset import DATASET, particle_dataset
 from snowshed.running.sequence import telling
 from snowshed.scene.components import Snow
 from snowshed.scene.resolved import snows_of
-from snowshed.scene.scene import PathLike, ResolvedScene, SceneLike, resolve_scene
+from snowshed.scene.scene import ResolvedScene, SceneLike, resolve_scene
 from snowshed.snow.stack.measure import StackMeasure
 from snowshed.snow.stack.particles import measure_particles
 

@@ -19,11 +19,11 @@ from snowshed._core import InputError
 from snowshed.base.formatting import number_in
 from snowshed.base.messages import quoted
 from snowshed.base.notes import tell
+from snowshed.base.paths import PathLike
 from snowshed.io.csv_table import Row, frame_as_text, read_text_table
 from snowshed.io.weather.joined import read_stations
 from snowshed.io.weather.observation import Station
 from snowshed.io.weather.recognise import read_station
-from snowshed.scene.scene import PathLike
 from snowshed.season.checks import NO_SNOW, check_rows
 from snowshed.season.observed import record_of
 from snowshed.season.record import Record

@@ -17,9 +17,9 @@ import snowshed._core as _core
 from snowshed._core import InputError
 from snowshed.base.interrupt import InterruptRequest, deferred_interrupts
 from snowshed.base.notes import tell
+from snowshed.base.paths import PathLike
 from snowshed.base.pool.pool import available_cores
 from snowshed.base.progress import Progress, Reporter
-from snowshed.scene.scene import PathLike
 from snowshed.study import cost_estimate
 from snowshed.study.errors import StudyError, StudyInterrupted
 from snowshed.study.local import LocalWorkers

@@ -18,8 +18,8 @@ from typing import Any, Optional
 
 import snowshed._core as _core
 from snowshed._core import InputError
+from snowshed.base.paths import PathLike
 from snowshed.io.json_file import check_values, parse_object
-from snowshed.scene.scene import PathLike
 from snowshed.study import checksums
 from snowshed.study.database import (
     FILE,

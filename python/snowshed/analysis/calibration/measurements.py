@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Optional
 from snowshed._core import InputError
 from snowshed.base.formatting import number_in
 from snowshed.base.messages import quoted
+from snowshed.base.paths import PathLike
 from snowshed.io.csv_table import Row, read_text_table
-from snowshed.scene.scene import PathLike
 from snowshed.snow.stack.quantities import QUANTITIES
 
 if TYPE_CHECKING:

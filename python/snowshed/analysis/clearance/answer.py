@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from operator import attrgetter
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Optional
 
 import numpy as np
@@ -23,6 +22,7 @@ from snowshed.analysis.clearance.winters import Winter
 from snowshed.base.arrays import Floats
 from snowshed.base.formatting import plural
 from snowshed.base.json_values import JsonValue
+from snowshed.base.paths import PathLike
 from snowshed.base.progress import Reporter
 from snowshed.season.record import WinterList
 from snowshed.season.settings import SeasonSettings
@@ -178,7 +178,7 @@ def clearance_of(
     design: Design,
     winters: Sequence[Winter],
     heights: Sequence[float],
-    folder: Path,
+    folder: PathLike,
     *,
     ranges: Optional[Ranges] = None,
     settings: Optional[SeasonSettings] = None,

@@ -11,9 +11,10 @@ import numpy as np
 
 from snowshed._core import InputError
 from snowshed.base.arrays import Floats
+from snowshed.base.paths import PathLike
 from snowshed.io.raster.raster import Raster
 from snowshed.methods.slide.maps import PeakMaps
-from snowshed.scene.scene import PathLike, ResolvedScene
+from snowshed.scene.scene import ResolvedScene
 from snowshed.scene.terrain_grid import slide_terrain
 from snowshed.study.store import Store
 

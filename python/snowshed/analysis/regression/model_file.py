@@ -20,11 +20,11 @@ from snowshed.analysis.regression.scaling import Scaling
 from snowshed.analysis.regression.spread import INTERVAL, SPREAD, Spread
 from snowshed.base.arrays import Floats
 from snowshed.base.damage import DAMAGED
+from snowshed.base.paths import PathLike
 from snowshed.io.array_archive import open_archive
 from snowshed.io.atomic import replacing
 from snowshed.io.input_file import read_regular
 from snowshed.scene.accuracy_settings import FORMER_NAMES
-from snowshed.scene.scene import PathLike
 from snowshed.snow.stack.quantities import measure_named
 from snowshed.study.table import FORMER_TRIMMING
 

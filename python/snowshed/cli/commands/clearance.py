@@ -34,14 +34,14 @@ EXAMPLE = "example"  # in place of a file: synthetic winters
 @click.command()
 @click.argument("weather", metavar="WEATHER...", type=PATH, nargs=-1, required=True)
 @click.option(
-    "--slope-length", required=True, help="Length of the panel along the slope, m; a list: 3,4,5."
+    "--slope-length", required=True, help="Length of the panel along the slope [m]; a list: 3,4,5."
 )
-@click.option("--tilt", required=True, help="Tilt from the horizontal, degrees; a list: 40,60.")
+@click.option("--tilt", required=True, help="Tilt from the horizontal [degrees]; a list: 40,60.")
 @click.option(
     "--heights",
     default="1:4:0.5",
     show_default=True,
-    help="Candidate heights of the lower edge, m: a number, a list, or FROM:TO:STEP.",
+    help="Candidate heights of the lower edge [m]: a number, a list, or FROM:TO:STEP.",
 )
 @click.option(
     "--range",

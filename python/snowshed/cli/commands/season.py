@@ -76,7 +76,7 @@ SETTLED = {"settled\nheight, m": ("settled_height_m", "{:.2f}")}
     type=float,
     default=DEFAULTS.adhesion,
     show_default=True,
-    help="Adhesion of the snow to the panel, Pa.",
+    help="Adhesion of the snow to the panel [Pa].",
 )
 @click.option(
     "--catch",
@@ -125,7 +125,7 @@ SETTLED = {"settled\nheight, m": ("settled_height_m", "{:.2f}")}
     metavar="DEPTH",
     default=str(DEFAULTS.cover),
     show_default=True,
-    help="Natural snow cover below the stack: weather (from the file), none, or a depth in m.",
+    help="Natural snow cover below the stack: weather (from the file), none, or a depth [m].",
 )
 @weather_options
 @click.option("--resume", is_flag=True, help="Resume an interrupted season.")
