@@ -9,6 +9,8 @@ import snowshed._core as _core
 from snowshed.base.formatting import about
 from snowshed.base.interrupt import Interrupted
 from snowshed.base.progress import Progress, Reporter
+from snowshed.cli.check import check_can_be_measured, check_run
+from snowshed.cli.dry_run import print_cost
 from snowshed.cli.exit_codes import Stopped
 from snowshed.cli.terminal import say
 from snowshed.methods.registry import DEFAULT, SETTINGS_KEY, method_of
@@ -34,6 +36,32 @@ def run_scene(ready: ResolvedScene, folder: Path, resume: bool, quiet: bool) -> 
         from snowshed.cli.run_output import print_results
 
         print_results(results)
+
+
+def run_or_cost(
+    ready: ResolvedScene,
+    folder: Path,
+    *,
+    resume: bool,
+    dry_run: bool,
+    quiet: bool,
+    check: bool = False,
+) -> None:
+    """Run a scene as `run_scene` does; a dry run prints its cost only.
+
+    Parameters
+    ----------
+    check
+        Whether to measure the error of the stack, too.
+    """
+    if check:
+        check_can_be_measured(ready)
+    if dry_run:
+        print_cost(ready)
+        return
+    run_scene(ready, folder, resume, quiet)
+    if check:
+        check_run(folder, quiet)
 
 
 def announcing_long_run(ready: ResolvedScene, show: Reporter) -> Reporter:

@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 import click
 
 from snowshed._core import InputError
-from snowshed.cli.temperature import temperature_option
+from snowshed.cli.common_options import PATH
 from snowshed.season.source import AUTO, CHOICES
 
 Command = TypeVar("Command", bound=Callable[..., Any])
@@ -57,7 +57,13 @@ def weather_options(command: Command) -> Command:
             help="Column of a station file that observes new snow; auto takes the best of each "
             "winter.",
         ),
-        temperature_option,
+        click.option(
+            "--temperature",
+            metavar="FILE",
+            type=PATH,
+            help="Another weather file of the station, whose temperatures come first; or a table "
+            "with the columns date and temperature_c.",
+        ),
     )
     for option in reversed(options):
         command = option(command)

@@ -135,11 +135,8 @@ class Simulation:
         SimulationError
             If no event runs, or the simulation cannot continue.
         """
-        left = whole_number("count", count, lowest=0)
-        while left:
-            taken = min(left, MOST_STEPS)
-            self._core.step(taken)
-            left -= taken
+        for left in range(whole_number("count", count, lowest=0), 0, -MOST_STEPS):
+            self._core.step(min(left, MOST_STEPS))
 
     def run(self, until: Until = "rest", *, every: int = 16) -> Ended:
         """Take steps of the present event, or of the next one, until a condition holds.
