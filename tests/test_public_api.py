@@ -123,7 +123,7 @@ def test_readers_import_from_the_package_or_a_room(file):
 def test_what_the_page_documents_stands_in_the_package_or_a_room():
     assert [f"{module}.{name}" for module, name in DOCUMENTED if module.count(".") > 1] == []
     assert len(DOCUMENTED) > 100
-    assert DEEP.search("from snowshed.season.record import Record")
+    assert DEEP.search("from snowshed.season.season_record import SeasonRecord")
 
 
 def test_a_name_is_exported_once_in_a_room():

@@ -5,7 +5,7 @@ import pytest
 
 from snowshed import InputError, Scene
 from snowshed.analysis.accuracy import recorded
-from snowshed.analysis.accuracy.measurements import Measured, Measurement
+from snowshed.analysis.accuracy.measurements import Measured, MeasuredSolution
 from snowshed.analysis.accuracy.recorded import load_recorded, record
 from snowshed.analysis.accuracy.recorded_stacks import CASE, QUANTITIES
 from snowshed.cli.accuracy import choose
@@ -23,7 +23,7 @@ def stack(dx, height, length, wall, *, spread=None, **settings):
     if spread is not None:
         measured += [Measured(f"{name}_spread", spread, 0.0, spread) for name in QUANTITIES]
     settings = {"dimension": 2, "events": 5, "dx": dx, "transfer": "flip", **settings}
-    return Measurement(CASE, settings, measured, wall_s=wall)
+    return MeasuredSolution(CASE, settings, measured, wall_s=wall)
 
 
 RECORDED = [
@@ -170,8 +170,8 @@ def test_it_needs_a_slab_and_something_recorded():
     bodies = [{"shape": {"type": "sphere", "center": [0, 1], "radius": 0.1}}]
     with pytest.raises(InputError, match="--accuracy: the scene has no slab"):
         choose(0.1, Scene(dimension=2, bodies=bodies), RECORDED)
-    failed = Measurement(CASE, {"dx": 0.1}, [], failure="no")
-    for nothing in ([], [failed], [Measurement("bar", {"dx": 0.1}, [])]):
+    failed = MeasuredSolution(CASE, {"dx": 0.1}, [], failure="no")
+    for nothing in ([], [failed], [MeasuredSolution("bar", {"dx": 0.1}, [])]):
         with pytest.raises(InputError, match="nothing is recorded"):
             choose(0.1, scene_with(), nothing)
 
@@ -186,7 +186,7 @@ def packaged(tmp_path, monkeypatch):
 
 def test_recorded_measurements_are_read_back(tmp_path):
     path = tmp_path / "recorded.json"
-    record([*RECORDED, Measurement("bar", {}, [], failure="no")], path)
+    record([*RECORDED, MeasuredSolution("bar", {}, [], failure="no")], path)
     assert [one.to_json() for one in load_recorded(path)] == [one.to_json() for one in RECORDED]
 
 

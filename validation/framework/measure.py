@@ -14,7 +14,7 @@ from typing import NamedTuple, Optional
 
 from snowshed import _core
 from snowshed.analysis.accuracy import setting_labels
-from snowshed.analysis.accuracy.measurements import Measured, Measurement, Settings, key_of
+from snowshed.analysis.accuracy.measurements import Measured, MeasuredSolution, Settings, key_of
 from snowshed.base.machine import cpu_name
 from snowshed.base.progress import Progress, Reporter
 from validation.framework.case import Case, Outcome
@@ -49,7 +49,7 @@ def measure_cases(
     full: bool = False,
     progress: Optional[Reporter] = None,
     durations: Optional[Mapping[str, float]] = None,
-) -> list[Measurement]:
+) -> list[MeasuredSolution]:
     """Measure all that `file` does not hold yet, and return all measurements.
 
     Parameters
@@ -131,11 +131,11 @@ def _expected(task: Task, tasks: Sequence[Task], durations: Mapping[str, float])
     return 1.0
 
 
-def _measurement(task: Task, answer: Answer) -> Measurement:
+def _measurement(task: Task, answer: Answer) -> MeasuredSolution:
     failure = answer.failure or _breach(task.case, answer.outcome)
     outcome = Outcome([], 0.0, 0) if failure or answer.outcome is None else answer.outcome
     nothing = [Measured(one.name, math.nan, math.nan, math.nan) for one in task.case.quantities]
-    return Measurement(
+    return MeasuredSolution(
         case=task.case.name,
         settings=dict(task.settings),
         measured=nothing if failure else list(outcome.measured),

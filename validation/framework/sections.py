@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Optional
 import numpy as np
 
 from snowshed.analysis.accuracy import setting_labels
-from snowshed.analysis.accuracy.measurements import Measurement, Settings
+from snowshed.analysis.accuracy.measurements import MeasuredSolution, Settings
 from snowshed.analysis.accuracy.solutions import Solution, key_of, rows_of, solutions
 from snowshed.base import formatting
 from snowshed.plot.html_page import Grid, Picture
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 #: What a measurement costs, in words.
-COSTS: Mapping[str, Callable[[Measurement], str]] = {
+COSTS: Mapping[str, Callable[[MeasuredSolution], str]] = {
     "time": lambda one: formatting.duration(one.wall_s),
     "particles": lambda one: formatting.count(one.particles or None),
     "steps": lambda one: formatting.count(one.steps or None),
@@ -66,7 +66,7 @@ class Section:
     pictures: Sequence[Picture]
 
 
-def section(case: Case, measurements: Sequence[Measurement], table: pd.DataFrame) -> Section:
+def section(case: Case, measurements: Sequence[MeasuredSolution], table: pd.DataFrame) -> Section:
     """Return the section on a case.
 
     Parameters
@@ -98,7 +98,7 @@ def section(case: Case, measurements: Sequence[Measurement], table: pd.DataFrame
     )
 
 
-def results_grid(case: Case, measurements: Sequence[Measurement]) -> Grid:
+def results_grid(case: Case, measurements: Sequence[MeasuredSolution]) -> Grid:
     """Return all measurements of a case: what varies, every quantity, the cost."""
     solved = [one for one in measurements if not one.failure]
     names = varying([one.settings for one in measurements])
@@ -215,7 +215,7 @@ def found(bar: Bar) -> str:
 
 
 def cheapest_grid(
-    answers: Sequence[Cheapest], cases: Sequence[Case], measurements: Sequence[Measurement]
+    answers: Sequence[Cheapest], cases: Sequence[Case], measurements: Sequence[MeasuredSolution]
 ) -> Grid:
     """Return the quickest settings for every wanted accuracy, a row for each problem."""
     wanted = sorted({one.wanted for one in answers}, reverse=True)
@@ -242,7 +242,7 @@ class _Columns:
     head: Sequence[str]
 
     @classmethod
-    def of(cls, quantity: Quantity, measurements: Iterable[Measurement]) -> _Columns:
+    def of(cls, quantity: Quantity, measurements: Iterable[MeasuredSolution]) -> _Columns:
         """Return the columns that measurements need."""
         measured = [m for one in measurements for m in one.measured if m.quantity == quantity.name]
         exact = {m.exact for m in measured if not np.isnan(m.exact)}
@@ -253,7 +253,7 @@ class _Columns:
             return cls(quantity, heading, ("value", "error"))
         return cls(quantity, quantity.title, ("value", "exact", "error"))
 
-    def texts(self, one: Measurement) -> list[str]:
+    def texts(self, one: MeasuredSolution) -> list[str]:
         """Return the cells of a measurement."""
         for measured in one.measured:
             if measured.quantity == self.quantity.name:
@@ -300,7 +300,7 @@ def _picture(figure: Figure, case: Case, title: str, caption: str) -> Picture:
 
 
 def _cheapest_rows(
-    case: Case, answers: Sequence[Cheapest], measurements: Sequence[Measurement]
+    case: Case, answers: Sequence[Cheapest], measurements: Sequence[MeasuredSolution]
 ) -> list[list[str]]:
     """Return a row for each quantity and problem of a case; its title stands in the first."""
     groups: dict[Hashable, list[Cheapest]] = {}

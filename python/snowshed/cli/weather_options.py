@@ -14,7 +14,7 @@ from snowshed.season.source import AUTO, CHOICES
 Command = TypeVar("Command", bound=Callable[..., Any])
 
 
-class Share(click.ParamType[float]):
+class ShareType(click.ParamType[float]):
     """A share from 0 to 1, or in percent from 0 to 100 with or without its sign."""
 
     name = "share"
@@ -24,7 +24,7 @@ class Share(click.ParamType[float]):
 
         Examples
         --------
-        >>> [Share().convert(text, None, None) for text in ("0.9", "90", "90 %")]
+        >>> [ShareType().convert(text, None, None) for text in ("0.9", "90", "90 %")]
         [0.9, 0.9, 0.9]
         """
         text = str(value).strip()
@@ -43,7 +43,7 @@ def weather_options(command: Command) -> Command:
     options = (
         click.option(
             "--coverage",
-            type=Share(),
+            type=ShareType(),
             default=0.9,
             show_default=True,
             help="Share of the days of the snow season on which a winter's snow must have been "

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from snowshed.cli.terminal import PlainConsole, plain_table
 from snowshed.season.quality_table import ALIGN, HEAD, quality_rows, shortened, title
-from snowshed.season.record import WinterList
+from snowshed.season.season_record import WinterList
 
 
 def print_quality(console: PlainConsole, winters: WinterList, *, judged: bool = True) -> None:

@@ -22,7 +22,7 @@ from snowshed.season.clearance import Contact, first_contact, first_reached, pan
 from snowshed.season.notes import assumptions, first_staying, notes
 from snowshed.season.quality import COVERAGE
 from snowshed.season.quality_table import caption
-from snowshed.season.record import Record, WinterList
+from snowshed.season.season_record import SeasonRecord, WinterList
 from snowshed.season.settings import SeasonSettings
 from snowshed.season.slabs import season_scene
 from snowshed.season.source import AUTO
@@ -167,7 +167,7 @@ class SeasonPlan:
         The scene whose events are the releases; None without a release.
     """
 
-    record: Record
+    record: SeasonRecord
     winters: WinterList
     days: Sequence[Day]
     panel: ResolvedScene

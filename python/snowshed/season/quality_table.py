@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from snowshed.base.formatting import plural
 from snowshed.season.quality import WinterQuality
-from snowshed.season.record import WinterList, percent
+from snowshed.season.season_record import WinterList, percent
 from snowshed.season.source import Source
 
 HEAD = ("winter", "snow observed", "new snow, m", "source", "filled", "not known", "counts")
@@ -23,8 +23,8 @@ def quality_rows(winters: WinterList) -> list[tuple[str, ...]]:
     Examples
     --------
     >>> from snowshed.season.generator import EXAMPLE_CLIMATE
-    >>> from snowshed.season.record import Record
-    >>> quality_rows(Record(EXAMPLE_CLIMATE.winters(1, seed=1)).winters())[0][:4]
+    >>> from snowshed.season.season_record import SeasonRecord
+    >>> quality_rows(SeasonRecord(EXAMPLE_CLIMATE.winters(1, seed=1)).winters())[0][:4]
     ('2001/02', '169 of 169 days (100 %)', '3.37', 'season file')
     """
     return [_row(winter) for winter in winters.winters]
@@ -44,8 +44,8 @@ def caption(winters: WinterList) -> str:
     Examples
     --------
     >>> from snowshed.season.generator import EXAMPLE_CLIMATE
-    >>> from snowshed.season.record import Record
-    >>> caption(Record(EXAMPLE_CLIMATE.winters(1, seed=1)).winters())
+    >>> from snowshed.season.season_record import SeasonRecord
+    >>> caption(SeasonRecord(EXAMPLE_CLIMATE.winters(1, seed=1)).winters())
     'Snow of 2001/02: observed on 169 of 169 days (100 %), source: season file'
     """
     if len(winters.winters) > 1:

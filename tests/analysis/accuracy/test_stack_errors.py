@@ -1,7 +1,7 @@
 import pytest
 
 from snowshed import Scene
-from snowshed.analysis.accuracy.measurements import Measured, Measurement
+from snowshed.analysis.accuracy.measurements import Measured, MeasuredSolution
 from snowshed.analysis.accuracy.mechanisms import Mechanisms
 from snowshed.analysis.accuracy.recorded import load_recorded
 from snowshed.analysis.accuracy.recorded_stacks import CASE, PRESET, PRESET_THICKNESS
@@ -19,7 +19,7 @@ def stack(dx, height, length, **settings):
     ]
     settings = {"dimension": 2, "events": 5, "dx": dx, "transfer": "flip", **settings}
     settings = {name: value for name, value in settings.items() if value is not None}
-    return Measurement(CASE, settings, measured)
+    return MeasuredSolution(CASE, settings, measured)
 
 
 RECORDED = [

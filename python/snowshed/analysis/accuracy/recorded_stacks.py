@@ -10,7 +10,7 @@ from collections.abc import Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Optional
 
-from snowshed.analysis.accuracy.measurements import Measurement, Settings, Value, to_table
+from snowshed.analysis.accuracy.measurements import MeasuredSolution, Settings, Value, to_table
 from snowshed.analysis.accuracy.solutions import (
     SAMPLING,
     assured_errors,
@@ -58,7 +58,7 @@ class RecordedStack:
         return max(self.errors)
 
 
-def recorded_stacks(measurements: Iterable[Measurement]) -> list[RecordedStack]:
+def recorded_stacks(measurements: Iterable[MeasuredSolution]) -> list[RecordedStack]:
     """Return the recorded stacks."""
     mine = [m for m in measurements if m.case == CASE and not m.failure]
     table = to_table(mine)
@@ -85,7 +85,7 @@ def recorded_stacks(measurements: Iterable[Measurement]) -> list[RecordedStack]:
     ]
 
 
-def _biases(measurements: Iterable[Measurement]) -> dict[Hashable, dict[str, float]]:
+def _biases(measurements: Iterable[MeasuredSolution]) -> dict[Hashable, dict[str, float]]:
     return {
         key_of(measurement.settings, without=SAMPLING): {
             m.quantity: m.value / m.exact - 1 for m in measurement.measured if m.exact

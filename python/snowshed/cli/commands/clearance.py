@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from snowshed.analysis.clearance.answer import Answer
     from snowshed.analysis.clearance.design import Design, Ranges
     from snowshed.analysis.clearance.winters import Winter
-    from snowshed.season.record import Record, WinterList
+    from snowshed.season.season_record import SeasonRecord, WinterList
 
 EXAMPLE = "example"  # in place of a file: synthetic winters
 
@@ -158,15 +158,17 @@ def _answers(
     return answers
 
 
-def _record(weather: tuple[Path, ...], snow_from: str, temperature: Optional[Path]) -> Record:
+def _record(weather: tuple[Path, ...], snow_from: str, temperature: Optional[Path]) -> SeasonRecord:
     from snowshed.season.generator import EXAMPLE_CLIMATE
-    from snowshed.season.record import Record
+    from snowshed.season.season_record import SeasonRecord
     from snowshed.season.weather import read_record
 
     if [str(file) for file in weather] != [EXAMPLE]:
         return read_record(weather, snow_from, temperature)
     rows = EXAMPLE_CLIMATE.winters(10, seed=7)
-    return Record(rows, ["the weather is ten synthetic winters (generator of Richardson 1981)"])
+    return SeasonRecord(
+        rows, ["the weather is ten synthetic winters (generator of Richardson 1981)"]
+    )
 
 
 def _numbers(option: str, text: str) -> list[float]:

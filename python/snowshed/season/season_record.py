@@ -15,7 +15,7 @@ from snowshed.season.winter_years import Calendar, SnowSeason, calendar_of
 
 
 @dataclass(frozen=True)
-class Record:
+class SeasonRecord:
     """The weather of a season or of many winters.
 
     Attributes
@@ -57,7 +57,7 @@ class Record:
         --------
         >>> from snowshed.season.generator import EXAMPLE_CLIMATE
         >>> rows = EXAMPLE_CLIMATE.winters(3, seed=1)
-        >>> winters = Record(rows[:500]).winters()
+        >>> winters = SeasonRecord(rows[:500]).winters()
         >>> winters.counted_text, winters.excluded_text
         ('2 of 3 winters', '2003/04 (79 %)')
         """
