@@ -102,6 +102,11 @@ def test_the_page_documents_what_the_package_exports():
     assert [name for name in undocumented if not inspect.ismodule(getattr(snowshed, name))] == []
 
 
+def test_the_page_lists_every_name_of_the_room_of_questions():
+    documented = {name for module, name in DOCUMENTED if module == "snowshed.analysis"}
+    assert set(snowshed.analysis.__all__) - documented == set()
+
+
 #: Where a reader sees imports: pages, tutorials and examples.
 SHOWN = [
     ROOT / "README.md",

@@ -79,7 +79,7 @@ def test_it_says_when_the_accuracy_was_never_reached():
         "--accuracy 1 %: no recorded run of lab-50 was that accurate. The best is dx 0.005 m"
     )
     assert "off by 2 % and its length by 4 %, against the finest" in choice.reason
-    assert "It is what --accuracy 4% takes." in choice.reason
+    assert "--accuracy 4% chooses this grid." in choice.reason
 
 
 def objective(dx, height, length, wall, **settings):
@@ -133,7 +133,7 @@ def test_a_chosen_scheme_is_that_of_the_recorded_runs_whatever_the_scene_was():
 def test_lengths_that_are_other_shares_of_the_slab_are_named():
     thick = scene_with(**{"slab.thickness": 0.2})
     assert choose(0.05, thick, OBJECTIVE).reason.endswith(
-        "The scheme's lengths of 0.01 m are 0.5 of the slab there, 0.05 here."
+        "(0.01 m) are 50 % of the recorded slab's thickness, 5 % of this one's."
     )
     assert "lengths" not in choose(0.05, scene_with(), OBJECTIVE).reason
     assert "lengths" not in choose(0.10, thick, RECORDED).reason

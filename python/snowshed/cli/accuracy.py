@@ -202,7 +202,7 @@ def _outcome(stack: RecordedStack, wanted: float, what: str) -> str:
         )
     share = ceil(100 * stack.error)
     return f"no recorded run of {PRESET} was that accurate. The best is {what}: {off}" + (
-        f" It is what --accuracy {share}% takes." if share < 100 else ""
+        f" --accuracy {share}% chooses this grid." if share < 100 else ""
     )
 
 

@@ -131,9 +131,9 @@ def headline(figures: Mapping[str, Any]) -> str:
     speed = figures["peak_speed_m_s"]
     return (
         f"The snow came {figures['run_out_m']:.0f} m from the middle of the release and "
-        f"{figures['drop_m']:.0f} m down {ended} after {figures['sim_time_s']:.0f} s; at most it "
-        f"was {speed:.1f} m/s fast ({3.6 * speed:.0f} km/h), {figures['peak_thickness_m']:.1f} m "
-        f"thick, and pressed with {figures['peak_pressure_kpa']:.1f} kPa."
+        f"{figures['drop_m']:.0f} m down {ended} after {figures['sim_time_s']:.0f} s. Highest "
+        f"values: speed {speed:.1f} m/s ({3.6 * speed:.0f} km/h), thickness "
+        f"{figures['peak_thickness_m']:.1f} m, pressure {figures['peak_pressure_kpa']:.1f} kPa."
     )
 
 

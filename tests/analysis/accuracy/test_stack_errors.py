@@ -101,7 +101,7 @@ def test_the_sentence_names_the_scheme_and_its_lengths():
     assert "event 5, scheme objective, 2 cells in the slab): height 15 % too small" in text
     assert text.endswith("single runs scatter by 4 % and 6 %")
     thick = stack_error(scene(**objective, **{"slab.thickness": 0.04}), RECORDED).sentence
-    assert thick.endswith("the scheme's lengths of 0.01 m are 0.5 of the slab there, 0.25 here")
+    assert thick.endswith("are 50 % of the recorded slab's thickness, 25 % of this one's")
 
 
 def test_the_bias_of_all_resolved_grids():

@@ -1,9 +1,9 @@
 """The error of a stack, from recorded runs on several grids.
 
-Height and length of a stack depend on the grid more than on the seed. What recorded runs of the
-laboratory experiment say of it is said beside every stack, with the name of the recorded scene and
-scheme, because a scene of another size or another snow may err by more or by less. Each scheme has
-runs and a finest grid of its own.
+Height and length of a stack depend on the grid more than on the seed. Every stack is shown with the
+error of recorded runs of the laboratory experiment. The name of the recorded scene and scheme
+stands beside it, because the error of another size or another snow may be larger or smaller. Each
+scheme has runs and a finest grid of its own.
 """
 
 from __future__ import annotations
