@@ -282,9 +282,9 @@ def test_the_last_runs_of_many_get_the_cores_that_fall_free():
 
 
 def test_expected_durations():
-    assert cost_estimate.duration([4.0], 2) == 4.0
-    assert cost_estimate.duration([1.0] * 6, 3) == 2.0
-    assert cost_estimate.duration([3.0, 3.0, 2.0, 2.0, 2.0], 2) == 7.0
+    assert cost_estimate.makespan([4.0], 2) == 4.0
+    assert cost_estimate.makespan([1.0] * 6, 3) == 2.0
+    assert cost_estimate.makespan([3.0, 3.0, 2.0, 2.0, 2.0], 2) == 7.0
 
 
 def test_speeds_count_as_much_as_the_work_they_stand_for(monkeypatch):

@@ -21,7 +21,7 @@ from snowshed._core import InputError
 from snowshed.analysis.accuracy.measurements import (
     Measured,
     MeasuredSolution,
-    settings_of,
+    setting_names,
     to_table,
 )
 
@@ -174,7 +174,7 @@ def test_the_table_has_a_row_for_each_quantity_and_a_column_for_each_setting():
         ]
     )
     assert len(table) == 3
-    assert settings_of(table) == ["dx", "basis", "seed"]
+    assert setting_names(table) == ["dx", "basis", "seed"]
     assert table["basis"].tolist() == ["cubic", "cubic", None]
     assert table["updates_per_s"].tolist()[2] == 4.0
     with pytest.raises(ValueError, match="may not be called steps"):

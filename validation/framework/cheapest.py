@@ -12,9 +12,9 @@ from snowshed.analysis.accuracy.measurements import Settings
 from snowshed.analysis.accuracy.solutions import (
     Solution,
     assured_errors,
-    key_of,
     quickest,
     rows_of,
+    settings_key,
     solutions,
 )
 from snowshed.base.arrays import Booleans
@@ -70,7 +70,7 @@ def by_problem(case: Case, found: Iterable[Solution]) -> list[tuple[Settings, li
     groups: dict[Hashable, tuple[Settings, list[Solution]]] = {}
     for one in found:
         problem = problem_of(case, one.settings)
-        groups.setdefault(key_of(problem), (problem, []))[1].append(one)
+        groups.setdefault(settings_key(problem), (problem, []))[1].append(one)
     return list(groups.values())
 
 

@@ -17,7 +17,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from snowshed.analysis.accuracy import setting_labels
 from snowshed.analysis.accuracy.measurements import Settings, Value
-from snowshed.analysis.accuracy.solutions import Solution, key_of
+from snowshed.analysis.accuracy.solutions import Solution, settings_key
 from snowshed.base import formatting
 from snowshed.plot.figure_style import BODY, COLOURS, FAINT, INK, STYLE, blank_figure
 from validation.framework.case import Quantity
@@ -319,7 +319,7 @@ def _lines(found: Sequence[Solution], order_in: Optional[str]) -> list[list[int]
         return [[i] for i in range(len(found))]
     groups: dict[Hashable, list[int]] = {}
     for i, one in enumerate(found):
-        groups.setdefault(key_of(one.settings, without=[order_in]), []).append(i)
+        groups.setdefault(settings_key(one.settings, without=[order_in]), []).append(i)
     return [
         sorted(group, key=lambda i: found[i].settings.get(order_in, 0)) for group in groups.values()
     ]

@@ -14,7 +14,12 @@ from typing import NamedTuple, Optional
 
 from snowshed import _core
 from snowshed.analysis.accuracy import setting_labels
-from snowshed.analysis.accuracy.measurements import Measured, MeasuredSolution, Settings, key_of
+from snowshed.analysis.accuracy.measurements import (
+    Measured,
+    MeasuredSolution,
+    Settings,
+    measurement_key,
+)
 from snowshed.base.machine import cpu_name
 from snowshed.base.progress import Progress, Reporter
 from validation.framework.case import Case, Outcome
@@ -33,7 +38,7 @@ class Task(NamedTuple):
     @property
     def key(self) -> str:
         """The key of its measurement."""
-        return key_of(self.case.name, self.settings)
+        return measurement_key(self.case.name, self.settings)
 
 
 def tasks_of(cases: Iterable[Case], *, full: bool) -> list[Task]:

@@ -11,7 +11,7 @@ import numpy as np
 
 from snowshed.analysis.accuracy import setting_labels
 from snowshed.analysis.accuracy.measurements import MeasuredSolution, Settings
-from snowshed.analysis.accuracy.solutions import Solution, key_of, rows_of, solutions
+from snowshed.analysis.accuracy.solutions import Solution, rows_of, settings_key, solutions
 from snowshed.base import formatting
 from snowshed.plot.html_page import Grid, Picture
 from validation.framework import figures
@@ -306,7 +306,7 @@ def _cheapest_rows(
     groups: dict[Hashable, list[Cheapest]] = {}
     for one in answers:
         if one.case == case.name:
-            groups.setdefault((one.quantity, key_of(one.problem)), []).append(one)
+            groups.setdefault((one.quantity, settings_key(one.problem)), []).append(one)
     titles = {quantity.name: quantity.title for quantity in case.quantities}
     problems = varying(group[0].problem for group in groups.values())
     ways = varying(

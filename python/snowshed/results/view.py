@@ -10,7 +10,7 @@ import numpy as np
 
 from snowshed.base.paths import PathLike
 from snowshed.io.film import Film
-from snowshed.io.run_files import read_record
+from snowshed.io.run_files import read_run_record
 from snowshed.methods.registry import method_of
 from snowshed.plot.caption import scene_caption
 from snowshed.plot.film_page import MeasureLine, ViewContent, write_view_page
@@ -135,7 +135,7 @@ def _facts(scene: ResolvedScene, folder: Path) -> list[tuple[str, str]]:
 
 
 def _notes(results: Results, film: Film) -> list[str]:
-    status = read_record(results.folder).get("status", "begun")
+    status = read_run_record(results.folder).get("status", "begun")
     notes = []
     if status != "finished":
         notes.append(f"The run is not finished ({status}); the view ends where its film ends.")

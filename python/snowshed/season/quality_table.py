@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from snowshed.base.formatting import plural
 from snowshed.season.quality import WinterQuality
-from snowshed.season.season_record import WinterList, percent
+from snowshed.season.season_record import WinterList, whole_percent
 from snowshed.season.source import Source
 
 HEAD = ("winter", "snow observed", "new snow, m", "source", "filled", "not known", "counts")
@@ -30,7 +30,7 @@ def quality_rows(winters: WinterList) -> list[tuple[str, ...]]:
     return [_row(winter) for winter in winters.winters]
 
 
-def shortened(rows: list[tuple[str, ...]]) -> tuple[list[tuple[str, ...]], int]:
+def console_rows(rows: list[tuple[str, ...]]) -> tuple[list[tuple[str, ...]], int]:
     """Return the rows for a console, and the number of further rows."""
     if len(rows) <= MOST_ROWS:
         return rows, 0
@@ -76,7 +76,7 @@ def _observed(winter: WinterQuality) -> str:
         return "list of snowfalls"
     if not winter.rows:
         return "no rows"
-    return f"{winter.observed} of {plural(winter.season, 'day')} ({percent(winter.share)})"
+    return f"{winter.observed} of {plural(winter.season, 'day')} ({whole_percent(winter.share)})"
 
 
 def _filled(winter: WinterQuality) -> str:

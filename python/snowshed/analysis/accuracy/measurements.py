@@ -108,7 +108,7 @@ class MeasuredSolution:
         >>> MeasuredSolution("bar", {"dx": 0.1, "basis": "cubic"}, []).key
         'bar {"basis": "cubic", "dx": 0.1}'
         """
-        return key_of(self.case, self.settings)
+        return measurement_key(self.case, self.settings)
 
     @property
     def updates_per_s(self) -> float:
@@ -149,7 +149,7 @@ class MeasuredSolution:
         return cls(**{**data, "settings": settings, "measured": measured})
 
 
-def key_of(case: str, settings: Settings) -> str:
+def measurement_key(case: str, settings: Settings) -> str:
     """Return the key under which a case with these settings is kept."""
     return f"{case} {json.dumps(dict(settings), sort_keys=True)}"
 
@@ -186,7 +186,7 @@ def to_table(measurements: Iterable[MeasuredSolution]) -> pd.DataFrame:
     return table.astype(dict.fromkeys(NUMBERS, float))
 
 
-def settings_of(table: pd.DataFrame) -> list[str]:
+def setting_names(table: pd.DataFrame) -> list[str]:
     """Return the settings that occur in a table of measurements."""
     fixed = {*IDENTITY, *RESULTS}
     return [str(name) for name in table if name not in fixed and table[name].notna().any()]

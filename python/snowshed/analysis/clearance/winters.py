@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from snowshed._core import InputError
 from snowshed.base.notes import tell
 from snowshed.season.quality import COVERAGE
-from snowshed.season.season_record import SeasonRecord, WinterList, percent
+from snowshed.season.season_record import SeasonRecord, WinterList, whole_percent
 from snowshed.season.weather_row import Weather
 
 
@@ -82,7 +82,7 @@ def counted(winter_list: WinterList) -> list[Winter]:
     if not winters:
         raise InputError(
             "the weather: no winter has snow observed on "
-            f"{percent(winter_list.coverage)} of the "
+            f"{whole_percent(winter_list.coverage)} of the "
             f"days {winter_list.season.text}: {winter_list.excluded_text}; give a longer record, a "
             "smaller --coverage, or another column (--snow-from)"
         )
