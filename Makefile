@@ -15,7 +15,7 @@ DEMO := demo-results
 FUZZ_SECONDS ?= 60
 KERNELS ?= native
 CLANG_FORMAT := 23.1.5
-VALIDATION ?= $(or $(VERIFY),--quick)
+VALIDATION ?= --quick
 THESIS ?= --quick
 MUTANTS ?=
 
@@ -33,25 +33,25 @@ CORE := CMakeLists.txt pyproject.toml $(shell find cmake cpp/apps cpp/bindings c
 CPP_FILES = $(shell find cpp -name '*.[ch]pp')
 PYTHON_FOLDERS := python reproductions validation tests tools examples benchmarks lua_compat
 
-.PHONY: help build demo validation verify thesis test test-cpp test-py test-slow sanitize sanitize-address \
+.PHONY: help build demo validation thesis test test-cpp test-py test-slow sanitize sanitize-address \
   sanitize-thread fuzz mutants bench docs components format lint tidy clean
 .NOTPARALLEL:
 
 help:
-	@echo "make build     $(BIN)/snowshed and $(BIN)/snowshed-run"
-	@echo "make demo      the laboratory experiment: five slide-offs, table, pictures and a page that moves"
+	@echo "make build      $(BIN)/snowshed and $(BIN)/snowshed-run"
+	@echo "make demo       the laboratory experiment: five slide-offs, table, pictures and a page that moves"
 	@echo "make validation problems with known answers, a minute (VALIDATION=--full: hours)"
-	@echo "make thesis    the thesis reproduced, some minutes (THESIS=--middle: hours, --full: days)"
-	@echo "make test      all tests (test-cpp, test-py: C++, Python; test-slow: those that take minutes)"
-	@echo "make sanitize  the tests with AddressSanitizer, UBSan and ThreadSanitizer"
-	@echo "make fuzz      fuzz all readers of files (FUZZ_SECONDS=$(FUZZ_SECONDS) each)"
-	@echo "make mutants   inject faults and see which the tests catch, an hour or two"
-	@echo "make bench     speed of the solver and of the laboratory events, kept in benchmarks/results"
-	@echo "make docs      the documentation as HTML"
+	@echo "make thesis     the thesis reproduced, some minutes (THESIS=--middle: hours, --full: days)"
+	@echo "make test       all tests (test-cpp, test-py: C++, Python; test-slow: those that take minutes)"
+	@echo "make sanitize   the tests with AddressSanitizer, UBSan and ThreadSanitizer"
+	@echo "make fuzz       fuzz all readers of files (FUZZ_SECONDS=$(FUZZ_SECONDS) each)"
+	@echo "make mutants    inject faults and see which the tests catch, an hour or two"
+	@echo "make bench      speed of the solver and of the laboratory events, kept in benchmarks/results"
+	@echo "make docs       the documentation as HTML"
 	@echo "make components the scene's components in Python, from the core's description"
-	@echo "make format    format all sources"
-	@echo "make lint      check format, style and types (tidy: clang-tidy, slow)"
-	@echo "make clean     remove $(VENV) and build"
+	@echo "make format     format all sources"
+	@echo "make lint       check format, style and types (tidy: clang-tidy, slow)"
+	@echo "make clean      remove $(VENV) and build"
 
 # --- build ---------------------------------------------------------------------------------
 
@@ -95,8 +95,6 @@ demo: build
 validation: build $(VENV)/.dev-tools
 	$(if $(findstring --full,$(VALIDATION)),,rm -rf validation-quick)
 	$(BIN)/python -m validation $(VALIDATION) -o validation-$(patsubst --%,%,$(firstword $(VALIDATION)))
-
-verify: validation  # its former name
 
 # What was interrupted goes on.
 thesis: build $(VENV)/.dev-tools

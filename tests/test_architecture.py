@@ -4,6 +4,7 @@ import ast
 import re
 import subprocess
 import sys
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -234,3 +235,21 @@ def test_commands_print_by_what_makes_texts_harmless():
         and source.name != "terminal.py"
     ]
     assert wrong == []
+
+
+#: Class names that two modules of the package share, and why.
+SHARED_CLASS_NAMES = {
+    "Simulation": "the package's simulation holds that of the core",
+}
+
+
+def classes(path):
+    """Return the names of the classes in a Python file or stub."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    return [node.name for node in ast.walk(tree) if isinstance(node, ast.ClassDef)]
+
+
+def test_a_class_name_is_unique_in_the_package():
+    sources = [*tracked("python/snowshed/**/*.py"), ROOT / "cpp" / "bindings" / "_core.pyi"]
+    counts = Counter(name for source in sources for name in classes(source))
+    assert {name for name, count in counts.items() if count > 1} == SHARED_CLASS_NAMES.keys()

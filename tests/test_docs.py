@@ -4,8 +4,10 @@ Studies, structures and predictions have their own tests.
 """
 
 import json
+import pkgutil
 import re
 import shlex
+from pathlib import Path
 
 import click
 import pytest
@@ -209,3 +211,39 @@ def test_scripts_run(page, script, tmp_path, monkeypatch):
 def test_scenes_are_valid():
     for text in blocks("docs/reference/scenes.md", "json"):
         assert Scene.from_data(json.loads(text)).resolve().data["title"]
+
+
+#: Folders from which pages name the files of the source.
+ABOVE = ("", "python/snowshed/", "cpp/snowshed/", "cpp/snowshed/methods/*/", "reproductions/")
+TOP_FOLDERS = {path.name for path in ROOT.iterdir() if path.is_dir()} - {"build"}
+
+
+def named_files(text):
+    """Return the files and folders of the source that a page names."""
+    paths = re.findall(r"`([\w.*-]+/[\w./*-]*)`", text)
+    suffixes = {".py", ".pyi", ".cpp", ".hpp", ".md"}
+    return [p for p in paths if p.split("/")[0] in TOP_FOLDERS or Path(p).suffix in suffixes]
+
+
+def is_file(path):
+    """Return whether the source has a file or folder; NAME stands for any name."""
+    pattern = re.sub(r"\bNAME\b", "*", path.rstrip("/"))
+    return any(True for above in ABOVE for _ in ROOT.glob(above + pattern))
+
+
+def is_name(name):
+    """Return whether a dotted name is that of a module, or of what a module holds."""
+    try:
+        pkgutil.resolve_name(name)
+    except (ImportError, AttributeError):
+        return False
+    return True
+
+
+@pytest.mark.parametrize("page", PAGES, ids=name_of)
+def test_the_source_has_the_files_and_names_of_a_page(page):
+    text = page.read_text(encoding="utf-8")
+    names = re.findall(r"`((?:snowshed|validation|reproductions)(?:\.(?!html)[A-Za-z_]\w*)+)", text)
+    names += re.findall(r":: (snowshed(?:\.\w+)+)", text)
+    assert [path for path in named_files(text) if not is_file(path)] == []
+    assert [name for name in names if not is_name(name)] == []

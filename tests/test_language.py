@@ -169,6 +169,11 @@ def test_the_help_begins_with_its_subject_and_needs_no_second_reading():
     assert wrong == []
 
 
+def test_units_in_the_help_are_in_brackets():
+    unit = re.compile(r"(,|\bin) (m|cm|mm|s|h|Pa|kPa|degrees|kg/m3|m/s|pixels)(?=[.;:,)]|$)")
+    assert [item for item in help_texts(cli, "snowshed") if unit.search(item[1])] == []
+
+
 def prose(page):
     """Return the paragraphs of a page without code, by line."""
     text = re.sub(r"^```.*?^```", "", page.read_text(encoding="utf-8"), flags=re.M | re.S)

@@ -102,6 +102,11 @@ def test_the_page_documents_what_the_package_exports():
     assert [name for name in undocumented if not inspect.ismodule(getattr(snowshed, name))] == []
 
 
+def test_the_page_lists_every_name_of_the_room_of_questions():
+    documented = {name for module, name in DOCUMENTED if module == "snowshed.analysis"}
+    assert set(snowshed.analysis.__all__) - documented == set()
+
+
 #: Where a reader sees imports: pages, tutorials and examples.
 SHOWN = [
     ROOT / "README.md",
@@ -123,7 +128,7 @@ def test_readers_import_from_the_package_or_a_room(file):
 def test_what_the_page_documents_stands_in_the_package_or_a_room():
     assert [f"{module}.{name}" for module, name in DOCUMENTED if module.count(".") > 1] == []
     assert len(DOCUMENTED) > 100
-    assert DEEP.search("from snowshed.season.record import Record")
+    assert DEEP.search("from snowshed.season.season_record import SeasonRecord")
 
 
 def test_a_name_is_exported_once_in_a_room():

@@ -5,7 +5,7 @@ import pytest
 
 from snowshed import InputError, Scene
 from snowshed.analysis.accuracy import recorded
-from snowshed.analysis.accuracy.measurements import Measured, Measurement
+from snowshed.analysis.accuracy.measurements import Measured, MeasuredSolution
 from snowshed.analysis.accuracy.recorded import load_recorded, record
 from snowshed.analysis.accuracy.recorded_stacks import CASE, QUANTITIES
 from snowshed.cli.accuracy import choose
@@ -23,7 +23,7 @@ def stack(dx, height, length, wall, *, spread=None, **settings):
     if spread is not None:
         measured += [Measured(f"{name}_spread", spread, 0.0, spread) for name in QUANTITIES]
     settings = {"dimension": 2, "events": 5, "dx": dx, "transfer": "flip", **settings}
-    return Measurement(CASE, settings, measured, wall_s=wall)
+    return MeasuredSolution(CASE, settings, measured, wall_s=wall)
 
 
 RECORDED = [
@@ -79,7 +79,7 @@ def test_it_says_when_the_accuracy_was_never_reached():
         "--accuracy 1 %: no recorded run of lab-50 was that accurate. The best is dx 0.005 m"
     )
     assert "off by 2 % and its length by 4 %, against the finest" in choice.reason
-    assert "It is what --accuracy 4% takes." in choice.reason
+    assert "--accuracy 4% chooses this grid." in choice.reason
 
 
 def objective(dx, height, length, wall, **settings):
@@ -133,7 +133,7 @@ def test_a_chosen_scheme_is_that_of_the_recorded_runs_whatever_the_scene_was():
 def test_lengths_that_are_other_shares_of_the_slab_are_named():
     thick = scene_with(**{"slab.thickness": 0.2})
     assert choose(0.05, thick, OBJECTIVE).reason.endswith(
-        "The scheme's lengths of 0.01 m are 0.5 of the slab there, 0.05 here."
+        "(0.01 m) are 50 % of the recorded slab's thickness, 5 % of this one's."
     )
     assert "lengths" not in choose(0.05, scene_with(), OBJECTIVE).reason
     assert "lengths" not in choose(0.10, thick, RECORDED).reason
@@ -170,8 +170,8 @@ def test_it_needs_a_slab_and_something_recorded():
     bodies = [{"shape": {"type": "sphere", "center": [0, 1], "radius": 0.1}}]
     with pytest.raises(InputError, match="--accuracy: the scene has no slab"):
         choose(0.1, Scene(dimension=2, bodies=bodies), RECORDED)
-    failed = Measurement(CASE, {"dx": 0.1}, [], failure="no")
-    for nothing in ([], [failed], [Measurement("bar", {"dx": 0.1}, [])]):
+    failed = MeasuredSolution(CASE, {"dx": 0.1}, [], failure="no")
+    for nothing in ([], [failed], [MeasuredSolution("bar", {"dx": 0.1}, [])]):
         with pytest.raises(InputError, match="nothing is recorded"):
             choose(0.1, scene_with(), nothing)
 
@@ -186,7 +186,7 @@ def packaged(tmp_path, monkeypatch):
 
 def test_recorded_measurements_are_read_back(tmp_path):
     path = tmp_path / "recorded.json"
-    record([*RECORDED, Measurement("bar", {}, [], failure="no")], path)
+    record([*RECORDED, MeasuredSolution("bar", {}, [], failure="no")], path)
     assert [one.to_json() for one in load_recorded(path)] == [one.to_json() for one in RECORDED]
 
 

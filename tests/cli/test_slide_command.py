@@ -43,7 +43,7 @@ def test_ranges_give_maps_a_page_and_numbers_and_go_on(tmp_path, capsys):
     ("option", "said"),
     [
         ("mux=1:2", "'mux' is none of mu, xi, E, thickness"),
-        ("mu=0.3", "not of the form friction=LOW:HIGH"),
+        ("mu=0.3", "not of the form NAME=LOW:HIGH"),
         ("mu=0.5:0.3", "must rise"),
         ("mode=0:1", "'mode' is none of"),
         ("cell=1:4", "'cell' is none of"),

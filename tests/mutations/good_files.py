@@ -159,7 +159,7 @@ def mps_checkpoint(folder: Path) -> Path:
 
 
 def store(folder: Path) -> Path:
-    from snowshed.study.outcome import Outcome
+    from snowshed.study.outcome import RunOutcome
     from snowshed.study.scene_hash import Run
     from snowshed.study.store import Store
 
@@ -168,7 +168,7 @@ def store(folder: Path) -> Path:
         store.register("tiny", ["panel.friction"], runs)
         rows = [{"event": 1, "wall_s": 0.5, "height_m": 0.25, "ended": "rest"}]
         kept = {1: b"particles"}
-        store.record(Outcome(runs[0].hash, "done", rows, {"run_wall_s": 1.0}, None, kept))
+        store.record(RunOutcome(runs[0].hash, "done", rows, {"run_wall_s": 1.0}, None, kept))
         store._connection.execute("PRAGMA wal_checkpoint(TRUNCATE)")
     return folder / "store" / "store.sqlite"
 

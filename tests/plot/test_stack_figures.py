@@ -73,7 +73,7 @@ def test_stack_picture_shows_panel_and_stack_to_scale(tmp_path, panel, tilt):
     assert low < (-0.4 if panel else 0.0) and high > 1.9
     low, high = enlarged.get_xlim()
     assert low < stack.head and stack.tail < high
-    assert "damping 188 1/s (FLIP 0.99 a step)" in figure.get_suptitle()
+    assert "damping 188 1/s (FLIP 0.99 per step)" in figure.get_suptitle()
     labels = [text.get_text() for text in enlarged.texts]
     assert f"height {stack.height:.3f} m" in labels and f"length {stack.length:.3f} m" in labels
     if panel:

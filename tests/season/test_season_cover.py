@@ -9,8 +9,8 @@ import pytest
 from snowshed import InputError, Scene
 from snowshed.season import SeasonSettings, accumulate
 from snowshed.season.clearance import first_contact
-from snowshed.season.column import SnowColumn
 from snowshed.season.cover import natural_cover
+from snowshed.season.settling_column import SnowColumn
 from snowshed.season.slabs import season_scene
 from snowshed.season.weather_row import Weather
 

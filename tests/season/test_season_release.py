@@ -10,7 +10,7 @@ from scipy.integrate import solve_ivp
 from snowshed import InputError
 from snowshed.season import SeasonSettings, Weather, accumulate, balance
 from snowshed.season.accumulation import pauses
-from snowshed.season.column import SnowColumn
+from snowshed.season.settling_column import SnowColumn
 from snowshed.season.stack_settling import SettlingStack
 from snowshed.snow import SETTLING_LAWS
 

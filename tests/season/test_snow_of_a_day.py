@@ -9,7 +9,7 @@ from station_files import days, elements, ghcn, smet, snows, warmth
 
 from snowshed import InputError
 from snowshed.io import Observation, Station
-from snowshed.season.daily import days_of_station
+from snowshed.season.daily_means import days_of_station
 from snowshed.season.source import Source
 from snowshed.season.weather import read_record
 

@@ -8,7 +8,7 @@ from station_files import days, elements, ghcn, warmth
 from snowshed import InputError, SnowshedNote
 from snowshed.analysis import winters_of
 from snowshed.cli.main import main
-from snowshed.cli.weather_options import Share
+from snowshed.cli.weather_options import ShareType
 from snowshed.season import SeasonSettings, accumulate, read_season
 from snowshed.season.weather import read_record
 
@@ -99,7 +99,7 @@ def test_the_coverage_decides(tmp_path):
     assert len(winters(tmp_path, rows, 0.8).counted) == 5
     with pytest.raises(InputError, match=r"coverage: 1\.5; allowed: a share from 0 to 1"):
         winters(tmp_path, rows, 1.5)
-    assert [Share().convert(text, None, None) for text in ("0.8", "80", "80%", 1)] == [
+    assert [ShareType().convert(text, None, None) for text in ("0.8", "80", "80%", 1)] == [
         0.8,
         0.8,
         0.8,

@@ -11,7 +11,7 @@ from snowshed import Scene
 from snowshed.results.folder import WORDS
 from snowshed.study import Study, session
 from snowshed.study.database import FILE, MEASURED_TYPES
-from snowshed.study.outcome import Outcome
+from snowshed.study.outcome import RunOutcome
 
 ALONE = {"jobs": 1, "threads": 1}
 
@@ -26,7 +26,9 @@ def tiny_study(name: str = "tiny", frictions: tuple[float, ...] = (0.1, 0.2, 0.3
     return Study.product(tiny_scene(), {"panel.friction": frictions}, name=name)
 
 
-def outcome(hash_: str, status: str = "done", events: int = 2, error: str | None = None) -> Outcome:
+def outcome(
+    hash_: str, status: str = "done", events: int = 2, error: str | None = None
+) -> RunOutcome:
     """What a run could have given: every measure is its own little number."""
     rows = [
         {
@@ -39,7 +41,7 @@ def outcome(hash_: str, status: str = "done", events: int = 2, error: str | None
         }
         for event in range(1, events + 1)
     ]
-    return Outcome(hash_, status, rows, {"run_wall_s": 1.0, "threads": 1}, error)
+    return RunOutcome(hash_, status, rows, {"run_wall_s": 1.0, "threads": 1}, error)
 
 
 class ScriptedWorkers:

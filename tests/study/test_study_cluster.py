@@ -12,7 +12,7 @@ from study_helpers import contents, tiny_scene, tiny_study
 from snowshed import InputError
 from snowshed.study import Study
 from snowshed.study.cluster import DaskWorkers
-from snowshed.study.outcome import Task
+from snowshed.study.outcome import RunTask
 
 computed = study_helpers.computed  # a fixture
 
@@ -58,7 +58,7 @@ def test_a_run_that_kills_every_worker_fails(cluster, tmp_path, monkeypatch):
     with distributed.Client(cluster) as client:
         client.run_on_scheduler(_allow_no_failure)
         workers = DaskWorkers(client)
-        workers.submit(Task("deadly", "{}", str(tmp_path / "x"), 1))
+        workers.submit(RunTask("deadly", "{}", str(tmp_path / "x"), 1))
         outcomes, end = [], time.monotonic() + 120
         while not outcomes and time.monotonic() < end:
             outcomes = workers.collect(1)

@@ -21,7 +21,7 @@ from snowshed.study import Run, Study, StudyError, read_table, resume
 from snowshed.study.compute import compute
 from snowshed.study.database import MEASURED_TYPES
 from snowshed.study.local import LocalWorkers
-from snowshed.study.outcome import Task
+from snowshed.study.outcome import RunTask
 from snowshed.study.store import Store
 
 computed = study_helpers.computed  # a fixture
@@ -62,9 +62,9 @@ def whole(tmp_path_factory):
     return folder / "study.toml", folder / "store"
 
 
-def task_of(scene, folder: Path) -> Task:
+def task_of(scene, folder: Path) -> RunTask:
     run = Run.of(scene.resolve())
-    return Task(run.hash, run.scene, str(folder), 1)
+    return RunTask(run.hash, run.scene, str(folder), 1)
 
 
 def long_scene():
@@ -201,7 +201,7 @@ def test_without_memory_enough_a_run_can_be_tried_again(tmp_path, monkeypatch):
 
 def test_a_file_that_changed_after_registration_stops_the_study(tmp_path):
     task = task_of(tiny_scene(), tmp_path / "work")
-    changed = Task("0" * 32, task.scene, task.folder, 1)
+    changed = RunTask("0" * 32, task.scene, task.folder, 1)
     outcome = compute(changed)
     assert outcome.status == "unable"
     assert "differs from the registered one" in outcome.error

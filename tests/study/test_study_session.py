@@ -12,7 +12,7 @@ from study_helpers import outcome, tiny_study
 from snowshed import InputError, SnowshedNote, _core
 from snowshed.base.notes import recorded
 from snowshed.study import Study, StudyError, StudyInterrupted, cost_estimate, resume, session
-from snowshed.study.outcome import Outcome
+from snowshed.study.outcome import RunOutcome
 from snowshed.study.owner import ownership
 from snowshed.study.store import Store
 
@@ -73,7 +73,7 @@ def test_a_worker_that_dies_costs_only_its_run(scripted, tmp_path):
     def die_once(task):
         if task.hash == HASHES[0] and not died:
             died.append(task)
-            return Outcome(task.hash, "lost", error="the worker was killed")
+            return RunOutcome(task.hash, "lost", error="the worker was killed")
         return outcome(task.hash)
 
     scripted.answer = die_once
@@ -84,7 +84,7 @@ def test_a_worker_that_dies_costs_only_its_run(scripted, tmp_path):
 
 def test_a_run_whose_workers_always_die_fails(scripted, tmp_path):
     scripted.answer = lambda task: (
-        Outcome(task.hash, "lost", error="the worker was killed by signal 9 (Killed)")
+        RunOutcome(task.hash, "lost", error="the worker was killed by signal 9 (Killed)")
         if task.hash == HASHES[2]
         else outcome(task.hash)
     )
@@ -98,7 +98,7 @@ def test_a_machine_that_cannot_stops_the_study_and_loses_nothing(scripted, tmp_p
     scripted.answer = lambda task: (
         outcome(task.hash)
         if len(scripted.tasks) < 3
-        else Outcome(task.hash, "unable", error="checkpoint.bin: No space left on device")
+        else RunOutcome(task.hash, "unable", error="checkpoint.bin: No space left on device")
     )
     with pytest.raises(StudyError, match=r"No space left on device; .* safe.*repeat"):
         STUDY.run(tmp_path / "store")
@@ -118,7 +118,9 @@ def test_runs_that_end_beside_one_that_cannot_are_stored(scripted, tmp_path, mon
 
     def unable_first(task):
         unable = task.hash == scripted.tasks[0].hash
-        return Outcome(task.hash, "unable", error="no such file") if unable else outcome(task.hash)
+        return (
+            RunOutcome(task.hash, "unable", error="no such file") if unable else outcome(task.hash)
+        )
 
     def all_at_once(timeout):
         return [scripted.answer(scripted.open.pop(0)) for _ in range(len(scripted.open))]
@@ -280,9 +282,9 @@ def test_the_last_runs_of_many_get_the_cores_that_fall_free():
 
 
 def test_expected_durations():
-    assert cost_estimate.duration([4.0], 2) == 4.0
-    assert cost_estimate.duration([1.0] * 6, 3) == 2.0
-    assert cost_estimate.duration([3.0, 3.0, 2.0, 2.0, 2.0], 2) == 7.0
+    assert cost_estimate.makespan([4.0], 2) == 4.0
+    assert cost_estimate.makespan([1.0] * 6, 3) == 2.0
+    assert cost_estimate.makespan([3.0, 3.0, 2.0, 2.0, 2.0], 2) == 7.0
 
 
 def test_speeds_count_as_much_as_the_work_they_stand_for(monkeypatch):

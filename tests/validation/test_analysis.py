@@ -13,7 +13,7 @@ from validation.framework.convergence import convergences, observed_order, pairw
 from validation.framework.schemes import varying
 from validation.framework.sections import meant
 
-from snowshed.analysis.accuracy.measurements import Measured, Measurement, to_table
+from snowshed.analysis.accuracy.measurements import Measured, MeasuredSolution, to_table
 from snowshed.analysis.accuracy.solutions import (
     Solution,
     assured_errors,
@@ -26,7 +26,7 @@ from snowshed.analysis.accuracy.solutions import (
 def table_of(*results, quantity="height"):
     """A table with one measurement for each (settings, error, time)."""
     return to_table(
-        Measurement("made_up", settings, [Measured(quantity, error, 0.0, error)], wall_s=wall)
+        MeasuredSolution("made_up", settings, [Measured(quantity, error, 0.0, error)], wall_s=wall)
         for settings, error, wall in results
     )
 
@@ -220,9 +220,9 @@ def test_every_series_must_converge_fast_enough():
 def test_cases_and_quantities_are_kept_apart():
     table = to_table(
         [
-            Measurement("made_up", {"dx": 0.1}, [Measured("height", 1.0, 1.0, 0.0)]),
-            Measurement("made_up", {"dx": 0.1}, [Measured("width", 1.0, 1.0, 0.5)]),
-            Measurement("other", {"dx": 0.1}, [Measured("height", 1.0, 1.0, 0.5)]),
+            MeasuredSolution("made_up", {"dx": 0.1}, [Measured("height", 1.0, 1.0, 0.0)]),
+            MeasuredSolution("made_up", {"dx": 0.1}, [Measured("width", 1.0, 1.0, 0.5)]),
+            MeasuredSolution("other", {"dx": 0.1}, [Measured("height", 1.0, 1.0, 0.5)]),
         ]
     )
     case = case_with(bar=0.1)

@@ -11,10 +11,10 @@ from validation.framework import cases as listing
 from validation.framework.folder import ValidationFolder
 
 from snowshed import InputError
-from snowshed.analysis.accuracy.measurements import Measured, Measurement
+from snowshed.analysis.accuracy.measurements import Measured, MeasuredSolution
 from snowshed.analysis.accuracy.recorded import load_recorded
 
-WHOLE = Measurement("bar", {"dx": 0.1, "apic": True}, [Measured("height", 1.0, 2.0, -0.5)])
+WHOLE = MeasuredSolution("bar", {"dx": 0.1, "apic": True}, [Measured("height", 1.0, 2.0, -0.5)])
 
 # A line of measurements.jsonl, and what must be said of it.
 LINES = {
@@ -77,7 +77,7 @@ def test_a_device_without_end_is_no_file_of_measurements(tmp_path):
 def test_a_missing_key_of_a_measurement(missing):
     data = {key: value for key, value in WHOLE.to_json().items() if key != missing}
     with pytest.raises(InputError, match=rf"^m\.jsonl:1: damaged: /{missing} is missing$"):
-        Measurement.from_json(data, "m.jsonl:1")
+        MeasuredSolution.from_json(data, "m.jsonl:1")
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,7 @@ from validation.laboratory.lab_stack import COMPARED, Cost, lab_scene
 from validation.laboratory.recorded_measurements import SCHEME, measurements_of, renew
 
 from snowshed import InputError
-from snowshed.analysis.accuracy.measurements import Measurement
+from snowshed.analysis.accuracy.measurements import MeasuredSolution
 from snowshed.analysis.accuracy.mechanisms import scheme_of
 from snowshed.analysis.accuracy.recorded import load_recorded, record
 from snowshed.cli.main import main
@@ -138,9 +138,12 @@ def test_a_part_of_a_run_ends_with_its_event():
 
 def test_new_measurements_take_the_place_of_those_of_the_same_scheme(tmp_path):
     path = tmp_path / "recorded.json"
-    others = [Measurement("bar", {"dx": 1.0}, []), Measurement(CASE.name, {"dx": 0.01}, [])]
-    record([*others, Measurement(CASE.name, {"dx": 0.5, "scheme": "objective"}, [])], path)
-    new = Measurement(CASE.name, {"dx": 0.25, "scheme": "objective"}, [])
+    others = [
+        MeasuredSolution("bar", {"dx": 1.0}, []),
+        MeasuredSolution(CASE.name, {"dx": 0.01}, []),
+    ]
+    record([*others, MeasuredSolution(CASE.name, {"dx": 0.5, "scheme": "objective"}, [])], path)
+    new = MeasuredSolution(CASE.name, {"dx": 0.25, "scheme": "objective"}, [])
     renew([new], path)
     assert [one.key for one in load_recorded(path)] == [one.key for one in (*others, new)]
 

@@ -18,7 +18,12 @@ from validation.framework.measure import Estimate, measure_cases, tasks_of
 from validation.framework.measurement_file import MeasurementFile
 
 from snowshed._core import InputError
-from snowshed.analysis.accuracy.measurements import Measured, Measurement, settings_of, to_table
+from snowshed.analysis.accuracy.measurements import (
+    Measured,
+    MeasuredSolution,
+    setting_names,
+    to_table,
+)
 
 FAILURES = {
     "raises": "ValueError: no such snow (made_up.py:",
@@ -160,16 +165,20 @@ def test_the_estimate_follows_known_durations_and_the_present_pace(monkeypatch):
 def test_the_table_has_a_row_for_each_quantity_and_a_column_for_each_setting():
     table = to_table(
         [
-            Measurement("one", {"dx": 0.1, "basis": "cubic"}, [Measured("a", 1.0, 2.0, 0.5)] * 2),
-            Measurement("other", {"seed": 3}, [Measured("b", 1.0, 2.0, 0.5)], wall_s=2, updates=8),
+            MeasuredSolution(
+                "one", {"dx": 0.1, "basis": "cubic"}, [Measured("a", 1.0, 2.0, 0.5)] * 2
+            ),
+            MeasuredSolution(
+                "other", {"seed": 3}, [Measured("b", 1.0, 2.0, 0.5)], wall_s=2, updates=8
+            ),
         ]
     )
     assert len(table) == 3
-    assert settings_of(table) == ["dx", "basis", "seed"]
+    assert setting_names(table) == ["dx", "basis", "seed"]
     assert table["basis"].tolist() == ["cubic", "cubic", None]
     assert table["updates_per_s"].tolist()[2] == 4.0
     with pytest.raises(ValueError, match="may not be called steps"):
-        to_table([Measurement("one", {"steps": 3}, [])])
+        to_table([MeasuredSolution("one", {"steps": 3}, [])])
 
 
 def test_a_folder_is_new_or_of_an_earlier_suite(tmp_path):
@@ -196,7 +205,7 @@ def test_cases_are_found_by_module_and_by_name(monkeypatch):
 
 
 def test_measurements_survive_json():
-    one = Measurement("a", {"dx": 0.1}, [Measured("b", float("inf"), 1.0, float("nan"))])
+    one = MeasuredSolution("a", {"dx": 0.1}, [Measured("b", float("inf"), 1.0, float("nan"))])
     text = json.dumps(one.to_json(), allow_nan=False)
-    again = Measurement.from_json(json.loads(text), "m.jsonl")
+    again = MeasuredSolution.from_json(json.loads(text), "m.jsonl")
     assert again.to_json() == one.to_json()

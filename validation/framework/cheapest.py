@@ -12,9 +12,9 @@ from snowshed.analysis.accuracy.measurements import Settings
 from snowshed.analysis.accuracy.solutions import (
     Solution,
     assured_errors,
-    key_of,
     quickest,
     rows_of,
+    settings_key,
     solutions,
 )
 from snowshed.base.arrays import Booleans
@@ -70,7 +70,7 @@ def by_problem(case: Case, listed: Iterable[Solution]) -> list[tuple[Settings, l
     groups: dict[Hashable, tuple[Settings, list[Solution]]] = {}
     for solution in listed:
         problem = problem_of(case, solution.settings)
-        groups.setdefault(key_of(problem), (problem, []))[1].append(solution)
+        groups.setdefault(settings_key(problem), (problem, []))[1].append(solution)
     return list(groups.values())
 
 

@@ -12,7 +12,7 @@ import click
 from snowshed.cli.exit_codes import Stopped
 
 if TYPE_CHECKING:
-    from snowshed.analysis.accuracy.measurements import Measurement
+    from snowshed.analysis.accuracy.measurements import MeasuredSolution
     from validation.framework.case import Case
     from validation.framework.folder import ValidationFolder
     from validation.framework.report import Stress
@@ -92,7 +92,7 @@ def validate(
 
 def _measure(
     cases: Sequence[Case], results: ValidationFolder, *, full: bool, quiet: bool
-) -> list[Measurement]:
+) -> list[MeasuredSolution]:
     from snowshed.analysis.accuracy.recorded import load_recorded
     from validation.framework.display import validation_bar
     from validation.framework.measure import measure_cases

@@ -17,7 +17,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from snowshed.analysis.accuracy import setting_labels
 from snowshed.analysis.accuracy.measurements import Settings, Value
-from snowshed.analysis.accuracy.solutions import Solution, key_of
+from snowshed.analysis.accuracy.solutions import Solution, settings_key
 from snowshed.base import formatting
 from snowshed.plot.figure_style import BODY, COLOURS, FAINT, INK, STYLE, blank_figure
 from validation.framework.case import Quantity
@@ -333,7 +333,7 @@ def _lines(solutions: Sequence[Solution], order_in: Optional[str]) -> list[list[
         return [[i] for i in range(len(solutions))]
     groups: dict[Hashable, list[int]] = {}
     for i, solution in enumerate(solutions):
-        groups.setdefault(key_of(solution.settings, without=[order_in]), []).append(i)
+        groups.setdefault(settings_key(solution.settings, without=[order_in]), []).append(i)
     return [
         sorted(group, key=lambda i: solutions[i].settings.get(order_in, 0))
         for group in groups.values()

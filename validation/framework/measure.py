@@ -14,7 +14,12 @@ from typing import NamedTuple, Optional
 
 from snowshed import _core
 from snowshed.analysis.accuracy import setting_labels
-from snowshed.analysis.accuracy.measurements import Measured, Measurement, Settings, key_of
+from snowshed.analysis.accuracy.measurements import (
+    Measured,
+    MeasuredSolution,
+    Settings,
+    measurement_key,
+)
 from snowshed.base.machine import cpu_name
 from snowshed.base.progress import Progress, Reporter
 from validation.framework.case import Case, Outcome
@@ -33,7 +38,7 @@ class Task(NamedTuple):
     @property
     def key(self) -> str:
         """The key of its measurement."""
-        return key_of(self.case.name, self.settings)
+        return measurement_key(self.case.name, self.settings)
 
 
 def tasks_of(cases: Iterable[Case], *, full: bool) -> list[Task]:
@@ -49,7 +54,7 @@ def measure_cases(
     full: bool = False,
     progress: Optional[Reporter] = None,
     durations: Optional[Mapping[str, float]] = None,
-) -> list[Measurement]:
+) -> list[MeasuredSolution]:
     """Make all measurements that `file` does not hold yet, and return all of them.
 
     Parameters
@@ -67,7 +72,7 @@ def measure_cases(
 
     Returns
     -------
-    list of Measurement
+    list of MeasuredSolution
         In the order of the matrices.
     """
     tasks = tasks_of(cases, full=full)
@@ -135,13 +140,13 @@ def _expected(task: Task, tasks: Sequence[Task], durations: Mapping[str, float])
     return 1.0
 
 
-def _measurement(task: Task, answer: Answer) -> Measurement:
+def _measurement(task: Task, answer: Answer) -> MeasuredSolution:
     failure = answer.failure or _breach(task.case, answer.outcome)
     outcome = Outcome([], 0.0, 0) if failure or answer.outcome is None else answer.outcome
     nothing = [
         Measured(quantity.name, math.nan, math.nan, math.nan) for quantity in task.case.quantities
     ]
-    return Measurement(
+    return MeasuredSolution(
         case=task.case.name,
         settings=dict(task.settings),
         measured=nothing if failure else list(outcome.measured),

@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from snowshed.analysis.accuracy.measurements import Measurement
+from snowshed.analysis.accuracy.measurements import MeasuredSolution
 from snowshed.io.input_file import read_regular
 from snowshed.io.json_file import parse_object
 
@@ -28,7 +28,7 @@ class MeasurementFile:
     >>> from snowshed.analysis.accuracy.measurements import Measured
     >>> with TemporaryDirectory() as folder:
     ...     file = MeasurementFile(Path(folder) / "m.jsonl")
-    ...     file.append(Measurement("bar", {"dx": 0.1}, [Measured("height", 0.9, 1.0, -0.1)]))
+    ...     file.append(MeasuredSolution("bar", {"dx": 0.1}, [Measured("height", 0.9, 1.0, -0.1)]))
     ...     [measurement.case for measurement in file.read()]
     ['bar']
     """
@@ -36,7 +36,7 @@ class MeasurementFile:
     def __init__(self, path: Path) -> None:
         self.path = path
 
-    def read(self) -> list[Measurement]:
+    def read(self) -> list[MeasuredSolution]:
         """Return all measurements, in the order in which they were made.
 
         Raises
@@ -47,11 +47,11 @@ class MeasurementFile:
         lines = self._content().split(b"\n")[:-1]
         locations = [f"{self.path}:{number}" for number in range(1, len(lines) + 1)]
         return [
-            Measurement.from_json(parse_object(line, where), where)
+            MeasuredSolution.from_json(parse_object(line, where), where)
             for line, where in zip(lines, locations)
         ]
 
-    def append(self, measurement: Measurement) -> None:
+    def append(self, measurement: MeasuredSolution) -> None:
         """Add a measurement; it is on disk when this returns."""
         line = json.dumps(measurement.to_json(), allow_nan=False) + "\n"
         try:

@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Optional
 
 from snowshed.analysis.accuracy import setting_labels
-from snowshed.analysis.accuracy.measurements import Measurement, to_table
+from snowshed.analysis.accuracy.measurements import MeasuredSolution, to_table
 from snowshed.analysis.accuracy.solutions import rows_of, solutions
 from snowshed.base import formatting
 from snowshed.io.atomic import write_text
@@ -68,7 +68,7 @@ class Validation:
     """
 
     cases: Sequence[Case]
-    measurements: Sequence[Measurement]
+    measurements: Sequence[MeasuredSolution]
     full: bool
     stress: Optional[Stress] = None
 

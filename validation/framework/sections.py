@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, Optional
 import numpy as np
 
 from snowshed.analysis.accuracy import setting_labels
-from snowshed.analysis.accuracy.measurements import Measurement, Settings
-from snowshed.analysis.accuracy.solutions import Solution, key_of, rows_of, solutions
+from snowshed.analysis.accuracy.measurements import MeasuredSolution, Settings
+from snowshed.analysis.accuracy.solutions import Solution, rows_of, settings_key, solutions
 from snowshed.base import formatting
 from snowshed.plot.html_page import Grid, Picture
 from validation.framework import figures
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 #: Texts for the costs of a measurement.
-COSTS: Mapping[str, Callable[[Measurement], str]] = {
+COSTS: Mapping[str, Callable[[MeasuredSolution], str]] = {
     "time": lambda measurement: formatting.duration(measurement.wall_s),
     "particles": lambda measurement: formatting.count(measurement.particles or None),
     "steps": lambda measurement: formatting.count(measurement.steps or None),
@@ -66,7 +66,7 @@ class Section:
     pictures: Sequence[Picture]
 
 
-def section(case: Case, measurements: Sequence[Measurement], table: pd.DataFrame) -> Section:
+def section(case: Case, measurements: Sequence[MeasuredSolution], table: pd.DataFrame) -> Section:
     """Return the section on a case.
 
     Parameters
@@ -101,7 +101,7 @@ def section(case: Case, measurements: Sequence[Measurement], table: pd.DataFrame
     )
 
 
-def results_grid(case: Case, measurements: Sequence[Measurement]) -> Grid:
+def results_grid(case: Case, measurements: Sequence[MeasuredSolution]) -> Grid:
     """Return all measurements of a case: what varies, every quantity, the cost."""
     solved = [measurement for measurement in measurements if not measurement.failure]
     names = varying([measurement.settings for measurement in measurements])
@@ -224,7 +224,7 @@ def worst_error(bar: Bar) -> str:
 
 
 def cheapest_grid(
-    answers: Sequence[Cheapest], cases: Sequence[Case], measurements: Sequence[Measurement]
+    answers: Sequence[Cheapest], cases: Sequence[Case], measurements: Sequence[MeasuredSolution]
 ) -> Grid:
     """Return the quickest settings for every wanted accuracy, a row for each problem."""
     wanted = sorted({answer.wanted for answer in answers}, reverse=True)
@@ -251,7 +251,7 @@ class _Columns:
     head: Sequence[str]
 
     @classmethod
-    def of(cls, quantity: Quantity, measurements: Iterable[Measurement]) -> _Columns:
+    def of(cls, quantity: Quantity, measurements: Iterable[MeasuredSolution]) -> _Columns:
         """Return the columns that measurements need."""
         measured = [
             m
@@ -267,7 +267,7 @@ class _Columns:
             return cls(quantity, heading, ("value", "error"))
         return cls(quantity, quantity.title, ("value", "exact", "error"))
 
-    def texts(self, measurement: Measurement) -> list[str]:
+    def texts(self, measurement: MeasuredSolution) -> list[str]:
         """Return the cells of a measurement."""
         for measured in measurement.measured:
             if measured.quantity == self.quantity.name:
@@ -316,13 +316,13 @@ def _picture(figure: Figure, case: Case, title: str, caption: str) -> Picture:
 
 
 def _cheapest_rows(
-    case: Case, answers: Sequence[Cheapest], measurements: Sequence[Measurement]
+    case: Case, answers: Sequence[Cheapest], measurements: Sequence[MeasuredSolution]
 ) -> list[list[str]]:
     """Return a row for each quantity and problem of a case; its title stands in the first."""
     groups: dict[Hashable, list[Cheapest]] = {}
     for answer in answers:
         if answer.case == case.name:
-            groups.setdefault((answer.quantity, key_of(answer.problem)), []).append(answer)
+            groups.setdefault((answer.quantity, settings_key(answer.problem)), []).append(answer)
     titles = {quantity.name: quantity.title for quantity in case.quantities}
     problems = varying(group[0].problem for group in groups.values())
     ways = varying(

@@ -13,7 +13,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from snowshed._core import InputError
-from snowshed.analysis.accuracy.measurements import Measurement, Settings
+from snowshed.analysis.accuracy.measurements import MeasuredSolution, Settings
 from snowshed.analysis.accuracy.mechanisms import scheme_of
 from snowshed.analysis.accuracy.recorded import PACKAGED, load_recorded, record
 from validation.laboratory.case_stack_convergence import CASE, compared, matrix
@@ -22,7 +22,7 @@ from validation.laboratory.lab_records import RecordedRun, recorded_runs
 SCHEME = "objective"
 
 
-def measurements_of(scheme: str) -> list[Measurement]:
+def measurements_of(scheme: str) -> list[MeasuredSolution]:
     """Return the measurements of the full matrix with a scheme, as far as its runs tell them.
 
     Raises
@@ -36,14 +36,14 @@ def measurements_of(scheme: str) -> list[Measurement]:
     return [_measured(entry) for entry in matrix(True) if scheme_of(entry) == scheme]
 
 
-def _measured(settings: Settings) -> Measurement:
+def _measured(settings: Settings) -> MeasuredSolution:
     dimension, dx = int(settings["dimension"]), float(settings["dx"])
     runs = recorded_runs(dimension, dx, scheme_of(settings))
     if len(runs) != settings["seedings"]:
         raise LookupError(f"{settings}: {len(runs)} runs are recorded")
     runs = [run.until(int(settings["events"])) for run in undisturbed(runs)]
     outcome = compared(runs, settings)
-    return Measurement(
+    return MeasuredSolution(
         case=CASE.name,
         settings=dict(settings),
         measured=outcome.measured,
@@ -89,7 +89,7 @@ def _common(runs: Iterable[RecordedRun], name: str) -> str:
     return values[0]
 
 
-def renew(new: Sequence[Measurement], path: Path = PACKAGED) -> None:
+def renew(new: Sequence[MeasuredSolution], path: Path = PACKAGED) -> None:
     """Write measurements into a file in place of those of the same case and scheme."""
     case, schemes = CASE.name, {scheme_of(measurement.settings) for measurement in new}
     others = [

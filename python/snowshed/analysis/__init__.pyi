@@ -21,7 +21,7 @@ from .clearance.design import Ranges as Ranges
 from .clearance.winters import Winter as Winter
 from .clearance.winters import winters_of as winters_of
 from .grains.material.fit import fit_material as fit_material
-from .grains.material.law import CamClay as CamClay
+from .grains.material.law import CamClayFit as CamClayFit
 from .grains.material.yield_surface import fit_yield_surface as fit_yield_surface
 from .grains.ratios import compare_variants as compare_variants
 from .grains.samples import LabelledSample as LabelledSample

@@ -19,10 +19,10 @@ class Interrupted(KeyboardInterrupt):
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
-        super().__init__(f"interrupted; resume with: {resume_command(folder)}")
+        super().__init__(f"interrupted; resume with: {resume_run_command(folder)}")
 
 
-def resume_command(folder: Path) -> str:
+def resume_run_command(folder: Path) -> str:
     """Return the command that resumes an interrupted run."""
     return f"snowshed run {folder / 'scene.json'} -o {folder} --resume"
 

@@ -23,7 +23,7 @@ from snowshed.scene.scene import Scene
 from snowshed.scene.schema import current_path
 
 if TYPE_CHECKING:
-    from snowshed.analysis.accuracy.measurements import Measurement, Value
+    from snowshed.analysis.accuracy.measurements import MeasuredSolution, Value
     from snowshed.analysis.accuracy.recorded_stacks import RecordedStack
 
 
@@ -55,7 +55,7 @@ accuracy_option = click.option(
 
 
 @dataclass(frozen=True)
-class Choice:
+class AccuracyChoice:
     """Settings chosen for a wanted accuracy.
 
     Attributes
@@ -74,8 +74,8 @@ class Choice:
 
 
 def choose(
-    wanted: float, scene: Scene, measurements: Optional[Iterable[Measurement]] = None
-) -> Choice:
+    wanted: float, scene: Scene, measurements: Optional[Iterable[MeasuredSolution]] = None
+) -> AccuracyChoice:
     """Choose the quickest settings whose stacks were as accurate as wanted in recorded runs.
 
     They include the scheme. If none was accurate enough, the most accurate settings are chosen, and
@@ -140,7 +140,7 @@ def choose(
         *_other_schemes(stack, stacks, everything, wanted, name),
         *_differences(stack, data, thickness),
     ]
-    return Choice(stack.error <= wanted, values, " ".join(reasons))
+    return AccuracyChoice(stack.error <= wanted, values, " ".join(reasons))
 
 
 def check_alone(options: Mapping[str, Any]) -> None:
@@ -202,7 +202,7 @@ def _outcome(stack: RecordedStack, wanted: float, what: str) -> str:
         )
     share = ceil(100 * stack.error)
     return f"no recorded run of {PRESET} was that accurate. The best is {what}: {off}" + (
-        f" It is what --accuracy {share}% takes." if share < 100 else ""
+        f" --accuracy {share}% chooses this grid." if share < 100 else ""
     )
 
 

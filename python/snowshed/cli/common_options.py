@@ -43,6 +43,17 @@ resume_option = click.option(
 )
 
 
+def resume_flag(text: str) -> Callable[[Command], Command]:
+    """Return the decorator that adds ``--resume`` to a command that resumes only if asked."""
+    return click.option("--resume", is_flag=True, help=text)
+
+
+def jobs_option(units: str) -> Callable[[Command], Command]:
+    """Return the decorator that adds ``--jobs``, the number of `units` at once."""
+    text = f"{units} at once.  [default: the number of cores]"
+    return click.option("--jobs", type=int, help=text)
+
+
 class Renamed(click.Option):
     """An option whose help shows its first spelling alone; the others are former ones."""
 
@@ -80,7 +91,7 @@ def run_options(command: Command, *, required: bool = True) -> Command:
     for option in (
         quiet_option,
         dry_run_option("Print the features, memory and run time of the scene and exit."),
-        click.option("--resume", is_flag=True, help="Resume from the checkpoint in the folder."),
+        resume_flag("Resume from the checkpoint in the folder."),
         click.option(
             "-o",
             "--output",

@@ -65,8 +65,8 @@ def print_outcome(folder: Path, names: list[str], quiet: bool) -> None:
         print_failures(failed, PlainConsole(soft_wrap=True))
         done = len(runs) - len(failed)
         say(f"{done} of {len(runs)} runs done")
-        say(f"their table: snowshed study export {folder} -o table.csv")
-        say(f"their picture: snowshed study picture {folder}")
+        say(f"To write a table: snowshed study export {folder} -o table.csv")
+        say(f"To draw a picture: snowshed study picture {folder}")
     if failed:
         listed = ", ".join(run.hash[:12] for run in failed[:LISTED])
         listed += ", ..." if len(failed) > LISTED else ""

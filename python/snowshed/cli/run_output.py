@@ -67,7 +67,7 @@ def contacts_and_damping(scene: Mapping[str, Any], damping_rate: Optional[float]
     --------
     >>> from snowshed import Scene
     >>> contacts_and_damping(Scene.preset("lab-50").resolve().data, 188.0)
-    'panel: separate, friction 0.3; ground: sticky; damping 188 1/s (FLIP 0.99 a step)'
+    'panel: separate, friction 0.3; ground: sticky; damping 188 1/s (FLIP 0.99 per step)'
     """
     parts = [f"{k}: {contact_text(scene[k])}" for k in ("panel", "ground") if k in scene]
     damping = settings_of(scene).damping_text(damping_rate)

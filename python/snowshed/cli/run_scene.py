@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from pathlib import Path
 
 import snowshed._core as _core
 from snowshed.base.formatting import about
 from snowshed.base.interrupt import Interrupted
+from snowshed.base.progress import Progress, Reporter
+from snowshed.cli.check import check_can_be_measured, check_run
+from snowshed.cli.dry_run import print_cost
 from snowshed.cli.exit_codes import Stopped
 from snowshed.cli.terminal import say
 from snowshed.methods.registry import DEFAULT, SETTINGS_KEY, method_of
@@ -20,10 +24,11 @@ def run_scene(ready: ResolvedScene, folder: Path, resume: bool, quiet: bool) -> 
     from snowshed.cli.progress import progress_bar
     from snowshed.running.run import run
 
-    if not quiet:
-        _tell_beforehand(ready)
+    if not quiet and (slow := _core.slow_kernels_note()):
+        say(f"note: {slow}", err=True)
     try:
-        with progress_bar(quiet=quiet) as progress:
+        with progress_bar(quiet=quiet) as show:
+            progress = None if show is None else announcing_long_run(ready, show)
             results = run(ready, folder, resume=resume, progress=progress)
     except Interrupted as interrupted:
         raise Stopped(str(interrupted)) from None
@@ -33,15 +38,57 @@ def run_scene(ready: ResolvedScene, folder: Path, resume: bool, quiet: bool) -> 
         print_results(results)
 
 
-def _tell_beforehand(ready: ResolvedScene) -> None:
-    """Announce slow kernels and long runs."""
-    seconds = 0.0
-    if "stack" in method_of(ready.data).results:  # what has one event has a time limit, too
-        seconds = _core.plan(ready.core, ready.base_dir)["expected_wall_s"]
-    if slow := _core.slow_kernels_note():
-        say(f"note: {slow}", err=True)
-    if seconds >= LONG:
-        say(_long_run(ready, seconds), err=True)
+def run_or_cost(
+    ready: ResolvedScene,
+    folder: Path,
+    *,
+    resume: bool,
+    dry_run: bool,
+    quiet: bool,
+    check: bool = False,
+) -> None:
+    """Run a scene as `run_scene` does; a dry run prints its cost only.
+
+    Parameters
+    ----------
+    check
+        Whether to measure the error of the stack, too.
+    """
+    if check:
+        check_can_be_measured(ready)
+    if dry_run:
+        print_cost(ready)
+        return
+    run_scene(ready, folder, resume, quiet)
+    if check:
+        check_run(folder, quiet)
+
+
+def announcing_long_run(ready: ResolvedScene, show: Reporter) -> Reporter:
+    """Return a reporter that announces a long run as soon as its speed is known.
+
+    Only runs with a stack are announced; all others have one event, whose time limit is known.
+
+    Parameters
+    ----------
+    ready
+        The scene that runs.
+    show
+        Reporter that receives each progress first.
+    """
+    unknown = "stack" in method_of(ready.data).results
+
+    def report(progress: Progress) -> None:
+        nonlocal unknown
+        show(progress)
+        if unknown and progress.updates_per_s:
+            unknown = False
+            with suppress(_core.InputError):  # a file that the run has read may be away by now
+                work = _core.expected_work(ready.core, ready.base_dir)
+                if (seconds := work / progress.updates_per_s) >= LONG:
+                    say(_long_run(ready, seconds), err=True)
+
+    return report
 
 
 def _long_run(ready: ResolvedScene, seconds: float) -> str:

@@ -17,6 +17,7 @@ import click
 from click.shell_completion import CompletionItem
 
 from snowshed._core import InputError
+from snowshed.cli.number_texts import numbers
 from snowshed.io.input_file import read_input
 from snowshed.io.json_text import loads
 from snowshed.scene.components import Ground, Panel, Slab, Snow
@@ -144,14 +145,6 @@ def path_of(error: InputError) -> str:
     return where[1:].replace("/", ".") if where.startswith("/") else ""
 
 
-def numbers(text: str) -> list[float]:
-    """Return the numbers in a text that separates them by commas."""
-    try:
-        return [float(part) for part in text.split(",")]
-    except ValueError:
-        raise click.BadParameter(f"{text!r} is not a list of numbers such as 0.5,0,1") from None
-
-
 def json_object(text: str) -> Any:
     """Return a JSON object, given as text or as the name of a file."""
     try:
@@ -176,7 +169,11 @@ def _option(parameter: Parameter, *, hidden: bool = False) -> Callable[[Command]
             name, target, type=json_object, multiple=True, metavar="JSON", help=text, hidden=hidden
         )
     if parameter.kind == "vector":
-        return click.option(name, target, type=numbers, metavar="X,Y,Z", help=text, hidden=hidden)
+
+        def vector(text: str) -> list[float]:
+            return numbers(name, text, example="0.5,0,1")
+
+        return click.option(name, target, type=vector, metavar="X,Y,Z", help=text, hidden=hidden)
     kind = click.Choice(parameter.choices) if parameter.choices else TYPES[parameter.kind]
     return click.option(name, target, type=kind, help=text, hidden=hidden)
 

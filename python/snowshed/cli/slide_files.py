@@ -2,24 +2,70 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Optional
+from typing import Any, Optional, TypeVar
+
+import click
 
 from snowshed._core import InputError
 from snowshed.base.notes import tell
+from snowshed.cli.common_options import PATH, given_values
 from snowshed.scene.builders.terrain_copy import terrain_copy
 from snowshed.scene.scene import ResolvedScene, Scene
 
+Command = TypeVar("Command", bound=Callable[..., Any])
+
+#: Options with the names of their fields.
+SAME_NAMES = ("terrain", "release", "thickness_raster", "thickness", "band", "thickness_band")
+LIMITS = ("max_slope", "max_thickness", "max_cells")
 INPUTS = "give --terrain and --release, or --avaframe, or --example"
+
+
+def file_options(command: Command) -> Command:
+    """Add the options of the files of a slide."""
+    for option in (
+        click.option("--max-cells", type=int, help="Largest number of cells of the terrain."),
+        click.option(
+            "--max-thickness", type=float, help="Largest plausible thickness of snow [m]."
+        ),
+        click.option(
+            "--max-slope",
+            type=float,
+            help="Steepest plausible cliff under the release [degrees].",
+        ),
+        click.option("--thickness-band", type=int, help="Band of the thickness raster."),
+        click.option("--band", type=int, help="Band of the terrain, if the GeoTIFF has several."),
+        click.option(
+            "--resistance-layer", metavar="NAME", help="Layer of the GeoPackage of forest."
+        ),
+        click.option(
+            "--entrainment-layer",
+            metavar="NAME",
+            help="Layer of the GeoPackage of entrainment areas.",
+        ),
+        click.option("--layer", metavar="NAME", help="Layer of the GeoPackage of release areas."),
+        click.option("--resistance-areas", type=PATH, help="Polygons of forest."),
+        click.option("--entrainment-areas", type=PATH, help="Polygons of the entrainment areas."),
+        click.option(
+            "--thickness-raster",
+            type=PATH,
+            help="Raster of the thickness of the released snow [m].",
+        ),
+        click.option("--thickness", type=float, help="Thickness of the released snow [m]."),
+        click.option("--release", type=PATH, help="Polygons of the release areas."),
+        click.option("--terrain", type=PATH, help="Elevations: an ESRI ASCII grid or a GeoTIFF."),
+    ):
+        command = option(command)
+    return command
 
 
 @dataclass(frozen=True)
 class SlideFiles:
     """Files of a slide, their bands, and the thickness of its release, m, if given.
 
-    `layers` are those of `snowshed.scene.slide_scene`.
+    `layers` are those of `snowshed.scene.slide_scene`, and `limits` its largest plausible values.
     """
 
     terrain: Optional[Path]
@@ -31,6 +77,29 @@ class SlideFiles:
     band: Optional[int] = None
     thickness_band: Optional[int] = None
     layers: Mapping[str, str] = field(default_factory=dict)
+    limits: Mapping[str, Any] = field(default_factory=dict)
+
+    @classmethod
+    def taken_from(cls, options: dict[str, Any]) -> SlideFiles:
+        """Return the files among the options, and remove them there; see `file_options`."""
+        layers = {
+            "release": options.pop("layer"),
+            "entrainment": options.pop("entrainment_layer"),
+            "resistance": options.pop("resistance_layer"),
+        }
+        return cls(
+            entrainment=options.pop("entrainment_areas"),
+            resistance=options.pop("resistance_areas"),
+            layers=given_values(layers),
+            limits=given_values({name: options.pop(name) for name in LIMITS}),
+            **{name: options.pop(name) for name in SAME_NAMES},
+        )
+
+    def refuse_terrain_options(self) -> None:
+        """Refuse the options that only a terrain has: bands and limits."""
+        bands = {"band": self.band, "thickness_band": self.thickness_band}
+        for name in (*given_values(bands), *self.limits):
+            raise InputError(f"--{name.replace('_', '-')}: only with --terrain")
 
     def any(self) -> bool:
         """Return whether any file is given."""
@@ -50,7 +119,6 @@ class SlideFiles:
         *,
         example: bool,
         settings: Mapping[str, object],
-        limits: Mapping[str, Any],
     ) -> Scene:
         """Return the scene of the files, or the example.
 
@@ -62,9 +130,6 @@ class SlideFiles:
             Whether to return the example, which takes no files.
         settings
             Settings of the method.
-        limits
-            Largest plausible values: `max_slope`, `max_thickness` and `max_cells` of
-            `slide_scene`.
         """
         from snowshed.methods.slide.settings import SlideSettings
         from snowshed.scene.builders.slides import example_slide, slide_scene
@@ -90,7 +155,7 @@ class SlideFiles:
             title=f"Slide on {self.terrain.name}",
             band=self.band,
             thickness_band=self.thickness_band,
-            **limits,
+            **self.limits,
         )
 
 

@@ -8,13 +8,13 @@ from typing import Any, TypeVar
 import click
 
 from snowshed._core import InputError
-from snowshed.cli.temperature import temperature_option
+from snowshed.cli.common_options import PATH
 from snowshed.season.source import AUTO, CHOICES
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
 
-class Share(click.ParamType[float]):
+class ShareType(click.ParamType[float]):
     """A share from 0 to 1, or in percent from 0 to 100 with or without its sign."""
 
     name = "share"
@@ -24,7 +24,7 @@ class Share(click.ParamType[float]):
 
         Examples
         --------
-        >>> [Share().convert(text, None, None) for text in ("0.9", "90", "90 %")]
+        >>> [ShareType().convert(text, None, None) for text in ("0.9", "90", "90 %")]
         [0.9, 0.9, 0.9]
         """
         text = str(value).strip()
@@ -43,7 +43,7 @@ def weather_options(command: Command) -> Command:
     options = (
         click.option(
             "--coverage",
-            type=Share(),
+            type=ShareType(),
             default=0.9,
             show_default=True,
             help="Share of the days of the snow season on which a winter's snow must have been "
@@ -57,7 +57,13 @@ def weather_options(command: Command) -> Command:
             help="Column of a station file that observes new snow; auto takes the best of each "
             "winter.",
         ),
-        temperature_option,
+        click.option(
+            "--temperature",
+            metavar="FILE",
+            type=PATH,
+            help="Another weather file of the station, whose temperatures come first; or a table "
+            "with the columns date and temperature_c.",
+        ),
     )
     for option in reversed(options):
         command = option(command)

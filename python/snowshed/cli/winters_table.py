@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from snowshed.cli.terminal import PlainConsole, plain_table
-from snowshed.season.quality_table import ALIGN, HEAD, quality_rows, shortened, title
-from snowshed.season.record import WinterList
+from snowshed.season.quality_table import ALIGN, HEAD, console_rows, quality_rows, title
+from snowshed.season.season_record import WinterList
 
 
 def print_quality(console: PlainConsole, winters: WinterList, *, judged: bool = True) -> None:
@@ -19,7 +19,7 @@ def print_quality(console: PlainConsole, winters: WinterList, *, judged: bool = 
     judged
         Whether to print which winters count.
     """
-    rows, left_out = shortened(quality_rows(winters))
+    rows, left_out = console_rows(quality_rows(winters))
     columns = range(len(HEAD) if judged else len(HEAD) - 1)
     used = [column for column in columns if any(row[column] for row in rows)]
     table = plain_table(title(winters))

@@ -135,7 +135,7 @@ def _cell(value: Any) -> str:
 
 
 @dataclass(frozen=True)
-class Row:
+class TableRow:
     """A row of a table of texts.
 
     Attributes
@@ -172,7 +172,7 @@ class TextTable:
     """
 
     columns: Sequence[str]
-    rows: Sequence[Row]
+    rows: Sequence[TableRow]
 
 
 def read_text_table(
@@ -203,7 +203,7 @@ def read_text_table(
         raise InputError(f"{path}: empty; {hint}")
     line, columns = head
     check_columns(columns, f"{path}, line {line}")
-    rows = [Row(str(path), f"line {n}", n, dict(zip(columns, cells))) for n, cells in records]
+    rows = [TableRow(str(path), f"line {n}", n, dict(zip(columns, cells))) for n, cells in records]
     return TextTable(columns, rows)
 
 
@@ -261,7 +261,7 @@ def frame_as_text(table: pd.DataFrame, name: str, *, index: str) -> TextTable:
         table = table.rename_axis(index).reset_index()
     columns = [str(column) for column in table]
     rows = [
-        Row(name, f"row {number}", number, dict(zip(columns, map(_cell_text, cells))))
+        TableRow(name, f"row {number}", number, dict(zip(columns, map(_cell_text, cells))))
         for number, cells in enumerate(table.itertuples(index=False, name=None), 1)
     ]
     return TextTable(columns, rows)

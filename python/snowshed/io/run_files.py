@@ -21,7 +21,7 @@ RECORD = "run.json"
 OF_PYTHON = ("curve.csv", "energy_history.csv", "grains.json", "slide.json")
 
 
-def read_record(folder: Path) -> dict[str, Any]:
+def read_run_record(folder: Path) -> dict[str, Any]:
     """Return the content of run.json in a results folder; empty without the file.
 
     Raises
@@ -54,7 +54,7 @@ def check_run_file(path: Path) -> None:
 
     Nothing is checked without a run.json, or with one of the version before.
     """
-    record = read_record(path.parent)
+    record = read_run_record(path.parent)
     tables, files = (record.get(name) for name in ("tables", "files"))
     finished = record.get("status") == "finished"
     if isinstance(tables, dict) and tables.get(path.name):

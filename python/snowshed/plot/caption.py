@@ -37,7 +37,7 @@ def scene_caption(scene: Mapping[str, Any], damping_rate: Optional[float] = None
     >>> print(scene_caption(Scene.preset("lab-50").resolve().data))
     3D · panel 0.245 m, tilt 50°, 0.33 m above ground, separate, friction 0.3 · slab 0.02 m thick
     snow 210 kg/m³, E 1 MPa, nu 0.3, M 0.5, p₀ 7 kPa, β 0.2, ξ 0.1 · the stack stays
-    dx 0.01 m · FLIP 0.99 a step
+    dx 0.01 m · FLIP 0.99 per step
     """
     parts = [f"{scene['dimension']}D"]
     if panel := scene.get("panel"):

@@ -43,7 +43,7 @@ BASE_DPI = 130
 
 
 @dataclass(frozen=True)
-class Film:
+class SlideFilm:
     """Pictures of the snow at some times, to be laid over a picture of the ground.
 
     Attributes
@@ -131,9 +131,9 @@ def headline(figures: Mapping[str, Any]) -> str:
     speed = figures["peak_speed_m_s"]
     return (
         f"The snow came {figures['run_out_m']:.0f} m from the middle of the release and "
-        f"{figures['drop_m']:.0f} m down {ended} after {figures['sim_time_s']:.0f} s; at most it "
-        f"was {speed:.1f} m/s fast ({3.6 * speed:.0f} km/h), {figures['peak_thickness_m']:.1f} m "
-        f"thick, and pressed with {figures['peak_pressure_kpa']:.1f} kPa."
+        f"{figures['drop_m']:.0f} m down {ended} after {figures['sim_time_s']:.0f} s. Highest "
+        f"values: speed {speed:.1f} m/s ({3.6 * speed:.0f} km/h), thickness "
+        f"{figures['peak_thickness_m']:.1f} m, pressure {figures['peak_pressure_kpa']:.1f} kPa."
     )
 
 
@@ -220,7 +220,7 @@ def _window(maps: SlideMaps, outlines: Sequence[Outline]) -> tuple[slice, slice,
     return slice(r0, r1), slice(c0, c1), part
 
 
-def _film(maps: SlideMaps, outlines: Sequence[Outline], frames: Sequence[Frame]) -> Film:
+def _film(maps: SlideMaps, outlines: Sequence[Outline], frames: Sequence[Frame]) -> SlideFilm:
     rows, columns, part = _window(maps, outlines)
     ground = maps.raster(maps.terrain)
     width, height = panel_size(part, 38.0)
@@ -237,7 +237,7 @@ def _film(maps: SlideMaps, outlines: Sequence[Outline], frames: Sequence[Frame])
     shown = [(frame.time, _overlay(frame.window(rows, columns), largest)) for frame in frames]
     encoded = base64.b64encode(file.getvalue()).decode()
     rings = [_in_percent(outline, part) for outline in outlines]
-    return Film(encoded, shown, round(96 * width), width / height, largest, scale, rings)
+    return SlideFilm(encoded, shown, round(96 * width), width / height, largest, scale, rings)
 
 
 def _in_percent(outline: Outline, part: Extent) -> str:

@@ -6,8 +6,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from snowshed._core import InputError
+from snowshed.base.paths import PathLike
 from snowshed.results.folder import read_events
-from snowshed.scene.scene import PathLike, ResolvedScene
+from snowshed.scene.scene import ResolvedScene
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -36,11 +37,7 @@ def dimension_ratio(df3: pd.DataFrame, df2: pd.DataFrame) -> pd.DataFrame:
     >>> dimension_ratio(three, two).ratio.round(2).tolist()
     [0.8, 0.75]
     """
-    heights = [df[["event", "height_m"]] for df in (df3, df2)]
-    table: pd.DataFrame = heights[0].merge(heights[1], on="event", suffixes=("_3d", "_2d"))
-    table = table.rename(columns={"height_m_3d": "height_3d_m", "height_m_2d": "height_2d_m"})
-    table["ratio"] = table.height_3d_m / table.height_2d_m
-    return table
+    return _ratio(df3, df2, "height_3d_m", "height_2d_m")
 
 
 def compare_folders(first: PathLike, second: PathLike) -> pd.DataFrame:
@@ -75,10 +72,19 @@ def height_ratio(first: PathLike, second: PathLike) -> pd.DataFrame:
     InputError
         If a folder holds no results.
     """
-    heights = [read_events(folder)[["event", "height_m"]] for folder in (first, second)]
-    table: pd.DataFrame = heights[0].merge(heights[1], on="event", suffixes=("_1", "_2"))
-    table = table.rename(columns={"height_m_1": "height_1_m", "height_m_2": "height_2_m"})
-    table["ratio"] = table.height_1_m / table.height_2_m
+    return _ratio(read_events(first), read_events(second), "height_1_m", "height_2_m")
+
+
+def _ratio(
+    over: pd.DataFrame, under: pd.DataFrame, over_name: str, under_name: str
+) -> pd.DataFrame:
+    """Return the heights of the events that two tables share under new names, and their ratio."""
+    heights = [
+        events[["event", "height_m"]].rename(columns={"height_m": name})
+        for events, name in ((over, over_name), (under, under_name))
+    ]
+    table: pd.DataFrame = heights[0].merge(heights[1], on="event")
+    table["ratio"] = table[over_name] / table[under_name]
     return table
 
 

@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import Union
 
 import snowshed._core as _core
+from snowshed.base.paths import PathLike
 from snowshed.io.csv_table import write_csv
 from snowshed.results.reader import HISTORY, Results
-from snowshed.scene.scene import PathLike
 
 PICTURE = "energy.png"
 

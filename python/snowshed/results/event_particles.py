@@ -17,10 +17,11 @@ from numpy.typing import NDArray
 import snowshed._core as _core
 from snowshed._core import InputError
 from snowshed.base.damage import DAMAGED
+from snowshed.base.paths import PathLike
 from snowshed.io.array_archive import open_archive
 from snowshed.io.vtk.vtp import read_particles
 from snowshed.results.folder import RunFolder
-from snowshed.scene.scene import PathLike, ResolvedScene
+from snowshed.scene.scene import ResolvedScene
 from snowshed.snow.stack.measure import StackMeasure, measure_stack
 from snowshed.snow.stack.particles import Surroundings, surroundings
 from snowshed.snow.stack.trimming import DEFAULT_TRIMMING

@@ -36,11 +36,11 @@ import numpy as np
 
 from snowshed._core import InputError
 from snowshed.base.arrays import Floats
+from snowshed.base.paths import PathLike
 from snowshed.io.atomic import write_text
 from snowshed.io.csv_table import Table, read_csv
 from snowshed.io.json_file import read_object
 from snowshed.io.run_files import check_run_file
-from snowshed.scene.scene import PathLike
 from snowshed.snow.stack.measure import StackMeasure
 from snowshed.snow.stack.quantities import MEASURES, QUANTITIES
 from snowshed.snow.stack.trimming import TRIMMINGS

@@ -19,10 +19,10 @@ import numpy as np
 from snowshed._core import InputError
 from snowshed.base.arrays import Floats
 from snowshed.base.extras import require
+from snowshed.base.paths import PathLike
 from snowshed.io.vtk.vti import write_image
 from snowshed.io.vtk.vtp import read_particles
 from snowshed.methods.registry import method_of
-from snowshed.scene.scene import PathLike
 
 if TYPE_CHECKING:
     import xarray

@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Optional
 
+from snowshed.base.paths import PathLike
 from snowshed.results.grid import stored_grid, write_grid
 from snowshed.results.reader import Results, particle_files
-from snowshed.scene.scene import PathLike
 
 
 def export_grids(

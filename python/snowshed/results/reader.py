@@ -12,12 +12,13 @@ import numpy as np
 import snowshed._core as _core
 from snowshed._core import InputError
 from snowshed.base.extras import require
+from snowshed.base.paths import PathLike
 from snowshed.base.units import unit_of_column
 from snowshed.io.csv_table import read_csv
 from snowshed.io.film import FILM, Film
 from snowshed.io.input_file import read_input
 from snowshed.io.json_file import read_object
-from snowshed.io.run_files import check_run_file, read_record
+from snowshed.io.run_files import check_run_file, read_run_record
 from snowshed.io.vtk.pvd import read_series
 from snowshed.io.vtk.vtp import read_particles
 from snowshed.methods.registry import method_of
@@ -26,7 +27,7 @@ from snowshed.results.film import film_dataset, run_film
 from snowshed.results.folder import ENERGY, EVENTS, read_events
 from snowshed.results.grid import grid_dataset, stored_grid
 from snowshed.results.particle_dataset import particle_dataset
-from snowshed.scene.scene import PathLike, ResolvedScene
+from snowshed.scene.scene import ResolvedScene
 from snowshed.snow.stack.measure import StackMeasure
 
 if TYPE_CHECKING:
@@ -87,7 +88,7 @@ class Results:
         """The complete scene that made the results."""
         path = self.folder / "scene.json"
         scene = ResolvedScene.load(path)
-        known = read_record(self.folder).get("scene_checksum")
+        known = read_run_record(self.folder).get("scene_checksum")
         if known and _core.scene_checksum(read_input(path).decode()) != known:
             raise InputError(f"{path}: damaged: it is not the scene of the run")
         return scene
@@ -243,7 +244,7 @@ class Results:
         path = self.folder / FILM
         if not path.is_file():
             raise InputError(f"{path}: missing; a run with output.film = true writes it")
-        return run_film(path, read_record(self.folder))
+        return run_film(path, read_run_record(self.folder))
 
     def film_dataset(self, every: int = 1) -> xarray.Dataset:
         """Return the film, or every `every`-th frame of it, as a Dataset.

@@ -12,8 +12,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from snowshed.base.paths import PathLike
 from snowshed.results.folder import RunFolder
-from snowshed.scene.scene import PathLike
 
 SEASON_COLUMNS = (
     "event",

@@ -11,11 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from snowshed._core import InputError
+from snowshed.base.paths import PathLike
 from snowshed.io.vdb.writing import WrittenVdb, write_vdb
 from snowshed.io.vtk.vtp import read_particles
 from snowshed.methods.registry import resolution_of
 from snowshed.results.reader import Results, particle_files
-from snowshed.scene.scene import PathLike
 
 POINT_QUANTITIES = ("velocity", "event", "mass", "density", "volumetric_plastic_strain", "id")
 

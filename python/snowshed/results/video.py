@@ -13,13 +13,13 @@ import numpy as np
 from snowshed._core import InputError
 from snowshed.base.extras import require
 from snowshed.base.messages import suggestion
+from snowshed.base.paths import PathLike
 from snowshed.base.progress import Progress, Reporter
 from snowshed.io.atomic import replacing
 from snowshed.io.film import Film, FilmFrame
 from snowshed.plot.film_picture import FilmPainter
 from snowshed.plot.film_summary import Colouring, FilmSummary, summarise_film
 from snowshed.results.view import shown_results, view_content
-from snowshed.scene.scene import PathLike
 
 
 def pillow() -> Any:

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any, Optional
 
 import numpy as np
 
-from snowshed._core import InputError
-from snowshed.io.film import FILM, Film
-from snowshed.io.run_files import read_record
+from snowshed.base.paths import PathLike
+from snowshed.io.film import Film
+from snowshed.io.run_files import read_run_record
 from snowshed.methods.registry import method_of
 from snowshed.plot.caption import scene_caption
 from snowshed.plot.film_page import MeasureLine, ViewContent, write_view_page
@@ -20,7 +20,7 @@ from snowshed.plot.solids import scene_solids
 from snowshed.results.folder import read_events
 from snowshed.results.reader import Results
 from snowshed.results.season_folder import SeasonFolder
-from snowshed.scene.scene import PathLike, ResolvedScene
+from snowshed.scene.scene import ResolvedScene
 from snowshed.scene.terrain_grid import slide_terrain
 from snowshed.snow.stack.measure import level
 
@@ -135,7 +135,7 @@ def _facts(scene: ResolvedScene, folder: Path) -> list[tuple[str, str]]:
 
 
 def _notes(results: Results, film: Film) -> list[str]:
-    status = read_record(results.folder).get("status", "begun")
+    status = read_run_record(results.folder).get("status", "begun")
     notes = []
     if status != "finished":
         notes.append(f"The run is not finished ({status}); the view ends where its film ends.")
@@ -217,4 +217,4 @@ def _table(table: Optional[pd.DataFrame]) -> Optional[Grid]:
     return Grid(tuple(known), rows, "r" * (len(known) - 1) + "l")
 
 
-__all__ = ["FILM", "PAGE", "InputError", "shown_results", "view_content", "write_view"]
+__all__ = ["PAGE", "shown_results", "view_content", "write_view"]

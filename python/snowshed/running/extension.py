@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Optional
 
 import snowshed._core as _core
 from snowshed._core import InputError
+from snowshed.base.paths import PathLike
 from snowshed.base.progress import Reporter
 from snowshed.io.atomic import replacing_folder
 from snowshed.io.folders import check_empty
@@ -19,7 +20,7 @@ from snowshed.results.folder import RunFolder
 from snowshed.running.ageing.ageing import Ageing
 from snowshed.running.run import run_events
 from snowshed.scene.components import Snow
-from snowshed.scene.scene import PathLike, ResolvedScene
+from snowshed.scene.scene import ResolvedScene
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -13,13 +13,14 @@ import snowshed._core as _core
 from snowshed.base.interrupt import Interrupted, InterruptRequest, deferred_interrupts
 from snowshed.base.machine import machine_facts
 from snowshed.base.notes import tell
+from snowshed.base.paths import PathLike
 from snowshed.base.progress import Progress, Reporter
 from snowshed.methods.registry import method_of
 from snowshed.results.reader import Results
 from snowshed.running.ageing.ageing import Ageing
 from snowshed.running.method_run import MethodRun, RunOptions
 from snowshed.running.sequence import open_sequence, run_sequence
-from snowshed.scene.scene import PathLike, SceneLike, resolve_scene
+from snowshed.scene.scene import SceneLike, resolve_scene
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -13,10 +13,10 @@ from pathlib import Path
 import snowshed._core as _core
 from snowshed.base.interrupt import Interrupted
 from snowshed.base.notes import tell
-from snowshed.base.paths import utf8_path
+from snowshed.base.paths import PathLike, utf8_path
 from snowshed.io.run_files import file_mark
 from snowshed.running.scene_notes import notes_before
-from snowshed.scene.scene import PathLike, ResolvedScene
+from snowshed.scene.scene import ResolvedScene
 
 REPORT_INTERVAL = 0.5  # s of wall time between progress reports
 

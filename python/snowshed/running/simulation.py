@@ -21,13 +21,14 @@ from snowshed.base.arrays import (
     positive,
     whole_number,
 )
+from snowshed.base.paths import PathLike
 from snowshed.results.fields import Fields
 from snowshed.results.grid import grid_dataset, scene_grid
 from snowshed.results.particle_dataset import DATASET, particle_dataset
 from snowshed.running.sequence import telling
 from snowshed.scene.components import Snow
 from snowshed.scene.resolved import snows_of
-from snowshed.scene.scene import PathLike, ResolvedScene, SceneLike, resolve_scene
+from snowshed.scene.scene import ResolvedScene, SceneLike, resolve_scene
 from snowshed.snow.stack.measure import StackMeasure
 from snowshed.snow.stack.particles import measure_particles
 
@@ -134,11 +135,8 @@ class Simulation:
         SimulationError
             If no event runs, or the simulation cannot continue.
         """
-        left = whole_number("count", count, lowest=0)
-        while left:
-            taken = min(left, MOST_STEPS)
-            self._core.step(taken)
-            left -= taken
+        for left in range(whole_number("count", count, lowest=0), 0, -MOST_STEPS):
+            self._core.step(min(left, MOST_STEPS))
 
     def run(self, until: Until = "rest", *, every: int = 16) -> Ended:
         """Take steps of the present event, or of the next one, until a condition holds.

@@ -5,13 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Optional
 
+from snowshed.base.paths import PathLike
 from snowshed.base.progress import Reporter
 from snowshed.methods.slide.settings import SlideSettings
 from snowshed.results.reader import Results
 from snowshed.running.run import run
 from snowshed.scene.builders.slides import slide_scene
 from snowshed.scene.builders.terrain_copy import removing_copies, terrain_copy
-from snowshed.scene.scene import PathLike
 
 
 def slide(

@@ -44,7 +44,7 @@ from snowshed.scene.scene_html import scene_html
 from snowshed.scene.scene_paths import locate
 from snowshed.scene.scene_repr import scene_repr
 
-__all__ = ["PathLike", "ResolvedScene", "Scene", "SceneLike", "resolve_scene"]
+__all__ = ["ResolvedScene", "Scene", "SceneLike", "resolve_scene"]
 
 #: Parts that every scene has: empty where nothing in them was given.
 ALWAYS = ("snow", "seeding", SETTINGS_KEY, "events", "output")

@@ -7,10 +7,10 @@ from .driver import run_season as run_season
 from .generator import EXAMPLE_CLIMATE as EXAMPLE_CLIMATE
 from .generator import Climate as Climate
 from .quality import WinterQuality as WinterQuality
-from .record import Record as Record
-from .record import WinterList as WinterList
 from .release import Balance as Balance
 from .release import balance as balance
+from .season_record import SeasonRecord as SeasonRecord
+from .season_record import WinterList as WinterList
 from .settings import SeasonSettings as SeasonSettings
 from .source import Source as Source
 from .weather import read_record as read_record

@@ -9,9 +9,9 @@ from typing import Optional
 
 from snowshed.running.ageing.ageing import Ageing, Interval
 from snowshed.season.checks import check_one_season
-from snowshed.season.column import SnowColumn
 from snowshed.season.release import Balance, balance
 from snowshed.season.settings import SeasonSettings
+from snowshed.season.settling_column import SnowColumn
 from snowshed.season.weather_row import Weather
 from snowshed.snow.relations.new_snow import NEW_SNOW_DENSITY
 

@@ -7,7 +7,7 @@ from datetime import date, datetime
 
 from snowshed._core import InputError
 from snowshed.base.limits import WEATHER_GAP
-from snowshed.io.csv_table import Row
+from snowshed.io.csv_table import TableRow
 from snowshed.season.extremes import RECORD_DAY, RECORD_WINTER, RECORD_WORDS
 from snowshed.season.source import Source
 from snowshed.season.weather_row import MOST_SNOWFALL, Weather
@@ -24,7 +24,7 @@ HINT = "is it in cm, mm or inches?"
 
 
 def check_rows(
-    rows: Sequence[Weather], table_rows: Sequence[Row], name: str, *, snowless: bool = False
+    rows: Sequence[Weather], table_rows: Sequence[TableRow], name: str, *, snowless: bool = False
 ) -> None:
     """Raise InputError if rows cannot be the weather of seasons.
 
@@ -82,7 +82,7 @@ def _days(earlier: Weather, later: Weather) -> float:
     return (later.date - earlier.date).total_seconds() / DAY
 
 
-def _check_years(rows: Sequence[Weather], table_rows: Sequence[Row]) -> None:
+def _check_years(rows: Sequence[Weather], table_rows: Sequence[TableRow]) -> None:
     """Refuse implausible years, gaps of decades, and isolated years."""
     for number, (earlier, later) in enumerate(zip(rows, rows[1:]), 1):
         days = _days(earlier, later)
@@ -104,7 +104,7 @@ def _check_years(rows: Sequence[Weather], table_rows: Sequence[Row]) -> None:
             )
 
 
-def _check_amounts(rows: Sequence[Weather], table_rows: Sequence[Row], name: str) -> None:
+def _check_amounts(rows: Sequence[Weather], table_rows: Sequence[TableRow], name: str) -> None:
     """Refuse record-breaking amounts of a day, or of a winter."""
     falls = _daily_sums(rows)
     for day, (total, first) in falls.items():

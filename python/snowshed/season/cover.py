@@ -13,8 +13,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Optional
 
-from snowshed.season.column import SnowColumn
 from snowshed.season.settings import SeasonSettings
+from snowshed.season.settling_column import SnowColumn
 from snowshed.season.weather_row import Weather
 from snowshed.snow.relations.new_snow import NEW_SNOW_DENSITY
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from snowshed.base.arrays import Booleans, Floats, Integers
 from snowshed.base.formatting import plural
-from snowshed.season.daily import LONGEST_GAP, Days
+from snowshed.season.daily_means import LONGEST_GAP, StationDays
 from snowshed.season.extremes import RECORD_DAY, RECORD_WORDS
 
 LEAST_RISE = 0.02  # m; smaller rises of the snow depth are noise of the sensor
@@ -28,7 +28,7 @@ SPIKE_DAYS, DROPOUT_DAYS, IMPOSSIBLE_DAYS = 2, 7, 60
 
 
 @dataclass(frozen=True)
-class Total:
+class SharedRise:
     """A rise over several days, shared out among them.
 
     Attributes
@@ -64,11 +64,11 @@ class DepthSnow:
     snow: Floats
     filled: Booleans
     depth: Floats
-    totals: list[Total] = field(default_factory=list)
+    totals: list[SharedRise] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
 
 
-def snow_of_depth(days: Days, temperature: Floats) -> DepthSnow:
+def snow_of_depth(days: StationDays, temperature: Floats) -> DepthSnow:
     """Return the new snow that the depths of a station tell.
 
     Parameters
@@ -104,7 +104,7 @@ def snow_of_depth(days: Days, temperature: Floats) -> DepthSnow:
     return snow
 
 
-def _take_rise(days: Days, snow: DepthSnow, before: int, after: int, rise: float) -> None:
+def _take_rise(days: StationDays, snow: DepthSnow, before: int, after: int, rise: float) -> None:
     """Enter the rise from one reading to the next."""
     span = days.dates[after].toordinal() - days.dates[before].toordinal()
     own = slice(before + 1, after + 1)
@@ -122,12 +122,12 @@ def _take_rise(days: Days, snow: DepthSnow, before: int, after: int, rise: float
     share = rise / span if rise >= LEAST_RISE else 0.0
     snow.snow[own] = share
     if span > 1 and share:
-        snow.totals.append(Total(range(before + 1, after + 1), rise))
+        snow.totals.append(SharedRise(range(before + 1, after + 1), rise))
     if span > LONGEST_TOTAL:
         snow.filled[own] = True
 
 
-def _tell_gaps(days: Days, snow: DepthSnow) -> None:
+def _tell_gaps(days: StationDays, snow: DepthSnow) -> None:
     """Note the rises that are spread over unobserved days."""
     gaps = [total for total in snow.totals if len(total.days) > LONGEST_TOTAL]
     if not gaps:
@@ -183,7 +183,7 @@ def _longest(change: float, days: int) -> int:
     return SPIKE_DAYS if change > 0.0 else DROPOUT_DAYS
 
 
-def _tell_jumps(days: Days, snow: DepthSnow) -> None:
+def _tell_jumps(days: StationDays, snow: DepthSnow) -> None:
     seams = [(day, rise) for day, rise in days.jumps if day in _seam_dates(days)]
     others = [(day, rise) for day, rise in days.jumps if day not in _seam_dates(days)]
     rising = [(day, rise) for day, rise in seams if abs(rise) >= LEAST_RISE]
@@ -199,7 +199,7 @@ def _tell_jumps(days: Days, snow: DepthSnow) -> None:
         )
 
 
-def _seam_dates(days: Days) -> set[date]:
+def _seam_dates(days: StationDays) -> set[date]:
     return {days.dates[number] for number in np.flatnonzero(days.seams).tolist()}
 
 

@@ -8,6 +8,7 @@ from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any, Optional
 
 from snowshed._core import InputError
+from snowshed.base.paths import PathLike
 from snowshed.base.progress import Reporter
 from snowshed.io.atomic import write_text
 from snowshed.io.csv_table import Table, read_csv, write_csv
@@ -15,13 +16,13 @@ from snowshed.io.folders import check_empty
 from snowshed.methods.registry import resolution_of
 from snowshed.results.season_folder import SeasonFolder
 from snowshed.running.run import run_events
-from snowshed.scene.scene import PathLike, ResolvedScene, SceneLike, resolve_scene
+from snowshed.scene.scene import ResolvedScene, SceneLike, resolve_scene
 from snowshed.season.accumulation import Day, accumulate, stack_ageing
 from snowshed.season.clearance import Contact, first_contact, first_reached, panel_ends
 from snowshed.season.notes import assumptions, first_staying, notes
 from snowshed.season.quality import COVERAGE
 from snowshed.season.quality_table import caption
-from snowshed.season.record import Record, WinterList
+from snowshed.season.season_record import SeasonRecord, WinterList
 from snowshed.season.settings import SeasonSettings
 from snowshed.season.slabs import season_scene
 from snowshed.season.source import AUTO
@@ -166,7 +167,7 @@ class SeasonPlan:
         The scene whose events are the releases; None without a release.
     """
 
-    record: Record
+    record: SeasonRecord
     winters: WinterList
     days: Sequence[Day]
     panel: ResolvedScene

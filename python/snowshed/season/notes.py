@@ -118,8 +118,8 @@ def _of_slabs(dx: float, days: Sequence[Day], settings: SeasonSettings) -> Itera
 def _of_ageing(settings: SeasonSettings) -> Iterator[str]:
     if settings.settling:
         yield (
-            f"the stack settles between events ({settings.settling}), for which a factor of 4 and "
-            "more is published; settled heights are estimates for the time until the next"
+            f"the stack settles between events ({settings.settling}). Published rates differ by a "
+            "factor of 4 or more, and settled heights are only estimates"
         )
     if settings.sintering:
         yield (

@@ -18,13 +18,13 @@ from snowshed._core import InputError
 from snowshed.base.arrays import Booleans, Floats, Integers
 from snowshed.base.formatting import plural
 from snowshed.io.weather.observation import Station
-from snowshed.season.columns import CONTRADICTION, Choice, Chooser, Column
-from snowshed.season.daily import Days, days_of_station
-from snowshed.season.depth_rises import LEAST_RISE, DepthSnow, Total, snow_of_depth
+from snowshed.season.daily_means import StationDays, days_of_station
+from snowshed.season.depth_rises import LEAST_RISE, DepthSnow, SharedRise, snow_of_depth
 from snowshed.season.extremes import RECORD_DAY, RECORD_WORDS
 from snowshed.season.gauge import RULE, snow_of_gauge
-from snowshed.season.record import Record
+from snowshed.season.season_record import SeasonRecord
 from snowshed.season.source import Source
+from snowshed.season.station_choice import CONTRADICTION, Chooser, StationChoice, StationColumn
 from snowshed.season.temperatures import filled_temperatures, some_days
 from snowshed.season.weather_row import Weather
 from snowshed.season.winter_years import Calendar, calendar_of
@@ -33,16 +33,16 @@ NAMED = 3  # winters that a note names
 
 
 @dataclass
-class _Snow:
+class _DailySnow:
     """The new snow of every day, m, its source and the reason where it is not the file's."""
 
     fall: Floats
     source: list[Source]
     reason: list[str]
-    choices: dict[int, Choice] = field(default_factory=dict)
+    choices: dict[int, StationChoice] = field(default_factory=dict)
 
 
-def record_of(station: Station, source: str, only: Optional[Source] = None) -> Record:
+def record_of(station: Station, source: str, only: Optional[Source] = None) -> SeasonRecord:
     """Return the days of a station as a record.
 
     Parameters
@@ -89,7 +89,7 @@ def record_of(station: Station, source: str, only: Optional[Source] = None) -> R
         for n, day in enumerate(days.dates)
     ]
     sums = {year: choice.sums for year, choice in snow.choices.items()}
-    return Record(rows, notes, station.latitude, sums)
+    return SeasonRecord(rows, notes, station.latitude, sums)
 
 
 def _check_order(station: Station, source: str) -> None:
@@ -102,8 +102,8 @@ def _check_order(station: Station, source: str) -> None:
 
 
 def _columns(
-    days: Days, warm: Floats, far: Booleans, depth: DepthSnow, notes: list[str]
-) -> dict[Source, Column]:
+    days: StationDays, warm: Floats, far: Booleans, depth: DepthSnow, notes: list[str]
+) -> dict[Source, StationColumn]:
     """Return the columns of a station with snow; appends notes on left-out values."""
     hand = days.new_snow.copy()
     beyond = hand > RECORD_DAY
@@ -122,11 +122,11 @@ def _columns(
             f"{RECORD_DAY:g} m of snow: {RECORD_WORDS}"
         )
     return {
-        Source.HAND: Column(Source.HAND, *_whole(hand, days.part_snow)),
-        Source.GAUGE: Column(
+        Source.HAND: StationColumn(Source.HAND, *_whole(hand, days.part_snow)),
+        Source.GAUGE: StationColumn(
             Source.GAUGE, *_whole(gauge, days.part_water | (far & (days.water > 0.0)))
         ),
-        Source.DEPTH: Column(Source.DEPTH, depth.snow, depth.filled),
+        Source.DEPTH: StationColumn(Source.DEPTH, depth.snow, depth.filled),
     }
 
 
@@ -136,7 +136,7 @@ def _whole(snow: Floats, part: Booleans) -> tuple[Floats, Booleans]:
 
 
 def _check_columns(
-    columns: Mapping[Source, Column], only: Optional[Source], form: str, source: str
+    columns: Mapping[Source, StationColumn], only: Optional[Source], form: str, source: str
 ) -> None:
     if only is not None and np.isnan(columns[only].snow).all():
         raise InputError(f"{source}: no {only.label} in any row of this {form} file")
@@ -147,7 +147,7 @@ def _check_columns(
         )
 
 
-def _calendar(days: Days, warm: Floats, latitude: Optional[float]) -> Calendar:
+def _calendar(days: StationDays, warm: Floats, latitude: Optional[float]) -> Calendar:
     rows = [
         Weather(0, datetime(day.year, day.month, day.day), 0.0, None, float(temperature))
         for day, temperature in zip(days.dates, warm)
@@ -156,15 +156,15 @@ def _calendar(days: Days, warm: Floats, latitude: Optional[float]) -> Calendar:
 
 
 def _chosen(
-    days: Days,
+    days: StationDays,
     chooser: Chooser,
-    columns: Mapping[Source, Column],
+    columns: Mapping[Source, StationColumn],
     calendar: Calendar,
-    totals: Sequence[Total],
-) -> _Snow:
+    totals: Sequence[SharedRise],
+) -> _DailySnow:
     """Return the new snow of every day by the columns of its winter."""
     count = len(days.dates)
-    snow = _Snow(np.zeros(count), [Source.MISSING] * count, [""] * count)
+    snow = _DailySnow(np.zeros(count), [Source.MISSING] * count, [""] * count)
     years = np.array([calendar.year(day) for day in days.dates])
     for year in np.unique(years).tolist():
         choice = chooser.of(years == year)
@@ -176,7 +176,9 @@ def _chosen(
     return snow
 
 
-def _take(snow: _Snow, n: int, choice: Choice, columns: Mapping[Source, Column]) -> None:
+def _take(
+    snow: _DailySnow, n: int, choice: StationChoice, columns: Mapping[Source, StationColumn]
+) -> None:
     for source in choice.observing:
         if columns[source].known[n]:
             snow.fall[n], snow.source[n] = columns[source].snow[n], source
@@ -190,7 +192,7 @@ def _take(snow: _Snow, n: int, choice: Choice, columns: Mapping[Source, Column])
             return
 
 
-def _share_out(snow: _Snow, total: Total) -> None:
+def _share_out(snow: _DailySnow, total: SharedRise) -> None:
     """Take snow that other columns observed out of a rise over several days."""
     own, observed = [], 0.0
     for n in total.days:
@@ -204,7 +206,7 @@ def _share_out(snow: _Snow, total: Total) -> None:
             snow.fall[n] = max(total.rise - observed, 0.0) / len(own)
 
 
-def _gaps(days: Days) -> list[str]:
+def _gaps(days: StationDays) -> list[str]:
     """Return a note on the days that are missing in the file."""
     ordinals = days.ordinals[days.there]
     spans = np.diff(ordinals)
@@ -224,7 +226,7 @@ def _gaps_text(spans: Integers) -> str:
     return "1 gap, " if gaps == 1 else f"{gaps} gaps, the longest "
 
 
-def _notes(snow: _Snow, days: Days, calendar: Calendar) -> Iterator[str]:
+def _notes(snow: _DailySnow, days: StationDays, calendar: Calendar) -> Iterator[str]:
     if Source.GAUGE in snow.source:
         yield RULE
     if Source.DEPTH in snow.source:
@@ -252,7 +254,7 @@ def _kind(reason: str) -> str:
     return "the rise over a gap, shared out" if reason.startswith("part") else reason
 
 
-def _contradictions(snow: _Snow, calendar: Calendar) -> Iterator[str]:
+def _contradictions(snow: _DailySnow, calendar: Calendar) -> Iterator[str]:
     """Yield how columns contradict each other, with their sums, for some winters by name."""
     groups: dict[tuple[Source, frozenset[Source]], list[int]] = {}
     for year, choice in snow.choices.items():
@@ -275,7 +277,7 @@ def _contradictions(snow: _Snow, calendar: Calendar) -> Iterator[str]:
         )
 
 
-def _far_off(choice: Choice) -> frozenset[Source]:
+def _far_off(choice: StationChoice) -> frozenset[Source]:
     """Return the sources that contradict the one in use, which stands."""
     if not choice.observing:
         return frozenset()

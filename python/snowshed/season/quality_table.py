@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from snowshed.base.formatting import plural
 from snowshed.season.quality import WinterQuality
-from snowshed.season.record import WinterList, percent
+from snowshed.season.season_record import WinterList, whole_percent
 from snowshed.season.source import Source
 
 HEAD = ("winter", "snow observed", "new snow, m", "source", "filled", "not known", "counts")
@@ -23,14 +23,14 @@ def quality_rows(winters: WinterList) -> list[tuple[str, ...]]:
     Examples
     --------
     >>> from snowshed.season.generator import EXAMPLE_CLIMATE
-    >>> from snowshed.season.record import Record
-    >>> quality_rows(Record(EXAMPLE_CLIMATE.winters(1, seed=1)).winters())[0][:4]
+    >>> from snowshed.season.season_record import SeasonRecord
+    >>> quality_rows(SeasonRecord(EXAMPLE_CLIMATE.winters(1, seed=1)).winters())[0][:4]
     ('2001/02', '169 of 169 days (100 %)', '3.37', 'season file')
     """
     return [_row(winter) for winter in winters.winters]
 
 
-def shortened(rows: list[tuple[str, ...]]) -> tuple[list[tuple[str, ...]], int]:
+def console_rows(rows: list[tuple[str, ...]]) -> tuple[list[tuple[str, ...]], int]:
     """Return the rows for a console, and the number of further rows."""
     if len(rows) <= MOST_ROWS:
         return rows, 0
@@ -44,8 +44,8 @@ def caption(winters: WinterList) -> str:
     Examples
     --------
     >>> from snowshed.season.generator import EXAMPLE_CLIMATE
-    >>> from snowshed.season.record import Record
-    >>> caption(Record(EXAMPLE_CLIMATE.winters(1, seed=1)).winters())
+    >>> from snowshed.season.season_record import SeasonRecord
+    >>> caption(SeasonRecord(EXAMPLE_CLIMATE.winters(1, seed=1)).winters())
     'Snow of 2001/02: observed on 169 of 169 days (100 %), source: season file'
     """
     if len(winters.winters) > 1:
@@ -76,7 +76,7 @@ def _observed(winter: WinterQuality) -> str:
         return "list of snowfalls"
     if not winter.rows:
         return "no rows"
-    return f"{winter.observed} of {plural(winter.season, 'day')} ({percent(winter.share)})"
+    return f"{winter.observed} of {plural(winter.season, 'day')} ({whole_percent(winter.share)})"
 
 
 def _filled(winter: WinterQuality) -> str:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from typing import Optional
 
-from snowshed.season.column import SnowColumn
+from snowshed.season.settling_column import SnowColumn
 from snowshed.snow.relations.settling import SettlingLaw
 
 

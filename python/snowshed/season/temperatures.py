@@ -10,7 +10,7 @@ import numpy as np
 
 from snowshed.base.arrays import Booleans, Floats, Integers
 
-LONGEST_BRIDGED = 3  # days without temperature, between which a straight line is drawn
+LONGEST_INTERPOLATION = 3  # days without temperature, between which a straight line is drawn
 AROUND = 7  # half width of the window of the mean, days of the year
 LEAST = 5  # measured days for such a mean
 YEAR = 366
@@ -43,7 +43,7 @@ def filled_temperatures(
     ordinals = np.array([day.toordinal() for day in dates])
     measured_days = np.flatnonzero(~np.isnan(measured))
     lined: Floats = np.interp(ordinals, ordinals[measured_days], measured[measured_days])
-    far = _distance(ordinals, ordinals[measured_days]) > LONGEST_BRIDGED
+    far = _distance(ordinals, ordinals[measured_days]) > LONGEST_INTERPOLATION
     usual = _usual(dates, measured)
     climate = far & ~np.isnan(usual)
     filled = np.where(climate, usual, lined)

@@ -19,14 +19,14 @@ from snowshed._core import InputError
 from snowshed.base.formatting import number_in
 from snowshed.base.messages import quoted
 from snowshed.base.notes import tell
-from snowshed.io.csv_table import Row, frame_as_text, read_text_table
+from snowshed.base.paths import PathLike
+from snowshed.io.csv_table import TableRow, frame_as_text, read_text_table
 from snowshed.io.weather.joined import read_stations
 from snowshed.io.weather.observation import Station
 from snowshed.io.weather.recognise import read_station
-from snowshed.scene.scene import PathLike
 from snowshed.season.checks import NO_SNOW, check_rows
 from snowshed.season.observed import record_of
-from snowshed.season.record import Record
+from snowshed.season.season_record import SeasonRecord
 from snowshed.season.source import AUTO, CHOICES
 from snowshed.season.weather_row import MOST_SNOWFALL, Weather
 
@@ -117,7 +117,7 @@ def read_weather(
 
 def read_record(
     season: Season, snow_from: str = AUTO, temperature: Optional[PathLike] = None
-) -> Record:
+) -> SeasonRecord:
     """Return the weather of a season or of many winters, with its quality.
 
     Parameters
@@ -126,7 +126,7 @@ def read_record(
         As for `read_season`, which raises the same errors.
     snow_from
         The column of a station that observes snow, a name in `CHOICES`; "auto": the best of each
-        winter (`snowshed.season.columns`).
+        winter (`snowshed.season.station_choice`).
     temperature
         Another file of the same station, whose temperatures come first
         (`snowshed.io.weather.read_stations`).
@@ -153,7 +153,7 @@ def read_record(
     elif isinstance(season, Sequence):
         if not season:
             raise InputError("the season: no rows")
-        return Record([*season])
+        return SeasonRecord([*season])
     else:
         table, name = frame_as_text(season, "the season", index="date"), "the season"
         _check_columns(table.columns, name)
@@ -162,7 +162,7 @@ def read_record(
         raise InputError(f"{name}: its snow is that of its column snowfall_m, not {snow_from}")
     rows = [_weather(row) for row in table.rows]
     check_rows(rows, table.rows, name)
-    return Record(rows)
+    return SeasonRecord(rows)
 
 
 def _weather_files(season: Season) -> list[Path]:
@@ -174,9 +174,9 @@ def _weather_files(season: Season) -> list[Path]:
     return []
 
 
-def _of_station(station: Station, source: str, snow_from: str) -> Record:
+def _of_station(station: Station, source: str, snow_from: str) -> SeasonRecord:
     record = record_of(station, source, CHOICES.get(snow_from))
-    table_rows = [Row(source, f"line {row.line}", row.line, {}) for row in record.rows]
+    table_rows = [TableRow(source, f"line {row.line}", row.line, {}) for row in record.rows]
     notes = [f"the weather is of a file in the format {station.format}", *record.notes]
     check_rows(record.rows, table_rows, source, snowless=True)
     if not any(row.snowfall for row in record.rows):
@@ -206,7 +206,7 @@ def _check_units(units: Mapping[str, str]) -> None:
             )
 
 
-def _weather(row: Row) -> Weather:
+def _weather(row: TableRow) -> Weather:
     number = {
         name: _number(row.cells.get(name, ""), column, f"{row.where}, column {name}")
         for name, column in COLUMNS.items()

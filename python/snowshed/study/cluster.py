@@ -13,7 +13,7 @@ from snowshed._core import InputError
 from snowshed.base.extras import require
 from snowshed.study.compute import compute
 from snowshed.study.errors import StudyError
-from snowshed.study.outcome import Outcome, Task
+from snowshed.study.outcome import RunOutcome, RunTask
 
 CONNECT_S = 30  # s to wait for the scheduler
 AT_ONCE = 1000  # tasks handed over at once: enough for a cluster that grows with its work
@@ -59,13 +59,13 @@ class DaskWorkers:
         """Nothing, because only the end of runs in other processes is known."""
         return {}
 
-    def submit(self, task: Task) -> None:
+    def submit(self, task: RunTask) -> None:
         """Hand a task to the scheduler."""
         # A unique name, so that Dask never confuses this attempt with an earlier one.
         key = f"snowshed-{task.hash}-{uuid.uuid4().hex[:8]}"
         self._futures[task.hash] = self._client.submit(compute, task, key=key, pure=False)
 
-    def collect(self, timeout: float) -> list[Outcome]:
+    def collect(self, timeout: float) -> list[RunOutcome]:
         """Wait until a task ends, no longer than `timeout` in s; return what has ended."""
         try:
             self._dask.wait(
@@ -76,7 +76,7 @@ class DaskWorkers:
         ended = [hash_ for hash_, future in self._futures.items() if future.done()]
         return [_outcome(hash_, self._futures.pop(hash_)) for hash_ in ended]
 
-    def stop(self) -> list[Outcome]:
+    def stop(self) -> list[RunOutcome]:
         """Cancel the runs that have not begun; the others continue, but their ends are ignored."""
         self._client.cancel(list(self._futures.values()))
         self.close()
@@ -100,13 +100,13 @@ class DaskWorkers:
             raise InputError(f"no Dask scheduler at {scheduler}: {error}") from None
 
 
-def _outcome(hash_: str, future: Any) -> Outcome:
+def _outcome(hash_: str, future: Any) -> RunOutcome:
     if future.status == "finished":
-        outcome: Outcome = future.result()
+        outcome: RunOutcome = future.result()
         return outcome
     if future.status == "error":
         error = future.exception()
         if type(error).__name__ == "KilledWorker":
-            return Outcome(hash_, "failed", error="every worker that computed the run died")
-        return Outcome(hash_, "unable", error=f"{type(error).__name__}: {error}")
+            return RunOutcome(hash_, "failed", error="every worker that computed the run died")
+        return RunOutcome(hash_, "unable", error=f"{type(error).__name__}: {error}")
     raise StudyError("the connection to the Dask scheduler is lost")

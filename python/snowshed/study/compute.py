@@ -23,13 +23,13 @@ from snowshed.running.run import run
 from snowshed.scene.resolved import ResolvedScene, scene_data
 from snowshed.study.aged_scene import taken_apart
 from snowshed.study.locks import holding
-from snowshed.study.outcome import Outcome, Task
+from snowshed.study.outcome import RunOutcome, RunTask
 from snowshed.study.scene_hash import content_hash
 
 FractionReporter = Callable[[float], None]
 
 
-def compute(task: Task, report: Optional[FractionReporter] = None) -> Outcome:
+def compute(task: RunTask, report: Optional[FractionReporter] = None) -> RunOutcome:
     """Compute a run, or resume an earlier attempt in its folder, and return the outcome.
 
     Parameters
@@ -50,16 +50,16 @@ def compute(task: Task, report: Optional[FractionReporter] = None) -> Outcome:
             return _compute(task, folder / "results", report)
     except OSError as error:
         name = f"{error.filename}: " if error.filename else ""
-        return Outcome(task.hash, "unable", error=f"{name}{error.strerror or error}")
+        return RunOutcome(task.hash, "unable", error=f"{name}{error.strerror or error}")
 
 
-def _compute(task: Task, folder: Path, report: Optional[FractionReporter]) -> Outcome:
+def _compute(task: RunTask, folder: Path, report: Optional[FractionReporter]) -> RunOutcome:
     if content_hash(scene_data(task.scene)) != task.hash:
         reason = (
             f"run {task.hash} differs from the registered one: a file of its scene has changed, "
             f"or this is another version of snowshed ({_core.version})"
         )
-        return Outcome(task.hash, "unable", error=reason)
+        return RunOutcome(task.hash, "unable", error=reason)
     earlier = RunFolder(folder).read_run()
     if earlier.get("status") == "failed":  # the one before was killed before it could say so
         return _outcome(task, folder, earlier["error"])
@@ -68,18 +68,18 @@ def _compute(task: Task, folder: Path, report: Optional[FractionReporter]) -> Ou
             warnings.simplefilter("ignore", SnowshedNote)
             _run_or_resume(task, folder, _weighted(report))
     except Interrupted:
-        return Outcome(task.hash, "interrupted")
+        return RunOutcome(task.hash, "interrupted")
     except OSError:
         raise
     except MemoryError:  # others may need less later; the folder would say that it failed
         shutil.rmtree(folder, ignore_errors=True)
-        return Outcome(task.hash, "lost", error="out of memory")
+        return RunOutcome(task.hash, "lost", error="out of memory")
     except Exception as error:  # whatever it is, the other runs must go on
         return _outcome(task, folder, f"{_kind(error)}{error}")
     return _outcome(task, folder, None)
 
 
-def _run_or_resume(task: Task, folder: Path, report: Optional[Reporter]) -> None:
+def _run_or_resume(task: RunTask, folder: Path, report: Optional[Reporter]) -> None:
     """Run the events; an earlier attempt without a checkpoint is removed."""
     data, ageing = taken_apart(task.scene)
     options: dict[str, Any] = {
@@ -98,7 +98,7 @@ def _run_or_resume(task: Task, folder: Path, report: Optional[Reporter]) -> None
     run(scene, folder, **options)
 
 
-def _outcome(task: Task, folder: Path, error: Optional[str]) -> Outcome:
+def _outcome(task: RunTask, folder: Path, error: Optional[str]) -> RunOutcome:
     """Return the outcome recorded in the results folder."""
     results = RunFolder(folder)
     runs = method_of(taken_apart(task.scene)[0]).run_class()
@@ -108,7 +108,7 @@ def _outcome(task: Task, folder: Path, error: Optional[str]) -> Outcome:
     particles = dict(runs.packed(folder)) if task.keep_particles and begun else {}
     facts = results.read_run()
     notes = tuple(facts.get("notes", ()))
-    return Outcome(task.hash, status, events, _timing(facts), error, particles, notes)
+    return RunOutcome(task.hash, status, events, _timing(facts), error, particles, notes)
 
 
 def _timing(facts: dict[str, Any]) -> dict[str, Any]:

@@ -52,7 +52,7 @@ def speed(scene: str, threads: int) -> float:
         return 1.0
 
 
-def duration(works: Iterable[float], workers: int) -> float:
+def makespan(works: Iterable[float], workers: int) -> float:
     """Return the time that workers need for tasks if the longest start first.
 
     Parameters
@@ -64,7 +64,7 @@ def duration(works: Iterable[float], workers: int) -> float:
 
     Examples
     --------
-    >>> duration([3.0, 1.0, 1.0, 1.0], 2)
+    >>> makespan([3.0, 1.0, 1.0, 1.0], 2)
     3.0
     """
     busy_until = [0.0] * workers
@@ -92,7 +92,7 @@ def expected(scenes: Sequence[str], works: Sequence[float], workers: int, thread
     order = sorted(range(len(works)), key=works.__getitem__)
     done = list(itertools.accumulate(works[run] for run in order))
     typical = [scenes[order[bisect.bisect_left(done, part * done[-1])]] for part in THIRDS]
-    updates = duration(works, workers)
+    updates = makespan(works, workers)
     quickest = dict.fromkeys(typical, 1.0)  # updates/s, the least that `speed` returns
     start = time.monotonic()
     for _ in range(ROUNDS):

@@ -11,9 +11,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Optional
 
 from snowshed._core import InputError
+from snowshed.base.paths import PathLike
 from snowshed.base.progress import Reporter
 from snowshed.io.atomic import write_text
-from snowshed.scene.scene import PathLike, Scene
+from snowshed.scene.scene import Scene
 from snowshed.study import session, study_file
 from snowshed.study.factors import SEED, Part, axis
 from snowshed.study.scene_hash import Run

@@ -21,9 +21,9 @@ class StudyInterrupted(KeyboardInterrupt):
     """A study was interrupted; its runs have left checkpoints in its folder."""
 
     def __init__(self, folder: Path) -> None:
-        super().__init__(f"interrupted; resume with: {resume_command(folder)}")
+        super().__init__(f"interrupted; resume with: {resume_study_command(folder)}")
 
 
-def resume_command(folder: Path) -> str:
+def resume_study_command(folder: Path) -> str:
     """Return the command that resumes the studies in a folder."""
     return f"snowshed study resume {folder}"

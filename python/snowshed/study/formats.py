@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any, Optional, cast
 
 from snowshed._core import InputError
 from snowshed.base.extras import require
+from snowshed.base.paths import PathLike
 from snowshed.base.units import unit_of_column
 from snowshed.io.atomic import replacing
 from snowshed.io.csv_table import csv_text
-from snowshed.scene.scene import PathLike
 from snowshed.scene.schema import parameter_units
 from snowshed.study.database import STORED_TYPES
 from snowshed.study.table import read_table

@@ -6,7 +6,7 @@ from typing import Optional
 
 from snowshed.base.pool.pool import Ended, Pool
 from snowshed.study.compute import compute
-from snowshed.study.outcome import Outcome, Task
+from snowshed.study.outcome import RunOutcome, RunTask
 
 
 class LocalWorkers:
@@ -23,7 +23,7 @@ class LocalWorkers:
     """
 
     def __init__(self, processes: int, threads: Optional[int], cores: int) -> None:
-        self.pool: Pool[Task, Outcome] = Pool(processes, compute)
+        self.pool: Pool[RunTask, RunOutcome] = Pool(processes, compute)
         self._threads = threads
         self._cores = cores
 
@@ -41,15 +41,15 @@ class LocalWorkers:
         """Fraction of the work of each submitted run that is done."""
         return {task.hash: done for task, done in self.pool.fractions}
 
-    def submit(self, task: Task) -> None:
+    def submit(self, task: RunTask) -> None:
         """Start computing a task in an idle process, or a new one."""
         self.pool.submit(task)
 
-    def collect(self, timeout: float) -> list[Outcome]:
+    def collect(self, timeout: float) -> list[RunOutcome]:
         """Wait until a task ends, no longer than `timeout` in s; return what has ended."""
         return [_outcome(ended) for ended in self.pool.collect(timeout)]
 
-    def stop(self) -> list[Outcome]:
+    def stop(self) -> list[RunOutcome]:
         """Ask all tasks to stop at a checkpoint; return the tasks that ended meanwhile."""
         return [_outcome(ended) for ended in self.pool.stop()]
 
@@ -58,12 +58,12 @@ class LocalWorkers:
         self.pool.close()
 
 
-def _outcome(ended: Ended[Task, Outcome]) -> Outcome:
+def _outcome(ended: Ended[RunTask, RunOutcome]) -> RunOutcome:
     if ended.result is not None:
         return ended.result
     if ended.error is not None:  # `compute` foresees all errors but its own
         kind = type(ended.error).__name__
-        return Outcome(ended.task.hash, "unable", error=f"{kind}: {ended.error}")
+        return RunOutcome(ended.task.hash, "unable", error=f"{kind}: {ended.error}")
     if ended.never_began:
-        return Outcome(ended.task.hash, "unable", error=f"no worker can start: it {ended.death}")
-    return Outcome(ended.task.hash, "lost", error=f"the worker {ended.death}")
+        return RunOutcome(ended.task.hash, "unable", error=f"no worker can start: it {ended.death}")
+    return RunOutcome(ended.task.hash, "lost", error=f"the worker {ended.death}")

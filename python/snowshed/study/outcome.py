@@ -8,7 +8,7 @@ from typing import Any, Optional
 
 
 @dataclass(frozen=True)
-class Task:
+class RunTask:
     """A run for a worker.
 
     Attributes
@@ -31,7 +31,7 @@ class Task:
 
 
 @dataclass(frozen=True)
-class Outcome:
+class RunOutcome:
     """The outcome of a run.
 
     Attributes

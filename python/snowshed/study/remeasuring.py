@@ -6,9 +6,9 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, Optional
 
 from snowshed._core import InputError
+from snowshed.base.paths import PathLike
 from snowshed.results.event_particles import EventParticles
 from snowshed.results.folder import measured_columns
-from snowshed.scene.scene import PathLike
 from snowshed.snow.stack.trimming import DEFAULT_TRIMMING, check_trimming
 from snowshed.study.store import Store
 from snowshed.study.table import read_table

@@ -10,7 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Optional, Union
 
 from snowshed._core import InputError
-from snowshed.scene.scene import PathLike, ResolvedScene
+from snowshed.base.paths import PathLike
+from snowshed.scene.scene import ResolvedScene
 from snowshed.season.accumulation import accumulate, stack_ageing
 from snowshed.season.settings import SeasonSettings
 from snowshed.season.slabs import season_scene

@@ -17,14 +17,14 @@ import snowshed._core as _core
 from snowshed._core import InputError
 from snowshed.base.interrupt import InterruptRequest, deferred_interrupts
 from snowshed.base.notes import tell
+from snowshed.base.paths import PathLike
 from snowshed.base.pool.pool import available_cores
 from snowshed.base.progress import Progress, Reporter
-from snowshed.scene.scene import PathLike
 from snowshed.study import cost_estimate
 from snowshed.study.errors import StudyError, StudyInterrupted
 from snowshed.study.local import LocalWorkers
 from snowshed.study.locks import is_held, is_owner
-from snowshed.study.outcome import Outcome, Task
+from snowshed.study.outcome import RunOutcome, RunTask
 from snowshed.study.owner import ownership, release_dead
 from snowshed.study.scene_hash import Run, is_hash
 from snowshed.study.store import Store, StoredRun
@@ -267,7 +267,7 @@ class _Session:
                 self.running[run.hash] = run
                 folder = os.fspath(self._folder(run.hash))
                 keep = run.keep_particles
-                self.workers.submit(Task(run.hash, run.scene, folder, threads, keep))
+                self.workers.submit(RunTask(run.hash, run.scene, folder, threads, keep))
             else:
                 self.elsewhere.append(run)
 
@@ -291,7 +291,7 @@ class _Session:
                 still.append(run)
         self.elsewhere = still
 
-    def _wait(self) -> list[tuple[StoredRun, Outcome]]:
+    def _wait(self) -> list[tuple[StoredRun, RunOutcome]]:
         """Wait a moment for runs to end; return those that have ended."""
         if self.running:
             ended = self.workers.collect(POLL_S)
@@ -299,7 +299,7 @@ class _Session:
         time.sleep(POLL_S)
         return []
 
-    def _settle(self, run: StoredRun, outcome: Outcome) -> None:
+    def _settle(self, run: StoredRun, outcome: RunOutcome) -> None:
         if outcome.status == "unable":
             raise StudyError(str(outcome.error))
         if outcome.status == "lost":
@@ -309,15 +309,15 @@ class _Session:
         else:
             self.waiting.appendleft(run)
 
-    def _after_death(self, outcome: Outcome) -> Outcome:
+    def _after_death(self, outcome: RunOutcome) -> RunOutcome:
         """Return the outcome of a run whose worker died; a run fails after several deaths."""
         self.deaths[outcome.hash] += 1
         if self.deaths[outcome.hash] < DEATHS:
             return outcome
         error = f"gave up after {DEATHS} attempts: {outcome.error}"
-        return Outcome(outcome.hash, "failed", error=error)
+        return RunOutcome(outcome.hash, "failed", error=error)
 
-    def _store(self, outcome: Outcome) -> None:
+    def _store(self, outcome: RunOutcome) -> None:
         self.store.record(outcome)
         self.notes.update(outcome.notes)
         _remove(self._folder(outcome.hash))

@@ -16,11 +16,12 @@ from snowshed._core import InputError
 from snowshed.base.arrays import Booleans, Floats
 from snowshed.base.extras import require
 from snowshed.base.messages import shortened
+from snowshed.base.paths import PathLike
 from snowshed.io.csv_table import read_csv
 from snowshed.results.folder import read_events
 from snowshed.scene.accuracy_settings import ACCURACY, FORMER_NAMES
 from snowshed.scene.resolved import scene_data
-from snowshed.scene.scene import PathLike, ResolvedScene
+from snowshed.scene.scene import ResolvedScene
 from snowshed.snow.stack.quantities import Measure, measure_named
 from snowshed.snow.stack.trimming import TRIMMINGS
 from snowshed.study.database import FILE as STORE

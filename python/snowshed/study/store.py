@@ -18,8 +18,8 @@ from typing import Any, Optional
 
 import snowshed._core as _core
 from snowshed._core import InputError
+from snowshed.base.paths import PathLike
 from snowshed.io.json_file import check_values, parse_object
-from snowshed.scene.scene import PathLike
 from snowshed.study import checksums
 from snowshed.study.database import (
     FILE,
@@ -31,7 +31,7 @@ from snowshed.study.database import (
     translated,
 )
 from snowshed.study.locks import holding
-from snowshed.study.outcome import Outcome
+from snowshed.study.outcome import RunOutcome
 from snowshed.study.scene_hash import Run, is_hash
 
 STATUSES = ("pending", "done", "failed")
@@ -293,7 +293,7 @@ class Store:
         rows = self.read("SELECT DISTINCT owner FROM run WHERE owner IS NOT NULL")
         return [owner for (owner,) in rows]
 
-    def record(self, outcome: Outcome) -> None:
+    def record(self, outcome: RunOutcome) -> None:
         """Store the outcome of a run, unless it is stored already."""
         with self._transaction() as write:
             updated = write.execute(

@@ -7,11 +7,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Optional
 
 from snowshed.base.messages import shortened
+from snowshed.base.paths import PathLike
 from snowshed.io.json_file import is_number
 from snowshed.methods.registry import method_of
 from snowshed.scene.accuracy_settings import NUMBERS, accuracy_of
 from snowshed.scene.resolved import scene_data
-from snowshed.scene.scene import PathLike
 from snowshed.scene.schema import current_path, with_current_names
 from snowshed.snow.stack.quantities import MEASURES, QUANTITIES
 from snowshed.study.database import MEASURED, STORED_TYPES, TIMING

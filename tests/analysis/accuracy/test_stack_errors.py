@@ -1,7 +1,7 @@
 import pytest
 
 from snowshed import Scene
-from snowshed.analysis.accuracy.measurements import Measured, Measurement
+from snowshed.analysis.accuracy.measurements import Measured, MeasuredSolution
 from snowshed.analysis.accuracy.mechanisms import Mechanisms
 from snowshed.analysis.accuracy.recorded import load_recorded
 from snowshed.analysis.accuracy.recorded_stacks import CASE, PRESET, PRESET_THICKNESS
@@ -19,7 +19,7 @@ def stack(dx, height, length, **settings):
     ]
     settings = {"dimension": 2, "events": 5, "dx": dx, "transfer": "flip", **settings}
     settings = {name: value for name, value in settings.items() if value is not None}
-    return Measurement(CASE, settings, measured)
+    return MeasuredSolution(CASE, settings, measured)
 
 
 RECORDED = [
@@ -101,7 +101,7 @@ def test_the_sentence_names_the_scheme_and_its_lengths():
     assert "event 5, scheme objective, 2 cells in the slab): height 15 % too small" in text
     assert text.endswith("single runs scatter by 4 % and 6 %")
     thick = stack_error(scene(**objective, **{"slab.thickness": 0.04}), RECORDED).sentence
-    assert thick.endswith("the scheme's lengths of 0.01 m are 0.5 of the slab there, 0.25 here")
+    assert thick.endswith("are 50 % of the recorded slab's thickness, 25 % of this one's")
 
 
 def test_the_bias_of_all_resolved_grids():

@@ -13,7 +13,7 @@ import pandas as pd
 from snowshed.analysis.calibration.measurements import Measurement
 from snowshed.results.folder import WORDS
 from snowshed.study.database import MEASURED_TYPES
-from snowshed.study.outcome import Outcome
+from snowshed.study.outcome import RunOutcome
 from snowshed.study.store import Store
 
 SLOPE, PRESSURE, COHESION = (
@@ -86,7 +86,7 @@ def fill(folder, study, pending=0):
                 row = {name: "rest" if name in WORDS else 1.0 for name in MEASURED_TYPES}
                 row.update({name: stacks[name] for name in stacks if name in MEASURED_TYPES})
                 rows.append({**row, "event": stacks["event"], "wall_s": 0.1, "steps": 10})
-            store.record(Outcome(run.hash, "done", rows, {}))
+            store.record(RunOutcome(run.hash, "done", rows, {}))
 
 
 def write_measurements(measurements, file):

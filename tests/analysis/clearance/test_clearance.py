@@ -255,8 +255,8 @@ def test_the_same_seed_makes_the_same_winters():
     ("options", "message"),
     [
         (["--tilt", "95"], "tilt: 95 degrees; allowed: 5 to 85"),
-        (["--heights", "3:1:1"], "--heights: '3:1:1'; needed"),
-        (["--range", "friction=lots"], "--range: 'friction=lots'; needed"),
+        (["--heights", "3:1:1"], "--heights: '3:1:1' is not a number"),
+        (["--range", "friction=lots"], "--range: 'friction=lots' is not of the form NAME=LOW:HIGH"),
         (["--range", "adhesoin=1:2"], "range of 'adhesoin'; allowed: friction, adhesion"),
         (["--draws", "0"], "draws: 0; allowed: 1 to 1000"),
         (["--slope-length", "-4"], "slope length: -4 m"),

@@ -10,7 +10,7 @@ from snowshed import InputError, Snow
 from snowshed.analysis.grains.material import readings
 from snowshed.analysis.grains.material.figures import material_figure
 from snowshed.analysis.grains.material.fit import Range, fit_material
-from snowshed.analysis.grains.material.law import CamClay, Elasticity
+from snowshed.analysis.grains.material.law import CamClayFit, Elasticity
 from snowshed.analysis.grains.material.report import write_snow
 from snowshed.analysis.grains.material.tests import NORMAL_STRESSES
 from snowshed.analysis.grains.material.yield_surface import fit_yield_surface
@@ -111,13 +111,13 @@ def test_each_reading_finds_what_the_law_was_made_with():
 def test_hardening_is_its_closed_form(factor):
     bulk, compaction = E / (3 - 6 * NU), np.linspace(0.0, 0.6, 50)
     expected = bulk * np.sinh(np.arcsinh(P0 / bulk) + factor * compaction)
-    law = CamClay(300.0, Elasticity(E, NU), M, P0, BETA, factor)
+    law = CamClayFit(300.0, Elasticity(E, NU), M, P0, BETA, factor)
     assert law.hardened(compaction) == pytest.approx(expected, rel=1e-12)
     assert law.lost_after == pytest.approx(np.arcsinh(P0 / bulk) / factor, rel=1e-12)
 
 
 def test_confined_compression_yields_where_the_rate_equations_do():
-    law = CamClay(300.0, Elasticity(E, NU), M, P0, BETA, XI)
+    law = CamClayFit(300.0, Elasticity(E, NU), M, P0, BETA, XI)
     times = evenly(2e-2, 4000)
     states = SNOW.integrate(SNOW.initial_state(P0), np.array([0.0, 0.0, -1.0]), times)
     first = np.flatnonzero(np.abs(states[:, -1] - states[0, -1]) > 1e-12)[0]  # or dilates

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from made_up_rows import thesis_inputs
 
-from snowshed.analysis.regression.domain import Domain
+from snowshed.analysis.regression.domain import DataDomain
 
-DOMAIN = Domain(thesis_inputs())
+DOMAIN = DataDomain(thesis_inputs())
 
 
 @pytest.mark.parametrize(
@@ -57,12 +57,12 @@ def test_the_hull_agrees_with_a_triangulation():
 
 def test_a_gap_between_two_crowds_is_outside():
     crowd = np.array([[1, h, 1, 40] for h in (1, 1.1, 1.2, 5, 5.1, 5.2)], float)
-    (objection,) = Domain(crowd).objections(np.array([1, 3, 1, 40.0]))
+    (objection,) = DataDomain(crowd).objections(np.array([1, 3, 1, 40.0]))
     assert "is in a gap of the data" in objection
 
 
 def test_an_input_that_does_not_vary_must_be_as_it_is():
-    flat = Domain(np.array([[1, h, 1, 40] for h in (1, 2, 3)], float))
+    flat = DataDomain(np.array([[1, h, 1, 40] for h in (1, 2, 3)], float))
     assert flat.objections(np.array([1, 1.5, 1, 40.0])) == []
     (objection,) = flat.objections(np.array([1, 1.5, 1, 41.0]))
     assert objection.endswith("panel tilt 41° is outside the data, which have 40° only")
@@ -70,7 +70,7 @@ def test_an_input_that_does_not_vary_must_be_as_it_is():
 
 def test_a_lonely_panel_does_not_fill_the_gap_before_it():
     lengths = (*np.arange(0.5, 1.6, 0.1), 10)
-    lonely = Domain(np.array([[1, 2, length, 40] for length in lengths], float))
+    lonely = DataDomain(np.array([[1, 2, length, 40] for length in lengths], float))
     assert lonely.objections(np.array([1, 2, 1.55, 40])) == []
     for length in (3, 5, 8):
         (objection,) = lonely.objections(np.array([1, 2, length, 40]))
@@ -81,7 +81,7 @@ def test_an_event_that_few_panels_have_is_judged_by_these():
     """Runs may end early: of nine panels one alone has a third event."""
     panels = [(h, length, 40) for h in (1, 2, 3) for length in (1, 2, 3)]
     rows = [(event, *panel) for panel in panels for event in (1, 2)]
-    domain = Domain(np.array([*rows, (3, *panels[0])], float))
+    domain = DataDomain(np.array([*rows, (3, *panels[0])], float))
     assert domain.objections(np.array([2, 2.5, 2.5, 40])) == []
     assert domain.objections(np.array([3, 1, 1, 40])) == []
     asked = np.array([[event, 2.5, 2.5, 40] for event in (1, 2, 3)])

@@ -15,7 +15,7 @@ from snowshed.analysis.regression.folds import ShuffledGroupKFold
 from snowshed.analysis.regression.kinds import kinds, kinds_named
 from snowshed.analysis.regression.nested import cross_validate
 from snowshed.analysis.regression.scaling import Scaling
-from snowshed.analysis.regression.task import Task, compute
+from snowshed.analysis.regression.task import FoldTask, compute
 
 ROWS = made_up_rows(few_inputs())
 X = ROWS.inputs
@@ -90,7 +90,7 @@ def test_each_kind_predicts_what_it_has_not_seen(name):
     """Scores are those of the predictions, and far better than the mean as a predictor."""
     rows = made_up_rows(few_inputs(), noise=0.001)
     values = rows.targets["ratio"]
-    result = compute(Task("ratio", name, 0, 0), rows, CrossValidation(folds=3, inner_folds=2))
+    result = compute(FoldTask("ratio", name, 0, 0), rows, CrossValidation(folds=3, inner_folds=2))
     errors = np.abs(result.held_out - values[result.validation])
     assert result.validation_score == pytest.approx(np.median(errors))
     plain = np.median(np.abs(values - np.median(values)))
@@ -106,7 +106,7 @@ def test_each_kind_predicts_what_it_has_not_seen(name):
 
 
 def test_a_result_survives_its_file(tmp_path):
-    result = compute(Task("height", "linear", 0, 1), ROWS, SMALL)
+    result = compute(FoldTask("height", "linear", 0, 1), ROWS, SMALL)
     result.save(tmp_path / "a" / "b.npz")
     back = FoldResult.load(tmp_path / "a" / "b.npz", result.expansion.points)
     assert back.parameters == result.parameters and back.fits == result.fits

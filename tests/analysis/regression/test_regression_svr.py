@@ -21,7 +21,7 @@ from snowshed.analysis.regression.kernels import kernel_matrix
 from snowshed.analysis.regression.path_search import PathSearchCV
 from snowshed.analysis.regression.scaling import Scaling
 from snowshed.analysis.regression.support_vectors import fit_along_c
-from snowshed.analysis.regression.task import Task, compute
+from snowshed.analysis.regression.task import FoldTask, compute
 
 ROWS = made_up_rows(few_inputs())
 X = Scaling.of(ROWS.inputs).scaled(ROWS.inputs)
@@ -184,7 +184,7 @@ def test_the_thesis_comparison_of_kernels_on_rows_like_its_own():
     values = rows.targets["ratio"]
     errors = {
         name: np.abs(
-            compute(Task("ratio", name, 0, 0), rows, CrossValidation()).predictions - values
+            compute(FoldTask("ratio", name, 0, 0), rows, CrossValidation()).predictions - values
         )
         for name in ("linear", "rbf")
     }

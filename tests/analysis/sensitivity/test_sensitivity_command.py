@@ -11,7 +11,7 @@ from snowshed.cli.main import main
 from snowshed.results.folder import WORDS
 from snowshed.study import Study
 from snowshed.study.database import MEASURED_TYPES
-from snowshed.study.outcome import Outcome
+from snowshed.study.outcome import RunOutcome
 from snowshed.study.store import Store
 
 SLOPE, COHESION = "snow.critical_state_slope", "snow.cohesion"
@@ -39,7 +39,7 @@ def fill(folder, study, compute=lambda run: True):
                 row.update(event=event, wall_s=0.1, steps=10, height_m=height(snow, event))
                 row.update(body_height_m=2 * height(snow, event), length_m=0.3)
                 rows.append(row)
-            store.record(Outcome(one.hash, "done", rows, {}))
+            store.record(RunOutcome(one.hash, "done", rows, {}))
 
 
 def grid(name="grid", seeds=None):

@@ -50,8 +50,8 @@ def test_a_slide_within_the_stated_range_has_no_warning():
 @pytest.mark.parametrize(
     ("release", "settings", "figures", "said"),
     [
-        (area(24.0), {}, {}, "slope less than 28 or more than 50"),
-        (area(54.0), {}, {}, "slope less than 28 or more than 50"),
+        (area(24.0), {}, {}, "made for slopes of 28 to 50 degrees"),
+        (area(54.0), {}, {}, "made for slopes of 28 to 50 degrees"),
         (area(36.0, top=2100.0), {}, {}, "made for 500 to 1500 m"),
         (area(36.0, thickness=0.2), {}, {}, "less than the layer"),
         (area(36.0), {}, {"drop_m": 120.0}, "drop is 120 m"),

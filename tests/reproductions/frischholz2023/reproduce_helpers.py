@@ -15,7 +15,7 @@ from snowshed.analysis.regression.folds import CrossValidation
 from snowshed.results.folder import WORDS
 from snowshed.snow.stack.trimming import TRIMMINGS
 from snowshed.study.database import MEASURED_TYPES
-from snowshed.study.outcome import Outcome
+from snowshed.study.outcome import RunOutcome
 from snowshed.study.store import Store
 
 #: Fewer values and folds than the quick reproduction has, with two seedings where it has one.
@@ -77,9 +77,9 @@ def fill(found, stages=None, *, fail_one=False):
         pending = [run for run in runs.values() if run.status == "pending"]
         for run in pending:
             if fail_one and run is pending[-1]:
-                store.record(Outcome(run.hash, "failed", [], {}, "made up"))
+                store.record(RunOutcome(run.hash, "failed", [], {}, "made up"))
             else:
-                store.record(Outcome(run.hash, "done", _events(json.loads(run.scene)), {}))
+                store.record(RunOutcome(run.hash, "done", _events(json.loads(run.scene)), {}))
 
 
 def _events(scene):

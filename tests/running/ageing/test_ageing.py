@@ -10,7 +10,7 @@ from conftest import tiny_scene
 from snowshed import InputError, Interrupted, Scene, Shape, _core, run_events
 from snowshed.running import Ageing, Interval
 from snowshed.running.sequence import open_sequence
-from snowshed.season.column import SnowColumn
+from snowshed.season.settling_column import SnowColumn
 from snowshed.snow import SETTLING_LAWS, SINTERING_LAWS
 
 DAY = 86400.0

@@ -1,4 +1,4 @@
-// A rigid block on a plane: the smallest method, made as docs/add-a-method.md says.
+// A rigid block on a plane: the smallest method, made as docs/develop/add-a-method.md says.
 #pragma once
 
 #include "snowshed/methods/allowed.hpp"

@@ -67,7 +67,7 @@ class Measured:
 
 
 @dataclass(frozen=True)
-class Measurement:
+class MeasuredSolution:
     """A solution of a problem with a known answer, by one choice of settings.
 
     Attributes
@@ -105,10 +105,10 @@ class Measurement:
 
         Examples
         --------
-        >>> Measurement("bar", {"dx": 0.1, "basis": "cubic"}, []).key
+        >>> MeasuredSolution("bar", {"dx": 0.1, "basis": "cubic"}, []).key
         'bar {"basis": "cubic", "dx": 0.1}'
         """
-        return key_of(self.case, self.settings)
+        return measurement_key(self.case, self.settings)
 
     @property
     def updates_per_s(self) -> float:
@@ -126,7 +126,7 @@ class Measurement:
         return data
 
     @classmethod
-    def from_json(cls, data: Any, where: str) -> Measurement:
+    def from_json(cls, data: Any, where: str) -> MeasuredSolution:
         """Return the measurement that `to_json` gave.
 
         Raises
@@ -149,12 +149,12 @@ class Measurement:
         return cls(**{**data, "settings": settings, "measured": measured})
 
 
-def key_of(case: str, settings: Settings) -> str:
+def measurement_key(case: str, settings: Settings) -> str:
     """Return the key under which a case with these settings is kept."""
     return f"{case} {json.dumps(dict(settings), sort_keys=True)}"
 
 
-def to_table(measurements: Iterable[Measurement]) -> pd.DataFrame:
+def to_table(measurements: Iterable[MeasuredSolution]) -> pd.DataFrame:
     """Return measurements as a table with one row per measured quantity.
 
     Returns
@@ -170,7 +170,7 @@ def to_table(measurements: Iterable[Measurement]) -> pd.DataFrame:
 
     Examples
     --------
-    >>> one = Measurement("bar", {"dx": 0.1}, [Measured("height", 0.9, 1.0, -0.1)], wall_s=2.0)
+    >>> one = MeasuredSolution("bar", {"dx": 0.1}, [Measured("height", 0.9, 1.0, -0.1)], wall_s=2.0)
     >>> to_table([one])[["case", "quantity", "dx", "error", "wall_s"]].values.tolist()
     [['bar', 'height', 0.1, -0.1, 2.0]]
     """
@@ -186,13 +186,13 @@ def to_table(measurements: Iterable[Measurement]) -> pd.DataFrame:
     return table.astype(dict.fromkeys(NUMBERS, float))
 
 
-def settings_of(table: pd.DataFrame) -> list[str]:
+def setting_names(table: pd.DataFrame) -> list[str]:
     """Return the settings that occur in a table of measurements."""
     fixed = {*IDENTITY, *RESULTS}
     return [str(name) for name in table if name not in fixed and table[name].notna().any()]
 
 
-def _rows(measurement: Measurement) -> list[dict[str, Any]]:
+def _rows(measurement: MeasuredSolution) -> list[dict[str, Any]]:
     facts = asdict(measurement)
     del facts["settings"], facts["measured"]
     facts["updates_per_s"] = measurement.updates_per_s

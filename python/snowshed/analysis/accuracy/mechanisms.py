@@ -1,6 +1,6 @@
 """Mechanisms of a run: its scheme, and how its settings depart from those of the scheme.
 
-Only runs with equal mechanisms tell of each other's errors.
+A run says something about another's error only if both have the same mechanisms.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from typing import Any, Optional
 from snowshed.analysis.accuracy.measurements import Settings, Value
 from snowshed.analysis.accuracy.recorded_stacks import PRESET
 from snowshed.analysis.accuracy.setting_labels import settings as settings_label
+from snowshed.base.formatting import percent
 from snowshed.methods.mpm.settings import MpmSettings
 from snowshed.methods.registry import SETTINGS_KEY, settings_of
 from snowshed.scene.scene import Scene
@@ -108,7 +109,7 @@ class Mechanisms:
         Examples
         --------
         >>> Mechanisms("objective").lengths_note(0.02, 0.2)
-        "the scheme's lengths of 0.01 m are 0.5 of the slab there, 0.05 here"
+        "the scheme's lengths (0.01 m) are 50 % of the recorded slab's thickness, 5 % of this one's"
         >>> Mechanisms("objective").lengths_note(0.02, 0.02), Mechanisms().lengths_note(0.02, 0.2)
         ('', '')
         """
@@ -116,10 +117,9 @@ class Mechanisms:
         length = max(float(decided[name]) for name in LENGTHS)
         if not length or abs(thickness / recorded - 1) < 0.01:
             return ""
-        return (
-            f"the scheme's lengths of {length:g} m are {length / recorded:.2g} of the slab there, "
-            f"{length / thickness:.2g} here"
-        )
+        there, here = percent(length / recorded, 2), percent(length / thickness, 2)
+        lengths = f"the scheme's lengths ({length:g} m)"
+        return f"{lengths} are {there} of the recorded slab's thickness, {here} of this one's"
 
 
 def scheme_of(settings: Mapping[str, Any]) -> str:

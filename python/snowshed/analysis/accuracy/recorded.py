@@ -14,14 +14,14 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Optional
 
-from snowshed.analysis.accuracy.measurements import Measurement
+from snowshed.analysis.accuracy.measurements import MeasuredSolution
 from snowshed.io.atomic import write_text
 from snowshed.io.json_file import check_values, read_object
 
 PACKAGED = Path(__file__).with_name("recorded.json")
 
 
-def load_recorded(path: Optional[Path] = None) -> list[Measurement]:
+def load_recorded(path: Optional[Path] = None) -> list[MeasuredSolution]:
     """Return recorded measurements, by default those of the package; empty without a file.
 
     Raises
@@ -40,12 +40,12 @@ def load_recorded(path: Optional[Path] = None) -> list[Measurement]:
     data = read_object(path)
     check_values(data, {"measurements": list}, str(path))
     return [
-        Measurement.from_json(measurement, f"{path}: /measurements/{i}")
+        MeasuredSolution.from_json(measurement, f"{path}: /measurements/{i}")
         for i, measurement in enumerate(data["measurements"])
     ]
 
 
-def record(measurements: Iterable[Measurement], path: Path) -> None:
+def record(measurements: Iterable[MeasuredSolution], path: Path) -> None:
     """Store measurements in a file; earlier ones of the same cases are replaced, others stay.
 
     Failed measurements are not kept.
@@ -56,7 +56,7 @@ def record(measurements: Iterable[Measurement], path: Path) -> None:
     >>> with TemporaryDirectory() as folder:
     ...     path = Path(folder) / "recorded.json"
     ...     for case, dx in (("bar", 0.2), ("disc", 0.1), ("bar", 0.1)):
-    ...         record([Measurement(case, {"dx": dx}, [])], path)
+    ...         record([MeasuredSolution(case, {"dx": dx}, [])], path)
     ...     [one.key for one in load_recorded(path)]
     ['disc {"dx": 0.1}', 'bar {"dx": 0.1}']
     """

@@ -10,12 +10,12 @@ from collections.abc import Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Optional
 
-from snowshed.analysis.accuracy.measurements import Measurement, Settings, Value, to_table
+from snowshed.analysis.accuracy.measurements import MeasuredSolution, Settings, Value, to_table
 from snowshed.analysis.accuracy.solutions import (
     SAMPLING,
     assured_errors,
-    key_of,
     rows_of,
+    settings_key,
     solutions,
 )
 from snowshed.methods.mpm.settings import MpmSettings
@@ -58,19 +58,22 @@ class RecordedStack:
         return max(self.errors)
 
 
-def recorded_stacks(measurements: Iterable[Measurement]) -> list[RecordedStack]:
+def recorded_stacks(measurements: Iterable[MeasuredSolution]) -> list[RecordedStack]:
     """Return the recorded stacks."""
     mine = [m for m in measurements if m.case == CASE and not m.failure]
     table = to_table(mine)
 
     def by_settings(quantity: str, order_in: Optional[str]) -> dict[Hashable, float]:
         recorded = solutions(rows_of(table, CASE, quantity))
-        return {key_of(o.settings): e for o, e in zip(recorded, assured_errors(recorded, order_in))}
+        return {
+            settings_key(o.settings): e
+            for o, e in zip(recorded, assured_errors(recorded, order_in))
+        }
 
     errors = [by_settings(name, ORDER_IN) for name in QUANTITIES]
     spreads = [by_settings(f"{name}_spread", None) for name in QUANTITIES]
     biases = _biases(mine)
-    machines = {key_of(m.settings, without=SAMPLING): m.machine for m in mine}
+    machines = {settings_key(m.settings, without=SAMPLING): m.machine for m in mine}
     return [
         RecordedStack(
             settings=solution.settings,
@@ -81,13 +84,13 @@ def recorded_stacks(measurements: Iterable[Measurement]) -> list[RecordedStack]:
             machine=machines[key],
         )
         for solution in solutions(rows_of(table, CASE, QUANTITIES[0]))
-        if all((key := key_of(solution.settings)) in of_each for of_each in errors)
+        if all((key := settings_key(solution.settings)) in of_each for of_each in errors)
     ]
 
 
-def _biases(measurements: Iterable[Measurement]) -> dict[Hashable, dict[str, float]]:
+def _biases(measurements: Iterable[MeasuredSolution]) -> dict[Hashable, dict[str, float]]:
     return {
-        key_of(measurement.settings, without=SAMPLING): {
+        settings_key(measurement.settings, without=SAMPLING): {
             m.quantity: m.value / m.exact - 1 for m in measurement.measured if m.exact
         }
         for measurement in measurements

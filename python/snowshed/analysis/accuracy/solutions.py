@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple, Optional
 
 import numpy as np
 
-from snowshed.analysis.accuracy.measurements import Settings, settings_of
+from snowshed.analysis.accuracy.measurements import Settings, setting_names
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 SAMPLING = ("seed", "seedings")
 
 
-class Row(NamedTuple):
+class SolutionRow(NamedTuple):
     """A row of the table."""
 
     settings: Settings
@@ -53,13 +53,13 @@ def rows_of(table: pd.DataFrame, case: str, quantity: str) -> pd.DataFrame:
     return table[(table["case"] == case) & (table["quantity"] == quantity)]
 
 
-def records(rows: pd.DataFrame) -> list[Row]:
+def records(rows: pd.DataFrame) -> list[SolutionRow]:
     """Return rows of the table, each with the settings that it has."""
-    names = settings_of(rows)
+    names = setting_names(rows)
     return [
-        Row(
+        SolutionRow(
             {name: row[name] for name in names if row[name] is not None},
-            *(float(row[name]) for name in Row._fields[1:]),
+            *(float(row[name]) for name in SolutionRow._fields[1:]),
         )
         for row in rows.to_dict("records")
     ]
@@ -73,18 +73,18 @@ def solutions(rows: pd.DataFrame) -> list[Solution]:
     rows
         Rows of one quantity of one case.
     """
-    groups: dict[Hashable, list[Row]] = {}
+    groups: dict[Hashable, list[SolutionRow]] = {}
     for row in records(rows[rows["error"].notna()]):
-        groups.setdefault(key_of(row.settings, without=SAMPLING), []).append(row)
+        groups.setdefault(settings_key(row.settings, without=SAMPLING), []).append(row)
     return [_solution(group) for group in groups.values()]
 
 
-def key_of(settings: Settings, *, without: Collection[str] = ()) -> Hashable:
+def settings_key(settings: Settings, *, without: Collection[str] = ()) -> Hashable:
     """Return a key that is equal for equal settings in any order.
 
     Examples
     --------
-    >>> key_of({"dx": 0.1, "seed": 1}, without=["seed"]) == key_of({"dx": 0.1})
+    >>> settings_key({"dx": 0.1, "seed": 1}, without=["seed"]) == settings_key({"dx": 0.1})
     True
     """
     return tuple(sorted((name, v) for name, v in settings.items() if name not in without))
@@ -95,7 +95,9 @@ def alike(solved: Iterable[Solution], order_in: str) -> list[list[Solution]]:
     groups: dict[Hashable, list[Solution]] = {}
     for solution in solved:
         if order_in in solution.settings:
-            groups.setdefault(key_of(solution.settings, without=(order_in,)), []).append(solution)
+            groups.setdefault(settings_key(solution.settings, without=(order_in,)), []).append(
+                solution
+            )
     return [
         sorted(group, key=lambda solution: -float(solution.settings[order_in]))
         for group in groups.values()
@@ -137,7 +139,7 @@ def quickest(costs: Sequence[float], errors: Sequence[float], wanted: float) -> 
     return min(range(len(errors)), key=lambda i: (errors[i], costs[i]))
 
 
-def _solution(group: Sequence[Row]) -> Solution:
+def _solution(group: Sequence[SolutionRow]) -> Solution:
     return Solution(
         settings={k: v for k, v in group[0].settings.items() if k not in SAMPLING},
         error=float(np.sqrt(np.mean([row.error**2 for row in group]))),

@@ -1,9 +1,9 @@
 """The error of a stack, from recorded runs on several grids.
 
-Height and length of a stack depend on the grid more than on the seed. What recorded runs of the
-laboratory experiment say of it is said beside every stack, with the name of the recorded scene and
-scheme, because a scene of another size or another snow may err by more or by less. Each scheme has
-runs and a finest grid of its own.
+Height and length of a stack depend on the grid more than on the seed. Every stack is shown with the
+error of recorded runs of the laboratory experiment. The name of the recorded scene and scheme
+stands beside it, because the error of another size or another snow may be larger or smaller. Each
+scheme has runs and a finest grid of its own.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Optional, Union
 
-from snowshed.analysis.accuracy.measurements import Measurement, Settings
+from snowshed.analysis.accuracy.measurements import MeasuredSolution, Settings
 from snowshed.analysis.accuracy.mechanisms import DECIDED, SCHEME, Mechanisms
 from snowshed.analysis.accuracy.recorded import load_recorded
 from snowshed.analysis.accuracy.recorded_stacks import (
@@ -95,7 +95,7 @@ class StackError:
 
 def stack_error(
     scene: Union[Scene, ResolvedScene],
-    measurements: Optional[Iterable[Measurement]] = None,
+    measurements: Optional[Iterable[MeasuredSolution]] = None,
 ) -> Optional[StackError]:
     """Return the error of a scene's stack after its last event, from the nearest recorded runs.
 
@@ -204,7 +204,7 @@ def recorded_bias(dimension: int, events: int, mechanisms: Optional[Mechanisms] 
 
 
 def _plain_stacks(
-    measurements: Iterable[Measurement], mechanisms: Mechanisms
+    measurements: Iterable[MeasuredSolution], mechanisms: Mechanisms
 ) -> list[RecordedStack]:
     """Return the recorded stacks with these mechanisms and all else as by default."""
     return [

@@ -10,7 +10,7 @@ import numpy as np
 
 from snowshed._core import InputError
 from snowshed.analysis.calibration.measurements import Measurement, to_table
-from snowshed.scene.scene import PathLike
+from snowshed.base.paths import PathLike
 from snowshed.snow.stack.quantities import QUANTITIES
 from snowshed.study.factors import SEED
 from snowshed.study.stack_table import StackTable

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Optional
 from snowshed._core import InputError
 from snowshed.base.formatting import number_in
 from snowshed.base.messages import quoted
-from snowshed.io.csv_table import Row, read_text_table
-from snowshed.scene.scene import PathLike
+from snowshed.base.paths import PathLike
+from snowshed.io.csv_table import TableRow, read_text_table
 from snowshed.snow.stack.quantities import QUANTITIES
 
 if TYPE_CHECKING:
@@ -179,7 +179,7 @@ def _check_header(names: Sequence[str], where: str) -> None:
 class _Row:
     """One line of the file, as measurements."""
 
-    row: Row
+    row: TableRow
 
     @property
     def cells(self) -> Mapping[str, str]:

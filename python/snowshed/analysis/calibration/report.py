@@ -14,9 +14,9 @@ from snowshed.analysis.calibration.misfit import RANKED, rank_sets, statistics
 from snowshed.analysis.calibration.posterior import STEPS, Posterior, outputs_of, sample_posterior
 from snowshed.analysis.calibration.surrogate import EXTRA, Surrogate
 from snowshed.base.extras import require
+from snowshed.base.paths import PathLike
 from snowshed.io.atomic import replacing
 from snowshed.io.csv_table import write_csv
-from snowshed.scene.scene import PathLike
 from snowshed.snow.stack.quantities import QUANTITIES
 
 if TYPE_CHECKING:

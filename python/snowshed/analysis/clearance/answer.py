@@ -10,21 +10,21 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from operator import attrgetter
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Optional
 
 import numpy as np
 
 from snowshed._core import InputError
 from snowshed.analysis.clearance.design import Design, Ranges
-from snowshed.analysis.clearance.seasons import Case, Outcome, cases_of
-from snowshed.analysis.clearance.statistics import Level, Share, levels_of, shares_of
+from snowshed.analysis.clearance.seasons import Case, SeasonOutcome, cases_of
+from snowshed.analysis.clearance.statistics import CauseShare, Level, levels_of, shares_of
 from snowshed.analysis.clearance.winters import Winter
 from snowshed.base.arrays import Floats
 from snowshed.base.formatting import plural
 from snowshed.base.json_values import JsonValue
+from snowshed.base.paths import PathLike
 from snowshed.base.progress import Reporter
-from snowshed.season.record import WinterList
+from snowshed.season.season_record import WinterList
 from snowshed.season.settings import SeasonSettings
 from snowshed.study.session import compute_runs, expected_duration
 from snowshed.study.table import read_table
@@ -62,7 +62,7 @@ class Answer:
     design: Design
     heights: Sequence[float]
     cases: Sequence[Case]
-    outcomes: Sequence[Sequence[Outcome]]
+    outcomes: Sequence[Sequence[SeasonOutcome]]
     failed: int = 0
     winters: Sequence[str] = field(default_factory=list)
     winter_list: Optional[WinterList] = None
@@ -92,7 +92,7 @@ class Answer:
         return levels[probability]
 
     @property
-    def shares(self) -> list[Share]:
+    def shares(self) -> list[CauseShare]:
         """The causes of the variance of the required height, the largest first."""
         values = {
             name: np.array([case.values[name] for case in self.cases])
@@ -149,7 +149,7 @@ class Answer:
         return pd.DataFrame(rows)
 
 
-def required_height(outcomes: Sequence[Outcome]) -> float:
+def required_height(outcomes: Sequence[SeasonOutcome]) -> float:
     """Return the lowest height of the lower edge that the snow does not reach, m.
 
     The height is interpolated between the highest edge that the snow reaches and the next one.
@@ -159,7 +159,7 @@ def required_height(outcomes: Sequence[Outcome]) -> float:
     --------
     >>> from snowshed.season.clearance import Contact
     >>> touched = Contact("2024-12-24", 1, "crest")
-    >>> required_height([Outcome(1.0, -0.1, touched), Outcome(2.0, 0.9, None)])
+    >>> required_height([SeasonOutcome(1.0, -0.1, touched), SeasonOutcome(2.0, 0.9, None)])
     1.1
     """
     reached = [outcome for outcome in outcomes if outcome.contact is not None]
@@ -178,7 +178,7 @@ def clearance_of(
     design: Design,
     winters: Sequence[Winter],
     heights: Sequence[float],
-    folder: Path,
+    folder: PathLike,
     *,
     ranges: Optional[Ranges] = None,
     settings: Optional[SeasonSettings] = None,
@@ -206,7 +206,7 @@ def clearance_of(
     scene
         Values of the scene by dotted path, such as ``numerics.dx``.
     winter_list
-        All winters of the file (`Record.winters`), which the answer's text mentions.
+        All winters of the file (`SeasonRecord.winters`), which the answer's text mentions.
     jobs
         Local processes at once. [default: the number of cores]
     progress
@@ -270,7 +270,7 @@ class _Search:
 
     def __init__(self, cases: Sequence[Case], heights: Sequence[float]) -> None:
         self.cases, self.heights = cases, heights
-        self.outcomes: list[list[Outcome]] = [[] for _ in cases]
+        self.outcomes: list[list[SeasonOutcome]] = [[] for _ in cases]
         self._low = [0] * len(cases)  # heights below are reached
         self._high = [len(heights)] * len(cases)  # heights from there on are clear
         self._runs: dict[tuple[int, int], Any] = {}

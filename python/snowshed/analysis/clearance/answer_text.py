@@ -9,7 +9,7 @@ from snowshed.analysis.accuracy.stack_errors import recorded_bias
 from snowshed.analysis.clearance.answer import Answer
 from snowshed.analysis.clearance.design import MEANING, Ranges
 from snowshed.base.formatting import plural
-from snowshed.season.record import percent
+from snowshed.season.season_record import whole_percent
 
 FIRST_PROBABILITY = 0.9  # of the answer's first sentence
 #: The error of the grid is quoted from recorded runs of so many slide-offs, as a winter may have.
@@ -86,7 +86,7 @@ def _excluded_winters(answer: Answer) -> list[str]:
     number = plural(len(record.winters) - len(record.counted), "winter")
     return [
         f"the answer uses {record.counted_text}; the snow of {number} was observed on less than "
-        f"{percent(record.coverage)} of the days {record.season.text}: {record.excluded_text}"
+        f"{whole_percent(record.coverage)} of the days {record.season.text}: {record.excluded_text}"
     ]
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING, Optional
 
 from snowshed.analysis.clearance.answer import Answer, clearance_of
@@ -11,8 +10,8 @@ from snowshed.analysis.clearance.design import Design, Ranges
 from snowshed.analysis.clearance.winters import counted
 from snowshed.base.json_values import JsonValue
 from snowshed.base.notes import tell
+from snowshed.base.paths import PathLike
 from snowshed.base.progress import Reporter
-from snowshed.scene.scene import PathLike
 from snowshed.season.quality import COVERAGE
 from snowshed.season.settings import SeasonSettings
 from snowshed.season.source import AUTO
@@ -85,6 +84,7 @@ def clearance(
     Examples
     --------
     >>> from datetime import date, timedelta
+    >>> from pathlib import Path
     >>> from tempfile import TemporaryDirectory
     >>> days = [date(2023, 9, 1) + timedelta(n) for n in range(366)]
     >>> rows = [f"{day},{0.2 if day == date(2024, 1, 5) else 0},{-3 if day.month < 3 else 5}"
@@ -105,7 +105,7 @@ def clearance(
         Design(slope_length, tilt),
         counted(winter_list),
         heights,
-        Path(folder),
+        folder,
         ranges=ranges,
         settings=settings,
         scene=scene,

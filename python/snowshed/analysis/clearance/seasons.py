@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Outcome:
+class SeasonOutcome:
     """The margin between the snow of a season and the lower edge of a panel.
 
     Attributes
@@ -95,7 +95,7 @@ class Case:
         scene = season_scene(self.panel(height), self.days, self.season)
         return Run.of(scene, stack_ageing(self.days, self.season))
 
-    def outcome(self, height: float, events: pd.DataFrame) -> Outcome:
+    def outcome(self, height: float, events: pd.DataFrame) -> SeasonOutcome:
         """Return the outcome at a height.
 
         Parameters
@@ -113,7 +113,7 @@ class Case:
         contact = first_contact(table, dx)
         sunk = table["stack_height_m"] - table["settled_height_m"]
         margin = float((table["crest_clearance_m"] + sunk).min()) - dx
-        return Outcome(height, min(margin, 0.0) if contact else margin, contact)
+        return SeasonOutcome(height, min(margin, 0.0) if contact else margin, contact)
 
 
 def cases_of(

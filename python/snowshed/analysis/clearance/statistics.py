@@ -43,7 +43,7 @@ class Level:
 
 
 @dataclass(frozen=True)
-class Share:
+class CauseShare:
     """The share of a cause in the variance of the required height, 0 to 1."""
 
     cause: str
@@ -129,7 +129,7 @@ def burial_interval(buried: float, winters: int) -> tuple[float, float]:
     return low, high
 
 
-def shares_of(required: Floats, winters: Floats, values: Mapping[str, Floats]) -> list[Share]:
+def shares_of(required: Floats, winters: Floats, values: Mapping[str, Floats]) -> list[CauseShare]:
     """Return the share of each cause in the variance of the required height.
 
     The height is fitted as a sum of linear effects of the uncertain parameters and an effect of
@@ -164,5 +164,5 @@ def shares_of(required: Floats, winters: Floats, values: Mapping[str, Floats]) -
     residual = float((required - required.mean() - matrix @ effects).var()) / spread
     parts["chance"] = residual
     total = sum(parts.values())
-    shares = [Share(name, part / total) for name, part in parts.items()]
+    shares = [CauseShare(name, part / total) for name, part in parts.items()]
     return sorted(shares, key=lambda share: -share.part)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from snowshed._core import InputError
 from snowshed.base.notes import tell
 from snowshed.season.quality import COVERAGE
-from snowshed.season.record import Record, WinterList, percent
+from snowshed.season.season_record import SeasonRecord, WinterList, whole_percent
 from snowshed.season.weather_row import Weather
 
 
@@ -58,7 +58,7 @@ def winters_of(season: Sequence[Weather], coverage: float = COVERAGE) -> list[Wi
     >>> [winter.name for winter in winters_of(EXAMPLE_CLIMATE.winters(2, seed=1))]
     ['2001/02', '2002/03']
     """
-    record = Record(season).winters(coverage)
+    record = SeasonRecord(season).winters(coverage)
     winters = counted(record)
     for note in record.notes:
         tell(note)
@@ -71,7 +71,7 @@ def counted(winter_list: WinterList) -> list[Winter]:
     Parameters
     ----------
     winter_list
-        From `Record.winters`.
+        From `SeasonRecord.winters`.
 
     Raises
     ------
@@ -82,7 +82,7 @@ def counted(winter_list: WinterList) -> list[Winter]:
     if not winters:
         raise InputError(
             "the weather: no winter has snow observed on "
-            f"{percent(winter_list.coverage)} of the "
+            f"{whole_percent(winter_list.coverage)} of the "
             f"days {winter_list.season.text}: {winter_list.excluded_text}; give a longer record, a "
             "smaller --coverage, or another column (--snow-from)"
         )

@@ -32,6 +32,7 @@ from snowshed.analysis.hazard.maps import (
     uncertainty,
 )
 from snowshed.base.arrays import Floats
+from snowshed.base.paths import PathLike
 from snowshed.io.atomic import write_text
 from snowshed.io.raster.output import write_raster
 from snowshed.methods.registry import SETTINGS_KEY
@@ -41,7 +42,6 @@ from snowshed.plot.hazard_figure import part_shown, probability_figure
 from snowshed.plot.hazard_page import HazardPage
 from snowshed.plot.html_page import Grid
 from snowshed.scene.resolved import scene_data
-from snowshed.scene.scene import PathLike
 from snowshed.scene.terrain_grid import release_outlines
 from snowshed.study.formats import export
 from snowshed.study.store import Store

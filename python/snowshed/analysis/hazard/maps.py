@@ -11,9 +11,10 @@ import numpy as np
 
 from snowshed._core import InputError
 from snowshed.base.arrays import Floats
+from snowshed.base.paths import PathLike
 from snowshed.io.raster.raster import Raster
 from snowshed.methods.slide.maps import PeakMaps
-from snowshed.scene.scene import PathLike, ResolvedScene
+from snowshed.scene.scene import ResolvedScene
 from snowshed.scene.terrain_grid import slide_terrain
 from snowshed.study.store import Store
 
@@ -277,5 +278,5 @@ def uncertainty(runs: int) -> str:
     rare = 100.0 * float(wilson_interval(0, runs)[1])
     return (
         f"With {runs} runs a probability of 50 % is {low:.0f} to {high:.0f} % (95 % interval, "
-        f"Wilson), and a place that no run reached is reached with at most {rare:.1f} %."
+        f"Wilson), and a place that no run reached has a probability of at most {rare:.1f} %."
     )

@@ -23,7 +23,7 @@ SPACED = 0.9
 
 
 @dataclass(frozen=True)
-class Domain:
+class DataDomain:
     """The applicability domain: ranges of the inputs, convex hull and spacing of the panels.
 
     Attributes
@@ -48,9 +48,9 @@ class Domain:
         Examples
         --------
         >>> corners = np.array([[1, h, l, 40] for h in (1, 2) for l in (1, 2)], float)
-        >>> Domain(corners).objections(np.array([1, 1.5, 1.5, 40]))
+        >>> DataDomain(corners).objections(np.array([1, 1.5, 1.5, 40]))
         []
-        >>> Domain(corners).objections(np.array([1, 3, 1.5, 40]))
+        >>> DataDomain(corners).objections(np.array([1, 3, 1.5, 40]))
         ['panel height 3 m is outside the data, which reach from 1 to 2 m']
         """
         questions = np.atleast_2d(questions)

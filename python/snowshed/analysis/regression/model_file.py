@@ -13,18 +13,18 @@ import numpy as np
 
 from snowshed._core import InputError
 from snowshed._core import version as snowshed_version
-from snowshed.analysis.regression.domain import Domain
+from snowshed.analysis.regression.domain import DataDomain
 from snowshed.analysis.regression.ensemble import Ensemble
 from snowshed.analysis.regression.rows import INPUTS, TARGETS, is_input
 from snowshed.analysis.regression.scaling import Scaling
 from snowshed.analysis.regression.spread import INTERVAL, SPREAD, Spread
 from snowshed.base.arrays import Floats
 from snowshed.base.damage import DAMAGED
+from snowshed.base.paths import PathLike
 from snowshed.io.array_archive import open_archive
 from snowshed.io.atomic import replacing
 from snowshed.io.input_file import read_regular
 from snowshed.scene.accuracy_settings import FORMER_NAMES
-from snowshed.scene.scene import PathLike
 from snowshed.snow.stack.quantities import measure_named
 from snowshed.study.table import FORMER_TRIMMING
 
@@ -86,9 +86,9 @@ class StackModel:
     names: Sequence[str] = INPUTS
 
     @cached_property
-    def domain(self) -> Domain:
+    def domain(self) -> DataDomain:
         """The domain of the model."""
-        return Domain(self.inputs, self.names)
+        return DataDomain(self.inputs, self.names)
 
     @property
     def targets(self) -> list[str]:
@@ -147,14 +147,14 @@ def load_model(file: PathLike) -> StackModel:
         raise InputError(f"{path}: {error.strerror or error}") from None
     try:
         with open_archive(content, LARGEST) as archive:
-            return _Reader(archive).model()
+            return _ModelReader(archive).model()
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
     except (OSError, *DAMAGED) as error:
         raise InputError(f"{path}: damaged, or not a model ({error})") from None
 
 
-class _Reader:
+class _ModelReader:
     """Takes a model out of an archive, checking everything."""
 
     def __init__(self, archive: Any) -> None:

@@ -14,7 +14,7 @@ from snowshed.analysis.regression.folds import CrossValidation
 from snowshed.analysis.regression.kinds import Kind
 from snowshed.analysis.regression.rows import StackRows
 from snowshed.analysis.regression.scaling import Scaling
-from snowshed.analysis.regression.task import Task, compute
+from snowshed.analysis.regression.task import FoldTask, compute
 from snowshed.base.interrupt import InterruptRequest, deferred_interrupts
 from snowshed.base.pool.pool import Ended, Pool
 from snowshed.base.pool.threads import one_thread
@@ -28,7 +28,7 @@ FORMAT = 2  # of the results of folds; another one is computed anew
 POLL_S = 0.25  # s between checks of interrupts
 
 
-Results = dict[Task, FoldResult]
+Results = dict[FoldTask, FoldResult]
 
 
 class RegressionInterrupted(KeyboardInterrupt):
@@ -78,7 +78,7 @@ def cross_validate(
     _claim(folder, rows, scheme)
     points = Scaling.of(rows.inputs).scaled(rows.inputs)
     tasks = [
-        Task(target, kind, round_, fold)
+        FoldTask(target, kind, round_, fold)
         for target in targets
         for kind in kinds
         for round_ in range(scheme.rounds)
@@ -106,7 +106,7 @@ class _Tracker:
 
     def __init__(
         self,
-        missing: Sequence[Task],
+        missing: Sequence[FoldTask],
         count: int,
         kinds: dict[str, Kind],
         report: Optional[Reporter],
@@ -120,12 +120,12 @@ class _Tracker:
         if missing:
             self._tell(missing[0])
 
-    def advance(self, task: Task) -> None:
+    def advance(self, task: FoldTask) -> None:
         self._done += 1
         self._finished += self._cost[task.kind]
         self._tell(task)
 
-    def _tell(self, task: Task) -> None:
+    def _tell(self, task: FoldTask) -> None:
         if self._report is not None:
             doing = f"{task.target}, {self._title[task.kind]}"
             fraction = self._finished / self._work
@@ -145,13 +145,13 @@ def _claim(folder: Path, rows: StackRows, scheme: CrossValidation) -> None:
 
 
 def _computed(
-    tasks: Sequence[Task],
+    tasks: Sequence[FoldTask],
     rows: StackRows,
     scheme: CrossValidation,
     folder: Path,
     jobs: int,
     request: InterruptRequest,
-) -> Iterator[Task]:
+) -> Iterator[FoldTask]:
     """Compute tasks and store their results; yield each when it is stored."""
     if jobs == 1 or len(tasks) < 2:
         with one_thread():
@@ -173,7 +173,7 @@ def _computed(
             _end(pool, folder)
 
 
-def _outcome(ended: Ended[Task, None]) -> Task:
+def _outcome(ended: Ended[FoldTask, None]) -> FoldTask:
     if ended.error is not None:
         raise ended.error
     if ended.death:
@@ -181,7 +181,7 @@ def _outcome(ended: Ended[Task, None]) -> Task:
     return ended.task
 
 
-def _end(pool: Pool[Task, None], folder: Path) -> None:
+def _end(pool: Pool[FoldTask, None], folder: Path) -> None:
     """End the processes immediately, and remove their unfinished files."""
     pool.close()
     remove_leftovers(folder)
@@ -191,7 +191,7 @@ def _work(
     rows: StackRows,
     scheme: CrossValidation,
     folder: Path,
-    task: Task,
+    task: FoldTask,
     report: Callable[[float], None],
 ) -> None:
     """Compute a fold in a process of its own and store its result."""

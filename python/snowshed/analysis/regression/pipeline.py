@@ -19,12 +19,12 @@ from snowshed.analysis.regression.published import compare_with_published, publi
 from snowshed.analysis.regression.rows import INPUTS, TARGETS, StackRows
 from snowshed.analysis.regression.spread import stack_spread, unseen_panels
 from snowshed.base.arrays import Floats
+from snowshed.base.paths import PathLike
 from snowshed.base.pool.pool import available_cores
 from snowshed.base.pool.threads import one_thread
 from snowshed.base.progress import Reporter
 from snowshed.io.atomic import write_text
 from snowshed.io.csv_table import write_csv
-from snowshed.scene.scene import PathLike
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -16,8 +16,8 @@ from snowshed.analysis.regression.questions import Numbers, Questions
 from snowshed.analysis.regression.scaling import Scaling
 from snowshed.analysis.regression.spread import INTERVAL, SPREAD
 from snowshed.base.arrays import Floats
+from snowshed.base.paths import PathLike
 from snowshed.plot.labels import settings
-from snowshed.scene.scene import PathLike
 
 if TYPE_CHECKING:
     import pandas as pd

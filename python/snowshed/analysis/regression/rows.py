@@ -12,7 +12,7 @@ import numpy as np
 
 from snowshed._core import InputError
 from snowshed.base.arrays import Floats, Integers
-from snowshed.scene.scene import PathLike
+from snowshed.base.paths import PathLike
 from snowshed.snow.stack.quantities import Measure, measure_named
 from snowshed.study.factors import SEED
 from snowshed.study.stack_table import StackTable

@@ -14,7 +14,7 @@ from snowshed.analysis.regression.score import median_absolute_error
 
 
 @dataclass(frozen=True)
-class Task:
+class FoldTask:
     """A fold of a task; `round` and `fold` count from 0."""
 
     target: str
@@ -28,7 +28,7 @@ class Task:
         return f"folds/{self.target}/{self.kind}/{self.round:03}-{self.fold:03}.npz"
 
 
-def compute(task: Task, rows: StackRows, scheme: CrossValidation) -> FoldResult:
+def compute(task: FoldTask, rows: StackRows, scheme: CrossValidation) -> FoldResult:
     """Choose, train and score a model as section 5.2.3 says; train it anew on all rows (5.2.4).
 
     Inputs and target are standardised over all rows, (5.2.12). Scores are in the target's unit.

@@ -12,8 +12,8 @@ from snowshed.analysis.sensitivity.global_indices import morris_effects, sobol_i
 from snowshed.analysis.sensitivity.noise import seeding_noise
 from snowshed.analysis.sensitivity.single_parameter import local_index
 from snowshed.analysis.sensitivity.stored import StoredRuns, read_stored
+from snowshed.base.paths import PathLike
 from snowshed.io.csv_table import write_csv
-from snowshed.scene.scene import PathLike
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Optional
 
 from snowshed._core import InputError
-from snowshed.scene.scene import PathLike
+from snowshed.base.paths import PathLike
 from snowshed.study.factors import SEED
 from snowshed.study.stack_table import StackTable
 

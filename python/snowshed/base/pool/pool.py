@@ -230,7 +230,7 @@ class _Process(Generic[Task, Result]):
         self.dead = False
         self._began = time.monotonic()
         self._ready = False
-        with suppress(OSError):  # that it has ended shows when it is given a task
+        with suppress(OSError):  # the process has ended; its first task will report it
             self.connection.send(compute)
 
     @property

@@ -8,16 +8,17 @@ from typing import TYPE_CHECKING, Any, Optional
 
 import click
 
-from snowshed._core import InputError
 from snowshed.base.formatting import about, plural
 from snowshed.cli.common_options import (
     PATH,
     ResultsFolder,
     dry_run_option,
+    jobs_option,
     quiet_option,
     resume_option,
 )
 from snowshed.cli.exit_codes import Stopped
+from snowshed.cli.number_texts import named_span, numbers
 from snowshed.cli.terminal import plain_table, say, wide_console
 from snowshed.cli.weather_options import weather_options
 from snowshed.cli.winters_table import print_quality
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
     from snowshed.analysis.clearance.answer import Answer
     from snowshed.analysis.clearance.design import Design, Ranges
     from snowshed.analysis.clearance.winters import Winter
-    from snowshed.season.record import Record, WinterList
+    from snowshed.season.season_record import SeasonRecord, WinterList
 
 EXAMPLE = "example"  # in place of a file: synthetic winters
 
@@ -34,14 +35,14 @@ EXAMPLE = "example"  # in place of a file: synthetic winters
 @click.command()
 @click.argument("weather", metavar="WEATHER...", type=PATH, nargs=-1, required=True)
 @click.option(
-    "--slope-length", required=True, help="Length of the panel along the slope, m; a list: 3,4,5."
+    "--slope-length", required=True, help="Length of the panel along the slope [m]; a list: 3,4,5."
 )
-@click.option("--tilt", required=True, help="Tilt from the horizontal, degrees; a list: 40,60.")
+@click.option("--tilt", required=True, help="Tilt from the horizontal [degrees]; a list: 40,60.")
 @click.option(
     "--heights",
     default="1:4:0.5",
     show_default=True,
-    help="Candidate heights of the lower edge, m: a number, a list, or FROM:TO:STEP.",
+    help="Candidate heights of the lower edge [m]: a number, a list, or FROM:TO:STEP.",
 )
 @click.option(
     "--range",
@@ -54,7 +55,7 @@ EXAMPLE = "example"  # in place of a file: synthetic winters
 @click.option("--draws", type=int, default=3, show_default=True, help="Seasons for each winter.")
 @click.option("--seed", type=int, default=1, show_default=True, help="Random seed.")
 @weather_options
-@click.option("--jobs", type=int, help="Processes at once.  [default: the number of cores]")
+@jobs_option("Processes")
 @click.option(
     *("-o", "--output", "folder"),
     type=PATH,
@@ -100,10 +101,10 @@ def clearance(
     ranges = Ranges({**DEFAULT_RANGES, **dict(map(_span, spans))}, draws, seed)
     designs = [
         Design(length, angle)
-        for length in numbers("--slope-length", slope_length)
-        for angle in numbers("--tilt", tilt)
+        for length in _numbers("--slope-length", slope_length)
+        for angle in _numbers("--tilt", tilt)
     ]
-    candidates = numbers("--heights", heights)
+    candidates = _numbers("--heights", heights)
     record = _record(weather, snow_from, temperature)
     winter_list = record.winters(coverage)
     notes = [*record.notes, *winter_list.notes]
@@ -157,48 +158,25 @@ def _answers(
     return answers
 
 
-def _record(weather: tuple[Path, ...], snow_from: str, temperature: Optional[Path]) -> Record:
+def _record(weather: tuple[Path, ...], snow_from: str, temperature: Optional[Path]) -> SeasonRecord:
     from snowshed.season.generator import EXAMPLE_CLIMATE
-    from snowshed.season.record import Record
+    from snowshed.season.season_record import SeasonRecord
     from snowshed.season.weather import read_record
 
     if [str(file) for file in weather] != [EXAMPLE]:
         return read_record(weather, snow_from, temperature)
     rows = EXAMPLE_CLIMATE.winters(10, seed=7)
-    return Record(rows, ["the weather is ten synthetic winters (generator of Richardson 1981)"])
+    return SeasonRecord(
+        rows, ["the weather is ten synthetic winters (generator of Richardson 1981)"]
+    )
 
 
-def numbers(option: str, text: str) -> list[float]:
-    """Return the numbers of an option: a number, a list with commas, or FROM:TO:STEP.
-
-    Examples
-    --------
-    >>> numbers("--heights", "1:2:0.5"), numbers("--tilt", "40,60")
-    ([1.0, 1.5, 2.0], [40.0, 60.0])
-    """
-    try:
-        if ":" not in text:
-            return [float(part) for part in text.split(",")]
-        low, high, step = (float(part) for part in text.split(":"))
-        count = int((high - low) / step + 1e-9) + 1
-        if not (step > 0 and 1 <= count <= 1000):
-            raise ValueError
-        return [round(low + n * step, 9) for n in range(count)]
-    except (ValueError, ZeroDivisionError, OverflowError):
-        raise InputError(
-            f"{option}: {text!r}; needed: a number, a list such as 2,3, or FROM:TO:STEP"
-        ) from None
+def _numbers(option: str, text: str) -> list[float]:
+    return numbers(option, text, example="2,3", steps=True)
 
 
 def _span(text: str) -> tuple[str, tuple[float, float]]:
-    name, _, values = text.partition("=")
-    try:
-        ends = [float(part) for part in values.split(":")]
-        return name, (ends[0], ends[-1])
-    except ValueError:
-        raise InputError(
-            f"--range: {text!r}; needed: NAME=LOW:HIGH, such as friction=0.3:0.6"
-        ) from None
+    return named_span("--range", text, example="friction=0.3:0.6", single=True)
 
 
 def print_answers(answers: Sequence[Answer], folder: Path) -> None:

@@ -12,7 +12,13 @@ from typing import Any, Optional, TypeVar
 
 import click
 
-from snowshed.cli.common_options import PATH, dry_run_option, quiet_option, resume_option
+from snowshed.cli.common_options import (
+    PATH,
+    dry_run_option,
+    jobs_option,
+    quiet_option,
+    resume_option,
+)
 from snowshed.cli.compute_study import compute_study, print_study_cost
 from snowshed.snow.stack.quantities import MEASURES
 from snowshed.study.definition import Study
@@ -37,7 +43,7 @@ def design_options(command: Command) -> Command:
     """Add the options of commands that design a study and evaluate it."""
     for option in (
         quiet_option,
-        click.option("--jobs", type=int, help="Runs at once.  [default: the number of cores]"),
+        jobs_option("Runs"),
         click.option(
             "--measure",
             type=click.Choice(list(MEASURES)),

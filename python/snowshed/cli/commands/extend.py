@@ -15,7 +15,7 @@ from snowshed.cli.exit_codes import Stopped
 @click.argument("results", type=PATH)
 @click.option("--events", type=int, default=1, show_default=True, help="Number of further events.")
 @click.option("--snow", metavar="NAME", help="Other snow for their slabs: a name, or a JSON file.")
-@click.option("--thickness", type=float, help="Other thickness for their slabs, m.")
+@click.option("--thickness", type=float, help="Other thickness for their slabs [m].")
 @click.option(
     "-o", "--output", "folder", type=PATH, required=True, help="Results folder, new or empty."
 )

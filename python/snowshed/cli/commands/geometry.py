@@ -33,7 +33,7 @@ from snowshed.cli.terminal import write_out
     type=click.FloatRange(1e-4, 1.0),
     default=0.01,
     show_default=True,
-    help="Size of the grid cells, m.",
+    help="Size of the grid cells [m].",
 )
 @click.option(
     "--seeds",

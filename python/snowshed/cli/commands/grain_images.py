@@ -39,6 +39,11 @@ HELP = {
 }
 
 
+split_labels_option = click.option(
+    "--split-labels", is_flag=True, help="Turn each piece of a disconnected label into a grain."
+)
+
+
 def output_options(command: Command) -> Command:
     """Add the options of commands that write a folder of grains."""
     for option in (

@@ -9,11 +9,11 @@ from typing import Any, Optional, TypeVar
 
 import click
 
-from snowshed.cli.commands.grain_images import segment_command, synthetic
+from snowshed.cli.commands.grain_images import segment_command, split_labels_option, synthetic
 from snowshed.cli.commands.grains_studies import material, sensitivity
 from snowshed.cli.common_options import PATH, given_values, run_options
 from snowshed.cli.dry_run import print_cost
-from snowshed.cli.run_scene import run_scene
+from snowshed.cli.run_scene import run_or_cost, run_scene
 from snowshed.cli.settings_options import settings_options
 from snowshed.methods.grains.sample_folder import LABELS
 from snowshed.methods.grains.settings import GrainsSettings
@@ -70,10 +70,7 @@ def loading_command(
             output=Output(energy=energy, snapshot_interval=snapshots),
             split_labels=split_labels or None,
         ).resolve()
-        if dry_run:
-            print_cost(scene)
-        else:
-            run_scene(scene, folder, resume, quiet)
+        run_or_cost(scene, folder, resume=resume, dry_run=dry_run, quiet=quiet)
 
     if kind == "penetrate":
         run = settings_options("grains", "cone")(run)
@@ -88,8 +85,7 @@ def loading_command(
                      help="Distance over the sample's height at which the test ends."),
         click.option("--speed", type=float, default=speed, show_default=True,
                      help="Speed of the moving plate or cone [m/s]."),
-        click.option("--split-labels", is_flag=True,
-                     help="Turn each piece of a disconnected label into a grain."),
+        split_labels_option,
         click.option("--voxel", type=float,
                      help="Edge of a voxel [m]; a folder of `grains segment` contains it."),
     ):  # fmt: skip

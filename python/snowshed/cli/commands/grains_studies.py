@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Any, Optional, TypeVar
 import click
 
 from snowshed.base.formatting import NOTHING
-from snowshed.cli.commands.grain_images import VOXEL
+from snowshed.cli.commands.grain_images import VOXEL, split_labels_option
 from snowshed.cli.common_options import (
     PATH,
     dry_run_option,
     given_values,
+    jobs_option,
     quiet_option,
     resume_option,
 )
@@ -52,15 +53,14 @@ def study_options(command: Command) -> Command:
     command = settings_options("grains", without=("threads",))(command)
     for option in (
         click.option("--voxel", type=float, help=VOXEL),
-        click.option("--split-labels", is_flag=True,
-                     help="Turn each piece of a disconnected label into a grain."),
+        split_labels_option,
         click.option("--coarser", type=click.IntRange(1, 64), default=1, show_default=True,
                      help="Voxels of the samples along the edge of a sphere; the ice fraction "
                           "stays."),
         click.option("--turned", is_flag=True,
                      help="Load each sample along x and y, too, as further samples of the same "
                           "snow."),
-        click.option("--jobs", type=int, help="Tests at once.  [default: the number of cores]"),
+        jobs_option("Tests"),
         resume_option,
         dry_run_option("Print the number of tests and their estimated time and exit."),
         quiet_option,

@@ -8,11 +8,10 @@ from typing import Any, Optional
 import click
 
 from snowshed.cli.accuracy import accuracy_option
-from snowshed.cli.check import check_can_be_measured, check_option, check_run
+from snowshed.cli.check import check_option
 from snowshed.cli.common_options import run_options
-from snowshed.cli.dry_run import print_cost
 from snowshed.cli.resolve_options import resolve_options
-from snowshed.cli.run_scene import run_scene
+from snowshed.cli.run_scene import run_or_cost
 from snowshed.cli.scene_options import scene_options
 
 
@@ -40,11 +39,4 @@ def panel(
           --thickness 0.02 --events 5 --dim 3 --friction 0.3 -o results
     """  # noqa: D301 - click wants the control character
     scene = resolve_options(preset, snow_preset, options, accuracy, quiet=quiet)
-    if check:
-        check_can_be_measured(scene)
-    if dry_run:
-        print_cost(scene)
-    else:
-        run_scene(scene, folder, resume, quiet)
-        if check:
-            check_run(folder, quiet)
+    run_or_cost(scene, folder, resume=resume, dry_run=dry_run, quiet=quiet, check=check)

@@ -20,9 +20,9 @@ TARGET_TITLES = {"ratio": "height / length", "height": "height", "length": "leng
 
 
 @click.command()
-@click.option("--height", type=float, help="Height of the panel's lower edge above ground, m.")
-@click.option("--length", type=float, help="Length of the panel along the slope, m.")
-@click.option("--tilt", type=float, help="Tilt of the panel from the horizontal, degrees.")
+@click.option("--height", type=float, help="Height of the panel's lower edge above ground [m].")
+@click.option("--length", type=float, help="Length of the panel along the slope [m].")
+@click.option("--tilt", type=float, help="Tilt of the panel from the horizontal [degrees].")
 @click.option(
     "--input",
     "inputs",

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Optional
 import click
 
 from snowshed.cli.commands.designed_study import measure_help
-from snowshed.cli.common_options import PATH, quiet_option, resume_option
+from snowshed.cli.common_options import PATH, jobs_option, quiet_option, resume_option
 from snowshed.cli.exit_codes import Stopped
 from snowshed.cli.terminal import narrow_table, say, wide_console
 
@@ -72,7 +72,7 @@ if TYPE_CHECKING:
 @click.option("--folds", default=10, help="Outer folds.  [default: 10]")
 @click.option("--inner-folds", default=5, help="Inner folds.  [default: 5]")
 @click.option("--seed", default=1, help="Random seed of the splits.  [default: 1]")
-@click.option("--jobs", type=int, help="Processes.  [default: the number of cores]")
+@jobs_option("Processes")
 @click.option(
     "--title", help="Title of the data, which predict prints.  [default: table name and rows]"
 )

@@ -8,11 +8,11 @@ from typing import Optional
 import click
 
 from snowshed.cli.accuracy import accuracy_option
-from snowshed.cli.check import check_can_be_measured, check_option, check_run
+from snowshed.cli.check import check_option
 from snowshed.cli.common_options import PATH, run_options
 from snowshed.cli.dry_run import print_cost
 from snowshed.cli.resolve_options import with_accuracy
-from snowshed.cli.run_scene import run_scene
+from snowshed.cli.run_scene import run_or_cost
 from snowshed.scene.scene import ResolvedScene, Scene
 
 
@@ -38,14 +38,7 @@ def run(
       snowshed run scene.json -o results
     """  # noqa: D301 - click wants the control character
     resolved = _resolved(scene, accuracy, quiet=quiet)
-    if check:
-        check_can_be_measured(resolved)
-    if dry_run:
-        print_cost(resolved)
-    else:
-        run_scene(resolved, folder, resume, quiet)
-        if check:
-            check_run(folder, quiet)
+    run_or_cost(resolved, folder, resume=resume, dry_run=dry_run, quiet=quiet, check=check)
 
 
 @click.command(hidden=True)

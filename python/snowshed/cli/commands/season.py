@@ -11,7 +11,13 @@ import click
 
 from snowshed._core import InputError
 from snowshed.base.interrupt import Interrupted
-from snowshed.cli.common_options import PATH, ResultsFolder, dry_run_option, quiet_option
+from snowshed.cli.common_options import (
+    PATH,
+    ResultsFolder,
+    dry_run_option,
+    quiet_option,
+    resume_flag,
+)
 from snowshed.cli.dry_run import print_cost
 from snowshed.cli.exit_codes import Stopped
 from snowshed.cli.scene_options import (
@@ -76,7 +82,7 @@ SETTLED = {"settled\nheight, m": ("settled_height_m", "{:.2f}")}
     type=float,
     default=DEFAULTS.adhesion,
     show_default=True,
-    help="Adhesion of the snow to the panel, Pa.",
+    help="Adhesion of the snow to the panel [Pa].",
 )
 @click.option(
     "--catch",
@@ -125,10 +131,10 @@ SETTLED = {"settled\nheight, m": ("settled_height_m", "{:.2f}")}
     metavar="DEPTH",
     default=str(DEFAULTS.cover),
     show_default=True,
-    help="Natural snow cover below the stack: weather (from the file), none, or a depth in m.",
+    help="Natural snow cover below the stack: weather (from the file), none, or a depth [m].",
 )
 @weather_options
-@click.option("--resume", is_flag=True, help="Resume an interrupted season.")
+@resume_flag("Resume an interrupted season.")
 @dry_run_option("Print the releases, and the cost of the slide-offs, and exit.")
 @quiet_option
 @scene_options

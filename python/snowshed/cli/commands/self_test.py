@@ -25,7 +25,7 @@ def self_test(context: click.Context) -> int:
 
     Prints the error of each problem and its tolerance. The exit code is 1 if an error exceeds its
     tolerance. The validation, a larger suite of problems, comes with the source of snowshed: make
-    verify.
+    validation.
 
     \b
     Example:

@@ -11,8 +11,10 @@ import click
 
 from snowshed._core import InputError
 from snowshed.base.messages import suggestion
+from snowshed.cli.common_options import jobs_option
 from snowshed.cli.compute_study import compute_study, print_study_cost
 from snowshed.cli.exit_codes import Failed, Stopped
+from snowshed.cli.number_texts import named_span, numbers
 from snowshed.cli.terminal import PlainConsole, say
 from snowshed.methods.slide.settings import SlideSettings
 from snowshed.scene.builders.terrain_copy import removing_copies, terrain_copy
@@ -59,7 +61,7 @@ class RangeOptions:
         runs, seed = options.pop("runs"), options.pop("sample_seed")
         return cls(
             draw(spans, runs, seed=seed) if spans else None,
-            _pressures(options.pop("pressures")),
+            numbers("--pressures", options.pop("pressures"), example="1,3,10"),
             **{name: options.pop(name) for name in ("reached_above", "jobs")},
         )
 
@@ -67,7 +69,7 @@ class RangeOptions:
 def range_options(command: Any) -> Any:
     """Add the options of many slides."""
     for option in (
-        click.option("--jobs", type=int, help="With --range: runs at once.  [default: cores]"),
+        jobs_option("With --range: runs"),
         click.option(
             "--pressures", default="1,3,10", show_default=True, metavar="KPA,...",
             help="With --range: pressures whose exceedance is mapped.",
@@ -163,23 +165,19 @@ def _study(scene: Scene, options: RangeOptions) -> Study:
 
 def _span(text: str) -> tuple[str, Span]:
     """Return the name and the interval of a text such as "mu=0.3:0.5"."""
-    name, _, ends = text.partition("=")
-    name = SYMBOLS.get(name, name)
-    names = [THICKNESS, *_numbers()]
+    given, ends = named_span("--range", text, example="mu=0.3:0.5")
+    name = SYMBOLS.get(given, given)
+    names = [THICKNESS, *_numerical_settings()]
     if name not in names:
         allowed = ", ".join([*SYMBOLS, *names])
         raise InputError(f"--range: {name!r} is none of {allowed}{suggestion(name, names)}")
     try:
-        low, high = (float(end) for end in ends.split(":"))
-    except ValueError:
-        raise InputError(f"--range: {text!r} is not of the form {name}=LOW:HIGH") from None
-    try:
-        return name, Span(low, high)
+        return name, Span(*ends)
     except InputError as error:
         raise InputError(f"--range {name}: {error}") from None
 
 
-def _numbers() -> list[str]:
+def _numerical_settings() -> list[str]:
     """Return the names of the numerical settings that do not change the grid."""
     names = [
         parameter.path.partition(".")[2]
@@ -194,13 +192,6 @@ def _paths(name: str, areas: int) -> list[str]:
     if name == THICKNESS:
         return [f"terrain.release.{area}.thickness" for area in range(areas)]
     return [f"numerics.{name}"]
-
-
-def _pressures(text: str) -> list[float]:
-    try:
-        return [float(part) for part in text.split(",")]
-    except ValueError:
-        raise InputError(f"--pressures: {text!r} is not a list of numbers such as 1,3,10") from None
 
 
 def print_hazard(maps: HazardMaps, folder: Path) -> None:

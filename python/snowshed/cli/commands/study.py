@@ -15,6 +15,7 @@ from snowshed.cli.common_options import (
     PATH,
     ResultsFolder,
     dry_run_option,
+    jobs_option,
     quiet_notes_option,
     quiet_option,
     resume_option,
@@ -37,6 +38,16 @@ Command = TypeVar("Command", bound=Callable[..., Any])
 
 FORMATS = ("csv", "parquet", "netcdf")
 
+_format_option = click.option(
+    "--format",
+    "form",
+    type=click.Choice(FORMATS),
+    help="Format.  [default: from the suffix .csv, .parquet or .nc]",
+)
+_name_option = click.option(
+    "--study", "name", help="Name of the study, if the folder holds several."
+)
+
 
 def _computing_options(command: Command) -> Command:
     """Add the options of the commands that compute."""
@@ -50,7 +61,7 @@ def _computing_options(command: Command) -> Command:
             " Needs the extra snowshed[cluster].",
         ),
         click.option("--threads", type=int, help="Threads of each run.  [default: fill the cores]"),
-        click.option("--jobs", type=int, help="Runs at once.  [default: the number of cores]"),
+        jobs_option("Runs"),
     ):
         command = option(command)
     return command
@@ -83,7 +94,7 @@ def template(file: Optional[Path]) -> None:
 
 @study.command(hidden=True)
 @click.argument("file", type=PATH)
-@click.option("--jobs", type=int, help="Runs at once.  [default: the number of cores]")
+@jobs_option("Runs")
 def plan(file: Path, jobs: Optional[int]) -> None:
     """Print the number and the expected time of a study's runs; see ``run --dry-run``."""
     print_study_cost(Study.load(file), jobs)
@@ -144,13 +155,8 @@ def status(folder: Path) -> None:
 @study.command()
 @click.argument("folder", type=PATH)
 @click.option("-o", "--output", "file", type=PATH, required=True, help="File to write.")
-@click.option(
-    "--format",
-    "form",
-    type=click.Choice(FORMATS),
-    help="Format.  [default: from the suffix .csv, .parquet or .nc]",
-)
-@click.option("--study", "name", help="Name of the study, if the folder holds several.")
+@_format_option
+@_name_option
 @click.option("--timing", is_flag=True, help="Add wall times and the machine of each run.")
 @quiet_option
 def export(
@@ -169,7 +175,7 @@ def export(
 @click.option(
     "-o", "--output", "file", type=PATH, help="File to write.  [default: study.png in the folder]"
 )
-@click.option("--study", "name", help="Name of the study, if the folder holds several.")
+@_name_option
 @quiet_option
 def picture(folder: Path, file: Optional[Path], name: Optional[str], quiet: bool) -> None:
     """Draw the results of a study over each parameter that varies."""
@@ -190,13 +196,8 @@ def picture(folder: Path, file: Optional[Path], name: Optional[str], quiet: bool
     show_default=True,
     help="Trimming rule (thesis A.4.2) used for height_m, length_m, …",
 )
-@click.option(
-    "--format",
-    "form",
-    type=click.Choice(FORMATS),
-    help="Format.  [default: from the suffix .csv, .parquet or .nc]",
-)
-@click.option("--study", "name", help="Name of the study, if the folder holds several.")
+@_format_option
+@_name_option
 @quiet_option
 def remeasure(
     folder: Path, file: Path, trimming: str, form: Optional[str], name: Optional[str], quiet: bool

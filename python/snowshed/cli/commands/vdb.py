@@ -22,7 +22,7 @@ from snowshed.cli.terminal import say
 @click.option(
     "--snapshots", is_flag=True, help="Write the snapshots instead of the stack after events."
 )
-@click.option("--width", type=float, help="Width of the strip for 2D results, m.")
+@click.option("--width", type=float, help="Width of the strip for 2D results [m].")
 @quiet_option
 def vdb(
     results: Path, output: Optional[Path], snapshots: bool, width: Optional[float], quiet: bool

@@ -20,9 +20,9 @@ from snowshed.cli.terminal import say
 @click.option(
     "--video", type=PATH, help="Video to write instead of the page: film.mp4 or film.gif."
 )
-@click.option("--seconds", type=float, help="Duration of the video, s.  [default: at most 12]")
+@click.option("--seconds", type=float, help="Duration of the video [s].  [default: at most 12]")
 @click.option(
-    "--width", type=int, default=960, show_default=True, help="Width of the video, pixels."
+    "--width", type=int, default=960, show_default=True, help="Width of the video [pixels]."
 )
 @click.option(
     "--colour", help="Quantity that colours the snow in the video, such as event or speed."

@@ -15,7 +15,7 @@ import numpy as np
 
 from snowshed.base.notes import tell
 from snowshed.io.voxels.array_files import number_type, numbers_of
-from snowshed.io.voxels.metaimage_fields import Fields
+from snowshed.io.voxels.metaimage_fields import HeaderFields
 from snowshed.io.voxels.packed_numbers import packed_numbers
 from snowshed.io.voxels.text_numbers import text_numbers
 from snowshed.io.voxels.turned import Turn, turned
@@ -54,7 +54,7 @@ def open_metaimage(path: Path) -> VoxelFile:
     OSError
         If it cannot be read.
     """
-    fields = Fields.read(path)
+    fields = HeaderFields.read(path)
     shape = _shape(fields)
     kind = _kind(fields)
     opened = _numbers(fields, shape, kind)
@@ -67,7 +67,7 @@ def open_metaimage(path: Path) -> VoxelFile:
     return turned(image, turn)
 
 
-def _shape(fields: Fields) -> tuple[int, int, int]:
+def _shape(fields: HeaderFields) -> tuple[int, int, int]:
     """Return the voxels (nz, ny, nx)."""
     object_type = fields.text("ObjectType", "Image")
     if object_type != "Image":
@@ -86,7 +86,7 @@ def _shape(fields: Fields) -> tuple[int, int, int]:
     return nz, ny, nx
 
 
-def _kind(fields: Fields) -> str:
+def _kind(fields: HeaderFields) -> str:
     """Return the name of the type of the numbers."""
     element = fields.text("ElementType", "")
     if element not in ELEMENTS:
@@ -101,7 +101,7 @@ def _kind(fields: Fields) -> str:
     return ELEMENTS[element] + ("-be" if True in orders else "")
 
 
-def _numbers(fields: Fields, shape: tuple[int, int, int], kind: str) -> VoxelFile:
+def _numbers(fields: HeaderFields, shape: tuple[int, int, int], kind: str) -> VoxelFile:
     """Return the image before it has a size or a place."""
     path, dtype = fields.path, number_type(kind)
     packed = fields.flag("CompressedData", False)
@@ -120,7 +120,7 @@ def _numbers(fields: Fields, shape: tuple[int, int, int], kind: str) -> VoxelFil
     return numbers_of(path, data, shape, dtype, start)
 
 
-def _data_file(fields: Fields) -> Path:
+def _data_file(fields: HeaderFields) -> Path:
     """Return the file of the numbers, which is the same or beside it."""
     path, name = fields.path, fields.text("ElementDataFile", "")
     if name.upper() == "LOCAL":
@@ -139,7 +139,7 @@ def _data_file(fields: Fields) -> Path:
 
 
 def _header_size(
-    fields: Fields, data: Path, start: int, shape: Optional[tuple[int, int, int]], kind: str
+    fields: HeaderFields, data: Path, start: int, shape: Optional[tuple[int, int, int]], kind: str
 ) -> int:
     """Return the number of bytes before the numbers; -1 means everything except the numbers."""
     text = fields.text("HeaderSize", "")
@@ -155,7 +155,7 @@ def _header_size(
     return max(size, start)
 
 
-def _tell_of_scale(fields: Fields) -> None:
+def _tell_of_scale(fields: HeaderFields) -> None:
     """Print a note that the file's scale is not applied to the numbers."""
     (slope,) = fields.numbers("ElementToIntensityFunctionSlope", 1, [1.0])
     (offset,) = fields.numbers("ElementToIntensityFunctionOffset", 1, [0.0])
@@ -168,7 +168,7 @@ def _tell_of_scale(fields: Fields) -> None:
         )
 
 
-def _spacing(fields: Fields) -> Optional[float]:
+def _spacing(fields: HeaderFields) -> Optional[float]:
     """Return the edge of a voxel, m."""
     name = fields.given(*SPACINGS)
     if name is None:
@@ -187,7 +187,7 @@ def _spacing(fields: Fields) -> Optional[float]:
     return float(f"{edges[0] * UNITS[unit]:.12g}")
 
 
-def _turn(fields: Fields) -> Turn:
+def _turn(fields: HeaderFields) -> Turn:
     """Return the axes in terms of those of the file.
 
     Three numbers are where an axis of the file points to, x first.

@@ -18,7 +18,7 @@ LAST = "ElementDataFile"
 
 
 @dataclass(frozen=True)
-class Fields:
+class HeaderFields:
     """Fields of a header; every error names the field and its content.
 
     Attributes
@@ -36,7 +36,7 @@ class Fields:
     end: int
 
     @classmethod
-    def read(cls, path: Path) -> Fields:
+    def read(cls, path: Path) -> HeaderFields:
         """Return the fields up to `LAST`, which ends a header.
 
         Raises

@@ -24,7 +24,7 @@ ORIENTATIONS = {
 
 
 @dataclass(frozen=True)
-class Picture:
+class PixelPicture:
     """A picture of one number per pixel, of known size, read on demand.
 
     Attributes
@@ -60,7 +60,7 @@ class Picture:
 
 def stacked(
     name: str,
-    pictures: Sequence[Picture],
+    pictures: Sequence[PixelPicture],
     voxel_size: Optional[float] = None,
     printed_size: Optional[float] = None,
 ) -> VoxelFile:
@@ -111,7 +111,7 @@ def oriented(pixels: NDArray[Any], orientation: int) -> NDArray[Any]:
     return pixels[:: -1 if upward else 1, :: -1 if leftward else 1]
 
 
-def _check_same(picture: Picture, first: Picture) -> None:
+def _check_same(picture: PixelPicture, first: PixelPicture) -> None:
     first_name = Path(first.name).name
     if picture.size != first.size:
         raise InputError(

@@ -10,7 +10,7 @@ from typing import Optional
 from snowshed._core import InputError
 from snowshed.base.limits import PAGES
 from snowshed.base.notes import tell
-from snowshed.io.voxels.picture import Picture, stacked
+from snowshed.io.voxels.picture import PixelPicture, stacked
 from snowshed.io.voxels.plain_pictures import open_picture
 from snowshed.io.voxels.tiff_description import Description, described
 from snowshed.io.voxels.tiff_pages import contiguous_copies, is_big_endian, page_picture
@@ -78,12 +78,12 @@ def open_slices(folder: Path) -> VoxelFile:
     return stacked(str(folder), pictures, voxel_size, printed)
 
 
-def _pages(path: Path) -> tuple[list[Picture], Description, Optional[float]]:
+def _pages(path: Path) -> tuple[list[PixelPicture], Description, Optional[float]]:
     """Return the pages of a TIFF file, its description, and the size of its pixels in print."""
     big_endian = is_big_endian(path)
     told: list[tuple[Description, Optional[float]]] = []
 
-    def look(tags: Tags) -> Picture:
+    def look(tags: Tags) -> PixelPicture:
         picture = page_picture(path, tags, big_endian)
         if not told:
             text = described(str(path), tags.text(270), tags.ratio(282))

@@ -16,7 +16,7 @@ from snowshed._core import InputError
 from snowshed.base.damage import DAMAGED
 from snowshed.base.extras import require
 from snowshed.io.input_file import open_regular
-from snowshed.io.voxels.picture import ORIENTATIONS, Picture
+from snowshed.io.voxels.picture import ORIENTATIONS, PixelPicture
 from snowshed.io.voxels.voxel_file import check_size
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ TYPES = {
 ORIENTATION = 274  # tag of Exif
 
 
-def open_picture(path: Path, kind: str) -> Picture:
+def open_picture(path: Path, kind: str) -> PixelPicture:
     """Return a picture of a kind, "PNG" or "BMP".
 
     Raises
@@ -52,7 +52,7 @@ def open_picture(path: Path, kind: str) -> Picture:
         if orientation not in ORIENTATIONS:
             orientation = None
         notes = ("the shades of its palette are used as its numbers",)
-        return Picture(
+        return PixelPicture(
             str(path),
             (height, width),
             np.dtype(TYPES[image.mode]),

@@ -55,7 +55,7 @@ def text_numbers(
     if 2 * count > len(text) + 1:  # a digit and a space each
         raise InputError(f"{name}: damaged: {len(text):,} characters for {count:,} numbers")
     with warnings.catch_warnings():
-        warnings.simplefilter("error", DeprecationWarning)  # of text that is no number
+        warnings.simplefilter("error", DeprecationWarning)  # the text is not a number
         try:
             numbers = np.fromstring(text.decode("ascii"), dtype=np.float64, sep=" ")
         except (ValueError, DeprecationWarning) as error:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from snowshed._core import InputError
 from snowshed.io.input_file import open_regular
 from snowshed.io.voxels import tiff_segments as segments
-from snowshed.io.voxels.picture import ORIENTATIONS, Picture
+from snowshed.io.voxels.picture import ORIENTATIONS, PixelPicture
 from snowshed.io.voxels.tiff_segments import Coding, decoded, read_at
 from snowshed.io.voxels.tiff_tags import Tags
 from snowshed.io.voxels.voxel_file import check_size
@@ -60,7 +60,7 @@ class Layout:
         return min(self.piece[0], self.size[0] - number * self.piece[0])
 
 
-def page_picture(path: Path, tags: Tags, big_endian: bool) -> Picture:
+def page_picture(path: Path, tags: Tags, big_endian: bool) -> PixelPicture:
     """Return a page as a picture.
 
     Raises
@@ -91,12 +91,12 @@ def page_picture(path: Path, tags: Tags, big_endian: bool) -> Picture:
         raise InputError(f"{name}: Orientation {orientation}; 1 to 8 are allowed")
     layout = _layout(path, tags, (height, width), big_endian)
     shades = {WHITE_IS_ZERO: ", WhiteIsZero", PALETTE: ", palette"}.get(photometric, "")
-    return Picture(
+    return PixelPicture(
         name,
         (height, width),
         dtype,
         f"{layout.coding.bits} bits, {dtype.name}{shades}",
-        _Reader(path, name, layout, palette),
+        _PageReader(path, name, layout, palette),
         orientation,
         sum(layout.counts),
         notes,
@@ -222,7 +222,7 @@ def _coding(tags: Tags, big_endian: bool) -> Coding:
 
 
 @dataclass(frozen=True)
-class _Reader:
+class _PageReader:
     """Reads the numbers of a page."""
 
     path: Path
@@ -258,7 +258,7 @@ def is_big_endian(path: Path) -> bool:
         return file.read(2) == b"MM"
 
 
-def contiguous_copies(picture: Picture, count: int) -> list[Picture]:
+def contiguous_copies(picture: PixelPicture, count: int) -> list[PixelPicture]:
     """Return consecutive pictures of a file in which only the first is a page.
 
     Raises
@@ -267,7 +267,7 @@ def contiguous_copies(picture: Picture, count: int) -> list[Picture]:
         If its numbers are compressed or not contiguous, or the file ends early.
     """
     reader = picture.read
-    if not isinstance(reader, _Reader):
+    if not isinstance(reader, _PageReader):
         raise TypeError("a page of a TIFF file is needed")
     layout = reader.layout
     begins = layout.offsets[0]

@@ -116,7 +116,7 @@ class MpmSettings(MethodSettings):
         Examples
         --------
         >>> MpmSettings(transfer="flip", flip_ratio=0.99).damping_text(188.2)
-        'damping 188 1/s (FLIP 0.99 a step)'
+        'damping 188 1/s (FLIP 0.99 per step)'
         >>> MpmSettings(transfer="flip", damping_rate=50).damping_text()
         'damping 50 1/s'
         >>> settings = MpmSettings(transfer="affine_flip", damping_rate=380, damping_length=0.01)
@@ -128,7 +128,7 @@ class MpmSettings(MethodSettings):
         if self.damping_rate is not None:
             over = f" over {self.damping_length:g} m" if self.damping_length else ""
             return f"damping {self.damping_rate:g} 1/s{over}"
-        share = f"FLIP {self.flip_ratio:g} a step"
+        share = f"FLIP {self.flip_ratio:g} per step"
         return share if rate is None else f"damping {rate:.3g} 1/s ({share})"
 
     step_factor = Alias("courant_factor")  # its name up to version 0.1

@@ -134,8 +134,8 @@ def validity_notes(
         )
     elif made and broken > AS_ONE * made:
         notes.append(
-            f"{100.0 * broken / made:.0f} % of the bonds broke: the slide does not move as a unit, "
-            "for which the method was made."
+            f"{100.0 * broken / made:.0f} % of the bonds broke: the method was made for snow that "
+            "moves as a unit; this slide does not."
         )
     if figures.get("ended") == "time_limit":
         notes.append("The slide was still moving at the time limit; it may run farther.")
@@ -146,9 +146,10 @@ def _of_release(area: ReleaseArea, settings: Mapping[str, Any]) -> list[str]:
     notes = []
     if area.outside > OUTSIDE:
         notes.append(
-            f"Release {area.name!r}: {100.0 * area.outside:.0f} % of it slope less than "
-            f"{SLOPES[0]:.0f} or more than {SLOPES[1]:.0f} degrees ({area.flattest:.0f} to "
-            f"{area.steepest:.0f}, mean {area.slope:.0f}), for which the method was made."
+            f"Release {area.name!r}: the method was made for slopes of {SLOPES[0]:.0f} to "
+            f"{SLOPES[1]:.0f} degrees; {100.0 * area.outside:.0f} % of the release area are "
+            f"flatter or steeper ({area.flattest:.0f} to {area.steepest:.0f} degrees, mean "
+            f"{area.slope:.0f})."
         )
     if area.lowest < ALTITUDES[0] or area.highest > ALTITUDES[1]:
         notes.append(

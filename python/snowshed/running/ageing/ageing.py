@@ -135,7 +135,7 @@ class Ageing:
         seconds = 3600.0 * self.hours(event)
         if not seconds or not (self.settling or self.sintering):
             return None
-        snow = _Snow(simulation, gravity)
+        snow = _AgeingSnow(simulation, gravity)
         strains = self._strains(snow, event)
         drops = np.zeros(len(snow.masses))
         drops[snow.stack] = snow.columns.drops(strains)
@@ -155,7 +155,7 @@ class Ageing:
             "intact": snow.intact(aged),
         }
 
-    def _strains(self, snow: _Snow, event: int) -> Floats:
+    def _strains(self, snow: _AgeingSnow, event: int) -> Floats:
         """Return the shortening of the nodes of the columns, as logarithms."""
         nodes = snow.columns
         if self.settling is None or not snow.yields.any():  # elastic snow has no density to gain
@@ -167,7 +167,7 @@ class Ageing:
         strains: Floats = np.log(after / before)
         return strains
 
-    def _sinter(self, snow: _Snow, plastic_strains: Floats, seconds: float) -> Floats:
+    def _sinter(self, snow: _AgeingSnow, plastic_strains: Floats, seconds: float) -> Floats:
         """Return the plastic strains of snow with the strength after sintering."""
         if self.sintering is None:
             return plastic_strains
@@ -206,7 +206,7 @@ def _intervals(given: object, where: str) -> list[Interval]:
     return sound
 
 
-class _Snow:
+class _AgeingSnow:
     """The snow of a simulation between two events, with its hardening law (1.1.42)."""
 
     def __init__(self, simulation: _core.Simulation, gravity: float) -> None:

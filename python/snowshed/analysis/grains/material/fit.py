@@ -11,7 +11,7 @@ import numpy as np
 
 from snowshed._core import InputError
 from snowshed.analysis.grains.material import readings
-from snowshed.analysis.grains.material.law import CamClay, Elasticity
+from snowshed.analysis.grains.material.law import CamClayFit, Elasticity
 from snowshed.analysis.grains.material.tests import (
     COMPACTION,
     CONFINED,
@@ -91,7 +91,7 @@ class FittedSnow:
         Notes on the limits of the fit.
     """
 
-    law: CamClay
+    law: CamClayFit
     ranges: dict[str, Range]
     notes: list[str] = field(default_factory=list)
 
@@ -101,7 +101,7 @@ class FittedSnow:
 
         Their number is proportional to the speed of elastic waves.
         """
-        return self.law.wave_speed / CamClay.of(Snow.preset("calibrated")).wave_speed
+        return self.law.wave_speed / CamClayFit.of(Snow.preset("calibrated")).wave_speed
 
 
 def isotropic_strength(curves: Curves) -> float:
@@ -159,7 +159,7 @@ def fit_material(
     own_p0 = {sample: value for (_, sample), value in strengths.items()}
     _read_strengths(curves, ranges, own_p0, notes)
     _read_hardening(curves, ranges, elastic, p0, notes)
-    law = CamClay(
+    law = CamClayFit(
         density,
         elastic,
         ranges["critical_state_slope"].value,
@@ -245,7 +245,7 @@ def _read_hardening(
 
 
 def _check_confined(
-    curves: Curves, ranges: dict[str, Range], law: CamClay, notes: list[str]
+    curves: Curves, ranges: dict[str, Range], law: CamClayFit, notes: list[str]
 ) -> None:
     """Compare the peak of confined compression, to which nothing is fitted."""
     stress = law.confined_yield()
@@ -276,12 +276,12 @@ def _note_meaning(fitted: FittedSnow, modulus: Optional[float], few_grains: int)
         notes.append("one sample: the ranges of the parameters are not known")
 
 
-def exponents(laws: Sequence[CamClay]) -> dict[str, float]:
+def exponents(laws: Sequence[CamClayFit]) -> dict[str, float]:
     """Return the exponents n with which E and p0 grow as density^n; empty for one density.
 
     Examples
     --------
-    >>> laws = [CamClay(d, Elasticity(d**4, 0.3), 0.5, d, 0.2, 0.1) for d in (100.0, 200.0)]
+    >>> laws = [CamClayFit(d, Elasticity(d**4, 0.3), 0.5, d, 0.2, 0.1) for d in (100.0, 200.0)]
     >>> {name: round(n, 6) for name, n in exponents(laws).items()}
     {'youngs_modulus': 4.0, 'preconsolidation_pressure': 1.0}
     """

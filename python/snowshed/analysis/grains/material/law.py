@@ -57,7 +57,7 @@ class Elasticity:
 
 
 @dataclass(frozen=True)
-class CamClay:
+class CamClayFit:
     """The parameters of the law.
 
     Attributes
@@ -78,7 +78,7 @@ class CamClay:
     hardening_factor: float
 
     @classmethod
-    def of(cls, snow: Snow) -> CamClay:
+    def of(cls, snow: Snow) -> CamClayFit:
         """Return the law of a complete snow."""
         data = {name: float(value) for name, value in snow.to_data().items() if name != "model"}  # type: ignore[arg-type]
         elastic = Elasticity(data.pop("youngs_modulus"), data.pop("poissons_ratio"))
@@ -123,7 +123,7 @@ class CamClay:
 
         Examples
         --------
-        >>> round(CamClay(210, Elasticity(1e6, 0.3), 0.5, 7e3, 0.2, 0.1).confined_yield())
+        >>> round(CamClayFit(210, Elasticity(1e6, 0.3), 0.5, 7e3, 0.2, 0.1).confined_yield())
         3030
         """
         p0, beta = self.preconsolidation_pressure, self.cohesion

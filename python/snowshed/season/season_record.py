@@ -15,7 +15,7 @@ from snowshed.season.winter_years import Calendar, SnowSeason, calendar_of
 
 
 @dataclass(frozen=True)
-class Record:
+class SeasonRecord:
     """The weather of a season or of many winters.
 
     Attributes
@@ -57,7 +57,7 @@ class Record:
         --------
         >>> from snowshed.season.generator import EXAMPLE_CLIMATE
         >>> rows = EXAMPLE_CLIMATE.winters(3, seed=1)
-        >>> winters = Record(rows[:500]).winters()
+        >>> winters = SeasonRecord(rows[:500]).winters()
         >>> winters.counted_text, winters.excluded_text
         ('2 of 3 winters', '2003/04 (79 %)')
         """
@@ -105,7 +105,8 @@ class WinterList:
         if self.excluded_text:
             told.append(
                 f"left out are the winters whose snow was observed on less than "
-                f"{percent(self.coverage)} of the days {self.season.text}: {self.excluded_text}"
+                f"{whole_percent(self.coverage)} of the days {self.season.text}: "
+                f"{self.excluded_text}"
             )
         if any(winter.listed for winter in self.winters):
             told.append(
@@ -118,7 +119,8 @@ class WinterList:
         """Notes on the winters with too few days of observed snow."""
         return [
             f"the snow of {winter.name} was observed on {winter.observed} of {winter.season} days "
-            f"{self.season.text} ({percent(winter.share)}); the snowfall of the others is unknown"
+            f"{self.season.text} ({whole_percent(winter.share)}); the snowfall of the others is "
+            "unknown"
             for winter in self.winters
             if winter.rows and not winter.counts and Source.GIVEN not in winter.sources
         ]
@@ -144,9 +146,9 @@ def _shortfall(winter: WinterQuality) -> Optional[str]:
     """Return why a winter does not count; None: it does."""
     if winter.counts:
         return None
-    return percent(winter.share) if winter.rows else "no rows"
+    return whole_percent(winter.share) if winter.rows else "no rows"
 
 
-def percent(share: float) -> str:
+def whole_percent(share: float) -> str:
     """Return a share in whole percent, rounded down."""
     return f"{int(100.0 * share + 1e-9)} %"

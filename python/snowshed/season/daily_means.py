@@ -25,7 +25,7 @@ FOLLOWING = 2.0  # hours between readings that are held against that rate
 
 
 @dataclass(frozen=True)
-class Days:
+class StationDays:
     """Days of a station, in order; NaN: unknown.
 
     Attributes
@@ -69,7 +69,7 @@ class Days:
         return np.array([day.toordinal() for day in self.dates], dtype=np.int64)
 
 
-def days_of_station(station: Station) -> Days:
+def days_of_station(station: Station) -> StationDays:
     """Return the days of a station from its first to its last row, without longer gaps.
 
     Examples
@@ -92,7 +92,7 @@ def days_of_station(station: Station) -> Days:
             warm.setdefault(row.time.date(), []).append(row.temperature)
     depths, levels, seams, jumps = _depths(station)
     dates = _calendar({*lines, *new, *water})
-    return Days(
+    return StationDays(
         dates,
         np.array(_lines(dates, lines)),
         np.array([day in lines or day in new or day in water for day in dates]),

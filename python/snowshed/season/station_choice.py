@@ -26,7 +26,7 @@ COLD = -4.0  # degrees C; what falls on such days is snow for certain
 
 
 @dataclass(frozen=True)
-class Column:
+class StationColumn:
     """The new snow that one column of a station tells.
 
     Attributes
@@ -50,7 +50,7 @@ class Column:
 
 
 @dataclass(frozen=True)
-class Choice:
+class StationChoice:
     """The columns that tell a winter's snow.
 
     Attributes
@@ -85,7 +85,10 @@ class Chooser:
     """
 
     def __init__(
-        self, columns: Mapping[Source, Column], temperature: Floats, only: Source | None = None
+        self,
+        columns: Mapping[Source, StationColumn],
+        temperature: Floats,
+        only: Source | None = None,
     ) -> None:
         self.only = only
         self._cold = temperature <= COLD
@@ -100,13 +103,13 @@ class Chooser:
         }
         self._gauge_fails = Source.DEPTH in self._against(Source.GAUGE, everything)
 
-    def of(self, winter: Booleans) -> Choice:
+    def of(self, winter: Booleans) -> StationChoice:
         """Return the columns for the days of a winter (n,)."""
         there = {source for source, column in self.columns.items() if _tells(column, winter)}
         sums = self._sums(winter)
         if self.only is not None:
             others = [source for source in self.columns if source is not self.only]
-            return Choice([self.only], others[0] if others else None, sums)
+            return StationChoice([self.only], others[0] if others else None, sums)
         with_hand = Source.HAND in self.columns
         choice = (self._with_hand if with_hand else self._without_hand)(winter, there, sums)
         if max(sums.values(), default=0.0) <= LEAST_DIFFERENCE:
@@ -116,7 +119,7 @@ class Chooser:
 
     def _with_hand(
         self, winter: Booleans, there: set[Source], sums: Mapping[Source, float]
-    ) -> Choice:
+    ) -> StationChoice:
         order = [source for source in (Source.HAND, Source.DEPTH) if source in there]
         stronger = self._against(Source.HAND, winter)
         none_by_hand = sums.get(Source.HAND, 0.0) == 0.0 and Source.HAND in there
@@ -125,25 +128,25 @@ class Chooser:
             order = [Source.DEPTH, Source.HAND]
             wrong.add(Source.HAND)
         elif Source.GAUGE in stronger and none_by_hand and self._cold_gauge(winter):
-            return Choice([Source.GAUGE, *order], None, sums, frozenset({Source.HAND}))
+            return StationChoice([Source.GAUGE, *order], None, sums, frozenset({Source.HAND}))
         filling: Source | None = None
         if Source.GAUGE in there:
             agrees = not any(self._contradict(Source.GAUGE, source, winter) for source in order)
             filling = Source.GAUGE if agrees and not self._gauge_fails else None
-        return Choice(order, filling, sums, frozenset(wrong))
+        return StationChoice(order, filling, sums, frozenset(wrong))
 
     def _without_hand(
         self, winter: Booleans, there: set[Source], sums: Mapping[Source, float]
-    ) -> Choice:
+    ) -> StationChoice:
         if Source.DEPTH in self._against(Source.GAUGE, winter):
-            return Choice([Source.DEPTH], None, sums, frozenset({Source.GAUGE}))
+            return StationChoice([Source.DEPTH], None, sums, frozenset({Source.GAUGE}))
         if Source.GAUGE in self._against(Source.DEPTH, winter):
-            return Choice([Source.GAUGE], None, sums, frozenset({Source.DEPTH}))
+            return StationChoice([Source.GAUGE], None, sums, frozenset({Source.DEPTH}))
         if self._gauge_fails and Source.DEPTH in there:
-            return Choice([Source.DEPTH], None, sums)
+            return StationChoice([Source.DEPTH], None, sums)
         if self._gauge_fails:
-            return Choice([], Source.GAUGE, sums)
-        return Choice(
+            return StationChoice([], Source.GAUGE, sums)
+        return StationChoice(
             [source for source in (Source.GAUGE, Source.DEPTH) if source in there], None, sums
         )
 
@@ -201,6 +204,6 @@ class Chooser:
         return False
 
 
-def _tells(column: Column, days: Booleans) -> bool:
+def _tells(column: StationColumn, days: Booleans) -> bool:
     """Return whether a column has a value on any of some days."""
     return bool((days & ~np.isnan(column.snow)).any())

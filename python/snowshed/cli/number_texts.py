@@ -1,0 +1,89 @@
+"""Numbers in the texts of options: lists, ranges with a step, and named spans."""
+
+from __future__ import annotations
+
+from snowshed._core import InputError
+
+MOST_STEPS = 1000
+
+
+def numbers(option: str, text: str, *, example: str, steps: bool = False) -> list[float]:
+    """Return the numbers in the text of an option, which separates them by commas.
+
+    Parameters
+    ----------
+    option
+        The option, for the error.
+    text
+        The text.
+    example
+        A list, for the error.
+    steps
+        Whether the text may also be FROM:TO:STEP.
+
+    Raises
+    ------
+    InputError
+        If the text is no such list, or has more than `MOST_STEPS` steps.
+
+    Examples
+    --------
+    >>> numbers("--tilt", "40,60", example="40,60")
+    [40.0, 60.0]
+    >>> numbers("--heights", "1:2:0.5", example="2,3", steps=True)
+    [1.0, 1.5, 2.0]
+    """
+    try:
+        if steps and ":" in text:
+            return _stepped(text)
+        return [float(part) for part in text.split(",")]
+    except (ValueError, ZeroDivisionError, OverflowError):
+        forms = f"a list of numbers such as {example}"
+        forms = f"a number, {forms}, or FROM:TO:STEP" if steps else forms
+        raise InputError(f"{option}: {text!r} is not {forms}") from None
+
+
+def _stepped(text: str) -> list[float]:
+    low, high, step = (float(part) for part in text.split(":"))
+    count = int((high - low) / step + 1e-9) + 1
+    if not (step > 0 and 1 <= count <= MOST_STEPS):
+        raise ValueError
+    return [round(low + n * step, 9) for n in range(count)]
+
+
+def named_span(
+    option: str, text: str, *, example: str, single: bool = False
+) -> tuple[str, tuple[float, float]]:
+    """Return the name and the ends of a span NAME=LOW:HIGH.
+
+    Parameters
+    ----------
+    option
+        The option, for the error.
+    text
+        The text.
+    example
+        A span, for the error.
+    single
+        Whether the text may also be NAME=VALUE, which gives equal ends.
+
+    Raises
+    ------
+    InputError
+        If the text has another form.
+
+    Examples
+    --------
+    >>> named_span("--range", "friction=0.3:0.6", example="friction=0.3:0.6")
+    ('friction', (0.3, 0.6))
+    """
+    name, _, values = text.partition("=")
+    try:
+        ends = [float(end) for end in values.split(":")]
+        if not (1 if single else 2) <= len(ends) <= 2:
+            raise ValueError
+        return name, (ends[0], ends[-1])
+    except ValueError:
+        raise InputError(
+            f"{option}: {text!r} is not of the form NAME=LOW:HIGH, such as {example}"
+        ) from None
