@@ -20,8 +20,8 @@ class Output(Record):
     film : bool
         Record the particles over time, for snowshed view. Default True.
     film_interval : float
-        Simulated time between frames of the film; 0: chosen by how long an event should last [s].
-        0 <= value <= 1e+09; default 0.
+        Simulated time between frames of the film; 0: chosen by the expected duration of an event
+        [s]. 0 <= value <= 1e+09; default 0.
     energy : bool
         Keep the energy balance. Default False.
     checkpoint_interval : float

@@ -68,7 +68,8 @@ class Shape(Record):
     threshold : float
         Threshold of a fog volume: the solid is where its value is larger (vdb).
     shapes : list of Shape
-        The parts (union); The body, then what is cut away (difference); The shape (transform).
+        The parts (union); The body, then the shapes that are cut away (difference); The shape
+        (transform).
     axis : sequence of float
         Rotation axis (3D only; +y in 2D) (transform).
     angle : float

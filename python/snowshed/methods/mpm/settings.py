@@ -28,7 +28,7 @@ class MpmSettings(MethodSettings):
     scheme : {"thesis", "objective"}
         Mechanisms that belong together: objective sets transfer affine_flip, damping_rate 380 1/s,
         damping_length and crack_band_length 0.01 m, contact touch and fields of events, unless
-        they are given; thesis sets what these settings are by default. Default "thesis".
+        they are given; thesis keeps the defaults of these settings. Default "thesis".
     precision : {"float", "double"}
         Floating-point type of the particles and the grid. Default "float".
     transfer : {"flip", "apic", "affine_flip"}
@@ -37,24 +37,25 @@ class MpmSettings(MethodSettings):
         Share of FLIP in FLIP/PIC in each step, so that shorter steps damp more; 0 is pure PIC. 0
         <= value <= 1; default 0.99.
     damping_rate : float
-        In place of flip_ratio: rate of the damping, whatever the step [1/s]. 0 <= value <= 1e+09.
+        Rate of the damping, independent of the time step, in place of flip_ratio [1/s]. 0 <= value
+        <= 1e+09.
     damping_length : float
-        Length over which velocities are averaged to damp them at the damping rate, whatever the
-        grid, with affine_flip; 0: the damping is PIC's, over dx [m]. 0 <= value <= 1e+06; default
+        Length over which affine_flip averages velocities to damp them at the damping rate,
+        independent of the grid; 0: the damping is PIC's, over dx [m]. 0 <= value <= 1e+06; default
         0.
     crack_band_length : float
-        Snow that dilates softens dx over this length as fast as its law says, so that cracks take
-        the same energy per area on any grid; 0: the law itself [m]. 0 <= value <= 1e+06; default
-        0.
+        Width of a crack: dilating snow softens dx/width times as fast as its law, so that a crack
+        takes the same energy per area on any grid; 0: the law itself [m]. 0 <= value <= 1e+06;
+        default 0.
     contact : {"kernel", "touch"}
-        When an obstacle's node acts on snow: once its splines reach the node (kernel), or once a
-        particle with weight there touches the obstacle itself (touch). Default "kernel".
+        Snow on which a node of an obstacle acts: all whose splines reach the node (kernel), or
+        only if one of its particles touches the obstacle itself (touch). Default "kernel".
     contact_radius : float
         Radius of the particles that touch, over half the spacing of particles. 0 < value <= 1;
         default 0.6.
     fields : {"one", "events"}
-        Velocity fields of the grid: one for all snow, which sticks together where it meets, or one
-        for the snow of each event, which touches, slides and separates. Default "one".
+        Velocity fields of the grid: one for all snow, which then sticks together on contact, or
+        one for the snow of each event, which then touches, slides and separates. Default "one".
     event_friction : float
         Friction between the snow of different events, with fields of events, over that of the snow
         itself at the critical state, M/sqrt(3). 0 <= value <= 100; default 1.
@@ -69,8 +70,8 @@ class MpmSettings(MethodSettings):
         Snow slower than this drops out of the steps until something moves it; 0: never [m/s]. 0 <=
         value <= 10000; default 0.02.
     sleep_time : float
-        Duration for which it must have been slower without speeding up [s]. 0 <= value <= 1e+09;
-        default 0.04.
+        Time for which snow must stay below sleep_speed without speeding up [s]. 0 <= value <=
+        1e+09; default 0.04.
     threads : int
         Threads; 0: all. 0 <= value <= 4096; default 0.
     """

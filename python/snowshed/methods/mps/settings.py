@@ -98,7 +98,7 @@ class MpsSettings(MethodSettings):
         Residual of the pressure equation over its right-hand side. 0 < value <= 0.1; default
         0.0001.
     viscosity_tolerance : float
-        Residual of the viscous equation over what gravity adds in a step. 0 < value <= 0.1;
+        Residual of the viscous equation over the change by gravity in a step. 0 < value <= 0.1;
         default 0.0001.
     max_iterations : int
         Iterations after which a run ends with an error. 1 <= value <= 100000; default 1000.

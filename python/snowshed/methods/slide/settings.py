@@ -61,8 +61,8 @@ class SlideSettings(MethodSettings):
     entrainment_work : float
         Work that breaks up the snow that is taken up [J/kg]. 0 <= value <= 1e+12; default 0.
     split_ratio : float
-        Mass over that of a fresh particle beyond which a particle splits. 1 < value <= 1e+06;
-        default 1.5.
+        A particle splits when its mass exceeds this multiple of a fresh particle's. 1 < value <=
+        1e+06; default 1.5.
     stop_ratio : float
         The slide stops at this share of its largest kinetic energy. 0 <= value <= 1; default 0.01.
     threads : int
