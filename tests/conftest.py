@@ -59,7 +59,7 @@ def hide(monkeypatch: pytest.MonkeyPatch) -> Callable[[str], None]:
 
 @pytest.fixture
 def drawn() -> None:
-    """Of a test that looks at pictures or pages where the others of its file do not."""
+    """Draw the pictures and pages of this test, although `undrawn` leaves them out in its file."""
 
 
 @pytest.fixture

@@ -9,8 +9,8 @@
 namespace snowshed {
 
 /// A piece of the middle of a thin part: a rectangle between both of its faces. Its edges lie half
-/// the thickness away from those of the part. For a thin rod it is a line, for a small ball a
-/// point, except for rounding.
+/// the thickness inside the edges of the part. The rectangle of a thin rod is a line, and that of a
+/// small ball is a point, both up to rounding.
 struct ThinPart {
   Vec3 middle;      // m
   Vec3 normal;      // across the part, unit

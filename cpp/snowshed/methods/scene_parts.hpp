@@ -33,12 +33,12 @@ struct ResistanceSpec {
 /// Ground from a raster of elevations, and the areas on it.
 struct TerrainSpec {
   std::string file;  // ESRI ASCII grid
-  std::string crs;   // name of the coordinate reference system of raster and areas, for the results
+  std::string crs;   // coordinate reference system of raster and areas; results are written in it
   bool single_precision = true;  // rounds elevations in compatible mode
   std::string thickness_file;    // thickness of the release in place of the areas'; an ASCII grid
   double max_thickness = 10;     // m, of the snow in the areas
   double max_slope = 70;         // degrees, of cliffs under a release
-  std::string notes;             // assumptions about the files, for the results
+  std::string notes;             // assumptions about the files; results repeat them
   std::vector<AreaSpec> release, entrainment;
   std::vector<ResistanceSpec> resistance;
 };

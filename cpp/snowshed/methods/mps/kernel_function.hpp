@@ -56,8 +56,9 @@ void visit_beyond_second_layer(int dimension, const KernelConstants& k, const Vi
         visit(kernel_weight(std::sqrt(double(x * x + y * y + z * z)), k.radius), z);
 }
 
-/// 2 d/(lambda n0) sum of w z over the points behind a wall, for the second layer of a lattice
-/// above it, where z is the distance along the normal in l0; for all layers it is one.
+/// Share of the second layer of a lattice above a wall: 2 d/(lambda n0) times the sum of w z over
+/// the points behind the wall. z is the distance along the normal in l0. The shares of all layers
+/// add up to one.
 inline double second_layer_share(int dimension, const KernelConstants& k) {
   double sum = 0;
   visit_beyond_second_layer(dimension, k, [&](double w, int z) { sum += w * z; });

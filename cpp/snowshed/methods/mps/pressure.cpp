@@ -116,10 +116,10 @@ constexpr double least_source = 1e-8;
 /// Tolerance of densities below the surface, where particles need not form a lattice.
 constexpr double surface_tolerance = 0.002;
 
-/// Excess of density over a lattice, for the compensation (ours). Inside the snow it comes from the
-/// filled share of the room; beside wall particles from the number density, which grows faster near
-/// a wall. At the surface neighbours are missing; only those missing beyond a lattice's surface
-/// count, so that gaps close.
+/// Excess of density over that of a lattice, which the compensation (ours) reduces. Inside the snow
+/// the filled share of the room gives it. Beside wall particles the number density gives it,
+/// because it grows faster near a wall. A particle at the surface lacks neighbours. Only the
+/// neighbours that it lacks beyond the surface of a lattice count, so that gaps close.
 template <int D>
 double compensated_excess(const Model<D>& model, const Particles<D>& particles,
                           const Neighbourhood<D>& near, std::size_t i) {

@@ -31,8 +31,8 @@ struct Line {
     for (int k = 0; k + 1 < S; ++k) step[k] = difference<halves>(nodes[k + 1], nodes[k]);
   }
 
-  /// The weighted sum along direction d, for the particle in a lane; `weights` are those of the
-  /// steps.
+  /// Returns the sum along direction d, weighted for the particle in `lane`. `weights` are the
+  /// weights of the steps.
   template <class Weights>
   SNOWSHED_INLINE Node<T> value(const Weights& weights, int d, int lane) const {
     Node<T> sum = second;
