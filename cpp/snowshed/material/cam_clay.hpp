@@ -10,6 +10,11 @@
 // e_0 softens s times as fast: (1.2.7) holds with e_0 + s (e_v - e_0) in place of e_v > e_0. Cracks
 // are a few cells wide on any grid; with s in proportion to the cells, the energy that a crack
 // takes per area is the same on all. s = 1 is the law without it, bit for bit.
+//
+// With a relaxation time tau (Duvaut and Lions 1972) the stress may lie outside the yield surface.
+// A step of dt leaves the share tau / (dt + tau) of this overstress (backward Euler); the plastic
+// strain follows. Cracks and bands then have a width of their own, about tau times the speed of
+// sound, where snow deforms faster than it relaxes. tau = 0 is the law without it, bit for bit.
 #pragma once
 
 #include "snowshed/core/simd_math.hpp"
@@ -23,9 +28,10 @@ struct PQ {
   V p, q;
 };
 
-/// Constants and return mapping of a Cam-Clay material, with or without a crack band. C is a scalar
-/// if all particles of a pack share the constants, and a SIMD pack if each particle has its own.
-template <class C, bool band>
+/// Constants and return mapping of a Cam-Clay material. With `regularised` it may have a crack band
+/// and a relaxation time. C is a scalar if all particles of a pack share the constants, and a SIMD
+/// pack if each particle has its own.
+template <class C, bool regularised>
 struct CamClayLaw {
   using T = Scalar<C>;
   Elasticity<C> elastic;
@@ -33,7 +39,7 @@ struct CamClayLaw {
   C beta{};       ///< cohesion: tensile strength over p0
   C xi{};         ///< hardening factor
   C hardening{};  ///< K, Pa
-  // For the crack band only.
+  // Only if regularised: the crack band.
   C softening = C{} + T(1);  ///< s
   C band_begin{};            ///< e_0
 
@@ -79,20 +85,21 @@ struct CamClayLaw {
   }
 
   /// Brings an elastic trial back to the yield surface by backward Euler with hardening; returns
-  /// whether any particle of the pack yielded. With D the change of e_v,
+  /// whether any particle of the pack yielded. The share `overstress` of the way back is left out;
+  /// it is used only if regularised. With D the change of e_v,
   ///   p = p_tr + K_d D,   q = q_tr N / (N - c D),   y(p, q, p0(e_v + D)) = 0,
   /// where N = 2p - (1 - beta) p0 is y_p/M^2 and c = 6 mu (1 + 2 beta)/M^2. D is bracketed. At one
   /// end D = 0, the trial, and y > 0. At the other the flow becomes purely deviatoric (N = 0, y <
   /// 0), or the stress is zero if softening reduces p0 to zero before. Newton steps that leave the
   /// bracket are replaced by bisection.
   template <class V>
-  SNOWSHED_INLINE bool return_map(PQ<V>& s, V& ev) const {
+  SNOWSHED_INLINE bool return_map(PQ<V>& s, V& ev, T overstress = T(0)) const {
     // Snow that dilated far beyond the loss of its strength (u < -1) has no strength; u is clamped
     // there.
     const auto hardness = hyperbolic(max(V(-xi * softened(ev)), broadcast<V>(T(-1))));
     const auto yields = yield(s, strength(hardness)) > T(0);
     if (!any(yields)) return false;
-    project(s, ev, hardness, yields);
+    project(s, ev, hardness, yields, overstress);
     return true;
   }
 
@@ -100,7 +107,7 @@ struct CamClayLaw {
   /// The plastic strain that replaces e_v in (1.2.7).
   template <class V>
   SNOWSHED_INLINE V softened(const V& ev) const {
-    if constexpr (band)
+    if constexpr (regularised)
       return ev + (softening - T(1)) * max(V(ev - band_begin), broadcast<V>(T(0)));
     else
       return ev;
@@ -108,7 +115,7 @@ struct CamClayLaw {
   /// Change of that strain while e_v changes by d.
   template <class V>
   SNOWSHED_INLINE V softened_by(const V& ev, const V& d) const {
-    if constexpr (band) {
+    if constexpr (regularised) {
       const V zero = broadcast<V>(T(0));
       return d + (softening - T(1)) *
                      (max(V(ev + d - band_begin), zero) - max(V(ev - band_begin), zero));
@@ -119,7 +126,7 @@ struct CamClayLaw {
   /// e_v from which on p0 is zero.
   template <class V>
   SNOWSHED_INLINE V end_of_strength(const V&) const {
-    if constexpr (band)
+    if constexpr (regularised)
       return broadcast<V>(C(band_begin - band_begin / softening));
     else
       return broadcast<V>(T(0));
@@ -156,7 +163,7 @@ struct CamClayLaw {
   /// d p0 / d e_v where p0 > 0.
   template <class V>
   SNOWSHED_INLINE V strength_slope(const Hyperbolic<V>& k, const V& ev) const {
-    if constexpr (band)
+    if constexpr (regularised)
       return V(-xi * k.cosh) * softening_at(ev);
     else
       return V(-xi * k.cosh);
@@ -189,7 +196,7 @@ struct CamClayLaw {
   /// Replaces the trial by the returned state for the particles in `yields`.
   template <class V, class M>
   __attribute__((noinline)) void project(PQ<V>& s, V& ev, const Hyperbolic<V>& hardness,
-                                         const M& yields) const {
+                                         const M& yields, T overstress) const {
     const V zero = broadcast<V>(T(0));
     Trial<V> trial{s, ev, hardness, true};
     const V p0_old = strength(hardness);
@@ -217,10 +224,15 @@ struct CamClayLaw {
     // q lies exactly on the surface and never exceeds that of the trial.
     const V q_on =
         min(s.q, sqrt(max(V(m2 / (T(1) + T(2) * beta) * (p_on + beta * p0) * (p0 - p_on)), zero)));
+    PQ<V> end_of_step{select(loose, zero, p_on), select(loose, zero, q_on)};
+    if constexpr (regularised) {
+      end_of_step.p += overstress * (s.p - end_of_step.p);
+      end_of_step.q += overstress * (s.q - end_of_step.q);
+    }
     // e_v takes exactly the volume that the elastic strain lost: p = p_tr + K_d D.
-    ev = select(yields, V(ev + select(loose, to_origin, V((p_on - s.p) / elastic.bulk))), ev);
-    s.p = select(yields, select(loose, zero, p_on), s.p);
-    s.q = select(yields, select(loose, zero, q_on), s.q);
+    ev = select(yields, V(ev + (end_of_step.p - s.p) / elastic.bulk), ev);
+    s.p = select(yields, end_of_step.p, s.p);
+    s.q = select(yields, end_of_step.q, s.q);
   }
 
   /// Returns the root D by safeguarded steps of Chebyshev's method, Newton's with a correction for
@@ -248,7 +260,7 @@ struct CamClayLaw {
     const V q_s = sqrt(V(m2 / (T(1) + T(2) * beta) * inside));
     const V excess = clamp(V(trial.q / (q_s + T(1e-30)) - T(1)), zero, broadcast<V>(T(1e6)));
     V hardening_rate = broadcast<V>(xi);
-    if constexpr (band) hardening_rate = hardening_rate * softening_at(from.ev);
+    if constexpr (regularised) hardening_rate = hardening_rate * softening_at(from.ev);
     const V n_slope_trial =
         T(2) * elastic.bulk + (T(1) - beta) * hardening_rate * from.hardness.cosh;
     V d = -n_trial * excess / (c + n_slope_trial * excess);
@@ -307,6 +319,6 @@ struct CamClayLaw {
 template <class C>
 using CamClay = CamClayLaw<C, false>;
 template <class C>
-using BandedCamClay = CamClayLaw<C, true>;
+using RegularisedCamClay = CamClayLaw<C, true>;
 
 SNOWSHED_VARIANT_END

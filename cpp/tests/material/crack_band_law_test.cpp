@@ -15,8 +15,8 @@ using namespace cam_clay_testing;
 constexpr double strength = 7e3;  // Pa, initial p0
 
 template <class T>
-BandedCamClay<T> banded(double softening, const LawConstants& s = calibrated, int dimension = 3) {
-  auto law = BandedCamClay<T>::from(s.youngs_modulus, s.poissons_ratio, s.slope, s.cohesion,
+RegularisedCamClay<T> banded(double softening, const LawConstants& s = calibrated, int dimension = 3) {
+  auto law = RegularisedCamClay<T>::from(s.youngs_modulus, s.poissons_ratio, s.slope, s.cohesion,
                                     s.hardening, dimension);
   law.softening = T(softening);
   law.band_begin = T(law.initial_plastic_strain(strength));

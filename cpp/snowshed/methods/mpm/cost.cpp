@@ -133,6 +133,7 @@ std::vector<Feature> features_of(const Settings& n, const SceneView& scene,
       {"FLIP with affine velocities", n.transfer == Transfer::affine_flip},
       {"damping over a length", n.damps_over_length()},
       {"crack band", n.crack_band_length > 0},
+      {"relaxation of stress", n.relaxation_time > 0},
       {"contact by touch", n.contact == ContactRule::touch},
       {"fields of events", n.fields == Fields::events},
       {"cubic B-splines", n.basis == Basis::cubic}};

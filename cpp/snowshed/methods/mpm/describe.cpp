@@ -6,16 +6,17 @@ namespace snowshed::mpm {
 
 void describe(SettingsVisitor& v, Settings& n) {
   v.accuracy({"dx", "scheme", "precision", "transfer", "flip_ratio", "damping_rate",
-              "damping_length", "crack_band_length", "contact", "contact_radius", "fields",
-              "event_friction", "basis", "courant_factor", "strain_limit", "sleep_speed",
+              "damping_length", "crack_band_length", "relaxation_time", "contact", "contact_radius",
+              "fields", "event_friction", "basis", "courant_factor", "strain_limit", "sleep_speed",
               "sleep_time"});
   v.alias("courant_factor", "step_factor");  // its name up to version 0.1
   v.number("dx", n.dx, "m", allowed::size, "Size of grid cells and voxels");
   const Scheme before = n.scheme;
-  v.choice("scheme", n.scheme,
-           "Mechanisms that belong together: objective sets transfer affine_flip, damping_rate 380 "
-           "1/s, damping_length and crack_band_length 0.01 m, contact touch and fields of events, "
-           "unless they are given; thesis keeps the defaults of these settings");
+  v.choice(
+      "scheme", n.scheme,
+      "Mechanisms that belong together: objective sets transfer affine_flip, damping_rate 380 "
+      "1/s, damping_length and crack_band_length 0.01 m, relaxation_time 1e-4 s, contact touch "
+      "and fields of events, unless they are given; thesis keeps the defaults of these settings");
   if (n.scheme != before) n.adopt(n.scheme);  // fields that are read next may differ from it
   v.choice("precision", n.precision, "Floating-point type of the particles and the grid");
   v.choice("transfer", n.transfer, "Transfer of velocities between particles and grid");
@@ -30,6 +31,10 @@ void describe(SettingsVisitor& v, Settings& n) {
   v.number("crack_band_length", n.crack_band_length, "m", allowed::size_or_zero,
            "Width of a crack: dilating snow softens dx/width times as fast as its law, so that a "
            "crack takes the same energy per area on any grid; 0: the law itself");
+  v.number(
+      "relaxation_time", n.relaxation_time, "s", allowed::time,
+      "Time in which stress beyond the yield surface relaxes, so that fast cracks have a width "
+      "that the grid resolves; 0: at once, the law itself");
   v.choice(
       "contact", n.contact,
       "Snow on which a node of an obstacle acts: all whose splines reach the node (kernel), or "

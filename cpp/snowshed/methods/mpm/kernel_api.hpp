@@ -91,8 +91,9 @@ struct MaterialConstants {
 template <class T>
 struct StepParameters {
   T dt, dx, gravity, flip_ratio;
-  T friction_rate;                    // dt over the friction memory, see NodeKernels::apply
-  T friction_rate_per_speed;          // s/m, the same for each m/s at which snow slides
+  T friction_rate;            // dt over the friction memory, see NodeKernels::apply
+  T friction_rate_per_speed;  // s/m, the same for each m/s at which snow slides
+  T overstress;  // share of the stress beyond the yield surface that a step leaves, see CamClayLaw
   const MaterialConstants<T>* snows;  // indexed by material_id
   const T* pushing;  // indexed by obstacle: part of the friction of pushed nodes that remains, see
                      // Contacts::find_pushing_shares
@@ -222,11 +223,11 @@ struct KernelChoice {
   SnowModel model;  // the model of the only snow
   bool several_materials = false;
   bool energy = false;
-  bool crack_band = false;
+  bool regularised = false;  // Cam-Clay with a crack band or a relaxation time
 
   /// Whether the kernels are those for checks, which have all features. Without affine FLIP only
-  /// they have the crack band.
-  bool checks() const { return energy || (crack_band && transfer != Transfer::affine_flip); }
+  /// they have the regularised law.
+  bool checks() const { return energy || (regularised && transfer != Transfer::affine_flip); }
   /// Whether the kernels look up each particle's material, whose model may be any. Those for checks
   /// always do, which saves kernels of each model.
   bool material_per_particle() const { return several_materials || checks(); }

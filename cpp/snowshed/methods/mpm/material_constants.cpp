@@ -6,9 +6,9 @@ namespace snowshed::mpm {
 namespace {
 
 template <class T>
-BandedCamClay<T> law_of(const Snow& s, int dimension, double softening) {
-  auto law = BandedCamClay<T>::from(s.youngs_modulus, s.poissons_ratio, s.critical_state_slope,
-                                    s.cohesion, s.hardening_factor, dimension);
+RegularisedCamClay<T> law_of(const Snow& s, int dimension, double softening) {
+  auto law = RegularisedCamClay<T>::from(s.youngs_modulus, s.poissons_ratio, s.critical_state_slope,
+                                         s.cohesion, s.hardening_factor, dimension);
   law.softening = T(softening);
   law.band_begin = T(law.initial_plastic_strain(s.preconsolidation_pressure));
   return law;
@@ -28,7 +28,7 @@ Material::Material(const Snow& s, int dimension, const Settings& n)
 
 template <class T>
 MaterialConstants<T> material_constants(const Snow& s, int dimension, double softening) {
-  const BandedCamClay<T> c = law_of<T>(s, dimension, softening);
+  const RegularisedCamClay<T> c = law_of<T>(s, dimension, softening);
   MaterialConstants<T> k{c.elastic.lambda, c.elastic.mu, c.elastic.bulk, c.m2,
                          c.beta,           c.xi,         c.hardening,    T(1 / s.density),
                          c.softening,      c.band_begin};

@@ -13,7 +13,7 @@ struct Material {
   Elasticity<double> elastic;
   double density = 0;                 // kg/m3, initial
   double initial_plastic_strain = 0;  // volumetric; not used for elastic snow
-  BandedCamClay<double> law;          // all zero for elastic snow
+  RegularisedCamClay<double> law;     // all zero for elastic snow
   double elastic_time_step = 0;       // s
 
   Material(const Snow&, int dimension, const Settings&);

@@ -58,7 +58,7 @@ struct Model {
             options.snows.front().model,
             options.snows.size() > 1,
             options.energy,
-            n.crack_band_length > 0};
+            n.crack_band_length > 0 || n.relaxation_time > 0};
   }
 
   Model(Options&& o, const KernelChoice& choice)

@@ -24,6 +24,7 @@ struct Settings {
   std::optional<double> damping_rate;  // 1/s, in place of flip_ratio, independent of the step
   double damping_length = 0;           // m, over which the damping averages; 0: by PIC, over dx
   double crack_band_length = 0;        // m, see `softening`; 0: none
+  double relaxation_time = 0;          // s, of stress beyond the yield surface; 0: none
   ContactRule contact = ContactRule::kernel;
   double contact_radius = 0.6;  // radius of a touching particle, over half the particles' spacing
   Fields fields = Fields::one;
@@ -45,6 +46,7 @@ struct Settings {
     damping_rate = thesis.damping_rate;
     damping_length = thesis.damping_length;
     crack_band_length = thesis.crack_band_length;
+    relaxation_time = thesis.relaxation_time;
     contact = thesis.contact;
     contact_radius = thesis.contact_radius;
     fields = thesis.fields;
@@ -53,6 +55,7 @@ struct Settings {
     transfer = Transfer::affine_flip;
     damping_rate = 380.0;
     damping_length = crack_band_length = 0.01;
+    relaxation_time = 1e-4;
     contact = ContactRule::touch;
     fields = Fields::events;
   }
@@ -75,6 +78,11 @@ struct Settings {
   /// Factor by which snow that dilates beyond its initial volume softens faster than its own law.
   /// Cracks are a few cells wide, and then take the same energy per area on any grid.
   double softening() const { return crack_band_length > 0 ? dx / crack_band_length : 1.0; }
+
+  /// Share of the stress beyond the yield surface that is left after a step of dt seconds.
+  double overstress_share(double dt) const {
+    return relaxation_time > 0 ? relaxation_time / (dt + relaxation_time) : 0.0;
+  }
 
   /// The mean rate (1/s) at which velocities were damped over `steps` steps in `time` (s); PIC's is
   /// -ln(share)/dt. Nothing for APIC, which has no such share, for pure PIC, which leaves nothing,

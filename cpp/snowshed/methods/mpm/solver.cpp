@@ -37,6 +37,7 @@ StepParameters<T> SolverImpl<T, D>::parameters(double dt) const {
           T(n.flip_share(dt)),
           T(std::min(1.0, dt / state_.friction_memory)),
           T(dt / (friction_reach * n.dx)),
+          T(n.overstress_share(dt)),
           model_.constants.data(),
           work_.pushing.shares.data()};
 }

@@ -109,8 +109,8 @@ void expect_exact_sums(const Way& way, const Spread& spread) {
   constexpr T unset = std::numeric_limits<T>::quiet_NaN();  // nothing that is not cleared is read
   AlignedVector<T> tile(std::size_t(tile_nodes<D>(way.basis)) * node_values, unset);
   const auto snow = material_constants<T>(Snow(), D);
-  const StepParameters<T> step{T(1e-4), T(0.01), T(9.81), T(0.99),
-                               T(0.02), T(0),    &snow,   all_pushing<T>};
+  const StepParameters<T> step{T(1e-4), T(0.01), T(9.81), T(0.99),       T(0.02),
+                               T(0),    T(0),    &snow,   all_pushing<T>};
   BlockStats stats;
   kernels.scatter(step, particles.view(), 0, n, tile.data(), stats);
   ASSERT_FALSE(stats.escaped);
@@ -157,8 +157,8 @@ TEST(Scatter, SaysWhenAParticleHasLeftTheTile) {
       select_kernels<float>({2, Transfer::flip, Basis::quadratic, SnowModel::cam_clay, false});
   AlignedVector<float> tile(std::size_t(tile_nodes<2>(Basis::quadratic)) * node_values);
   const auto snow = material_constants<float>(Snow(), 2);
-  const StepParameters<float> step{1e-4f, 0.01f, 9.81f, 0.99f,
-                                   0.02f, 0.0f,  &snow, all_pushing<float>};
+  const StepParameters<float> step{
+      1e-4f, 0.01f, 9.81f, 0.99f, 0.02f, 0.0f, 0.0f, &snow, all_pushing<float>};
   for (float cell : {-1.01f, 9.0f, std::nanf("")}) {
     particles.cell[1][2] = cell;
     BlockStats stats;

@@ -65,7 +65,7 @@ struct MaterialPerParticle {
                                          gather_constants(own, &K::specific_volume),
                                          {},
                                          {}};
-    if constexpr (std::is_same_v<Law<T>, BandedCamClay<T>>) {
+    if constexpr (std::is_same_v<Law<T>, RegularisedCamClay<T>>) {
       lanes.softening = gather_constants(own, &K::softening);
       lanes.band_begin = gather_constants(own, &K::band_begin);
     }

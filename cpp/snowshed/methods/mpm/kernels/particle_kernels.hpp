@@ -205,7 +205,7 @@ struct ParticleKernels {
     if constexpr (Snow::plastic) {
       const V q_trial = sqrt(V(T(6) * dev_squared)) * el.mu;  // q = sqrt(3/2 s:s)
       PQ<V> pq{p_now, q_trial};
-      if (!committed && snow.law.return_map(pq, s.plastic)) {
+      if (!committed && snow.law.return_map(pq, s.plastic, step.overstress)) {
         const auto sheared = q_trial > T(0);
         keep = select(sheared, V(pq.q / select(sheared, q_trial, keep)), keep);
         third = pq.p * (T(-1) / (el.bulk * T(D)));

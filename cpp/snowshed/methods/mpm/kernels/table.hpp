@@ -23,7 +23,7 @@ Kernels<T> kernels_for() {
 template <class T, int D, Transfer transfer, Basis basis, template <class> class Law>
 Kernels<T> with_law(const KernelChoice& c) {
   if (c.checks())
-    return kernels_for<T, D, transfer, basis, MaterialPerParticle<T, BandedCamClay>, true>();
+    return kernels_for<T, D, transfer, basis, MaterialPerParticle<T, RegularisedCamClay>, true>();
   if (c.material_per_particle())
     return kernels_for<T, D, transfer, basis, MaterialPerParticle<T, Law>, false>();
   return c.model == SnowModel::cam_clay
@@ -33,7 +33,7 @@ Kernels<T> with_law(const KernelChoice& c) {
 template <class T, int D, Transfer transfer, Basis basis>
 Kernels<T> with_snow(const KernelChoice& c) {
   if constexpr (transfer == Transfer::affine_flip)
-    return with_law<T, D, transfer, basis, BandedCamClay>(c);
+    return with_law<T, D, transfer, basis, RegularisedCamClay>(c);
   else
     return with_law<T, D, transfer, basis, CamClay>(c);
 }
