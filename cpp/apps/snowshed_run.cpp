@@ -111,7 +111,7 @@ snowshed::EventSequence open(const Options& o) {
     if (!o.quiet)
       std::fprintf(stderr, "note: %s\n", snowshed::printable(o.scene + ": " + note).c_str());
   const auto stop = [] {
-    setting_up = 0;  // called while snow is seeded, which can stop by itself
+    setting_up = 0;  // called while snow is seeded, which can be stopped
     return interrupted != 0;
   };
   if (!o.resume) return snowshed::EventSequence::create(scene, ".", o.folder, stop);
@@ -132,7 +132,7 @@ bool run_all(snowshed::EventSequence& sequence, bool quiet) try {
   throw;
 }
 
-/// A run goes on to its next safe point; while it is set up, there is nothing to save.
+/// A run continues to its next safe point; during setup there is nothing to save.
 void on_signal(int) {
   constexpr char message[] = "error: interrupted; nothing was written\n";
   interrupted = 1;

@@ -91,14 +91,14 @@ const char* slow_kernels_note() {
   const KernelVariant chosen = chosen_kernel_variant();
   if (chosen == KernelVariant::avx2 && machine_has(KernelVariant::avx512) &&
       !build_has(KernelVariant::avx512))
-    return "this build has no kernels for AVX-512, with which this processor takes up to a fifth "
-           "less time (make build KERNELS=all)";
+    return "this build has no AVX-512 kernels, which would save up to a fifth of the time on this "
+           "processor (make build KERNELS=all)";
   if (chosen != KernelVariant::baseline) return "";
   if (machine_has(KernelVariant::avx2) && supported_variants().size() == 1)
-    return "this build has no kernels for the AVX2 of this processor: this takes two to five times "
-           "as long as with them (make build KERNELS=all)";
-  return "the kernels run without AVX2: this takes two to five times as long as on a processor "
-         "with it (2013 or later)";
+    return "this build has no AVX2 kernels: runs take two to five times as long as necessary (make "
+           "build KERNELS=all)";
+  return "this processor has no AVX2: runs take two to five times as long as on processors since "
+         "2013";
 }
 
 }  // namespace snowshed

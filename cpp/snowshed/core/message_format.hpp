@@ -26,8 +26,7 @@ std::string printable(const std::string& message);
 bool is_utf8(const std::string& text);
 
 /// Returns the JSON pointer (RFC 6901) of a member or an item of `parent`. Control characters
-/// become
-/// "?", and keys of more than 100 characters are cut.
+/// become "?", and keys of more than 100 characters are cut.
 std::string pointer(const std::string& parent, const std::string& key);
 
 /// Returns the names in quotation marks with commas between them.

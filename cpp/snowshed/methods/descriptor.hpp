@@ -1,5 +1,5 @@
-// The program's knowledge of a method: one class per method, and one line in registry.cpp. Scenes,
-// runs and programs ask descriptors, and name no method.
+// Descriptors: all that the program needs to know about a method. Each has one class, and one line
+// in registry.cpp. Scenes, runs and programs ask descriptors, and name no method.
 #pragma once
 
 #include <cstdint>
@@ -42,9 +42,9 @@ struct MethodFacts {
   const char* name;                     // as scenes give it
   const char* doc;                      // in the schema
   Parts takes;                          // parts of a scene that it takes
-  const char* length_unit = "cells";    // things whose size is `resolution`, in messages
+  const char* length_unit = "cells";    // name of what `resolution` measures, for messages
   std::vector<std::string> energies{};  // names with units, in the order of tables
-  // Quantities of its particles besides those that all methods share.
+  // Quantities of its particles beside those that all methods share.
   std::vector<Quantity> quantities{};
 };
 
@@ -83,7 +83,7 @@ class MethodDescriptor {
   /// Throws InputError if settings or parts of the scene contradict each other. Each is in its
   /// range, and the scene has no part that the method does not take.
   virtual void validate(const SceneView&) const {}
-  /// A solid as the method must see it: its thin parts are as thick as the method's resolution.
+  /// Returns the solid with thin parts thickened to the method's resolution.
   virtual ThickSolid as_seen(const Shape& shape, int /*dimension*/) const {
     return {shape, std::nullopt};
   }
@@ -96,7 +96,7 @@ class MethodDescriptor {
   /// The method, before any snow.
   virtual std::unique_ptr<Method> build(const SceneView&, const Surroundings&) const = 0;
 
-  // --- snow; of methods that take bodies, but not how the scene seeds them -----------------------
+  // --- filling of bodies, for methods with their own seeding -------------------------------------
 
   /// The number of particles that `fill` will place. Throws as it.
   virtual std::size_t count_particles(const LevelSet&, int dimension) const;

@@ -130,7 +130,7 @@ std::vector<std::string> Simulation::check_placement_of(
                       particle_distance(scene_), event_ + 1};
   if (reseeding) {
     const std::vector<Vec3>& stack = reseeding->after.positions;
-    notes = check_placement(scene_, {{"the stack, seeded anew", &stack, nullptr, true}}, space);
+    notes = check_placement(scene_, {{"the reseeded stack", &stack, nullptr, true}}, space);
     space.particles = stack;
   } else if (!bodies.empty()) {
     space.particles = positions();

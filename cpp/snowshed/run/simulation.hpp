@@ -50,11 +50,10 @@ class Simulation {
 
   /// Seeds the next event's snow: the slab on the panel (above the snow that remained there, unless
   /// that is less than 2 % of the slab and of the last event's snow) and the scene's bodies. With
-  /// between = "reseed", from the second event on the stack is first seeded afresh
-  /// (`reseed_stack`). All or nothing: throws InputError if the snow of this event cannot be
-  /// seeded, or lies where snow may not be (snow_placement.hpp), SimulationError if the stack
-  /// cannot be converted or an event still runs, Stopped on request, and leaves everything as it
-  /// was.
+  /// between = "reseed", the stack is reseeded from the second event on (`reseed_stack`). All or
+  /// nothing: throws InputError if the snow of this event cannot be seeded, or lies where snow may
+  /// not be (snow_placement.hpp), SimulationError if the stack cannot be converted or an event
+  /// still runs, Stopped on request, and leaves everything as it was.
   std::optional<Reseeding> begin_event(const StopRequest& stop = {});
 
   /// Runs the present event until the snow rests, the time limit, or `observer`, called every
@@ -83,7 +82,7 @@ class Simulation {
   void write_snapshots(const std::filesystem::path& folder, double interval);
 
   /// Records the particles into a film from now on, or continues the film of the run that was
-  /// resumed: its frames after the present state are recorded anew. Throws InputError if that
+  /// resumed: its frames after the present state are recorded again. Throws InputError if that
   /// film is damaged.
   void record_film(const std::filesystem::path& file);
   bool films() const { return film_ != nullptr; }

@@ -13,7 +13,7 @@
 namespace snowshed {
 namespace {
 
-/// Particles that follow on each other lie near to each other.
+/// Consecutive particles are close to each other.
 constexpr std::size_t particles_in_box = 64;
 
 constexpr double depth_over_resolution = 1e-3;  // less is rounding of files, not an overlap
@@ -222,7 +222,7 @@ class Obstacles {
       if (count == 0) return;
       const std::string name = words_[k].substr(std::string("inside ").size());
       sentences.push_back(percent(snow.share_of(count)) + " of its particles lie beside " + name +
-                          ", where it is made thicker than it is, and are pushed out");
+                          ", where it is thickened to the resolution, and are pushed out");
     });
   }
 
@@ -269,14 +269,14 @@ std::string sentence_of(const Particles& snow, int dimension, int event) {
   return event > 1 ? "in event " + std::to_string(event) + ", " + text : text;
 }
 
-/// No more notes than anybody reads.
+/// Limits the number of notes.
 std::vector<std::string> shortened(std::vector<std::string> notes) {
   if (notes.size() <= most_notes) return notes;
   const std::size_t more = notes.size() - most_notes + 1;
   notes.resize(most_notes - 1);
   notes.push_back(std::to_string(more) +
                   " further bodies of snow lie where snow may not be, or "
-                  "where the grid thickens an obstacle");
+                  "where an obstacle is thickened");
   return notes;
 }
 

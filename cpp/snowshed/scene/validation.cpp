@@ -34,7 +34,7 @@ class SceneRules {
     if (scene_.terrain) check_terrain(*scene_.terrain);
     scene_.numerics->validate(view_of(scene_));
     if (scene_.numerics.takes(Part::bodies) && !scene_.slab && scene_.bodies.empty())
-      fail(scene_, "nothing holds snow: give " + path_of(scene_, scene_.slab) + " or " +
+      fail(scene_, "there is no snow; give " + path_of(scene_, scene_.slab) + " or " +
                        path_of(scene_, scene_.bodies));
   }
 
@@ -112,7 +112,7 @@ class SceneRules {
 
   void check_fits(const double& slab, const double& panel) const {
     if (slab > panel)
-      fail(slab, show(slab) + " m is more than the panel has (" + path_and_value(panel) + " m)");
+      fail(slab, show(slab) + " m exceeds that of the panel (" + path_and_value(panel) + " m)");
   }
 
   void check_panel(const Panel& panel) const {
@@ -181,9 +181,9 @@ class SceneRules {
       for (const Layer& layer : scene_.slab->layers) refuse_own(layer);
     const bool reseeds = scene_.events.between == Between::reseed && scene_.events.count > 1;
     if (reseeds && method.takes.has(Part::bodies) && !method.takes.has(Part::seeding))
-      fail(scene_.events.between, "snow of " + name + " can only be carried on");
+      fail(scene_.events.between, name + " does not support \"reseed\"; use \"carry\"");
     if (scene_.output.energy && method.energies.empty())
-      fail(scene_.output.energy, name + " keeps no balance of energy");
+      fail(scene_.output.energy, name + " has no energy balance");
   }
 
   void check_terrain(const TerrainSpec& terrain) const {

@@ -17,7 +17,7 @@ struct Energy {
   double friction = 0, damping = 0;
   double broken = 0;    // energy that bonds held as they broke
   double boundary = 0;  // work of plates, sides and the cone on the grains
-  double added = 0;     // brought by grains that were added, or taken with the top plate
+  double added = 0;     // energy of added grains, or removed with the top plate
 
   double stored() const { return kinetic + potential + normal + shear; }
   double spent() const { return friction + damping + broken; }

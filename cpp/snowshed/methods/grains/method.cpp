@@ -1,4 +1,4 @@
-// Grains, as the rest of the program knows them.
+// The descriptor of the grains.
 #include <algorithm>
 
 #include "snowshed/core/errors.hpp"

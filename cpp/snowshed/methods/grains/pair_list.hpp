@@ -77,7 +77,7 @@ struct PairSearch {
 };
 
 /// The gap below which pairs are listed, as a share of the spheres' radius: twice as far as a
-/// sphere may move before the list is made anew.
+/// sphere may move before a new list is made.
 inline constexpr double skin_per_radius = 0.4;
 
 /// Centre of a plate's sphere relative to the plate's origin, m.

@@ -1,4 +1,4 @@
-// Snow at rest that is taken up, and moving snow that is deposited.
+// Erosion of snow at rest, and deposition of moving snow.
 #include "snowshed/methods/mps/forces.hpp"
 
 namespace snowshed::mps {

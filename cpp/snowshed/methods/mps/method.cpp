@@ -1,4 +1,4 @@
-// The moving particle semi-implicit method, as the rest of the program knows it.
+// The descriptor of the moving particle semi-implicit method.
 #include "snowshed/core/errors.hpp"
 #include "snowshed/core/message_format.hpp"
 #include "snowshed/methods/descriptor.hpp"

@@ -173,7 +173,7 @@ void leave_dry_walls(Particles<D>& particles, Neighbourhood<D>& near, int thread
   });
 }
 
-/// Inner walls are made anew in each step. The hydrostatic pressure of the snow around is a first
+/// Each step makes new inner walls. The hydrostatic pressure of the snow around is a first
 /// guess of theirs.
 template <int D>
 void guess_wall_pressures(const Model<D>& model, Particles<D>& particles,

@@ -156,7 +156,7 @@ void SolverImpl<D>::act_viscosity(double dt, State<D>& next) {
   for (std::size_t i = 0; i < p.size(); ++i) work_.viscous_change[i] = p.velocity[i] - before[i];
 }
 
-/// Whether pressure and viscosity of a step are found together.
+/// Whether pressure and viscosity of a step are solved together.
 template <int D>
 bool SolverImpl<D>::couples(double dt) const {
   const Settings& s = model_.settings();
@@ -171,10 +171,10 @@ bool SolverImpl<D>::couples(double dt) const {
          s.density * speed * speed * speed < most_inertia * s.viscosity * g;
 }
 
-/// The pressure acts before viscosity, so that snow that does not yield stays where it is. It
-/// expects a viscous force where snow flows: a share of the last step's. Viscosity may still
-/// compress the snow. The pressure of the next step undoes this; or, where they are coupled, both
-/// act anew until the force is the expected one, accelerated. Ours.
+/// The pressure acts before viscosity, so that unyielded snow does not move. In flowing snow it
+/// includes a share of the last step's viscous force. Viscosity may still compress the snow: the
+/// next step's pressure corrects this, or, in coupled steps, both are iterated with Anderson
+/// acceleration until the force converges (ours).
 template <int D>
 void SolverImpl<D>::act_after_pressure(double dt, State<D>& next) {
   Particles<D>& p = next.particles;

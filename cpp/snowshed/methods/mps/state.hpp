@@ -105,7 +105,7 @@ struct Neighbourhood {
   AlignedVector<std::uint8_t> surface;        // at the free surface
   AlignedVector<std::uint8_t> below_surface;  // a neighbour of one at the free surface
   AlignedVector<std::uint8_t> dry;            // inner wall that no snow touches
-  AlignedVector<VecD<D>> slip;                // velocity of a wall particle as snow sees it, m/s
+  AlignedVector<VecD<D>> slip;                // velocity of a wall particle that acts on snow, m/s
 
   /// A particle's contact with an obstacle, or null.
   const WallContact<D>* contact_with(std::size_t i, std::uint32_t obstacle) const {

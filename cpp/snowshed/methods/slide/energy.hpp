@@ -19,12 +19,12 @@ struct Energy {
   double kinetic = 0, potential = 0;  // the latter with that of the snow's thickness
   double bonds = 0;                   // elastic
   double coulomb = 0, turbulent = 0;  // friction with the ground: mu sigma, and rho g u^2 / xi
-  double resistance = 0;              // loss to forest and the like
+  double resistance = 0;              // loss to forest and buildings
   double viscosity = 0;               // artificial
   double entrainment = 0;             // to bring snow up to speed, and to break it loose
   double broken = 0;                  // energy that bonds held as they broke
   double left = 0;                    // carried beyond the terrain
-  double added = 0;                   // brought by snow that was released or taken up
+  double added = 0;                   // energy of snow when it was released or entrained
 
   double stored() const { return kinetic + potential + bonds; }
   double spent() const {

@@ -87,7 +87,7 @@ PointCloud SolverImpl::snapshot() const {
   return cloud;
 }
 
-/// Mass that was released and taken up, and where it is: the sums differ by rounding alone.
+/// Mass that was released and entrained, and where it is: the sums differ by rounding alone.
 ReportsRun::Section SolverImpl::run_section() const {
   const MassBalance& m = state_.balance;
   const double on_terrain = compensated_sum(state_.particles.mass.data(), size());

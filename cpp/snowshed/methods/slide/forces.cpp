@@ -14,7 +14,7 @@ std::size_t nearest_node(const Terrain& terrain, const GridPlace& p) {
   return terrain.index(p.column + int(p.east >= 0.5), p.row + int(p.north >= 0.5));
 }
 
-/// Snow that a particle takes up; returns its mass (kg) and slows the particle down.
+/// Lets a particle entrain snow, which slows it down; returns the snow's mass, kg.
 double entrain(const Model& model, double erodible, double stress, double area, double dt,
                double speed, double& mass, Vec3& u) {
   const Settings& s = model.settings;
@@ -34,7 +34,7 @@ double entrain(const Model& model, double erodible, double stress, double area, 
   return taken;
 }
 
-/// Entrainment by one particle; returns the mass that it takes up, kg.
+/// Entrainment by one particle; returns the entrained mass, kg.
 double entrain_by(const Model& model, const State& state, View& v, Particles& p, std::size_t i,
                   std::size_t node) {
   const double density = model.settings.density, dt = state.step;
@@ -54,7 +54,7 @@ double entrain_by(const Model& model, const State& state, View& v, Particles& p,
   return taken;
 }
 
-/// The snow that particles sweep up, and the resistance of forest and the like.
+/// Applies entrainment, and the resistance of forest and buildings.
 void sweep(const Model& model, State& state, Work& work) {
   View v = view_of(model, state, work);
   Particles& p = state.particles;

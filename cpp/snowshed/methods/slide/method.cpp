@@ -1,4 +1,4 @@
-// The snow slide, as the rest of the program knows it.
+// The descriptor of the snow slide.
 #include "snowshed/core/errors.hpp"
 #include "snowshed/core/message_format.hpp"
 #include "snowshed/methods/descriptor.hpp"

@@ -132,7 +132,7 @@ double thickness_at(const Area& area, double x, double y) {
   return m.height(column, row);
 }
 
-/// The snow of a raster of thickness: the thickest, m, and that of all its cells, m3.
+/// The snow of a thickness raster: the thickest, m, and that of all its cells, m3.
 struct SnowOfMap {
   double thickest = 0, volume = 0;
 };
@@ -158,7 +158,7 @@ double mean_thickness(const Area& area, const Terrain& terrain, std::size_t inde
   const int south = node_of(b.low[1] + rounding, m.south, m.cell);
   const int north = node_of(b.high[1] - rounding, m.south, m.cell);
   if (west < 0 || south < 0 || east >= m.columns || north >= m.rows)
-    refuse_area(index, area.name, "reaches beyond the raster of thickness");
+    refuse_area(index, area.name, "reaches beyond the thickness raster");
   double volume = 0, covered = 0;
   for (int row = south; row <= north; ++row)
     for (int column = west; column <= east; ++column) {
@@ -168,8 +168,8 @@ double mean_thickness(const Area& area, const Terrain& terrain, std::size_t inde
       const double h = m.height(column, row);
       if (!(h > 0 && h <= area.max_thickness))
         refuse_area(index, area.name,
-                    "the raster of thickness says " +
-                        (std::isnan(h) ? "nothing" : std::to_string(h) + " m") + " at (" +
+                    "the thickness raster has " +
+                        (std::isnan(h) ? "no value" : std::to_string(h) + " m") + " at (" +
                         std::to_string(terrain.west() + x) + ", " +
                         std::to_string(terrain.south() + y) + "); allowed: above 0 and at most " +
                         std::to_string(area.max_thickness) + " m");

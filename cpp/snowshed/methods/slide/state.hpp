@@ -47,7 +47,7 @@ struct Model {
   bool keeps_energy;
 };
 
-/// Snow that left the terrain, and snow that was taken up.
+/// Masses of the snow that was released, that was entrained, and that left the terrain.
 struct MassBalance {
   double released = 0, entrained = 0, left = 0;  // kg
   std::int64_t particles_left = 0;

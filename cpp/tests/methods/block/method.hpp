@@ -1,4 +1,4 @@
-// The block, as the rest of the program knows it.
+// The descriptor of the block.
 #pragma once
 
 #include <cmath>
