@@ -13,32 +13,6 @@
 namespace snowshed {
 namespace {
 
-constexpr KernelVariant all_variants[] = {KernelVariant::baseline, KernelVariant::avx2,
-                                          KernelVariant::avx512};
-
-const char* name_of(KernelVariant variant) {
-  switch (variant) {
-    case KernelVariant::avx512:
-      return "avx512";
-    case KernelVariant::avx2:
-      return "avx2";
-    default:
-      return "baseline";
-  }
-}
-
-bool machine_has(KernelVariant variant) {
-#if defined(__x86_64__)
-  if (variant == KernelVariant::avx512)
-    return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
-           __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw");
-  if (variant == KernelVariant::avx2)
-    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
-           __builtin_cpu_supports("bmi2");
-#endif
-  return variant == KernelVariant::baseline;
-}
-
 bool build_has(KernelVariant variant) {
 #ifdef SNOWSHED_HAS_KERNELS_avx512
   if (variant == KernelVariant::avx512) return true;
