@@ -34,7 +34,7 @@ class SimulationClass {
   void column(const char* name, const char* field) {
     class_.def(name, [name, field](Handle& handle) {
       return handle.use(name, Handle::Access::read, [field](const auto& simulation) {
-        return array_by_id(simulation->solver(), field);
+        return array_by_id(simulation->method(), field);
       });
     });
   }

@@ -19,7 +19,7 @@ std::string show_briefly(double number);
 std::string quote(const std::string& text);
 
 /// Returns a message that a terminal may show, even if it quotes untrusted text: control
-/// characters, those that turn the direction of writing, and bytes that are no UTF-8 become "?".
+/// characters, those that turn the direction of writing, and bytes that are not UTF-8 become "?".
 std::string printable(const std::string& message);
 
 /// Returns whether the text is valid UTF-8.

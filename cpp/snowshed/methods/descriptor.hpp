@@ -37,13 +37,13 @@ class Parts {
   unsigned bits_ = 0;
 };
 
-/// Constant facts about a method.
-struct MethodFacts {
+/// The constant properties of a method.
+struct MethodInfo {
   const char* name;                     // as scenes give it
   const char* doc;                      // in the schema
   Parts takes;                          // parts of a scene that it takes
   const char* length_unit = "cells";    // name of what `resolution` measures, for messages
-  std::vector<std::string> energies{};  // names with units, in the order of tables
+  std::vector<std::string> energies{};  // names with units, as in tables; the last is the residual
   // Quantities of its particles beside those that all methods share.
   std::vector<Quantity> quantities{};
 };
@@ -54,7 +54,7 @@ class MethodDescriptor {
  public:
   virtual ~MethodDescriptor() = default;
 
-  virtual const MethodFacts& facts() const = 0;
+  virtual const MethodInfo& info() const = 0;
   virtual std::unique_ptr<MethodDescriptor> clone() const = 0;
 
   // --- settings --------------------------------------------------------------------------------
@@ -84,7 +84,7 @@ class MethodDescriptor {
   /// range, and the scene has no part that the method does not take.
   virtual void validate(const SceneView&) const {}
   /// Returns the solid with thin parts thickened to the method's resolution.
-  virtual ThickSolid as_seen(const Shape& shape, int /*dimension*/) const {
+  virtual ThickSolid thickened(const Shape& shape, int /*dimension*/) const {
     return {shape, std::nullopt};
   }
   /// Reads the files that only this method takes; relative names are looked for in `base_dir`.
@@ -130,7 +130,7 @@ void describe_settings(SettingsVisitor& visitor, Settings& settings) {
 
 /// A method with settings of this type, by which scenes find it.
 template <class Settings>
-class SettingsHolder : public MethodDescriptor {
+class WithSettings : public MethodDescriptor {
  public:
   Settings& settings() { return settings_; }
   const Settings& settings() const { return settings_; }
@@ -141,7 +141,7 @@ class SettingsHolder : public MethodDescriptor {
 
 /// Base of all descriptors; a method's descriptor, `Self`, derives from it.
 template <class Self, class Settings>
-class DescriptorOf : public SettingsHolder<Settings> {
+class DescriptorBase : public WithSettings<Settings> {
  public:
   std::unique_ptr<MethodDescriptor> clone() const override {
     return std::make_unique<Self>(static_cast<const Self&>(*this));
@@ -154,7 +154,7 @@ class DescriptorOf : public SettingsHolder<Settings> {
   void set_threads(int threads) override { settings_.threads = threads; }
 
  protected:
-  using SettingsHolder<Settings>::settings_;
+  using WithSettings<Settings>::settings_;
 };
 
 }  // namespace snowshed

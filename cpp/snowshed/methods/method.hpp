@@ -7,10 +7,9 @@
 //   that the same call may be made again or another instead. Data read by id are the same; only
 //   the order of the particles in memory may differ. This holds for lack of memory, too.
 // - One exception: `step` can find only afterwards that a particle is no longer sound. Then the
-// step
-//   has been taken and the method has *failed*: it can still be read, but every call that would
-//   alter, advance or save it throws SimulationError, so that a broken state never overwrites a
-//   good checkpoint. `load` repairs it.
+//   step has been taken and the method has *failed*: it can still be read, but every call that
+//   would alter, advance or save it throws SimulationError, so that a broken state never
+//   overwrites a good checkpoint. `load` repairs it.
 // - Errors: InputError for arguments that are not allowed, SimulationError if the simulation
 //   cannot go on, std::bad_alloc for lack of memory.
 // - The results do not depend on the number of threads, to the last bit.

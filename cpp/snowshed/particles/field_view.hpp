@@ -1,5 +1,5 @@
-// Quantities of particles as files and Python see them: by name, with unit and meaning, of all
-// particles in the order of their storage.
+// Quantities of particles in files and in Python: by name, with unit and meaning, of all particles
+// in the order of their storage.
 #pragma once
 
 #include <cstddef>

@@ -71,7 +71,7 @@ class Simulation {
   /// the snow themselves can change velocities between steps by `add_velocity`.
   void step(int count = 1);
   void add_velocity(const std::vector<Vec3>& velocity_changes) {
-    solver_->add_velocity(velocity_changes);
+    method_->add_velocity(velocity_changes);
   }
 
   /// Applies the effects of time on the snow between two events, see Settles. Throws InputError
@@ -108,7 +108,7 @@ class Simulation {
   /// Indexed by material_id.
   const std::vector<Snow>& snows() const { return surroundings_.snows; }
   const CostEstimate& cost() const { return cost_; }
-  const Method& solver() const { return *solver_; }
+  const Method& method() const { return *method_; }
   /// The curve measured after each step so far; null for methods without such a curve.
   const Curve* curve() const { return curve_.get(); }
   /// A remark on the files that the method reads; empty if there is none.
@@ -121,7 +121,7 @@ class Simulation {
   /// sentence each.
   const std::vector<std::string>& notes() const { return notes_; }
   bool event_running() const { return running_; }
-  double event_time() const { return solver_->time() - event_start_; }
+  double event_time() const { return method_->time() - event_start_; }
   int threads() const;
 
   /// The smallest length that is resolved, m.
@@ -129,7 +129,7 @@ class Simulation {
 
   /// Mean rate of numerical damping so far, 1/s.
   std::optional<double> damping_rate() const {
-    return scene_.numerics->damping_rate(solver_->counters().steps, solver_->time());
+    return scene_.numerics->damping_rate(method_->counters().steps, method_->time());
   }
 
   /// Height that all snow laid so far would have on the panel if none had left it, m.
@@ -148,8 +148,7 @@ class Simulation {
   /// and domain do not count. Infinite without any.
   double obstacle_distance(const Vec3& x) const;
 
-  /// The same to the obstacles as the method sees them, whose thin parts are thicker: snow lies on
-  /// those.
+  /// The same to the obstacles with thin parts thickened, on which snow lies.
   double resolved_distance(const Vec3& x) const;
 
   /// One .vtp with all particles and their quantities.
@@ -184,9 +183,9 @@ class Simulation {
   CostEstimate cost_;
   PanelRegion panel_;
   Surroundings surroundings_;
-  // Those of the scene's list, as given and as the method sees them.
+  // Those of the scene's list, as given and thickened.
   std::vector<Obstacle> listed_obstacles_, resolved_obstacles_;
-  std::unique_ptr<Method> solver_;
+  std::unique_ptr<Method> method_;
   std::unique_ptr<SnapshotSeries> snapshots_;
   std::unique_ptr<FilmRecorder> film_;
   std::optional<FilmMark> film_mark_;        // in the checkpoint that was loaded

@@ -245,7 +245,7 @@ void describe(V& v, TerrainSpec& t) {
 }
 
 /// Largest number of stages in a loading, so that its curve fits into memory.
-inline constexpr int most_stages = 100;
+inline constexpr int max_stages = 100;
 
 template <class V>
 void describe(V& v, SampleSpec& s) {
@@ -379,7 +379,7 @@ void describe(V& v, Scene& s) {
   v.taken_by(Part::sample);
   v.optional("sample", s.sample, "Segmented snow for a loading test");
   if (v.shows(s.numerics, Part::sample))  // other scenes, and their hashes, lack the list
-    v.list("loading", s.loading, between(0, most_stages), "Stages of the loading test");
+    v.list("loading", s.loading, between(0, max_stages), "Stages of the loading test");
   v.taken_by(Part::sample);
   v.optional("cone", s.cone, "Cone that the stages \"penetrate\" push in");
   v.taken_by(Part::obstacles);

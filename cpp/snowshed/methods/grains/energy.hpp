@@ -10,7 +10,7 @@ struct State;
 
 /// The energy of grains, J. The first four are the present store; the others are sums over all
 /// steps. The balance closes when `residual` is small beside the work.
-struct Energy {
+struct EnergyBalance {
   double kinetic = 0;            // with the scaled masses
   double potential = 0;          // energy of the weight
   double normal = 0, shear = 0;  // elastic
@@ -25,12 +25,12 @@ struct Energy {
 };
 
 /// Returns the balance as tables have it, names with units.
-NamedEnergies named_energies(const Energy&);
+NamedEnergies named_energies(const EnergyBalance&);
 
 /// The kinetic energy of all grains, J.
 double kinetic_energy(const Model&, const State&);
 
 /// Fills in the energy that is stored now.
-void store_energy(const Model&, const State&, Energy&);
+void store_energy(const Model&, const State&, EnergyBalance&);
 
 }  // namespace snowshed::grains

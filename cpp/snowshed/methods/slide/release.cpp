@@ -305,8 +305,8 @@ double mass_per_particle(const Settings& s, double cell) {
 }
 
 void check_effort(const Settings& s, const Terrain& terrain, const std::vector<Area>& areas) {
-  constexpr double most_particles = 2e6;    // they take a gigabyte and some seconds
-  constexpr double most_comparisons = 3e9;  // comparisons of a particle with a corner: some seconds
+  constexpr double max_particles = 2e6;    // they take a gigabyte and some seconds
+  constexpr double max_comparisons = 3e9;  // comparisons of a particle with a corner: some seconds
   const double cell = terrain.cell();
   double particles = 0, corners = 0;
   const HeightField* map = nullptr;  // all areas share one
@@ -324,14 +324,14 @@ void check_effort(const Settings& s, const Terrain& terrain, const std::vector<A
     for (const Ring& hole : area.polygon.holes) corners += double(hole.size());
   }
   std::ostringstream text;
-  if (particles > most_particles) {
-    text << s.layer_thickness << " m makes " << particles << " particles; at most "
-         << most_particles << " are allowed: give thicker layers";
+  if (particles > max_particles) {
+    text << s.layer_thickness << " m makes " << particles << " particles; at most " << max_particles
+         << " are allowed: give thicker layers";
     throw InputError("/numerics/layer_thickness", text.str());
   }
-  if (particles * corners > most_comparisons) {
+  if (particles * corners > max_comparisons) {
     text << corners << " corners and " << particles << " particles; their product may be at most "
-         << most_comparisons << ": simplify the outlines";
+         << max_comparisons << ": simplify the outlines";
     throw InputError("/terrain/release", text.str());
   }
 }
