@@ -232,7 +232,7 @@ TEST(SnowPlacementNotes, TellWhereTheGridThickensAnObstacle) {
       R"("ground": {}, "obstacles": [{"name": "shelf", "shape":
         {"type": "box", "center": [0, 0.5], "size": [1, 0.004]}}])";
   const std::string text = said_of(with_bodies(2, "mpm", box(2, 0, 0.602, 0.4, 0.2), parts));
-  expect_part(text, "beside the obstacle \"shelf\", where it is made thicker");
+  expect_part(text, "beside the obstacle \"shelf\", where it is thickened");
   EXPECT_EQ(said_of(with_bodies(2, "mps", box(2, 0, 0.602, 0.4, 0.2), parts)), "");
 }
 
