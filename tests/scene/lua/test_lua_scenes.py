@@ -274,7 +274,11 @@ VALID = 'preset "lab-50"\n'
         (VALID + "levelset { name = 4 }", None, "init.lua:2: levelset: name needs a name, not 4"),
         (VALID + "levelset { name = 'a' }", "x = 1", "init.lua:2: /obstacles/0/shape: missing"),
         (VALID + "levelset { shape = box { centre = {0} } }", None, "/shape/centre: unknown key"),
-        (VALID + "slab { width = 1 }", "panel { friction = 1 }", "init.lua:2: /slab/width: 1 m is"),
+        (
+            VALID + "slab { width = 1 }",
+            "panel { friction = 1 }",
+            "init.lua:2: /slab/width: 1 m exceeds",
+        ),
         (VALID + "run '../out'", None, "init.lua:2: run needs a name for its folder"),
         (VALID + "run()", None, "init.lua:2: run needs a name for its folder"),
         (VALID + "run 'a'", "\nrun 'a'", "update.lua:2: there is already a run 'a'"),
