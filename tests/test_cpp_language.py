@@ -14,6 +14,13 @@ FOLDERS = ("snowshed", "bindings", "apps", "vdb")
 TOOLS = ("tests", "bench", "fuzz")
 #: Locals, members and functions with these names say nothing about their values.
 EMPTY_NAMES = {"found", "kept", "whole", "there", "way"}
+#: Constants that limit something are called max_… and min_….
+LIMITS = re.compile(
+    r"\bconstexpr\b[^=;(){}]*"
+    r"\b((?:most|least|largest|longest|smallest|shortest|deepest|highest)(?:_\w+)?)\b"
+)
+#: Rooms whose limits still have other names.
+OTHER_LIMITS = ("snowshed/methods/mpm", "snowshed/material")
 #: Trailing comments are fragments, and begin in lower case.
 FRAGMENTS = re.compile(r"(of|what|that|how|which|whose|where to) ")
 TOKEN = re.compile(
@@ -127,5 +134,16 @@ def test_names_say_what_they_hold(folder):
             set(re.findall(r"\w+", TOKEN.sub(" ", path.read_text(encoding="utf-8"))))
         )
         if name.strip("_") in EMPTY_NAMES
+    ]
+    assert wrong == []
+
+
+@pytest.mark.parametrize("folder", FOLDERS)
+def test_limits_are_called_max_and_min(folder):
+    wrong = [
+        f"{path.relative_to(ROOT)}: {name}"
+        for path in sources(folder)
+        if not any(room in path.as_posix() for room in OTHER_LIMITS)
+        for name in LIMITS.findall(TOKEN.sub(" ", path.read_text(encoding="utf-8")))
     ]
     assert wrong == []

@@ -80,14 +80,14 @@ class Display : public snowshed::EventObserver {
       std::fprintf(stderr, "\revent %d  %3.0f %%  t = %.3f s  %.1f M updates/s ", sim.event(),
                    100 * r.progress, r.time, r.updates_per_s / 1e6);
   }
-  void event_ended(const snowshed::Simulation&, const snowshed::EventFacts& facts) override {
-    if (const auto lost = facts.energy_residual(); lost > snowshed::largest_energy_residual)
+  void event_ended(const snowshed::Simulation&, const snowshed::EventRecord& record) override {
+    if (const auto lost = record.energy_residual(); lost > snowshed::max_energy_residual)
       std::fprintf(stderr, "\rnote: event %d: the energy balance has a residual of %.2g %%\n",
-                   facts.event, 100 * *lost);
+                   record.event, 100 * *lost);
     if (!quiet_)
       std::fprintf(stderr, "%sevent %d  %s after %.3f s of snow time%s\n", terminal_ ? "\r" : "",
-                   facts.event, facts.ended == "rest" ? "at rest" : "time limit", facts.sim_time,
-                   terminal_ ? "                              " : "");
+                   record.event, record.ended == snowshed::RunEnd::rest ? "at rest" : "time limit",
+                   record.sim_time, terminal_ ? "                              " : "");
   }
   bool stop_requested() override { return interrupted != 0; }
 
@@ -111,7 +111,7 @@ snowshed::EventSequence open(const Options& o) {
     if (!o.quiet)
       std::fprintf(stderr, "note: %s\n", snowshed::printable(o.scene + ": " + note).c_str());
   const auto stop = [] {
-    setting_up = 0;  // called while snow is seeded, which can stop by itself
+    setting_up = 0;  // called while snow is seeded, which can be stopped
     return interrupted != 0;
   };
   if (!o.resume) return snowshed::EventSequence::create(scene, ".", o.folder, stop);
@@ -132,7 +132,7 @@ bool run_all(snowshed::EventSequence& sequence, bool quiet) try {
   throw;
 }
 
-/// A run goes on to its next safe point; while it is set up, there is nothing to save.
+/// A run continues to its next safe point; during setup there is nothing to save.
 void on_signal(int) {
   constexpr char message[] = "error: interrupted; nothing was written\n";
   interrupted = 1;
@@ -143,7 +143,7 @@ void on_signal(int) {
   std::_Exit(130);
 }
 
-/// A signal that is ignored, as under nohup, stays so.
+/// A signal that is ignored, as under nohup, remains ignored.
 void interrupt_on(int signal) {
   if (std::signal(signal, on_signal) == SIG_IGN) std::signal(signal, SIG_IGN);
 }

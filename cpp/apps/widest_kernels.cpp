@@ -1,11 +1,11 @@
 // Prints the widest instruction set of the kernels that this machine runs.
-#define SNOWSHED_HAS_KERNELS_avx2
-#define SNOWSHED_HAS_KERNELS_avx512
 #include <cstdio>
 
-#include "snowshed/core/kernel_variant.cpp"
+#include "snowshed/core/instruction_sets.hpp"
 
 int main() {
-  unsetenv("SNOWSHED_KERNELS");
-  std::fputs(snowshed::kernel_variant(), stdout);
+  snowshed::KernelVariant widest = snowshed::KernelVariant::baseline;
+  for (const snowshed::KernelVariant variant : snowshed::all_variants)
+    if (snowshed::machine_has(variant)) widest = variant;
+  std::fputs(snowshed::name_of(widest), stdout);
 }

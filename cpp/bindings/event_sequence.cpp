@@ -14,19 +14,19 @@ namespace py = pybind11;
 namespace snowshed {
 namespace {
 
-py::dict facts_dict(const EventFacts& facts) {
+py::dict record_dict(const EventRecord& record) {
   py::dict d;
-  d["event"] = facts.event;
-  d["sim_time_s"] = facts.sim_time;
-  d["steps"] = facts.steps;
-  d["wall_s"] = facts.wall;
-  d["ended"] = facts.ended;
-  d["laid_height_m"] = facts.laid_height;
-  d["damping_rate_per_s"] = facts.damping_rate.value_or(std::numeric_limits<double>::quiet_NaN());
+  d["event"] = record.event;
+  d["sim_time_s"] = record.sim_time;
+  d["steps"] = record.steps;
+  d["wall_s"] = record.wall;
+  d["ended"] = name_of(record.ended);
+  d["laid_height_m"] = record.laid_height;
+  d["damping_rate_per_s"] = record.damping_rate.value_or(std::numeric_limits<double>::quiet_NaN());
   py::dict energy;
-  for (const auto& [name, joules] : facts.energy) energy[name.c_str()] = joules;
+  for (const auto& [name, joules] : record.energy) energy[name.c_str()] = joules;
   d["energy"] = energy;
-  d["energy_residual"] = facts.energy_residual();
+  d["energy_residual"] = record.energy_residual();
   return d;
 }
 
@@ -59,9 +59,9 @@ class PythonObserver : public EventObserver {
     py::gil_scoped_acquire gil;
     observer_.attr("progress")(report_dict(report));
   }
-  void event_ended(const Simulation&, const EventFacts& facts) override {
+  void event_ended(const Simulation&, const EventRecord& record) override {
     py::gil_scoped_acquire gil;
-    observer_.attr("event_ended")(facts_dict(facts));
+    observer_.attr("event_ended")(record_dict(record));
   }
   void before_checkpoint(const Simulation&) override {
     py::gil_scoped_acquire gil;
@@ -84,7 +84,7 @@ bool run_sequence(EventSequence& sequence, const py::object& observer, double re
 
 py::list finished_events(const EventSequence& sequence) {
   py::list events;
-  for (const EventFacts& facts : sequence.record().finished) events.append(facts_dict(facts));
+  for (const EventRecord& record : sequence.record().finished) events.append(record_dict(record));
   return events;
 }
 

@@ -71,7 +71,7 @@ void bind_film(py::module_& m) {
                              [](const FilmReader& r) { return quantity_list(r.header()); })
       .def_property_readonly("frames", [](const FilmReader& r) {
         py::list list;
-        for (const FilmFrameFacts& f : r.frames())
+        for (const FilmFrameInfo& f : r.frames())
           list.append(py::make_tuple(f.time, f.event, f.particles));
         return list;
       });

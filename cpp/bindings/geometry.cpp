@@ -15,10 +15,10 @@ namespace snowshed {
 namespace {
 
 py::tuple ascii_grid(const std::filesystem::path& path) {
-  AsciiGridFacts facts;
-  const HeightField f = read_ascii_grid(path, &facts);
+  GridAssumptions assumptions;
+  const HeightField f = read_ascii_grid(path, &assumptions);
   return py::make_tuple(map_of(f.heights, f.rows, f.columns), f.west, f.south, f.cell,
-                        facts.undeclared_missing, facts.decimal_commas);
+                        assumptions.undeclared_missing, assumptions.decimal_commas);
 }
 
 std::string cliff(const py::array_t<double, py::array::c_style | py::array::forcecast>& heights,

@@ -7,7 +7,7 @@ namespace snowshed {
 
 void bind_machine(pybind11::module_& m) {
   m.def("available_memory_bytes", &available_memory_bytes,
-        "Memory that can be had now without swapping.");
+        "Memory that is available now without swapping.");
   m.def("slow_kernels_note", &slow_kernels_note,
         "A sentence on the cost of kernels without AVX2, if these are used; otherwise empty.");
 }

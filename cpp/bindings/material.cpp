@@ -1,4 +1,4 @@
-// The return mapping by itself, so that Python can compare it with an independent integration.
+// The return mapping alone, so that Python can compare it with an independent integration.
 #include <pybind11/numpy.h>
 
 #include "bindings.hpp"

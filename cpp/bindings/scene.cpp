@@ -67,7 +67,7 @@ void bind_scene(py::module_& m) {
             return ParsedScene(resolve(with_absolute_files(base_dir, scene)));
           },
           "text"_a, "base_dir"_a = ".",
-          "The scene of a JSON text; files it names are found from base_dir.")
+          "The scene of a JSON text; files that it names are found from base_dir.")
       .def_static(
           "load",
           [](const std::filesystem::path& path) {
@@ -76,7 +76,7 @@ void bind_scene(py::module_& m) {
             warn(notes, path.string());
             return ParsedScene(resolve(scene));
           },
-          "path"_a, "The same of a file; files it names are found beside it.")
+          "path"_a, "The scene of a file; files that it names are found beside it.")
       .def_property_readonly("json", [](const ParsedScene& s) { return s.json; });
   m.def("update_version", &updated, "text"_a,
         "The JSON of a scene in the present version, with the same meaning.");

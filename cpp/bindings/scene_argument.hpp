@@ -1,4 +1,4 @@
-// A scene as Python passes it to the core: parsed once, or as JSON text.
+// A scene that Python passes to the core: parsed once, or as JSON text.
 #pragma once
 
 #include <pybind11/pybind11.h>

@@ -64,7 +64,7 @@ std::string run(Simulation& sim, const py::function& callback, double interval) 
 
 py::dict energy(const Simulation& sim) {
   py::dict d;
-  if (const auto* keeping = capability<KeepsEnergy>(sim.solver()))
+  if (const auto* keeping = capability<KeepsEnergy>(sim.method()))
     for (const auto& [name, joules] : keeping->energies()) d[name.c_str()] = joules;
   return d;
 }
@@ -122,28 +122,28 @@ py::dtype dtype_of(FieldType type) {
 
 py::list field_list(const Simulation& sim) {
   py::list all;
-  for (const FieldInfo& f : sim.solver().fields())
+  for (const FieldInfo& f : sim.method().fields())
     all.append(py::make_tuple(f.name, f.unit, f.meaning, dtype_of(f.type), f.stored));
   return all;
 }
 
 py::array order_by_id(const Simulation& sim) {
-  const std::vector<std::uint32_t>& order = sim.solver().order_by_id();
+  const std::vector<std::uint32_t>& order = sim.method().order_by_id();
   return column<std::int64_t>(order);
 }
 
 /// Ordered by id.
 py::array on_panel(const Simulation& sim) {
-  const FieldView view = sim.solver().field("position");
+  const FieldView view = sim.method().field("position");
   std::vector<Vec3> positions;
-  for (const std::uint32_t place : sim.solver().order_by_id())
+  for (const std::uint32_t place : sim.method().order_by_id())
     positions.push_back(Vec3::Map(view.at<double>(place)));
   return column<bool>(sim.on_panel(positions));
 }
 
 py::object affine(const Simulation& sim) {
-  for (const FieldInfo& info : sim.solver().fields())
-    if (info.name == "affine") return array_by_id(sim.solver(), info.name);
+  for (const FieldInfo& info : sim.method().fields())
+    if (info.name == "affine") return array_by_id(sim.method(), info.name);
   return py::none();
 }
 
@@ -222,11 +222,11 @@ void bind_fields(SimulationClass& c) {
   c.reads("fields", &field_list);
   c.reads(
       "field",
-      [](const Simulation& s, const std::string& name) { return array_of(s.solver().field(name)); },
+      [](const Simulation& s, const std::string& name) { return array_of(s.method().field(name)); },
       "name"_a);
   c.reads(
       "field_by_id",
-      [](const Simulation& s, const std::string& name) { return array_by_id(s.solver(), name); },
+      [](const Simulation& s, const std::string& name) { return array_by_id(s.method(), name); },
       "name"_a);
   c.reads("order_by_id", &order_by_id);
   c.column("positions", "position");
@@ -265,14 +265,14 @@ void bind_facts(SimulationClass& c) {
   c.property("event_running", [](const Simulation& s) { return s.event_running(); });
   c.property("time_s", [](const Simulation& s) { return s.event_time(); });
   c.property("damping_rate_per_s", [](const Simulation& s) { return s.damping_rate(); });
-  c.property("total_steps", [](const Simulation& s) { return s.solver().counters().steps; });
-  c.property("rejected_steps", [](const Simulation& s) { return s.solver().counters().rejected; });
+  c.property("total_steps", [](const Simulation& s) { return s.method().counters().steps; });
+  c.property("rejected_steps", [](const Simulation& s) { return s.method().counters().rejected; });
   c.property("particle_updates",
-             [](const Simulation& s) { return s.solver().counters().particle_updates; });
-  c.property("slept_updates", [](const Simulation& s) { return slept_updates(s.solver()); });
-  c.property("sorts", [](const Simulation& s) { return s.solver().counters().sorts; });
-  c.property("particle_count", [](const Simulation& s) { return s.solver().size(); });
-  c.property("time_step_s", [](const Simulation& s) { return s.solver().time_step(); });
+             [](const Simulation& s) { return s.method().counters().particle_updates; });
+  c.property("slept_updates", [](const Simulation& s) { return slept_updates(s.method()); });
+  c.property("sorts", [](const Simulation& s) { return s.method().counters().sorts; });
+  c.property("particle_count", [](const Simulation& s) { return s.method().size(); });
+  c.property("time_step_s", [](const Simulation& s) { return s.method().time_step(); });
   c.property("scene", [](const Simulation& s) { return write_scene(s.scene()); });
   c.property("snows", &snows);
   c.property("threads", [](const Simulation& s) { return s.threads(); });

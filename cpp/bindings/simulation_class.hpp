@@ -1,4 +1,4 @@
-// The class Simulation as Python sees it, to which the files of bindings add its methods.
+// The class Simulation in Python, to which the files of bindings add its methods.
 #pragma once
 
 #include <utility>
@@ -8,7 +8,7 @@
 
 namespace snowshed {
 
-/// The class as Python sees it; every call goes through the guard.
+/// The class in Python; every call goes through the guard.
 class SimulationClass {
  public:
   using Handle = SimulationHandle;
@@ -34,7 +34,7 @@ class SimulationClass {
   void column(const char* name, const char* field) {
     class_.def(name, [name, field](Handle& handle) {
       return handle.use(name, Handle::Access::read, [field](const auto& simulation) {
-        return array_by_id(simulation->solver(), field);
+        return array_by_id(simulation->method(), field);
       });
     });
   }

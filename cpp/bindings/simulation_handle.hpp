@@ -1,4 +1,4 @@
-// The simulation as Python holds it: shared with the sequence of events that runs it, if there is
+// The simulation that Python holds: shared with the sequence of events that runs it, if there is
 // one, and guarded against use by two threads at once.
 #pragma once
 

@@ -20,8 +20,8 @@ void continue_run(Simulation& simulation) {
 }
 
 void exercise(Simulation& simulation, const std::filesystem::path& copy) {
-  simulation.solver().state();
-  if (const auto* keeping = capability<KeepsEnergy>(simulation.solver())) keeping->energies();
+  simulation.method().state();
+  if (const auto* keeping = capability<KeepsEnergy>(simulation.method())) keeping->energies();
   simulation.save(copy);
   try {
     continue_run(simulation);

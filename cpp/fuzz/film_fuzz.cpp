@@ -19,7 +19,7 @@ void check_frame(const FilmFrame& frame, const FilmHeader& header, std::size_t p
 }
 
 void go_on(const std::filesystem::path& path) {
-  FilmWriter writer = FilmWriter::reopen(path, [](const FilmFrameFacts&) { return true; });
+  FilmWriter writer = FilmWriter::reopen(path, [](const FilmFrameInfo&) { return true; });
   FilmFrame empty;
   empty.positions.resize(std::size_t(writer.header().axes));
   empty.values.resize(writer.header().quantities.size());
@@ -38,8 +38,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const InputFile file(data, size, ".bin");
   allow_refusal([&] {
     FilmReader reader(file.path());
-    for (const FilmFrameFacts& facts : reader.frames())
-      check_frame(reader.next(), reader.header(), facts.particles);
+    for (const FilmFrameInfo& info : reader.frames())
+      check_frame(reader.next(), reader.header(), info.particles);
     go_on(file.path());
   });
   return 0;

@@ -154,8 +154,8 @@ def test_a_raster_of_thickness_makes_the_release(tmp_path):
     [
         (-0.5, (), "a negative thickness at (16, 16)"),
         (np.nan, (), "no thickness amid snow at (16, 16)"),
-        (np.nan, ("--release",), "the raster of thickness says nothing at (16"),
-        (0.0, ("--release",), "the raster of thickness says 0.000000 m at (16"),
+        (np.nan, ("--release",), "the thickness raster has no value at (16"),
+        (0.0, ("--release",), "the thickness raster has 0.000000 m at (16"),
         (0.5, ("--thickness", "1"), "one of a thickness and a raster of thickness"),
     ],
     ids=["negative", "gap", "hole", "zero", "twice"],
@@ -177,7 +177,7 @@ def test_a_raster_of_thickness_must_cover_the_release(tmp_path, capsys):
     depth = depth_raster(tmp_path, DEPTH)
     options = ["--thickness-raster", depth]
     refused(
-        tmp_path, capsys, "reaches beyond the raster of thickness",
+        tmp_path, capsys, "reaches beyond the thickness raster",
         {"dem.asc", "rel.geojson", "depth.asc"}, options=options,
     )  # fmt: skip
 

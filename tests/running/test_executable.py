@@ -151,7 +151,7 @@ def test_bad_scenes_are_refused(bad_scene, tmp_path):  # noqa: F811
         (b"{", "s.json:1:2: not valid JSON"),
         (b"\xff\xfe\x00{}", "s.json:1:1: not valid JSON"),
         (b"[]", "/: an array is not an object"),
-        (b'{"snowshed": 2}', "nothing holds snow"),
+        (b'{"snowshed": 2}', "there is no snow"),
     ],
 )
 def test_files_that_are_no_scenes_are_refused(tmp_path, capsys, content, message):
@@ -312,7 +312,7 @@ def test_other_kernels_do_not_go_on(tmp_path):
     for kernels, code in (("junk", 2), ("baseline", 0)):
         done = snowshed_run(scene, "-o", first, env={**os.environ, "SNOWSHED_KERNELS": kernels})
         assert done.returncode == code
-    assert "note: the kernels run without AVX2: this takes two to five times" in done.stderr
+    assert "note: this processor has no AVX2: runs take two to five times" in done.stderr
     present = {**os.environ, "SNOWSHED_KERNELS": "avx2"}
     done = snowshed_run(scene, "-o", first, "--resume", env=present)
     if "can run" not in done.stderr:  # a machine that has them

@@ -44,7 +44,7 @@ def test_layers_bring_their_own_snow_in_their_events(tmp_path):
     assert [json.loads(snow)["density"] for snow in simulation.snows] == [100, 210, 150]
     of_each = [masses[kinds == kind].sum() for kind in range(3)]
     assert of_each == pytest.approx([2 * area * 2, 2 * area * 4.2, area * 3], rel=1e-5)
-    assert b'Name="snow"' in (folder / "particles" / "event_002.vtp").read_bytes()[:4000]
+    assert b'Name="material_id"' in (folder / "particles" / "event_002.vtp").read_bytes()[:4000]
 
 
 def test_reseeding_converts_each_snow_by_itself(tmp_path):
@@ -70,7 +70,7 @@ def test_one_snow_needs_no_kinds(finished):
         and len(simulation.material_ids()) == simulation.particle_count
     )
     first = next((finished / "particles").glob("*.vtp"))
-    assert b'Name="snow"' not in first.read_bytes()
+    assert b'Name="material_id"' not in first.read_bytes()
 
 
 def test_bodies_may_have_snow_of_their_own():

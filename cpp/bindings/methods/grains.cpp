@@ -14,7 +14,7 @@ namespace {
 
 /// The solver as grains; throws InputError if the scene's method is another.
 const Solver& grains_of(const Simulation& sim) {
-  const auto* grains = dynamic_cast<const Solver*>(&sim.solver());
+  const auto* grains = dynamic_cast<const Solver*>(&sim.method());
   if (!grains) throw InputError("/method", "is not \"grains\", and loads no sample");
   return *grains;
 }
@@ -76,8 +76,8 @@ py::array_t<std::int32_t> split_labels(const LabelArray& labels) {
 }
 
 void bind_labels(py::module_& m) {
-  m.attr("smallest_grain") = smallest_grain;
-  m.attr("largest_grain") = largest_grain;
+  m.attr("min_grain_diameter") = min_grain_diameter;
+  m.attr("max_grain_diameter") = max_grain_diameter;
   m.def("check_grain_diameter", &check_grain_diameter, py::arg("median"),
         "InputError unless the median diameter of grains (m) is that of snow.");
   m.def("label_note", &checked_label_note, py::arg("labels"), py::arg("split"),

@@ -13,7 +13,7 @@ namespace {
 
 /// The solver as a slide; throws InputError if the scene's method is another.
 const Solver& slide_of(const Simulation& sim) {
-  const auto* slide = dynamic_cast<const Solver*>(&sim.solver());
+  const auto* slide = dynamic_cast<const Solver*>(&sim.method());
   if (!slide) throw InputError("/method", "is not \"slide\", and has no maps");
   return *slide;
 }
@@ -47,7 +47,7 @@ py::dict slide_facts(const Simulation& sim) {
   d["bonds"] = slide.bonds().size();
   d["released_kg"] = m.released;
   d["entrained_kg"] = m.entrained;
-  d["left_terrain_kg"] = m.left;
+  d["left_terrain_kg"] = m.left_terrain;
   d["left_terrain"] = m.particles_left;
   return d;
 }

@@ -13,32 +13,6 @@
 namespace snowshed {
 namespace {
 
-constexpr KernelVariant all_variants[] = {KernelVariant::baseline, KernelVariant::avx2,
-                                          KernelVariant::avx512};
-
-const char* name_of(KernelVariant variant) {
-  switch (variant) {
-    case KernelVariant::avx512:
-      return "avx512";
-    case KernelVariant::avx2:
-      return "avx2";
-    default:
-      return "baseline";
-  }
-}
-
-bool machine_has(KernelVariant variant) {
-#if defined(__x86_64__)
-  if (variant == KernelVariant::avx512)
-    return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
-           __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw");
-  if (variant == KernelVariant::avx2)
-    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
-           __builtin_cpu_supports("bmi2");
-#endif
-  return variant == KernelVariant::baseline;
-}
-
 bool build_has(KernelVariant variant) {
 #ifdef SNOWSHED_HAS_KERNELS_avx512
   if (variant == KernelVariant::avx512) return true;
@@ -91,14 +65,14 @@ const char* slow_kernels_note() {
   const KernelVariant chosen = chosen_kernel_variant();
   if (chosen == KernelVariant::avx2 && machine_has(KernelVariant::avx512) &&
       !build_has(KernelVariant::avx512))
-    return "this build has no kernels for AVX-512, with which this processor takes up to a fifth "
-           "less time (make build KERNELS=all)";
+    return "this build has no AVX-512 kernels, which would save up to a fifth of the time on this "
+           "processor (make build KERNELS=all)";
   if (chosen != KernelVariant::baseline) return "";
   if (machine_has(KernelVariant::avx2) && supported_variants().size() == 1)
-    return "this build has no kernels for the AVX2 of this processor: this takes two to five times "
-           "as long as with them (make build KERNELS=all)";
-  return "the kernels run without AVX2: this takes two to five times as long as on a processor "
-         "with it (2013 or later)";
+    return "this build has no AVX2 kernels: runs take two to five times as long as necessary (make "
+           "build KERNELS=all)";
+  return "this processor has no AVX2: runs take two to five times as long as on processors since "
+         "2013";
 }
 
 }  // namespace snowshed

@@ -1,12 +1,12 @@
 // Choice of the instruction set whose kernels a process uses.
 #pragma once
 
+#include "snowshed/core/instruction_sets.hpp"
+
 namespace snowshed {
 
-enum class KernelVariant { baseline, avx2, avx512 };
-
-/// Returns the widest one that both the build and the machine have, or the one that the environment
-/// variable SNOWSHED_KERNELS names. Throws InputError if that is not available.
+/// Returns the widest variant that both the build and the machine have, or the one that the
+/// environment variable SNOWSHED_KERNELS names. Throws InputError if that is not available.
 KernelVariant chosen_kernel_variant();
 
 /// Returns its name.

@@ -84,11 +84,11 @@ std::string show_briefly(double number) {
 }
 
 std::string quote(const std::string& text) {
-  constexpr std::size_t longest = 60;
+  constexpr std::size_t max_length = 60;
   constexpr auto replace = nlohmann::json::error_handler_t::replace;
   const std::string quoted =
-      nlohmann::json(text.substr(0, longest)).dump(-1, ' ', /*ensure_ascii=*/true, replace);
-  return text.size() <= longest ? quoted : quoted + "...";
+      nlohmann::json(text.substr(0, max_length)).dump(-1, ' ', /*ensure_ascii=*/true, replace);
+  return text.size() <= max_length ? quoted : quoted + "...";
 }
 
 bool is_utf8(const std::string& text) {
@@ -101,13 +101,13 @@ bool is_utf8(const std::string& text) {
 }
 
 std::string pointer(const std::string& parent, const std::string& key) {
-  constexpr std::size_t longest = 100;
+  constexpr std::size_t max_length = 100;
   std::string path = parent + "/";
   std::size_t length = 0;
   for (const char c : key) {
     // Continues a UTF-8 sequence.
     const bool continues = (static_cast<unsigned char>(c) & 0xC0) == 0x80;
-    if (++length > longest && !continues) return path + "...";
+    if (++length > max_length && !continues) return path + "...";
     if (c == '~')
       path += "~0";
     else if (c == '/')

@@ -19,15 +19,14 @@ std::string show_briefly(double number);
 std::string quote(const std::string& text);
 
 /// Returns a message that a terminal may show, even if it quotes untrusted text: control
-/// characters, those that turn the direction of writing, and bytes that are no UTF-8 become "?".
+/// characters, those that turn the direction of writing, and bytes that are not UTF-8 become "?".
 std::string printable(const std::string& message);
 
 /// Returns whether the text is valid UTF-8.
 bool is_utf8(const std::string& text);
 
 /// Returns the JSON pointer (RFC 6901) of a member or an item of `parent`. Control characters
-/// become
-/// "?", and keys of more than 100 characters are cut.
+/// become "?", and keys of more than 100 characters are cut.
 std::string pointer(const std::string& parent, const std::string& key);
 
 /// Returns the names in quotation marks with commas between them.

@@ -16,14 +16,14 @@
 
 namespace snowshed {
 
-/// The number of threads for a run: as many as wanted; with 0 as many as OpenMP would start, which
-/// is OMP_NUM_THREADS or else all cores.
+/// The number of threads for a run: the given number, or with 0 as many as OpenMP would start,
+/// which is OMP_NUM_THREADS or else all cores.
 inline int threads_to_use(int wanted) { return wanted > 0 ? wanted : omp_get_max_threads(); }
 
-/// The threads for a step: no more than `most`, and fewer where each would get less than `share` of
-/// the items.
-inline int threads_for(std::size_t items, std::size_t share, int most) {
-  return int(std::clamp<std::size_t>(items / share, 1, std::size_t(most)));
+/// The threads for a step: no more than `max_threads`, and fewer where each would get less than
+/// `share` of the items.
+inline int threads_for(std::size_t items, std::size_t share, int max_threads) {
+  return int(std::clamp<std::size_t>(items / share, 1, std::size_t(max_threads)));
 }
 
 /// The exception of the first iteration, by index, of those that threw on any thread. An exception
@@ -135,8 +135,8 @@ void parallel_for_each(std::ptrdiff_t n, int threads, F f) {
 #endif
 }
 
-/// f(begin, end) for pieces of at most `piece` iterations each, which do not depend on the number
-/// of threads. f must not throw. Allocates nothing.
+/// f(begin, end) for pieces of at most `piece` iterations each, which do not depend on the
+/// number of threads. f must not throw. Allocates nothing.
 template <class F>
 void parallel_pieces(std::ptrdiff_t n, int threads, std::ptrdiff_t piece, F f) {
   const std::ptrdiff_t pieces = (n + piece - 1) / piece;

@@ -1,5 +1,5 @@
-// Random numbers that are the same on every platform (the standard library's
-// distributions are not).
+// Random numbers that are the same on every platform (the standard library's distributions are
+// not).
 #pragma once
 
 #include <cstdint>

@@ -13,19 +13,19 @@ namespace snowshed {
 /// longer for each other than they save. The results of a step must not depend on the choice.
 class ThreadChoice {
  public:
-  /// Returns the number of threads for the step that begins, 1 or `most`.
-  int begin(int most) {
-    if (most == 1) return 1;
+  /// Returns the number of threads for the step that begins, 1 or `max_threads`.
+  int begin(int max_threads) {
+    if (max_threads == 1) return 1;
     step_ = steps_++;
     if (steps_ == period_) {
       steps_ = 0;
-      period_ = std::min(4 * period_, longest_period);
+      period_ = std::min(4 * period_, max_period);
     }
     if (step_ == 0) many_ = gave_up_ = false;
     trial_ = step_ < 2 * trials && !gave_up_;
-    if (!trial_) return many_ ? most : 1;
+    if (!trial_) return many_ ? max_threads : 1;
     begin_ = Clock::now();
-    return step_ < trials ? 1 : most;
+    return step_ < trials ? 1 : max_threads;
   }
 
   /// To be called after each step that `begin` was called for.
@@ -43,7 +43,7 @@ class ThreadChoice {
  private:
   using Clock = std::chrono::steady_clock;
   // Steps. The first trials are soon repeated: a program that has just begun is slower.
-  static constexpr std::size_t first_period = 64, longest_period = 1024, trials = 9;
+  static constexpr std::size_t first_period = 64, max_period = 1024, trials = 9;
   static constexpr double worthwhile = 0.9;  // share of the time with one thread
   using Times = std::array<double, trials>;
 

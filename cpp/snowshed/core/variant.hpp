@@ -1,6 +1,6 @@
 // Code that the kernels share lives in a namespace named after the instruction set it is
 // compiled for, so that the linker never mixes an AVX-512 copy of an inline function into the
-// build for older machines. Everywhere else it is simply `snowshed`.
+// build for older machines. Everywhere else the inline namespace is `host`.
 #pragma once
 
 #ifndef SNOWSHED_KERNEL_VARIANT

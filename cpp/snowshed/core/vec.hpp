@@ -1,5 +1,5 @@
-// Host-side vectors. Geometry is always three-dimensional and in double;
-// a two-dimensional scene lives in the plane y = 0 with coordinates (x, z).
+// Host-side vectors. Geometry is always three-dimensional and in double; a two-dimensional scene
+// lives in the plane y = 0 with coordinates (x, z).
 #pragma once
 
 #include <Eigen/Core>

@@ -10,9 +10,9 @@
 namespace snowshed {
 namespace {
 
-constexpr double least_step = 10;     // m; lower ones are rocks and walls in fine rasters
-constexpr double highest_step = 100;  // m
-constexpr double steepest_rock = 80;  // degrees, of faces that are higher than that
+constexpr double min_cliff = 10;       // m; lower ones are rocks and walls in fine rasters
+constexpr double max_cliff = 100;      // m
+constexpr double max_rock_slope = 80;  // degrees, of faces that are higher than that
 
 /// Two neighbouring nodes, the second one in the east or in the north of the first.
 struct HeightStep {
@@ -43,7 +43,7 @@ std::string first_step(const HeightField& f, const int (&low)[2], const int (&hi
         if (column + step.east >= f.columns || row + step.north >= f.rows) continue;
         const double from = f.height(column, row),
                      to = f.height(column + step.east, row + step.north);
-        if (std::abs(to - from) > least_step && test(step, from, to)) return describe_step(f, step);
+        if (std::abs(to - from) > min_cliff && test(step, from, to)) return describe_step(f, step);
       }
   return "";
 }
@@ -51,7 +51,7 @@ std::string first_step(const HeightField& f, const int (&low)[2], const int (&hi
 }  // namespace
 
 std::string impossible_cliff(const HeightField& f, double max_slope) {
-  const double highest = std::max(highest_step, rise(f, std::max(steepest_rock, max_slope)));
+  const double highest = std::max(max_cliff, rise(f, std::max(max_rock_slope, max_slope)));
   const double beside_zero = rise(f, max_slope);
   return first_step(f, {0, 0}, {f.columns - 1, f.rows - 1},
                     [&](const HeightStep&, double from, double to) {
@@ -65,9 +65,9 @@ std::string cliff_under(const Polygon& area, const HeightField& f, double max_sl
   for (const int axis : {0, 1}) {
     const auto less = [&](const MapPoint& a, const MapPoint& b) { return a[axis] < b[axis]; };
     const auto [first, last] = std::minmax_element(area.outline.begin(), area.outline.end(), less);
-    const double most = (axis == 0 ? f.columns : f.rows) - 1;
-    low[axis] = int(std::clamp((*first)[axis] / f.cell - 1, 0.0, most));
-    high[axis] = int(std::clamp((*last)[axis] / f.cell + 1, 0.0, most));
+    const double last_index = (axis == 0 ? f.columns : f.rows) - 1;
+    low[axis] = int(std::clamp((*first)[axis] / f.cell - 1, 0.0, last_index));
+    high[axis] = int(std::clamp((*last)[axis] / f.cell + 1, 0.0, last_index));
   }
   const double steepest = rise(f, max_slope);
   return first_step(f, low, high, [&](const HeightStep& s, double from, double to) {

@@ -49,9 +49,9 @@ class Union final : public LevelSet {
     return nearest(shapes_, x).first->half_thickness(x);
   }
 
-  double least_half_thickness() const override {
+  double min_half_thickness() const override {
     double result = infinity;
-    for (const Shape& shape : shapes_) result = std::min(result, shape->least_half_thickness());
+    for (const Shape& shape : shapes_) result = std::min(result, shape->min_half_thickness());
     return result;
   }
 
@@ -102,7 +102,7 @@ class Transformed final : public LevelSet {
   }
   double inradius() const override { return shape_->inradius(); }
   double half_thickness(const Vec3& x) const override { return shape_->half_thickness(local(x)); }
-  double least_half_thickness() const override { return shape_->least_half_thickness(); }
+  double min_half_thickness() const override { return shape_->min_half_thickness(); }
   bool is_convex() const override { return shape_->is_convex(); }
 
   std::optional<OrientedBox> oriented_box() const override {
@@ -130,7 +130,7 @@ class Dilated final : public LevelSet {
   double half_thickness(const Vec3& x) const override {
     return shape_->half_thickness(x) + offset_;
   }
-  double least_half_thickness() const override { return shape_->least_half_thickness() + offset_; }
+  double min_half_thickness() const override { return shape_->min_half_thickness() + offset_; }
   bool is_convex() const override { return shape_->is_convex(); }
 
  private:

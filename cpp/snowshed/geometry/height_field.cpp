@@ -59,8 +59,8 @@ int nodes_along(double length, double cell) { return int(std::floor(length / cel
 
 HeightField resampled(const HeightField& field, double cell) {
   if (cell == field.cell) return field;
-  const double most = double(std::numeric_limits<int>::max());
-  if ((field.width() / cell + 1) * (field.length() / cell + 1) > most)
+  const double max_nodes = double(std::numeric_limits<int>::max());
+  if ((field.width() / cell + 1) * (field.length() / cell + 1) > max_nodes)
     throw InputError("cell", "a grid of " + std::to_string(cell) + " m has too many nodes");
   HeightField fine = field;
   fine.cell = cell;

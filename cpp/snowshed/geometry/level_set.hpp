@@ -48,7 +48,7 @@ class LevelSet {
 
   /// Returns a lower bound of half of the thickness anywhere, metres; 0 if none is known. Contact
   /// uses it to leave solids alone that the grid resolves.
-  virtual double least_half_thickness() const { return is_convex() ? inradius() : 0.0; }
+  virtual double min_half_thickness() const { return is_convex() ? inradius() : 0.0; }
 
   virtual bool is_convex() const { return false; }
 

@@ -70,7 +70,7 @@ class Cutter {
 };
 
 /// Unites the ends of sides that are too short to have a direction.
-void drop_short_sides(Section& section, double shortest) {
+void drop_short_sides(Section& section, double min_length) {
   std::vector<std::uint32_t> same(section.points.size());
   std::iota(same.begin(), same.end(), 0u);
   const auto root = [&](std::uint32_t i) {
@@ -78,7 +78,7 @@ void drop_short_sides(Section& section, double shortest) {
     return i;
   };
   for (const auto& [a, b] : section.sides)
-    if ((section.points[a] - section.points[b]).norm() <= shortest) same[root(a)] = root(b);
+    if ((section.points[a] - section.points[b]).norm() <= min_length) same[root(a)] = root(b);
   std::vector<std::array<std::uint32_t, 2>> sides;
   for (const auto& [a, b] : section.sides)
     if (root(a) != root(b)) sides.push_back({root(a), root(b)});

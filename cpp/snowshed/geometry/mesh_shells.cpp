@@ -15,7 +15,7 @@
 namespace snowshed {
 namespace {
 
-constexpr std::size_t most_shells = 10'000;
+constexpr std::size_t max_shells = 10'000;
 
 Bounds bounds_of(const TriangleMesh& mesh) {
   Bounds bounds = no_bounds();
@@ -40,7 +40,7 @@ void turn(TriangleMesh& mesh) {
   for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
 }
 
-/// A shell that faces outward, and how it lies to the others.
+/// A shell that faces outward, and its place among the others.
 struct Shell {
   TriangleMesh mesh;
   Bounds bounds;
@@ -50,7 +50,7 @@ struct Shell {
   Shape solid;                          // where it may contain others
 };
 
-/// Orders the shells by volume, and leaves those without out.
+/// Orders the shells by volume, and omits those without volume.
 std::vector<Shell> with_volumes(std::vector<TriangleMesh> meshes) {
   std::vector<Shell> shells;
   for (TriangleMesh& mesh : meshes) {
@@ -165,9 +165,9 @@ double winding_number(const TriangleMesh& mesh, const Vec3& x) {
 /// Samples of the surface must have the solid on one side of them, and nothing on the other. Where
 /// two sheets coincide, as at a cut that joins a hole to an outline, both sides are the same.
 void check_sides(const TriangleMesh& mesh, const std::string& where) {
-  constexpr std::size_t work = 20'000'000, least = 8, most = 100;
+  constexpr std::size_t work = 20'000'000, min_samples = 8, max_samples = 100;
   const std::size_t n = mesh.triangles.size();
-  const std::size_t samples = std::clamp(work / (2 * n), least, most);
+  const std::size_t samples = std::clamp(work / (2 * n), min_samples, max_samples);
   for (std::size_t s = 0; s < std::min(samples, n); ++s) {
     const Triangle& t = mesh.triangles[s * n / std::min(samples, n)];
     const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
@@ -217,9 +217,9 @@ std::vector<std::string> notes_on(std::size_t without_volume, const std::vector<
 ShellSolid solid_of_shells(const TriangleMesh& mesh, const std::string& where) {
   std::vector<TriangleMesh> parts = connected_shells(mesh);
   const std::size_t count = parts.size();
-  if (count > most_shells)
+  if (count > max_shells)
     throw InputError(where, std::to_string(count) + " separate shells; allowed: up to " +
-                                std::to_string(most_shells));
+                                std::to_string(max_shells));
   std::vector<Shell> shells = with_volumes(std::move(parts));
   if (shells.empty()) throw InputError(where, "the mesh encloses no volume");
   find_containers(shells);

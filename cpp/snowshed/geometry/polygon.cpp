@@ -41,16 +41,17 @@ void add_corner(const MapPoint& before, const MapPoint& v, const MapPoint& after
   const MapPoint meet{end[0] + along * d1[0], end[1] + along * d1[1]};
   const double reach = length(v, meet), width = std::abs(distance);
   const bool inner = (turn > 0) == (distance < 0);
-  const double most = inner ? std::max(1.01 * width, std::min(length(before, v), length(v, after)))
-                            : mitre_limit * width;
-  if (reach <= most) return moved.push_back(meet);
+  const double max_reach =
+      inner ? std::max(1.01 * width, std::min(length(before, v), length(v, after)))
+            : mitre_limit * width;
+  if (reach <= max_reach) return moved.push_back(meet);
   if (inner) {
     moved.push_back(end);
     moved.push_back(begin);
     return;
   }
   const double bevel = length(v, between(end, begin, 0.5));
-  const double part = (most - bevel) / (reach - bevel);
+  const double part = (max_reach - bevel) / (reach - bevel);
   moved.push_back(between(end, meet, part));
   moved.push_back(between(begin, meet, part));
 }

@@ -11,7 +11,7 @@ namespace snowshed {
 namespace {
 
 /// Comparisons of a corner with an ear, over all faces of a file: some seconds.
-constexpr std::size_t most_comparisons = 300'000'000;
+constexpr std::size_t max_comparisons = 300'000'000;
 
 /// The corners of a face as they lie in a plane, counter-clockwise.
 struct Outline {
@@ -120,7 +120,7 @@ class EarClipper {
     if (a == c) return true;  // to a point and back
     if (!(orientation(a, b, c) > 0)) return false;
     for (std::size_t k = after_[last]; k != first; k = after_[k]) {
-      if (++comparisons_ > most_comparisons) return false;
+      if (++comparisons_ > max_comparisons) return false;
       const PlanePoint& q = p_[k];
       if (q == a || q == c) continue;
       if (q == b) {
@@ -187,7 +187,7 @@ void FaceCutter::append(const Face& given, TriangleMesh& mesh) {
   if (is_convex(outline)) return append_fan(face, mesh.triangles);
   EarClipper clipper(outline, comparisons_);
   const bool is_simple = clipper.clip(mesh.triangles);
-  if (comparisons_ > most_comparisons)
+  if (comparisons_ > max_comparisons)
     refuse(where_, mesh, face,
            "is one concave face too many to cut into triangles; give triangles instead");
   if (!is_simple) refuse(where_, mesh, face, "has an outline that crosses itself");

@@ -21,10 +21,10 @@ class FaceCutter {
 
   /// Appends the triangles of a face to the mesh, whose vertices it uses. They turn as the face
   /// does and use all of its corners. A convex face becomes a fan around the corner of the smallest
-  /// coordinates, so that two faces that coincide are cut alike. Others
-  /// are cut ear by ear (Meisters 1975) as they look along the axis nearest to their normal, with
-  /// exact orientations. Corners in the middle of an edge, outlines that touch themselves, and
-  /// holes that a cut joins to the outline are therefore right.
+  /// coordinates, so that two faces that coincide are cut alike. Others are cut ear by ear
+  /// (Meisters 1975) in the projection along the axis nearest to their normal, with exact
+  /// orientations. Corners in the middle of an edge, outlines that touch themselves, and holes that
+  /// a cut joins to the outline are therefore right.
   ///
   /// Throws InputError if the outline crosses itself, or if the concave faces of the file have so
   /// many corners that cutting them would take minutes.

@@ -17,7 +17,7 @@ namespace {
 /// may differ by this factor more.
 constexpr double slope_tolerance = 1.25;
 /// Over all of the surface the mean slope of a distance is 1; below this it is none.
-constexpr double least_slope = 0.6;
+constexpr double min_slope = 0.6;
 
 using Sample = std::array<std::size_t, 3>;
 
@@ -120,7 +120,8 @@ double mean_slope_at_surface(const GridSamples& s) {
 
 /// The largest and the smallest value where these were cut off.
 Band cut_off(const GridSamples& s) {
-  constexpr std::size_t least = 4;  // level samples; distances by other norms have some in corners
+  // Distances by other norms have some level samples in corners.
+  constexpr std::size_t min_level_samples = 4;
   const auto [low, high] = std::minmax_element(s.values.begin(), s.values.end());
   if (!(*low < 0) || !(*high > 0)) return {infinity, infinity};
   std::size_t level_inside = 0, level_outside = 0;
@@ -132,7 +133,8 @@ Band cut_off(const GridSamples& s) {
     for_neighbours(s, at, [&](int, const Sample& next) { level &= value_at(s, next) == value; });
     if (level) ++(value < 0 ? level_inside : level_outside);
   });
-  return {level_outside < least ? infinity : *high, level_inside < least ? infinity : -*low};
+  return {level_outside < min_level_samples ? infinity : *high,
+          level_inside < min_level_samples ? infinity : -*low};
 }
 
 std::string note_on(const Band& band) {
@@ -175,7 +177,7 @@ void repair_distances(GridSamples& samples, const std::string& where,
     if (notes) notes->push_back(where + ": " + note);
   };
   const double slope = mean_slope_at_surface(samples);
-  if (slope < least_slope) {
+  if (slope < min_slope) {
     rebuild_distance(samples, Band{0, 0}, where);
     std::ostringstream text;
     text << "at the surface the values change by " << slope

@@ -54,7 +54,7 @@ class Thickened final : public LevelSet {
   }
   Bounds varied_bounds() const override { return expanded(shape_->varied_bounds(), half_); }
   double inradius() const override { return std::max(shape_->inradius(), half_); }
-  double least_half_thickness() const override { return half_; }
+  double min_half_thickness() const override { return half_; }
 
   double half_thickness(const Vec3& x) const override {
     return nearest_part(x, shape_->distance(x)) ? half_ : shape_->half_thickness(x);
@@ -91,7 +91,7 @@ ThickSolid dilated(Shape shape, double half_thickness, double half) {
 }  // namespace
 
 ThickSolid thickened(Shape shape, double half, int dimension) {
-  if (shape->least_half_thickness() >= half * (1 - rounding)) return {std::move(shape), {}};
+  if (shape->min_half_thickness() >= half * (1 - rounding)) return {std::move(shape), {}};
   if (shape->is_convex()) {
     const double inradius = shape->inradius();
     return dilated(std::move(shape), inradius, half);

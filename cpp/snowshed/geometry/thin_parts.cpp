@@ -11,14 +11,14 @@
 namespace snowshed {
 namespace {
 
-constexpr std::size_t most_cells = 400'000;
+constexpr std::size_t max_cells = 400'000;
 /// Thin cells are divided once more where that does not make more pieces than this.
-constexpr std::size_t most_fine_pieces = 100'000;
-/// The least cosine between a normal and the opposite of that at the other end of its chord.
+constexpr std::size_t max_fine_pieces = 100'000;
+/// Minimum cosine between a normal and the opposite of that at the other end of its chord.
 constexpr double parallel = 0.77;
 
-/// Lengths below are parts of the half thickness that is asked for.
-constexpr double on_surface = 1e-6, shortest_step = 2e-3, thick = 0.999;
+/// The lengths below are relative to the requested half thickness.
+constexpr double on_surface = 1e-6, min_step = 2e-3, thick = 0.999;
 /// The middle of a bent part may leave it along its tangent by this distance.
 constexpr double slack = 0.1;
 
@@ -31,10 +31,10 @@ class ThinPartSearch {
     const Bounds within = expanded(shape_.varied_bounds(), 2 * half_);
     if (!is_finite(within, dimension_)) return {};
     std::vector<Vec3> cells = cover(within);
-    while (edge_ > 1.001 * half_ && children() / 2 * cells.size() <= most_cells)
+    while (edge_ > 1.001 * half_ && children() / 2 * cells.size() <= max_cells)
       cells = divided(cells);
     std::vector<ThinPart> parts = parts_of(cells);
-    if (parts.empty() || parts.size() * children() > most_fine_pieces) return parts;
+    if (parts.empty() || parts.size() * children() > max_fine_pieces) return parts;
     return parts_of(divided(around_thin(cells)));
   }
 
@@ -132,8 +132,7 @@ class ThinPartSearch {
     const Vec3 n = normal(*touch);
     if (depth(*touch - half_ * n) >= 0.98 * half_) return std::nullopt;  // a ball fits in
     // Within a union, the surface of a part is not that of the whole: the chord goes on outward.
-    const double out =
-        is_inside(*touch + shortest_step * half_ * n) ? distance_out(*touch, n) : 0.0;
+    const double out = is_inside(*touch + min_step * half_ * n) ? distance_out(*touch, n) : 0.0;
     const double in = distance_out(*touch, -n);
     if (in + out >= thick * 2 * half_) return std::nullopt;
     const Vec3 middle = *touch + 0.5 * (out - in) * n;
@@ -143,10 +142,10 @@ class ThinPartSearch {
   }
 
   std::optional<Vec3> nearest_on_surface(Vec3 x, double farthest) const {
-    constexpr int most_steps = 12;
+    constexpr int max_steps = 12;
     const Vec3 start = x;
     double distance = shape_.distance(x);
-    for (int step = 0; step < most_steps && std::abs(distance) > on_surface * half_; ++step) {
+    for (int step = 0; step < max_steps && std::abs(distance) > on_surface * half_; ++step) {
       x -= distance * normal(x);
       distance = shape_.distance(x);
     }
@@ -156,7 +155,7 @@ class ThinPartSearch {
 
   /// The distance from x to the outside of the solid, at most twice the half thickness.
   double distance_out(const Vec3& x, const Vec3& direction) const {
-    const double longest = 2 * half_, shortest = shortest_step * half_;
+    const double longest = 2 * half_, shortest = min_step * half_;
     double distance = 0;
     for (double d = 0; distance < longest; d = depth(x + distance * direction)) {
       if (d < -on_surface * half_) return std::max(0.0, distance + d);  // back to the surface
@@ -173,7 +172,7 @@ class ThinPartSearch {
     while (distance < end) {
       const double d = depth(middle + distance * direction) + allowed;
       if (d < 0) return std::clamp(distance - allowed - half, 0.0, longest);
-      distance += std::max(d, shortest_step * half_);
+      distance += std::max(d, min_step * half_);
     }
     return longest;
   }
@@ -213,11 +212,11 @@ class ThinPartSearch {
   /// The part around the deepest point near x, if that is not deep enough. `outward` leads to where
   /// the faces meet.
   std::optional<ThinPart> deepest_near(const Vec3& x, const Vec3& n, const Vec3& outward) const {
-    constexpr int most_steps = 60;
+    constexpr int max_steps = 60;
     const auto [along, across] = tangents(n);
     Vec3 best = x;
     double deepest = depth(x), step = 0.5 * half_;
-    for (int k = 0; k < most_steps && step > 0.02 * half_; ++k) {
+    for (int k = 0; k < max_steps && step > 0.02 * half_; ++k) {
       const Vec3 from = best;
       for (const Vec3& direction : {Vec3(outward.stableNormalized()), n, along, across})
         for (const double sign : {1.0, -1.0}) {

@@ -12,7 +12,7 @@ namespace snowshed {
 namespace {
 
 // Beyond this, products of coordinates lose their precision.
-constexpr double largest_coordinate = 1e9;  // m
+constexpr double max_coordinate = 1e9;  // m
 
 struct DirectedEdge {
   std::uint32_t from, to;
@@ -60,7 +60,7 @@ void check_closed(const TriangleMesh& mesh, const std::string& where) {
 void require_valid_numbers(const TriangleMesh& mesh, const std::string& where) {
   if (mesh.triangles.empty()) throw InputError(where, "the mesh has no triangles");
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
-    if (!(mesh.vertices[v].cwiseAbs().maxCoeff() <= largest_coordinate) ||
+    if (!(mesh.vertices[v].cwiseAbs().maxCoeff() <= max_coordinate) ||
         !mesh.vertices[v].allFinite())
       throw InputError(where, "vertex " + std::to_string(v) + " " + describe(mesh.vertices[v]) +
                                   "; allowed: finite coordinates up to 1e9 m");

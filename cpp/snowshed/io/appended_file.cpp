@@ -14,7 +14,7 @@
 namespace snowshed {
 namespace {
 
-constexpr std::size_t most_at_once = std::size_t{1} << 30;  // Linux transfers no more than 2 GiB
+constexpr std::size_t max_append = std::size_t{1} << 30;  // Linux transfers no more than 2 GiB
 
 class Descriptor {
  public:
@@ -43,16 +43,16 @@ class Descriptor {
 
 void append_to_file(const std::filesystem::path& path, const void* data, std::size_t bytes) {
   const Descriptor file(path);
-  struct stat facts;
-  if (file.number() < 0 || ::fstat(file.number(), &facts) != 0)
+  struct stat status;
+  if (file.number() < 0 || ::fstat(file.number(), &status) != 0)
     fail_at(path, "cannot open the file", errno);
   const char* next = static_cast<const char*>(data);
   while (bytes > 0) {
-    const ssize_t written = ::write(file.number(), next, std::min(bytes, most_at_once));
+    const ssize_t written = ::write(file.number(), next, std::min(bytes, max_append));
     if (written < 0 && errno == EINTR) continue;
     if (written < 0) {
       const int error = errno;
-      if (::ftruncate(file.number(), facts.st_size) != 0) {
+      if (::ftruncate(file.number(), status.st_size) != 0) {
         // Readers detect that the rest is incomplete.
       }
       fail_at(path, "cannot write the file", error);

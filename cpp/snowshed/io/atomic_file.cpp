@@ -35,9 +35,9 @@ std::filesystem::path temporary_name(const std::filesystem::path& path) {
   std::snprintf(digits, sizeof digits, "%016" PRIx64, number);
   std::string name(temporary_prefix);
   const std::string own = path.filename().string();  // its end, so that more fits into a name
-  constexpr std::size_t longest = 100;
+  constexpr std::size_t max_length = 100;
   return path.parent_path() /
-         (name + digits + "-" + own.substr(own.size() - std::min(own.size(), longest)));
+         (name + digits + "-" + own.substr(own.size() - std::min(own.size(), max_length)));
 }
 
 bool is_device_or_pipe(const std::filesystem::path& path) {

@@ -44,7 +44,7 @@ struct SectionHeader {
   std::uint64_t bytes;
 };
 
-constexpr std::size_t smallest_file = sizeof(ArchiveHeader) + word;
+constexpr std::size_t min_file_size = sizeof(ArchiveHeader) + word;
 
 constexpr std::uint64_t padded(std::uint64_t bytes) { return (bytes + word - 1) / word * word; }
 
@@ -123,7 +123,7 @@ void BinaryWriter::add_section(Section section) {
 void BinaryWriter::save(const std::filesystem::path& path,
                         const std::function<void(const std::filesystem::path&)>& check) const {
   ArchiveHeader header{
-      {}, format_version, static_cast<std::uint32_t>(sections_.size()), smallest_file};
+      {}, format_version, static_cast<std::uint32_t>(sections_.size()), min_file_size};
   std::copy(std::begin(magic), std::end(magic), header.magic);
   for (const Section& s : sections_)
     header.length += sizeof(SectionHeader) + padded(s.name.size()) + padded(s.bytes);
@@ -215,7 +215,7 @@ void BinaryReader::check(const ArchiveHeader& header) const {
                                                std::to_string(format_version));
   if (size_ < header.length)
     fail(size_, "truncated: " + std::to_string(header.length) + " bytes were written");
-  if (size_ != header.length || size_ < smallest_file || size_ % word != 0)
+  if (size_ != header.length || size_ < min_file_size || size_ % word != 0)
     fail(offsetof(ArchiveHeader, length),
          "corrupted: a length of " + std::to_string(header.length) +
              " bytes is recorded, the file has " + std::to_string(size_));

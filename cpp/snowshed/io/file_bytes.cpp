@@ -8,7 +8,7 @@
 namespace snowshed {
 
 std::uintmax_t check_readable(const std::filesystem::path& path) {
-  constexpr std::uintmax_t largest = std::uintmax_t(1) << 30;
+  constexpr std::uintmax_t max_bytes = std::uintmax_t(1) << 30;
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
   if (!std::filesystem::exists(status)) throw InputError(path.string(), "no such file");
@@ -16,7 +16,7 @@ std::uintmax_t check_readable(const std::filesystem::path& path) {
     throw InputError(path.string(), "not a regular file");
   const std::uintmax_t size = std::filesystem::file_size(path, error);
   if (error) throw InputError(path.string(), "cannot be read: " + error.message());
-  if (size > largest)
+  if (size > max_bytes)
     throw InputError(path.string(), std::to_string(size) + " bytes; at most 1 GiB is read");
   return size;
 }

@@ -152,7 +152,7 @@ void FilmCodec::keep(const FilmFrame& frame, const std::vector<std::int64_t>& be
 std::vector<std::uint8_t> FilmCodec::encode(const FilmFrame& given) {
   FilmFrame frame = given;
   NumberWriter stream;
-  stream.bytes.reserve(2 * least_bytes(frame.ids.size()));
+  stream.bytes.reserve(2 * min_bytes(frame.ids.size()));
   if (lists_particles(frame)) {
     transfer_ids(stream, frame.ids);
     transfer_list(stream, frame.events);

@@ -28,7 +28,7 @@ class FilmCodec {
               const std::string& where, FilmFrame& frame);
 
   /// The least number of bytes of a frame.
-  std::size_t least_bytes(std::size_t particles) const {
+  std::size_t min_bytes(std::size_t particles) const {
     return particles * (std::size_t(header_.axes) + header_.quantities.size());
   }
 

@@ -16,13 +16,13 @@ namespace {
 
 constexpr char film_magic[8] = {'S', 'N', 'O', 'W', 'F', 'I', 'L', 'M'};
 constexpr std::size_t film_text_start = 24;  // start of the JSON text
-constexpr std::size_t most_header_bytes = 1u << 20;
+constexpr std::size_t max_header_bytes = 1u << 20;
 constexpr std::size_t header_sum_at = 16;
 constexpr std::uint32_t frame_tag = 0x4d415246;  // "FRAM"
 constexpr std::uint32_t close_tag = 0x53444e45;  // "ENDS"
 constexpr std::size_t record_head = 40, facts_at = 8, content_sum_at = 36;
 // Largest frame. The particles that runs record, with all their quantities, take a twentieth of it.
-constexpr std::size_t most_raw_bytes = std::size_t{1} << 27;
+constexpr std::size_t max_raw_bytes = std::size_t{1} << 27;
 constexpr std::uint32_t lists_flag = 1;
 
 template <class T>
@@ -69,20 +69,20 @@ std::string header_bytes(const FilmHeader& header) {
 }
 
 /// Contents of the head of a record, without its checksums.
-struct RecordFacts {
+struct RecordInfo {
   double time;
   std::uint32_t event, flags, particles, raw, packed;
 };
 
 /// The head of a record behind one with the checksum `before`, which becomes its own.
-std::vector<std::uint8_t> record_bytes(std::uint32_t tag, const RecordFacts& facts,
+std::vector<std::uint8_t> record_bytes(std::uint32_t tag, const RecordInfo& info,
                                        std::uint32_t content_sum, std::uint32_t& before) {
   std::vector<std::uint8_t> bytes;
   put_bytes(bytes, tag);
   put_bytes(bytes, std::uint32_t(0));
-  put_bytes(bytes, facts.time);
+  put_bytes(bytes, info.time);
   for (const std::uint32_t number :
-       {facts.event, facts.flags, facts.particles, facts.raw, facts.packed, content_sum})
+       {info.event, info.flags, info.particles, info.raw, info.packed, content_sum})
     put_bytes(bytes, number);
   before = head_sum(reinterpret_cast<const char*>(bytes.data()), before);
   std::memcpy(bytes.data() + 4, &before, sizeof before);
@@ -120,14 +120,14 @@ FilmHeader parsed_header(const std::string& text, const std::string& where) {
 
 }  // namespace
 
-FilmReader::FilmReader(std::filesystem::path path, std::size_t most_frames)
+FilmReader::FilmReader(std::filesystem::path path, std::size_t max_frames)
     : path_(std::move(path)), bytes_(read_bytes(path_)) {
   read_header();
   std::size_t at = end_of_header_;
-  while (records_.size() < most_frames && read_record(at)) {
+  while (records_.size() < max_frames && read_record(at)) {
   }
-  if (records_.size() < most_frames) read_close(at);
-  is_complete_ = at == bytes_.size() || records_.size() == most_frames;
+  if (records_.size() < max_frames) read_close(at);
+  is_complete_ = at == bytes_.size() || records_.size() == max_frames;
   codec_ = FilmCodec(header_);
 }
 
@@ -156,7 +156,7 @@ void FilmReader::read_header() {
                                          "; this program reads the versions 1 to " +
                                          std::to_string(film_version));
   const std::size_t length = read<std::uint32_t>(12);
-  if (length > most_header_bytes || length > bytes_.size() - film_text_start)
+  if (length > max_header_bytes || length > bytes_.size() - film_text_start)
     fail(12, "its header does not fit into the file");
   const char* text = bytes_.data() + film_text_start;
   header_checksum_ = header_sum(version_, text, length);
@@ -226,16 +226,16 @@ bool FilmReader::read_record(std::size_t& at) {
 }
 
 void FilmReader::add_record(std::size_t at, std::uint32_t checksum) {
-  const FilmFrameFacts facts{read<double>(at + 8), read<std::uint32_t>(at + 16),
-                             read<std::uint32_t>(at + 24)};
+  const FilmFrameInfo info{read<double>(at + 8), read<std::uint32_t>(at + 16),
+                           read<std::uint32_t>(at + 24)};
   const std::size_t raw = read<std::uint32_t>(at + 28), packed = read<std::uint32_t>(at + 32);
-  if (!std::isfinite(facts.time) || raw > most_raw_bytes || !could_be_deflated(packed, raw) ||
-      FilmCodec(header_).least_bytes(facts.particles) > raw)
+  if (!std::isfinite(info.time) || raw > max_raw_bytes || !could_be_deflated(packed, raw) ||
+      FilmCodec(header_).min_bytes(info.particles) > raw)
     fail(at, "the sizes of a frame do not fit together");
   const bool lists = (read<std::uint32_t>(at + 20) & lists_flag) != 0;
   const std::size_t payload = at + record_head;
   records_.push_back({payload, payload + packed, packed, raw, lists, checksum});
-  facts_.push_back(facts);
+  frames_.push_back(info);
 }
 
 /// Reads the record that closes a film, if there is one at `at`; moves `at` behind it.
@@ -252,11 +252,11 @@ FilmFrame FilmReader::next() {
   const Record& record = records_.at(next_);
   const std::string where = at_byte(record.payload - record_head);
   FilmFrame frame;
-  frame.time = facts_[next_].time;
-  frame.event = facts_[next_].event;
+  frame.time = frames_[next_].time;
+  frame.event = frames_[next_].event;
   const auto* payload = reinterpret_cast<const std::uint8_t*>(bytes_.data()) + record.payload;
   const auto raw = inflated(payload, record.packed, record.raw, where);
-  codec_.decode(raw, record.lists, facts_[next_].particles, where, frame);
+  codec_.decode(raw, record.lists, frames_[next_].particles, where, frame);
   ++next_;
   return frame;
 }
@@ -268,11 +268,11 @@ std::string FilmReader::in_present_version(std::size_t frames) const {
   std::memcpy(&sum, bytes.data() + header_sum_at, sizeof sum);
   for (std::size_t k = 0; k < frames; ++k) {
     const Record& r = records_[k];
-    const RecordFacts facts{facts_[k].time,           facts_[k].event,
-                            r.lists ? lists_flag : 0, std::uint32_t(facts_[k].particles),
-                            std::uint32_t(r.raw),     std::uint32_t(r.packed)};
+    const RecordInfo info{frames_[k].time,          frames_[k].event,
+                          r.lists ? lists_flag : 0, std::uint32_t(frames_[k].particles),
+                          std::uint32_t(r.raw),     std::uint32_t(r.packed)};
     const char* content = bytes_.data() + r.payload;
-    const auto head = record_bytes(frame_tag, facts, crc32_of(content, r.packed), sum);
+    const auto head = record_bytes(frame_tag, info, crc32_of(content, r.packed), sum);
     bytes.append(head.begin(), head.end()).append(content, r.packed);
   }
   return bytes;
@@ -287,7 +287,7 @@ FilmWriter::FilmWriter(std::filesystem::path path, const FilmHeader& header)
 }
 
 FilmWriter FilmWriter::reopen(const std::filesystem::path& path,
-                              const std::function<bool(const FilmFrameFacts&)>& keeps,
+                              const std::function<bool(const FilmFrameInfo&)>& keeps,
                               const std::optional<FilmMark>& mark) {
   FilmReader reader = mark ? FilmReader(path, mark->frames) : FilmReader(path);
   if (mark &&
@@ -301,10 +301,10 @@ FilmWriter FilmWriter::reopen(const std::filesystem::path& path,
   }
   if (reader.version() != film_version) {
     write_atomic(path, reader.in_present_version(count));
-    return reopen(path, [](const FilmFrameFacts&) { return true; });
+    return reopen(path, [](const FilmFrameInfo&) { return true; });
   }
   FilmWriter writer(path, reader.header(), FilmCodec(reader.header()));
-  writer.facts_.assign(reader.frames().begin(), reader.frames().begin() + std::ptrdiff_t(count));
+  writer.frames_.assign(reader.frames().begin(), reader.frames().begin() + std::ptrdiff_t(count));
   writer.checksum_ = reader.checksum(count);
   writer.end_ = reader.end_of(count);
   writer.closed_ = reader.closed() && count == reader.frames().size();
@@ -317,20 +317,20 @@ void FilmWriter::append(const FilmFrame& frame) {
   FilmCodec after = codec_;
   const bool lists = codec_.lists_particles(frame);
   const std::vector<std::uint8_t> raw = after.encode(frame), packed = deflated(raw);
-  const RecordFacts facts{frame.time,
-                          frame.event,
-                          lists ? lists_flag : 0,
-                          std::uint32_t(frame.ids.size()),
-                          std::uint32_t(raw.size()),
-                          std::uint32_t(packed.size())};
+  const RecordInfo info{frame.time,
+                        frame.event,
+                        lists ? lists_flag : 0,
+                        std::uint32_t(frame.ids.size()),
+                        std::uint32_t(raw.size()),
+                        std::uint32_t(packed.size())};
   std::uint32_t sum = checksum_;
   std::vector<std::uint8_t> bytes =
-      record_bytes(frame_tag, facts, crc32_of(packed.data(), packed.size()), sum);
+      record_bytes(frame_tag, info, crc32_of(packed.data(), packed.size()), sum);
   bytes.insert(bytes.end(), packed.begin(), packed.end());
   write(bytes);
   end_ += bytes.size();
   closed_ = false;
-  facts_.push_back({frame.time, frame.event, frame.ids.size()});
+  frames_.push_back({frame.time, frame.event, frame.ids.size()});
   codec_ = std::move(after);
   checksum_ = sum;
 }
@@ -344,10 +344,10 @@ void FilmWriter::write(const std::vector<std::uint8_t>& bytes) {
 
 void FilmWriter::close() {
   if (closed_) return;
-  const FilmFrameFacts last = facts_.empty() ? FilmFrameFacts{} : facts_.back();
+  const FilmFrameInfo last = frames_.empty() ? FilmFrameInfo{} : frames_.back();
   std::uint32_t sum = checksum_;
   const auto bytes = record_bytes(
-      close_tag, {last.time, last.event, 0, std::uint32_t(facts_.size()), 0, 0}, 0, sum);
+      close_tag, {last.time, last.event, 0, std::uint32_t(frames_.size()), 0, 0}, 0, sum);
   write(bytes);
   closed_ = more_follows_ = true;
 }

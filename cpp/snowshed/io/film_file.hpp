@@ -17,7 +17,7 @@ namespace snowshed {
 inline constexpr std::uint32_t film_version = 2;  // written; version 1 is read, too
 
 /// Facts about a frame without its particles.
-struct FilmFrameFacts {
+struct FilmFrameInfo {
   double time = 0;  // s
   std::uint32_t event = 0;
   std::size_t particles = 0;
@@ -35,11 +35,11 @@ class FilmReader {
  public:
   /// Reads the header and the first frames, all of them by default, and checks their checksums. A
   /// last frame that is cut off is left out: the run still writes it, or was killed.
-  explicit FilmReader(std::filesystem::path path, std::size_t most_frames = std::size_t(-1));
+  explicit FilmReader(std::filesystem::path path, std::size_t max_frames = std::size_t(-1));
 
   std::uint32_t version() const { return version_; }
   const FilmHeader& header() const { return header_; }
-  const std::vector<FilmFrameFacts>& frames() const { return facts_; }
+  const std::vector<FilmFrameInfo>& frames() const { return frames_; }
   bool is_complete() const { return is_complete_; }  ///< no frame is cut off
   bool closed() const { return closed_; }  ///< the run came to its end; never of version 1
 
@@ -84,7 +84,7 @@ class FilmReader {
   FilmHeader header_;
   std::size_t end_of_header_ = 0, next_ = 0;
   std::vector<Record> records_;
-  std::vector<FilmFrameFacts> facts_;
+  std::vector<FilmFrameInfo> frames_;
   bool is_complete_ = true, closed_ = false;
   FilmCodec codec_{FilmHeader{}};
 };
@@ -101,12 +101,12 @@ class FilmWriter {
   /// 1 becomes one of the present version. Throws InputError if the film is damaged, or is not
   /// the one that was marked.
   static FilmWriter reopen(const std::filesystem::path& path,
-                           const std::function<bool(const FilmFrameFacts&)>& keeps,
+                           const std::function<bool(const FilmFrameInfo&)>& keeps,
                            const std::optional<FilmMark>& mark = {});
 
   const FilmHeader& header() const { return header_; }
-  const std::vector<FilmFrameFacts>& frames() const { return facts_; }
-  FilmMark mark() const { return {facts_.size(), checksum_}; }
+  const std::vector<FilmFrameInfo>& frames() const { return frames_; }
+  FilmMark mark() const { return {frames_.size(), checksum_}; }
 
   void append(const FilmFrame&);
   /// Marks the film as complete. A further frame removes the mark.
@@ -120,7 +120,7 @@ class FilmWriter {
   std::filesystem::path path_;
   FilmHeader header_;
   FilmCodec codec_;
-  std::vector<FilmFrameFacts> facts_;
+  std::vector<FilmFrameInfo> frames_;
   std::uint32_t checksum_ = 0;  // checksum of the last frame, or of the header if there is none
   std::size_t end_ = 0;         // size of the frames that are kept, bytes
   bool more_follows_ = false;   // behind them in the file

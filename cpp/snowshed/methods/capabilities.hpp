@@ -1,4 +1,4 @@
-// Capabilities that only some methods have. Such a method derives from the class of the capability
+// Capabilities that only some methods have. Such a method derives from the class of the capability,
 // too, and callers ask for it with `capability`.
 #pragma once
 

@@ -1,5 +1,5 @@
-// The program's knowledge of a method: one class per method, and one line in registry.cpp. Scenes,
-// runs and programs ask descriptors, and name no method.
+// Descriptors: all that the program needs to know about a method. Each has one class, and one line
+// in registry.cpp. Scenes, runs and programs ask descriptors, and name no method.
 #pragma once
 
 #include <cstdint>
@@ -37,14 +37,14 @@ class Parts {
   unsigned bits_ = 0;
 };
 
-/// Constant facts about a method.
-struct MethodFacts {
+/// The constant properties of a method.
+struct MethodInfo {
   const char* name;                     // as scenes give it
   const char* doc;                      // in the schema
   Parts takes;                          // parts of a scene that it takes
-  const char* length_unit = "cells";    // things whose size is `resolution`, in messages
-  std::vector<std::string> energies{};  // names with units, in the order of tables
-  // Quantities of its particles besides those that all methods share.
+  const char* length_unit = "cells";    // name of what `resolution` measures, for messages
+  std::vector<std::string> energies{};  // names with units, as in tables; the last is the residual
+  // Quantities of its particles beside those that all methods share.
   std::vector<Quantity> quantities{};
 };
 
@@ -54,7 +54,7 @@ class MethodDescriptor {
  public:
   virtual ~MethodDescriptor() = default;
 
-  virtual const MethodFacts& facts() const = 0;
+  virtual const MethodInfo& info() const = 0;
   virtual std::unique_ptr<MethodDescriptor> clone() const = 0;
 
   // --- settings --------------------------------------------------------------------------------
@@ -83,8 +83,8 @@ class MethodDescriptor {
   /// Throws InputError if settings or parts of the scene contradict each other. Each is in its
   /// range, and the scene has no part that the method does not take.
   virtual void validate(const SceneView&) const {}
-  /// A solid as the method must see it: its thin parts are as thick as the method's resolution.
-  virtual ThickSolid as_seen(const Shape& shape, int /*dimension*/) const {
+  /// Returns the solid with thin parts thickened to the method's resolution.
+  virtual ThickSolid thickened(const Shape& shape, int /*dimension*/) const {
     return {shape, std::nullopt};
   }
   /// Reads the files that only this method takes; relative names are looked for in `base_dir`.
@@ -96,7 +96,7 @@ class MethodDescriptor {
   /// The method, before any snow.
   virtual std::unique_ptr<Method> build(const SceneView&, const Surroundings&) const = 0;
 
-  // --- snow; of methods that take bodies, but not how the scene seeds them -----------------------
+  // --- filling of bodies, for methods with their own seeding -------------------------------------
 
   /// The number of particles that `fill` will place. Throws as it.
   virtual std::size_t count_particles(const LevelSet&, int dimension) const;
@@ -130,7 +130,7 @@ void describe_settings(SettingsVisitor& visitor, Settings& settings) {
 
 /// A method with settings of this type, by which scenes find it.
 template <class Settings>
-class SettingsHolder : public MethodDescriptor {
+class WithSettings : public MethodDescriptor {
  public:
   Settings& settings() { return settings_; }
   const Settings& settings() const { return settings_; }
@@ -141,7 +141,7 @@ class SettingsHolder : public MethodDescriptor {
 
 /// Base of all descriptors; a method's descriptor, `Self`, derives from it.
 template <class Self, class Settings>
-class DescriptorOf : public SettingsHolder<Settings> {
+class DescriptorBase : public WithSettings<Settings> {
  public:
   std::unique_ptr<MethodDescriptor> clone() const override {
     return std::make_unique<Self>(static_cast<const Self&>(*this));
@@ -154,7 +154,7 @@ class DescriptorOf : public SettingsHolder<Settings> {
   void set_threads(int threads) override { settings_.threads = threads; }
 
  protected:
-  using SettingsHolder<Settings>::settings_;
+  using WithSettings<Settings>::settings_;
 };
 
 }  // namespace snowshed

@@ -15,7 +15,7 @@ struct EnergyBalance {
   double plastic = 0, friction = 0, sticking = 0, impact = 0, transfer = 0;
   double sleep = 0;    // motion that snow lost as it fell asleep
   double damping = 0;  // over a length; that of PIC is part of the transfer
-  double added = 0;    // brought by particles that were added
+  double added = 0;    // energy of particles when they were added
 
   double stored() const { return kinetic + gravitational + elastic; }
   double spent() const {

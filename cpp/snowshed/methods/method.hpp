@@ -5,10 +5,10 @@
 // Promises of every method:
 // - A call that throws leaves the snow, the time, the counters and the energies as they were, so
 //   that the same call may be made again or another instead. Data read by id are the same; only
-//   the order of the particles in memory may differ. This holds for lack of memory too.
+//   the order of the particles in memory may differ. This holds for lack of memory, too.
 // - One exception: `step` can find only afterwards that a particle is no longer sound. Then the
-// step has been taken and the method has *failed*: it can still be read, but every call that would
-// alter, advance or save it throws SimulationError, so that a broken state never
+//   step has been taken and the method has *failed*: it can still be read, but every call that
+//   would alter, advance or save it throws SimulationError, so that a broken state never
 //   overwrites a good checkpoint. `load` repairs it.
 // - Errors: InputError for arguments that are not allowed, SimulationError if the simulation
 //   cannot go on, std::bad_alloc for lack of memory.
@@ -64,7 +64,7 @@ struct StepCounters {
   double smallest_dt = 0;             // s
 };
 
-/// A method as the rest of the program sees it; the top of this file describes a call that throws.
+/// The contract of a method; the top of this file describes a call that throws.
 /// Dimension and precision are chosen once, where the method is made.
 class Method {
  public:
@@ -80,8 +80,8 @@ class Method {
   void add(const ParticleBatch& batch) { add(std::vector<ParticleBatch>{batch}); }
 
   /// Removes all particles and adds those of the batches, or leaves all as it is. New particles get
-  /// new ids; the time goes on. The energy balance counts the energy that comes and goes as added,
-  /// with its sign. Throws as `add`.
+  /// new ids; the time continues. The energy balance counts the energy that comes and goes as
+  /// added, with its sign. Throws as `add`.
   virtual void replace(const std::vector<ParticleBatch>& batches) = 0;
 
   /// Adds to the velocity of each particle, ordered by id (m/s); the energy balance counts it as
@@ -112,7 +112,7 @@ class Method {
   virtual double time_step() const = 0;  ///< s, of the last step
   virtual const StepCounters& counters() const = 0;
 
-  /// The quantities of the particles that can be read one by one, and whether they are stored.
+  /// The readable quantities of the particles, and whether each is stored.
   virtual std::vector<FieldInfo> fields() const = 0;
   /// One of them, in the order of storage: the particles' memory where it is stored, otherwise a
   /// copy computed now. Throws InputError if there is no such field.

@@ -28,7 +28,7 @@ class MethodChoice {
 
   MethodDescriptor* operator->() { return descriptor_.get(); }
   const MethodDescriptor* operator->() const { return descriptor_.get(); }
-  bool takes(Part part) const { return descriptor_->facts().takes.has(part); }
+  bool takes(Part part) const { return descriptor_->info().takes.has(part); }
   bool is_default() const;
 
   /// Whether these are the settings of the method.
@@ -39,7 +39,7 @@ class MethodChoice {
   /// The settings, which must be of this type.
   template <class Settings>
   Settings& as() {
-    if (auto* own = dynamic_cast<SettingsHolder<Settings>*>(descriptor_.get()))
+    if (auto* own = dynamic_cast<WithSettings<Settings>*>(descriptor_.get()))
       return own->settings();
     throw std::logic_error("settings of another method");
   }
@@ -51,8 +51,8 @@ class MethodChoice {
 
  private:
   template <class Settings>
-  static const SettingsHolder<Settings>* holder(const MethodDescriptor& method) {
-    return dynamic_cast<const SettingsHolder<Settings>*>(&method);
+  static const WithSettings<Settings>* holder(const MethodDescriptor& method) {
+    return dynamic_cast<const WithSettings<Settings>*>(&method);
   }
   template <class Settings>
   static const MethodDescriptor& method_with() {

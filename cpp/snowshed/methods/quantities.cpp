@@ -27,7 +27,7 @@ template <class Visit>
 void for_each_quantity(const Visit& visit) {
   for (const Quantity& q : shared_quantities()) visit(q);
   for (const MethodDescriptor* method : all_methods())
-    for (const Quantity& q : method->facts().quantities) visit(q);
+    for (const Quantity& q : method->info().quantities) visit(q);
 }
 
 }  // namespace

@@ -38,7 +38,7 @@ const std::vector<const MethodDescriptor*>& all_methods() { return registered();
 
 std::vector<std::string> method_names() {
   std::vector<std::string> names;
-  for (const MethodDescriptor* method : all_methods()) names.emplace_back(method->facts().name);
+  for (const MethodDescriptor* method : all_methods()) names.emplace_back(method->info().name);
   return names;
 }
 
@@ -51,7 +51,7 @@ RegisteredMethod::~RegisteredMethod() { registered().pop_back(); }
 MethodChoice::MethodChoice() : MethodChoice(*all_methods().front()) {}
 
 bool MethodChoice::is_default() const {
-  return descriptor_->facts().name == all_methods().front()->facts().name;
+  return descriptor_->info().name == all_methods().front()->info().name;
 }
 
 std::size_t MethodDescriptor::count_particles(const LevelSet&, int) const {

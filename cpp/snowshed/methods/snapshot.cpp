@@ -30,7 +30,7 @@ PointCloud Method::snapshot() const {
   cloud.add<float>("volumetric_plastic_strain", s.plastic_strains);
   cloud.add<std::int32_t>("id", s.ids);
   add_stresses(*this, cloud);
-  if (!s.material_ids.empty()) cloud.add<std::uint8_t>("snow", s.material_ids);
+  if (!s.material_ids.empty()) cloud.add<std::uint8_t>("material_id", s.material_ids);
   return cloud;
 }
 

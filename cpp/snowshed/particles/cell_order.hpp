@@ -11,8 +11,8 @@
 namespace snowshed {
 
 /// Points in the plane or in space, sorted into square or cubic cells. Only cells that hold points
-/// exist, so the memory does not depend on how far the points are spread. In the direction of x the
-/// cells of a row follow on each other, and so do their points.
+/// exist, so the memory does not depend on how far the points are spread. Along x the cells of a
+/// row are consecutive, and so are their points.
 template <int D>
 class CellOrder {
  public:
@@ -40,7 +40,7 @@ class CellOrder {
     std::uint32_t begin, end;
   };
   /// Ranges for a cell: one for each of the 3^(D-1) rows, and twice as many with a period.
-  static constexpr int most_rows = D == 2 ? 6 : 18;
+  static constexpr int max_rows = D == 2 ? 6 : 18;
   /// The points of a cell and of all cells around it; returns the number of ranges.
   int rows_around(std::size_t cell, Range* rows) const;
 

@@ -1,5 +1,5 @@
-// Quantities of particles as files and Python see them: by name, with unit and meaning, of all
-// particles in the order of their storage.
+// Quantities of particles in files and in Python: by name, with unit and meaning, of all particles
+// in the order of their storage.
 #pragma once
 
 #include <cstddef>
@@ -30,7 +30,7 @@ struct FieldInfo {
 };
 
 /// The values of a field. Those of a stored field follow the particles until the next call that
-/// changes the simulation; then the view must be taken anew. Its memory stays as long as it does.
+/// changes the simulation; then a new view is needed. Its memory stays as long as it does.
 struct FieldView {
   FieldInfo info;
   std::size_t count = 0;                 // particles

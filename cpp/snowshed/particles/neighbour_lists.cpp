@@ -28,7 +28,7 @@ void NeighbourLists<D>::find(const SearchedPoints<D>& points, const CellOrder<D>
                              NeighbourSearch<D> search, std::size_t first_cell,
                              std::size_t last_cell, Part& part) {
   part.size = 0;
-  typename CellOrder<D>::Range rows[CellOrder<D>::most_rows];
+  typename CellOrder<D>::Range rows[CellOrder<D>::max_rows];
   for (std::size_t cell = first_cell; cell < last_cell; ++cell) {
     const int count = cells.rows_around(cell, rows);
     std::size_t candidates = 0;

@@ -112,16 +112,16 @@ void check_memory(double bytes, double available) {
 }
 
 void check_duration(const Scene& scene, const CostEstimate& cost) {
-  constexpr double most_steps = 1e12, most_records = 1e6;
+  constexpr double max_steps = 1e12, max_records = 1e6;
   const double steps = cost.event_time / cost.time_step;
-  if (!(steps <= most_steps))
+  if (!(steps <= max_steps))
     throw InputError("/numerics/" + scene.numerics->step_setting(),
                      "makes steps of " + show_rounded(cost.time_step) + " s; an event of " +
                          show_rounded(cost.event_time) + " s would take " + show_rounded(steps) +
                          " of them; at most 1e12 are allowed");
   const auto check_interval = [&](const double& interval) {
     const double records = cost.event_time * scene.events.count / interval;
-    if (interval > 0 && !(records <= most_records))
+    if (interval > 0 && !(records <= max_records))
       throw InputError(path_of(scene, interval), show(interval) + " s makes " +
                                                      show_rounded(records) +
                                                      " records; at most 1e6 are allowed");

@@ -23,7 +23,7 @@ double speed_of(const Scene& scene, const std::filesystem::path& base_dir) {
   sim.begin_event();
   const Stopwatch clock;
   sim.run([&clock](const RunReport&) { return clock.seconds() < 0.3; }, 0.05);
-  return double(sim.solver().counters().particle_updates) / clock.seconds();
+  return double(sim.method().counters().particle_updates) / clock.seconds();
 }
 
 /// Particle updates per second on this machine, on the scene with fewer particles that are seeded

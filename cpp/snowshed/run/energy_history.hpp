@@ -29,7 +29,7 @@ class EnergyHistory {
   const std::vector<double>& values() const { return values_; }  ///< row by row
 
   void save(BinaryWriter&) const;
-  /// Begins anew if the archive's version kept no such rows. Throws InputError if the rows are not
+  /// Begins again if the archive's version kept no such rows. Throws InputError if the rows are not
   /// of these energies.
   void load(const BinaryReader&);
 

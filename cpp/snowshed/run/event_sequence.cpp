@@ -22,7 +22,7 @@ EventSequence EventSequence::create(const Scene& scene, const fs::path& base_dir
 EventSequence EventSequence::resume(const Scene& scene, const fs::path& base_dir,
                                     const fs::path& folder) {
   ResultsFolder results = ResultsFolder::reopen(folder, scene);
-  RunRecord record = RunRecord::read(results.record(), scene.numerics->facts().energies);
+  RunRecord record = RunRecord::read(results.record(), scene.numerics->info().energies);
   auto sim = fs::exists(results.checkpoint()) ? results.load_checkpoint(scene)
                                               : std::make_unique<Simulation>(scene, base_dir);
   record.keep_through(sim->event() - int(sim->event_running()));
@@ -38,14 +38,14 @@ EventSequence::EventSequence(std::unique_ptr<Simulation> sim, ResultsFolder fold
       steps_before_(0),
       wall_before_(0),
       earlier_wall_(record_.wall) {
-  for (const EventFacts& facts : record_.finished) {
-    steps_before_ += facts.steps;
-    wall_before_ += facts.wall;
+  for (const EventRecord& record : record_.finished) {
+    steps_before_ += record.steps;
+    wall_before_ += record.wall;
   }
   const int done = sim_->event() - int(sim_->event_running());
   // Checkpoints of the version before have no such record.
   if (int(record_.finished.size()) < done)
-    count_from(sim_->solver().counters().steps, earlier_wall_);
+    count_from(sim_->method().counters().steps, earlier_wall_);
 }
 
 bool EventSequence::is_done() const {
@@ -64,14 +64,14 @@ bool EventSequence::run(EventObserver& observer, double report_interval) {
           sim_->record_film(folder_.film());  // its resolution depends on the snow
         stopped = observer.stop_requested();
       } catch (const Stopped&) {  // the last checkpoint has the same snow, before it aged
-        return write_record("interrupted"), false;
+        return write_record(RunStatus::interrupted), false;
       }
     const RunEnd end = stopped ? RunEnd::paused : run_event(observer, report_interval);
-    if (end == RunEnd::paused) return checkpoint(observer, "interrupted"), false;
+    if (end == RunEnd::paused) return checkpoint(observer, RunStatus::interrupted), false;
     end_event(observer, end);
   }
   sim_->close_film();
-  write_record("finished");
+  write_record(RunStatus::finished);
   return true;
 }
 
@@ -104,38 +104,38 @@ RunEnd EventSequence::run_event(EventObserver& observer, double report_interval)
     };
     const RunEnd end = sim_->run(go_on, report_interval);
     if (end != RunEnd::paused || stopped) return end;
-    checkpoint(observer, "running");
+    checkpoint(observer, RunStatus::running);
   }
 }
 
 /// The checkpoint comes last: newer results are written again when the run is resumed.
 void EventSequence::end_event(EventObserver& observer, RunEnd end) {
-  EventFacts facts;
-  facts.event = sim_->event();
-  facts.sim_time = sim_->event_time();
-  facts.steps = sim_->solver().counters().steps - steps_before_;
-  facts.wall = std::max(wall() - wall_before_, 0.0);
-  facts.ended = name_of(end);
-  facts.laid_height = sim_->laid_height();
+  EventRecord record;
+  record.event = sim_->event();
+  record.sim_time = sim_->event_time();
+  record.steps = sim_->method().counters().steps - steps_before_;
+  record.wall = std::max(wall() - wall_before_, 0.0);
+  record.ended = end;
+  record.laid_height = sim_->laid_height();
   const Scene& scene = sim_->scene();
-  facts.damping_rate = scene.numerics->damping_rate(facts.steps, facts.sim_time);
-  if (scene.output.energy) facts.energy = capability<KeepsEnergy>(sim_->solver())->energies();
+  record.damping_rate = scene.numerics->damping_rate(record.steps, record.sim_time);
+  if (scene.output.energy) record.energy = capability<KeepsEnergy>(sim_->method())->energies();
   folder_.write_particles(*sim_);
-  observer.event_ended(*sim_, facts);
-  steps_before_ += facts.steps;
-  wall_before_ += facts.wall;
-  record_.finished.push_back(std::move(facts));
-  checkpoint(observer, "running");
+  observer.event_ended(*sim_, record);
+  steps_before_ += record.steps;
+  wall_before_ += record.wall;
+  record_.finished.push_back(std::move(record));
+  checkpoint(observer, RunStatus::running);
 }
 
-void EventSequence::checkpoint(EventObserver& observer, const std::string& status) {
+void EventSequence::checkpoint(EventObserver& observer, RunStatus status) {
   observer.before_checkpoint(*sim_);
   write_record(status);
   sim_->save(folder_.checkpoint());
   since_checkpoint_.restart();
 }
 
-void EventSequence::write_record(const std::string& status, const std::string& error) {
+void EventSequence::write_record(RunStatus status, const std::string& error) {
   record_.wall = wall();
   record_.scene = folder_.scene_checksum();
   record_.write(folder_.record(), *sim_, status, error);
@@ -143,7 +143,7 @@ void EventSequence::write_record(const std::string& status, const std::string& e
 }
 
 void EventSequence::rewrite_record() {
-  if (!status_.empty()) record_.write(folder_.record(), *sim_, status_);
+  if (status_) record_.write(folder_.record(), *sim_, *status_);
 }
 
 void EventSequence::give_up_files() {
@@ -157,7 +157,7 @@ void EventSequence::record_failure(const std::string& error) {
     if (sim_->event_running()) sim_->save(folder_.checkpoint());
   } catch (const std::exception&) {  // the last good one stays
   }
-  write_record("failed", error);
+  write_record(RunStatus::failed, error);
 }
 
 }  // namespace snowshed

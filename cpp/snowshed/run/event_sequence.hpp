@@ -28,7 +28,7 @@ class EventObserver {
   virtual void noted(const std::string& /*note*/) {}
   virtual void progress(const Simulation&, const RunReport&) {}
   /// An event has ended and its particles are in the folder, but there is no checkpoint of it yet.
-  virtual void event_ended(const Simulation&, const EventFacts&) {}
+  virtual void event_ended(const Simulation&, const EventRecord&) {}
   /// A checkpoint is about to be written; records that must be as new as it are saved now.
   virtual void before_checkpoint(const Simulation&) {}
   /// Called at every report, between events and while snow is seeded; true interrupts the sequence.
@@ -81,14 +81,14 @@ class EventSequence {
   void report_notes(EventObserver&);
   RunEnd run_event(EventObserver&, double report_interval);
   void end_event(EventObserver&, RunEnd);
-  void checkpoint(EventObserver&, const std::string& status);
-  void write_record(const std::string& status, const std::string& error = "");
+  void checkpoint(EventObserver&, RunStatus);
+  void write_record(RunStatus, const std::string& error = "");
   double wall() const { return earlier_wall_ + clock_.seconds(); }
 
   std::unique_ptr<Simulation> sim_;
   ResultsFolder folder_;
   RunRecord record_;
-  std::string status_;                 // in run.json, as it was written last
+  std::optional<RunStatus> status_;    // in run.json, as it was written last
   std::size_t reported_notes_ = 0;     // number of the simulation's notes that were reported
   std::int64_t steps_before_;          // the present event
   double wall_before_, earlier_wall_;  // s, before the present event and before resuming

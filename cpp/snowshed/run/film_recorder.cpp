@@ -11,14 +11,14 @@
 namespace snowshed {
 namespace {
 
-constexpr double coarsest_quantum = 1.0 / 1024;  // m
-constexpr double most_quanta = 1 << 30;
+constexpr double max_quantum = 1.0 / 1024;  // m
+constexpr double max_quanta = 1 << 30;
 
 /// The smallest length that matters in a picture, m: a part of a radius, or the resolution; zero if
 /// a raster decides it, which is coarse.
-double smallest_length(const Scene& scene, const Method& solver, bool has_radius) {
-  if (!has_radius || solver.size() == 0) return scene.numerics->resolution();
-  const FieldView radii = solver.field("equivalent_radius");
+double smallest_length(const Scene& scene, const Method& method, bool has_radius) {
+  if (!has_radius || method.size() == 0) return scene.numerics->resolution();
+  const FieldView radii = method.field("equivalent_radius");
   double smallest = *radii.at<double>(0);
   for (std::size_t i = 1; i < radii.count; ++i) smallest = std::min(smallest, *radii.at<double>(i));
   return smallest / 8;  // such particles move little
@@ -26,8 +26,8 @@ double smallest_length(const Scene& scene, const Method& solver, bool has_radius
 
 /// A power of two, so that positions in single precision are exact.
 double quantum_for(double resolution) {
-  if (!(resolution > 0)) return coarsest_quantum;
-  return std::min(coarsest_quantum, std::exp2(std::floor(std::log2(resolution / 8))));
+  if (!(resolution > 0)) return max_quantum;
+  return std::min(max_quantum, std::exp2(std::floor(std::log2(resolution / 8))));
 }
 
 const FieldInfo* find(const std::vector<FieldInfo>& fields, const std::string& name) {
@@ -46,22 +46,22 @@ void each_value(const FieldView& view, const std::vector<std::uint32_t>& indices
 }
 
 template <class T>
-std::vector<T> whole_values(const Method& solver, const std::string& name,
+std::vector<T> whole_values(const Method& method, const std::string& name,
                             const std::vector<std::uint32_t>& indices) {
   std::vector<T> values(indices.size());
-  each_value(solver.field(name), indices, [&](std::size_t i, const auto* v) { values[i] = T(*v); });
+  each_value(method.field(name), indices, [&](std::size_t i, const auto* v) { values[i] = T(*v); });
   return values;
 }
 
 std::int32_t in_quanta(double metres, double quantum) {
-  return std::int32_t(std::lround(std::clamp(metres / quantum, -most_quanta, most_quanta)));
+  return std::int32_t(std::lround(std::clamp(metres / quantum, -max_quanta, max_quanta)));
 }
 
 /// Places of the recorded particles in storage, ordered by id; `ids` are their ids.
-std::vector<std::uint32_t> recorded_indices(const Method& solver, const FilmHeader& header,
+std::vector<std::uint32_t> recorded_indices(const Method& method, const FilmHeader& header,
                                             std::vector<std::uint32_t>& ids) {
-  const std::vector<std::uint32_t>& order = solver.order_by_id();
-  const auto all = whole_values<std::uint32_t>(solver, "id", order);
+  const std::vector<std::uint32_t>& order = method.order_by_id();
+  const auto all = whole_values<std::uint32_t>(method, "id", order);
   std::vector<std::uint32_t> indices;
   for (std::size_t k = 0; k < order.size(); ++k)
     if (header.records(all[k])) {
@@ -71,48 +71,48 @@ std::vector<std::uint32_t> recorded_indices(const Method& solver, const FilmHead
   return indices;
 }
 
-std::vector<std::int32_t> codes(const Method& solver, const FilmQuantity& quantity,
+std::vector<std::int32_t> codes(const Method& method, const FilmQuantity& quantity,
                                 const std::vector<std::uint32_t>& indices) {
   std::vector<std::int32_t> values(indices.size());
   const bool speed = quantity.name == "speed";
-  each_value(solver.field(speed ? "velocity" : quantity.name), indices,
+  each_value(method.field(speed ? "velocity" : quantity.name), indices,
              [&](std::size_t i, const auto* v) {
                values[i] = quantity.code(speed ? std::hypot(v[0], v[1], v[2]) : double(*v));
              });
   return values;
 }
 
-FilmFrame frame_of(const Method& solver, const FilmHeader& header, int event) {
+FilmFrame frame_of(const Method& method, const FilmHeader& header, int event) {
   FilmFrame frame;
-  frame.time = solver.time();
+  frame.time = method.time();
   frame.event = std::uint32_t(event);
-  const auto indices = recorded_indices(solver, header, frame.ids);
-  const std::vector<FieldInfo> fields = solver.fields();
-  frame.events = whole_values<std::uint16_t>(solver, "event", indices);
+  const auto indices = recorded_indices(method, header, frame.ids);
+  const std::vector<FieldInfo> fields = method.fields();
+  frame.events = whole_values<std::uint16_t>(method, "event", indices);
   frame.materials = find(fields, "material_id")
-                        ? whole_values<std::uint8_t>(solver, "material_id", indices)
+                        ? whole_values<std::uint8_t>(method, "material_id", indices)
                         : std::vector<std::uint8_t>(indices.size());
   if (header.has_radius) {
     frame.radii.resize(indices.size());
-    each_value(solver.field("equivalent_radius"), indices, [&](std::size_t i, const auto* r) {
+    each_value(method.field("equivalent_radius"), indices, [&](std::size_t i, const auto* r) {
       frame.radii[i] = in_quanta(double(*r), header.quantum);
     });
   }
   frame.positions.assign(std::size_t(header.axes), std::vector<std::int32_t>(indices.size()));
-  each_value(solver.field("position"), indices, [&](std::size_t i, const auto* x) {
+  each_value(method.field("position"), indices, [&](std::size_t i, const auto* x) {
     for (int axis = 0; axis < header.axes; ++axis)
       frame.positions[std::size_t(axis)][i] =
           in_quanta(double(x[header.axes == 2 ? 2 * axis : axis]), header.quantum);
   });
   for (const FilmQuantity& quantity : header.quantities)
-    frame.values.push_back(codes(solver, quantity, indices));
+    frame.values.push_back(codes(method, quantity, indices));
   return frame;
 }
 
-FilmWriter begun_or_reopened(const std::filesystem::path& file, const FilmHeader& header,
-                             const RunPlace& place, const std::optional<FilmMark>& mark) {
+FilmWriter open_film(const std::filesystem::path& file, const FilmHeader& header,
+                     const RunPosition& place, const std::optional<FilmMark>& mark) {
   if (!std::filesystem::exists(file)) return FilmWriter(file, header);
-  const auto keeps = [&place](const FilmFrameFacts& frame) {
+  const auto keeps = [&place](const FilmFrameInfo& frame) {
     const int event = int(frame.event);
     if (event != place.event) return event < place.event;
     return !place.running || frame.time < place.time;
@@ -127,14 +127,14 @@ FilmWriter begun_or_reopened(const std::filesystem::path& file, const FilmHeader
 
 }  // namespace
 
-FilmHeader film_header(const Scene& scene, const Method& solver, const CostEstimate& cost) {
+FilmHeader film_header(const Scene& scene, const Method& method, const CostEstimate& cost) {
   FilmHeader header;
   header.axes = scene.dimension;
   header.interval = record_interval(scene, cost);
-  header.share = std::min(1.0, FilmRecorder::most_particles / std::max(cost.total_particles, 1.0));
-  const std::vector<FieldInfo> fields = solver.fields();
+  header.share = std::min(1.0, FilmRecorder::max_particles / std::max(cost.total_particles, 1.0));
+  const std::vector<FieldInfo> fields = method.fields();
   header.has_radius = find(fields, "equivalent_radius") != nullptr;
-  header.quantum = quantum_for(smallest_length(scene, solver, header.has_radius));
+  header.quantum = quantum_for(smallest_length(scene, method, header.has_radius));
   for (const Quantity& q : quantities())
     if (q.film_step > 0 && find(fields, q.name == "speed" ? "velocity" : q.name))
       header.quantities.push_back({q.name, q.unit, q.meaning, q.film_step});
@@ -142,31 +142,31 @@ FilmHeader film_header(const Scene& scene, const Method& solver, const CostEstim
 }
 
 FilmRecorder::FilmRecorder(const std::filesystem::path& file, const FilmHeader& header,
-                           const RunPlace& place, const std::optional<FilmMark>& mark)
-    : film_(begun_or_reopened(file, header, place, mark)) {}
+                           const RunPosition& place, const std::optional<FilmMark>& mark)
+    : film_(open_film(file, header, place, mark)) {}
 
 bool FilmRecorder::begun(int event) const {
   return !film_.frames().empty() && int(film_.frames().back().event) == event;
 }
 
 double FilmRecorder::next_time() const {
-  const std::vector<FilmFrameFacts>& frames = film_.frames();
+  const std::vector<FilmFrameInfo>& frames = film_.frames();
   auto first = frames.end() - 1;
   while (first != frames.begin() && (first - 1)->event == frames.back().event) --first;
   return next_record_time(first->time, frames.back().time, std::size_t(frames.end() - first),
                           film_.header().interval);
 }
 
-bool FilmRecorder::due(const RunPlace& place) const {
+bool FilmRecorder::due(const RunPosition& place) const {
   return !begun(place.event) || place.time >= next_time();
 }
 
-void FilmRecorder::record(const Method& solver, int event) {
-  film_.append(frame_of(solver, film_.header(), event));
+void FilmRecorder::record(const Method& method, int event) {
+  film_.append(frame_of(method, film_.header(), event));
 }
 
-void FilmRecorder::record_end(const Method& solver, int event) {
-  if (!begun(event) || film_.frames().back().time < solver.time()) record(solver, event);
+void FilmRecorder::record_end(const Method& method, int event) {
+  if (!begun(event) || film_.frames().back().time < method.time()) record(method, event);
 }
 
 }  // namespace snowshed

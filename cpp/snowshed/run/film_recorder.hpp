@@ -10,30 +10,30 @@
 
 namespace snowshed {
 
-/// Where a run stands.
-struct RunPlace {
+/// Progress of a run.
+struct RunPosition {
   int event = 0;
   bool running = false;
   double time = 0;  // s, through all events
 };
 
-/// Chooses the contents of a run's film: of at most about `most_particles` particles, some, chosen
+/// Chooses the contents of a run's film: of at most about `max_particles` particles, some, chosen
 /// by their ids; positions to a 16th of the resolution (with radii: to a 128th of the smallest),
 /// and to half a millimetre at least; frames at the `record_interval`.
 FilmHeader film_header(const Scene&, const Method&, const CostEstimate&);
 
 class FilmRecorder {
  public:
-  static constexpr double most_particles = 40000;
+  static constexpr double max_particles = 40000;
 
   /// Begins a film, or continues after the frames that a run had recorded up to `place`, so that a
   /// resumed run makes the same film. `mark` is that of the film then, where it is known. Throws
   /// InputError if the film is damaged.
-  FilmRecorder(const std::filesystem::path& file, const FilmHeader& header, const RunPlace& place,
-               const std::optional<FilmMark>& mark);
+  FilmRecorder(const std::filesystem::path& file, const FilmHeader& header,
+               const RunPosition& place, const std::optional<FilmMark>& mark);
 
   /// Whether the first frame of an event is missing, or the next one's time has come.
-  bool due(const RunPlace&) const;
+  bool due(const RunPosition&) const;
   void record(const Method&, int event);
   /// The last frame of an event, unless it is recorded already.
   void record_end(const Method&, int event);

@@ -8,7 +8,7 @@ namespace {
 
 constexpr double records_of_all_events = 400;
 // Limits for one event that lasts as long as expected.
-constexpr double least_records = 12, most_records = 40;
+constexpr double min_records = 12, max_records = 40;
 constexpr std::size_t records_before_longer = 240;
 
 }  // namespace
@@ -16,7 +16,7 @@ constexpr std::size_t records_before_longer = 240;
 double record_interval(const Scene& scene, const CostEstimate& cost) {
   if (scene.output.film_interval > 0) return scene.output.film_interval;
   const double records =
-      std::clamp(records_of_all_events / scene.events.count, least_records, most_records);
+      std::clamp(records_of_all_events / scene.events.count, min_records, max_records);
   return std::max(cost.event_time, 1e-9) / records;
 }
 

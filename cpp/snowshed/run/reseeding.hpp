@@ -1,4 +1,5 @@
-// The thesis's way between events (A.3.5): the stack is turned into a solid and seeded afresh.
+// Reseeding between events (thesis A.3.5): the stack is converted to a solid, which is filled with
+// new particles.
 #pragma once
 
 #include <vector>
@@ -10,7 +11,7 @@
 
 namespace snowshed {
 
-/// The stack before and after it was seeded afresh.
+/// The stack before and after reseeding.
 struct Reseeding {
   struct Cloud {
     std::vector<Vec3> positions;    // m
@@ -22,7 +23,7 @@ struct Reseeding {
   std::vector<ParticleBatch> batches;  // the particles after, by event and snow
 };
 
-/// Seeds the stack `old` afresh before the event that follows `event`: at rest, in its initial
+/// Reseeds the stack `old` before the event that follows `event`: at rest, in its initial
 /// state, with its mass. Event and snow of a new particle are those of the old one nearest to it,
 /// and each snow keeps its mass. The snow that stayed on the panel is converted along with it, so
 /// nothing is lost. Throws SimulationError if the stack cannot be converted, and Stopped on

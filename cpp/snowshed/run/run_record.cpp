@@ -26,13 +26,13 @@ ordered_json or_null(const std::optional<double>& value) {
   return value ? ordered_json(*value) : ordered_json(nullptr);
 }
 
-ordered_json to_json(const EventFacts& facts) {
-  ordered_json j{{"event", facts.event}, {"sim_time_s", facts.sim_time},
-                 {"steps", facts.steps}, {"wall_s", facts.wall},
-                 {"ended", facts.ended}, {"laid_height_m", facts.laid_height}};
-  j["damping_rate_per_s"] = or_null(facts.damping_rate);
-  for (const auto& [name, joules] : facts.energy) j["energy"][name] = joules;
-  if (const auto share = facts.energy_residual()) j["energy_residual"] = *share;
+ordered_json to_json(const EventRecord& record) {
+  ordered_json j{{"event", record.event},          {"sim_time_s", record.sim_time},
+                 {"steps", record.steps},          {"wall_s", record.wall},
+                 {"ended", name_of(record.ended)}, {"laid_height_m", record.laid_height}};
+  j["damping_rate_per_s"] = or_null(record.damping_rate);
+  for (const auto& [name, joules] : record.energy) j["energy"][name] = joules;
+  if (const auto share = record.energy_residual()) j["energy_residual"] = *share;
   return j;
 }
 
@@ -43,25 +43,32 @@ const json& require(const json& object, const char* key, const std::string& path
   return object[key];
 }
 
-EventFacts event_facts(const json& j, const std::vector<std::string>& energies,
-                       const std::string& path) {
+/// Reads the end of an event.
+RunEnd run_end(const std::string& name, const std::string& path) {
+  for (const RunEnd end : {RunEnd::rest, RunEnd::time_limit})
+    if (name == name_of(end)) return end;
+  throw InputError(path, quote(name) + "; allowed: \"rest\", \"time_limit\"");
+}
+
+EventRecord event_record(const json& j, const std::vector<std::string>& energies,
+                         const std::string& path) {
   const auto number = [&](const char* key) {
     return to_number(require(j, key, path), path + "/" + key, "a number");
   };
-  EventFacts facts;
-  facts.event = int(std::clamp(number("event"), 0.0, 1e9));
-  facts.sim_time = number("sim_time_s");
-  facts.steps = std::int64_t(std::clamp(number("steps"), 0.0, 1e18));
-  facts.wall = number("wall_s");
-  facts.ended = to_text(require(j, "ended", path), path + "/ended");
-  facts.laid_height = number("laid_height_m");
+  EventRecord record;
+  record.event = int(std::clamp(number("event"), 0.0, 1e9));
+  record.sim_time = number("sim_time_s");
+  record.steps = std::int64_t(std::clamp(number("steps"), 0.0, 1e18));
+  record.wall = number("wall_s");
+  record.ended = run_end(to_text(require(j, "ended", path), path + "/ended"), path + "/ended");
+  record.laid_height = number("laid_height_m");
   const char* const damping = "damping_rate_per_s";
-  if (j.contains(damping) && !j[damping].is_null()) facts.damping_rate = number(damping);
-  if (!j.contains("energy")) return facts;
+  if (j.contains(damping) && !j[damping].is_null()) record.damping_rate = number(damping);
+  if (!j.contains("energy")) return record;
   for (const std::string& name : energies)
-    facts.energy.emplace_back(name, to_number(require(j["energy"], name.c_str(), path + "/energy"),
-                                              path + "/energy/" + name, "a number"));
-  return facts;
+    record.energy.emplace_back(name, to_number(require(j["energy"], name.c_str(), path + "/energy"),
+                                               path + "/energy/" + name, "a number"));
+  return record;
 }
 
 /// Converts a method's section about a run.
@@ -105,19 +112,30 @@ std::vector<std::string> note_list(const json& j) {
 
 }  // namespace
 
-std::optional<double> EventFacts::energy_residual() const {
-  double largest = 0, residual = 0;
-  for (const auto& [name, joules] : energy) {
-    if (name == "residual_j")
-      residual = std::abs(joules);
-    else
-      largest = std::max(largest, std::abs(joules));
-  }
+std::optional<double> EventRecord::energy_residual() const {
   if (energy.empty()) return std::nullopt;
-  return largest > 0 ? residual / largest : 0.0;
+  const auto residual = energy.end() - 1;
+  double largest = 0;
+  for (auto sink = energy.begin(); sink != residual; ++sink)
+    largest = std::max(largest, std::abs(sink->second));
+  return largest > 0 ? std::abs(residual->second) / largest : 0.0;
 }
 
 std::string name_of(RunEnd end) { return end == RunEnd::rest ? "rest" : "time_limit"; }
+
+std::string name_of(RunStatus status) {
+  switch (status) {
+    case RunStatus::running:
+      return "running";
+    case RunStatus::interrupted:
+      return "interrupted";
+    case RunStatus::failed:
+      return "failed";
+    case RunStatus::finished:
+      return "finished";
+  }
+  return "";
+}
 
 RunRecord RunRecord::read(const std::filesystem::path& file,
                           const std::vector<std::string>& energies) try {
@@ -137,15 +155,15 @@ RunRecord RunRecord::read(const std::filesystem::path& file,
   if (!events.is_array()) throw wrong_type("/finished_events", events, "an array");
   for (std::size_t i = 0; i < events.size(); ++i)
     record.finished.push_back(
-        event_facts(events[i], energies, "/finished_events/" + std::to_string(i)));
+        event_record(events[i], energies, "/finished_events/" + std::to_string(i)));
   return record;
 } catch (const InputError& error) {
   throw InputError(file.string(), std::string("damaged: ") + error.what());
 }
 
-void RunRecord::write(const std::filesystem::path& file, const Simulation& sim,
-                      const std::string& status, const std::string& error) const {
-  const Method& method = sim.solver();
+void RunRecord::write(const std::filesystem::path& file, const Simulation& sim, RunStatus status,
+                      const std::string& error) const {
+  const Method& method = sim.method();
   const StepCounters& c = method.counters();
   ordered_json j{{"version", SNOWSHED_VERSION}, {"kernels", kernel_variant()}};
   for (const auto& [key, fact] : machine) j[key] = fact;
@@ -168,7 +186,7 @@ void RunRecord::write(const std::filesystem::path& file, const Simulation& sim,
   }
   j["notes"] = notes;
   j["finished_events"] = ordered_json::array();
-  for (const EventFacts& facts : finished) j["finished_events"].push_back(to_json(facts));
+  for (const EventRecord& record : finished) j["finished_events"].push_back(to_json(record));
   if (!tables.empty()) j["tables"] = tables;
   j["files"] = ordered_json::object();
   for (const auto& [name, mark] : files)
@@ -176,7 +194,7 @@ void RunRecord::write(const std::filesystem::path& file, const Simulation& sim,
   if (!scene.empty()) j["scene_checksum"] = scene;
   if (const auto film = sim.film_mark())
     j["film"] = {{"frames", film->frames}, {"checksum", hexadecimal(film->checksum)}};
-  j["status"] = status;
+  j["status"] = name_of(status);
   if (!error.empty()) j["error"] = error;
   write_atomic(file, sealed(j));
 }
@@ -200,7 +218,7 @@ bool RunRecord::add_note(const std::string& note) {
 }
 
 void RunRecord::keep_through(int event) {
-  const auto later = [event](const EventFacts& facts) { return facts.event > event; };
+  const auto later = [event](const EventRecord& record) { return record.event > event; };
   finished.erase(std::remove_if(finished.begin(), finished.end(), later), finished.end());
 }
 

@@ -14,17 +14,17 @@
 
 namespace snowshed {
 
-/// Course of one event. With particles/event_NNN.vtp this is all that measuring the event takes.
-struct EventFacts {
+/// Course of one event. With particles/event_NNN.vtp it suffices to measure the event.
+struct EventRecord {
   int event = 0;
   double sim_time = 0;  // s
   std::int64_t steps = 0;
-  double wall = 0;                     // s
-  std::string ended;                   // "rest" or "time_limit"
+  double wall = 0;  // s
+  RunEnd ended = RunEnd::rest;
   double laid_height = 0;              // m, see Simulation::laid_height
   std::optional<double> damping_rate;  // 1/s, its mean, see MethodDescriptor::damping_rate
   std::vector<std::pair<std::string, double>>
-      energy;  // J, by name; empty without the energy balance
+      energy;  // J, by name, the residual last; empty without the energy balance
 
   /// Energy that the time integration gained or lost, over the largest of the energies; none
   /// without the energy balance.
@@ -38,11 +38,16 @@ struct FileMark {
   std::string checksum;
 };
 
-/// A larger share of the energy that was gained or lost is worth a warning.
-inline constexpr double largest_energy_residual = 0.01;
+/// Residuals of the energy above this share give a warning.
+inline constexpr double max_energy_residual = 0.01;
 
 /// Returns the names that run.json has for the two ends of events.
 std::string name_of(RunEnd);
+
+enum class RunStatus { running, interrupted, failed, finished };
+
+/// Returns the name of a status in run.json.
+std::string name_of(RunStatus);
 
 class RunRecord {
  public:
@@ -51,8 +56,8 @@ class RunRecord {
   static RunRecord read(const std::filesystem::path& file,
                         const std::vector<std::string>& energies);
 
-  /// Writes run.json. `status` is running, interrupted, failed (then with an `error`) or finished.
-  void write(const std::filesystem::path& file, const Simulation&, const std::string& status,
+  /// Writes run.json. An `error` belongs to the status `failed`.
+  void write(const std::filesystem::path& file, const Simulation&, RunStatus,
              const std::string& error = "") const;
 
   /// Throws InputError if one of `files` exists, but is not as the run wrote it.
@@ -64,7 +69,7 @@ class RunRecord {
   /// Adds a note for readers of the results, a sentence. Returns whether it is new.
   bool add_note(const std::string& note);
 
-  std::vector<EventFacts> finished;            // one per event
+  std::vector<EventRecord> finished;           // one per event
   std::vector<std::string> notes;              // in the order of their creation
   std::map<std::string, std::string> machine;  // further facts, by key
   /// Checksums of the tables that Python keeps: by name, of the rows through an event.

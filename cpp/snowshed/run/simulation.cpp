@@ -49,16 +49,16 @@ Simulation::Simulation(const Scene& scene, const std::filesystem::path& base_dir
   notes_ = surroundings_.notes;
   listed_obstacles_ = listed_obstacles(scene_, surroundings_.obstacles);
   resolved_obstacles_ = listed_obstacles(scene_, surroundings_.resolved);
-  solver_ = empty_method();
+  method_ = empty_method();
   if (!takes_bodies) {
     const SceneView view = view_of(scene_);
-    cost_ = scene_.numerics->cost_of_method(view, surroundings_, *solver_);
+    cost_ = scene_.numerics->cost_of_method(view, surroundings_, *method_);
     check_cost();
   }
-  if (const auto* measured = capability<HasCurve>(std::as_const(*solver_)))
+  if (const auto* measured = capability<HasCurve>(std::as_const(*method_)))
     curve_ = measured->empty_curve();
   else if (scene_.output.energy)
-    energies_ = std::make_unique<EnergyHistory>(scene_.numerics->facts().energies,
+    energies_ = std::make_unique<EnergyHistory>(scene_.numerics->info().energies,
                                                 record_interval(scene_, cost_));
 }
 
@@ -91,7 +91,7 @@ std::optional<Reseeding> Simulation::begin_event(const StopRequest& stop) {
   if (running_) throw SimulationError("the present event has not ended yet");
   std::optional<Reseeding> reseeding;
   if (event_ > 0 && scene_.events.between == Between::reseed)
-    reseeding = reseed_stack(scene_, panel_, solver_->state(), event_, laid_height_, stop);
+    reseeding = reseed_stack(scene_, panel_, method_->state(), event_, laid_height_, stop);
   const double lift = lift_of_next_slab(reseeding);
   SeededSnow snow = seed_next_event(lift, stop);
   std::vector<std::string> notes = check_placement_of(snow, reseeding);
@@ -101,14 +101,14 @@ std::optional<Reseeding> Simulation::begin_event(const StopRequest& stop) {
   ++event_;
   notes_.insert(notes_.end(), notes.begin(), notes.end());
   running_ = true;
-  event_start_ = solver_->time();
+  event_start_ = method_->time();
   rest_.start_event(event_start_);
-  if (curve_) curve_->record(*solver_);
+  if (curve_) curve_->record(*method_);
   return reseeding;
 }
 
 SeededSnow Simulation::seed_next_event(double lift, const StopRequest& stop) const {
-  if (const auto* seeding = capability<SeedsItself>(std::as_const(*solver_)))
+  if (const auto* seeding = capability<SeedsItself>(std::as_const(*method_)))
     return seeded(seeding->seed(stop));
   return seed_event(scene_, base_dir_, panel_, event_ + 1, lift, stop);
 }
@@ -126,11 +126,11 @@ std::vector<std::string> Simulation::check_placement_of(
         {body.path, &snow.batches[i].positions, body.shape, body.is_of_slab && event_ > 0});
   }
   OccupiedSpace space{surroundings_.obstacles,   surroundings_.resolved,
-                      solver_->time(),           {},
+                      method_->time(),           {},
                       particle_distance(scene_), event_ + 1};
   if (reseeding) {
     const std::vector<Vec3>& stack = reseeding->after.positions;
-    notes = check_placement(scene_, {{"the stack, seeded anew", &stack, nullptr, true}}, space);
+    notes = check_placement(scene_, {{"the reseeded stack", &stack, nullptr, true}}, space);
     space.particles = stack;
   } else if (!bodies.empty()) {
     space.particles = positions();
@@ -142,30 +142,30 @@ std::vector<std::string> Simulation::check_placement_of(
 }
 
 std::vector<Vec3> Simulation::positions() const {
-  const FieldView view = solver_->field("position");
+  const FieldView view = method_->field("position");
   std::vector<Vec3> positions;
-  positions.reserve(solver_->size());
-  for (std::size_t i = 0; i < solver_->size(); ++i)
+  positions.reserve(method_->size());
+  for (std::size_t i = 0; i < method_->size(); ++i)
     positions.push_back(Vec3::Map(view.at<double>(i)));
   return positions;
 }
 
 /// Takes a step of the present event.
 void Simulation::advance() {
-  const double before = solver_->time();
-  solver_->step();
-  if (!(solver_->time() > before))
+  const double before = method_->time();
+  method_->step();
+  if (!(method_->time() > before))
     throw SimulationError("the time stays at " + show(before) + " s: a step of " +
-                          show(solver_->time_step()) + " s is too short to add to it");
-  if (curve_) curve_->record(*solver_);
+                          show(method_->time_step()) + " s is too short to add to it");
+  if (curve_) curve_->record(*method_);
 }
 
 /// The only change that beginning an event makes to the particles, so that it is all or nothing.
 void Simulation::change_snow(const std::optional<Reseeding>& reseeding,
                              std::vector<ParticleBatch> added, const StopRequest& stop) try {
-  if (!reseeding) return solver_->add(added, stop);
+  if (!reseeding) return method_->add(added, stop);
   added.insert(added.begin(), reseeding->batches.begin(), reseeding->batches.end());
-  solver_->replace(added);
+  method_->replace(added);
 } catch (const SimulationError& error) {  // beyond the addressable grid
   throw InputError("/", error.what());
 }
@@ -175,9 +175,9 @@ void Simulation::add_snow(ParticleBatch batch) {
   std::vector<std::string> notes;
   if (scene_.numerics.takes(Part::bodies))
     notes = check_placement(scene_, {{"positions", &batch.positions}},
-                            {surroundings_.obstacles, surroundings_.resolved, solver_->time(),
+                            {surroundings_.obstacles, surroundings_.resolved, method_->time(),
                              positions(), particle_distance(scene_), event_});
-  solver_->add(batch);
+  method_->add(batch);
   notes_.insert(notes_.end(), notes.begin(), notes.end());
   event_mass_ += batch.total_mass();
   laid_height_ += panel_.height_of(batch.positions);
@@ -188,7 +188,7 @@ double Simulation::lift_of_next_slab(const std::optional<Reseeding>& reseeding) 
   const double next_mass = slab_mass(scene_, event_ + 1);
   if (event_ == 0 || next_mass == 0) return 0.0;
   const PanelRegion::Layer left =
-      panel_.snow_on(reseeding ? as_held(reseeding->batches) : solver_->state(), laid_height_);
+      panel_.snow_on(reseeding ? as_held(reseeding->batches) : method_->state(), laid_height_);
   const double last_mass = event_mass_ > 0 ? event_mass_ : next_mass;
   return left.mass > 0.02 * std::min(last_mass, next_mass) ? left.top + 0.5 * resolution() : 0.0;
 }
@@ -203,7 +203,7 @@ ParticleState Simulation::as_held(const std::vector<ParticleBatch>& batches) con
 void Simulation::settle(const std::vector<double>& drops,
                         const std::vector<double>& plastic_changes) {
   if (running_) throw InputError("settling", "an event is running; snow settles between events");
-  if (auto* settling = capability<Settles>(*solver_))
+  if (auto* settling = capability<Settles>(*method_))
     return settling->settle(drops, plastic_changes);
   for (const auto* changes : {&drops, &plastic_changes})
     if (std::any_of(changes->begin(), changes->end(), [](double change) { return change != 0; }))
@@ -219,24 +219,24 @@ static double nearest_distance(const std::vector<Obstacle>& obstacles, double ti
 }
 
 double Simulation::obstacle_distance(const Vec3& x) const {
-  return nearest_distance(listed_obstacles_, solver_->time(), x);
+  return nearest_distance(listed_obstacles_, method_->time(), x);
 }
 
 double Simulation::resolved_distance(const Vec3& x) const {
-  return nearest_distance(resolved_obstacles_, solver_->time(), x);
+  return nearest_distance(resolved_obstacles_, method_->time(), x);
 }
 
 RunEnd Simulation::run(const std::function<bool(const RunReport&)>& observer, double interval) {
   if (!running_) throw SimulationError("no event is running; begin_event first");
   Stopwatch clock, since_start;
-  const std::int64_t updates_at_start = solver_->counters().particle_updates;
+  const std::int64_t updates_at_start = method_->counters().particle_updates;
   bool pausing = false;
   while (true) {
-    if (pausing && solver_->at_safe_point()) return RunEnd::paused;
+    if (pausing && method_->at_safe_point()) return RunEnd::paused;
     record();
     if (const auto end = event_end()) {
-      if (film_) film_->record_end(*solver_, event_);
-      if (energies_) energies_->record_end(*solver_, event_);
+      if (film_) film_->record_end(*method_, event_);
+      if (energies_) energies_->record_end(*method_, event_);
       running_ = false;
       return *end;
     }
@@ -244,7 +244,7 @@ RunEnd Simulation::run(const std::function<bool(const RunReport&)>& observer, do
     if (!pausing && clock.seconds() >= interval) {
       clock.restart();
       RunReport r = report(rest_.speed());
-      r.updates_per_s = double(solver_->counters().particle_updates - updates_at_start) /
+      r.updates_per_s = double(method_->counters().particle_updates - updates_at_start) /
                         std::max(since_start.seconds(), 1e-9);
       pausing = !observer(r);
     }
@@ -253,29 +253,29 @@ RunEnd Simulation::run(const std::function<bool(const RunReport&)>& observer, do
 
 /// Writes the outputs that are due now.
 void Simulation::record() {
-  if (snapshots_ && snapshots_->due(solver_->time())) snapshots_->write(*solver_);
-  if (energies_) energies_->record(*solver_, event_);
-  if (film_ && film_->due({event_, running_, solver_->time()})) film_->record(*solver_, event_);
+  if (snapshots_ && snapshots_->due(method_->time())) snapshots_->write(*method_);
+  if (energies_) energies_->record(*method_, event_);
+  if (film_ && film_->due({event_, running_, method_->time()})) film_->record(*method_, event_);
 }
 
 /// Reason for which the event has ended, or none while it goes on. Its last step is a whole one,
 /// which may reach beyond the time limit; one that misses it by rounding reaches it.
 std::optional<RunEnd> Simulation::event_end() {
   constexpr double rounding = 1e-6;  // share of a step
-  const std::optional<bool> own = solver_->at_rest();
-  const bool rests = own ? *own : rest_.due(solver_->time()) && is_at_rest();
+  const std::optional<bool> own = method_->at_rest();
+  const bool rests = own ? *own : rest_.due(method_->time()) && is_at_rest();
   if (event_time() <= 0) return std::nullopt;  // snow cannot have been at rest for zero seconds
   if (rests) return RunEnd::rest;
-  if (event_time() >= scene_.events.max_time - rounding * solver_->time_step())
+  if (event_time() >= scene_.events.max_time - rounding * method_->time_step())
     return RunEnd::time_limit;
   return std::nullopt;
 }
 
 bool Simulation::is_at_rest() {
-  const MotionSummary m = solver_->motion(scene_.events.rest_speed);
+  const MotionSummary m = method_->motion(scene_.events.rest_speed);
   const double brought = event_mass_ > 0 ? event_mass_ : m.mass;
   const double speed = m.rms_speed * std::sqrt(m.mass / std::max(brought, 1e-300));
-  return rest_.at_rest(solver_->time(), speed);
+  return rest_.at_rest(method_->time(), speed);
 }
 
 void Simulation::step(int count) {
@@ -286,22 +286,23 @@ void Simulation::step(int count) {
 RunReport Simulation::report(double rms_speed) const {
   RunReport r;
   r.time = event_time();
-  r.time_step = solver_->time_step();
+  r.time_step = method_->time_step();
   r.rms_speed = rms_speed;
-  r.steps = solver_->counters().steps;
-  r.particles = solver_->size();
-  const double progress = solver_->progress().value_or(r.time / std::max(cost_.event_time, 1e-9));
+  r.steps = method_->counters().steps;
+  r.particles = method_->size();
+  const double progress = method_->progress().value_or(r.time / std::max(cost_.event_time, 1e-9));
   r.progress = std::min(0.99, progress);
   return r;
 }
 
 void Simulation::write_snapshots(const std::filesystem::path& folder, double interval) {
-  snapshots_ = std::make_unique<SnapshotSeries>(folder, interval, solver_->time());
+  snapshots_ = std::make_unique<SnapshotSeries>(folder, interval, method_->time());
 }
 
 void Simulation::record_film(const std::filesystem::path& file) {
-  film_ = std::make_unique<FilmRecorder>(file, film_header(scene_, *solver_, cost_),
-                                         RunPlace{event_, running_, solver_->time()}, film_mark_);
+  film_ =
+      std::make_unique<FilmRecorder>(file, film_header(scene_, *method_, cost_),
+                                     RunPosition{event_, running_, method_->time()}, film_mark_);
 }
 
 void Simulation::close_film() {
@@ -311,7 +312,7 @@ void Simulation::close_film() {
 std::optional<FilmMark> Simulation::film_mark() const { return film_ ? film_->mark() : film_mark_; }
 
 void Simulation::write_vtp(const std::filesystem::path& file) const {
-  write_particles(file, *solver_);
+  write_particles(file, *method_);
 }
 
 }  // namespace snowshed

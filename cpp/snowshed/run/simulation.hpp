@@ -50,11 +50,10 @@ class Simulation {
 
   /// Seeds the next event's snow: the slab on the panel (above the snow that remained there, unless
   /// that is less than 2 % of the slab and of the last event's snow) and the scene's bodies. With
-  /// between = "reseed", from the second event on the stack is first seeded afresh
-  /// (`reseed_stack`). All or nothing: throws InputError if the snow of this event cannot be
-  /// seeded, or lies where snow may not be (snow_placement.hpp), SimulationError if the stack
-  /// cannot be converted or an event still runs, Stopped on request, and leaves everything as it
-  /// was.
+  /// between = "reseed", the stack is reseeded from the second event on (`reseed_stack`). All or
+  /// nothing: throws InputError if the snow of this event cannot be seeded, or lies where snow may
+  /// not be (snow_placement.hpp), SimulationError if the stack cannot be converted or an event
+  /// still runs, Stopped on request, and leaves everything as it was.
   std::optional<Reseeding> begin_event(const StopRequest& stop = {});
 
   /// Runs the present event until the snow rests, the time limit, or `observer`, called every
@@ -72,7 +71,7 @@ class Simulation {
   /// the snow themselves can change velocities between steps by `add_velocity`.
   void step(int count = 1);
   void add_velocity(const std::vector<Vec3>& velocity_changes) {
-    solver_->add_velocity(velocity_changes);
+    method_->add_velocity(velocity_changes);
   }
 
   /// Applies the effects of time on the snow between two events, see Settles. Throws InputError
@@ -83,7 +82,7 @@ class Simulation {
   void write_snapshots(const std::filesystem::path& folder, double interval);
 
   /// Records the particles into a film from now on, or continues the film of the run that was
-  /// resumed: its frames after the present state are recorded anew. Throws InputError if that
+  /// resumed: its frames after the present state are recorded again. Throws InputError if that
   /// film is damaged.
   void record_film(const std::filesystem::path& file);
   bool films() const { return film_ != nullptr; }
@@ -109,7 +108,7 @@ class Simulation {
   /// Indexed by material_id.
   const std::vector<Snow>& snows() const { return surroundings_.snows; }
   const CostEstimate& cost() const { return cost_; }
-  const Method& solver() const { return *solver_; }
+  const Method& method() const { return *method_; }
   /// The curve measured after each step so far; null for methods without such a curve.
   const Curve* curve() const { return curve_.get(); }
   /// A remark on the files that the method reads; empty if there is none.
@@ -122,7 +121,7 @@ class Simulation {
   /// sentence each.
   const std::vector<std::string>& notes() const { return notes_; }
   bool event_running() const { return running_; }
-  double event_time() const { return solver_->time() - event_start_; }
+  double event_time() const { return method_->time() - event_start_; }
   int threads() const;
 
   /// The smallest length that is resolved, m.
@@ -130,7 +129,7 @@ class Simulation {
 
   /// Mean rate of numerical damping so far, 1/s.
   std::optional<double> damping_rate() const {
-    return scene_.numerics->damping_rate(solver_->counters().steps, solver_->time());
+    return scene_.numerics->damping_rate(method_->counters().steps, method_->time());
   }
 
   /// Height that all snow laid so far would have on the panel if none had left it, m.
@@ -149,8 +148,7 @@ class Simulation {
   /// and domain do not count. Infinite without any.
   double obstacle_distance(const Vec3& x) const;
 
-  /// The same to the obstacles as the method sees them, whose thin parts are thicker: snow lies on
-  /// those.
+  /// The same to the obstacles with thin parts thickened, on which snow lies.
   double resolved_distance(const Vec3& x) const;
 
   /// One .vtp with all particles and their quantities.
@@ -185,9 +183,9 @@ class Simulation {
   CostEstimate cost_;
   PanelRegion panel_;
   Surroundings surroundings_;
-  // Those of the scene's list, as given and as the method sees them.
+  // Those of the scene's list, as given and thickened.
   std::vector<Obstacle> listed_obstacles_, resolved_obstacles_;
-  std::unique_ptr<Method> solver_;
+  std::unique_ptr<Method> method_;
   std::unique_ptr<SnapshotSeries> snapshots_;
   std::unique_ptr<FilmRecorder> film_;
   std::optional<FilmMark> film_mark_;        // in the checkpoint that was loaded

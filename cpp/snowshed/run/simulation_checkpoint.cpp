@@ -1,4 +1,4 @@
-// Saving and restoring a simulation: its scene, its progress through the events, and the solver.
+// Saving and restoring a simulation: its scene, its progress through the events, and the method.
 #include "snowshed/core/errors.hpp"
 #include "snowshed/core/kernel_variant.hpp"
 #include "snowshed/core/memory.hpp"
@@ -85,7 +85,7 @@ void Simulation::save(const std::filesystem::path& checkpoint) const {
   const RestDetector::State r = rest_.state();
   out.add("run", std::vector<double>{event_start_, event_mass_, r.since, r.speed_at_start, r.speed,
                                      r.next, laid_height_});
-  solver_->save(out);
+  method_->save(out);
   try {
     out.save(checkpoint, [this](const std::filesystem::path& written) { read_back(written); });
   } catch (const InputError& error) {
@@ -99,7 +99,7 @@ void Simulation::save(const std::filesystem::path& checkpoint) const {
 void Simulation::read_back(const std::filesystem::path& checkpoint) const {
   const BinaryReader in = BinaryReader::load(checkpoint);
   in.require_finite();
-  if (solver_->bytes() < available_memory_bytes()) solver_->check(in);
+  if (method_->bytes() < available_memory_bytes()) method_->check(in);
 }
 
 std::unique_ptr<Simulation> Simulation::load(const std::filesystem::path& checkpoint,
@@ -147,7 +147,7 @@ std::unique_ptr<Simulation> Simulation::restored(const BinaryReader& in, const S
     const auto film = in.get<std::uint64_t>("film", 2);
     sim->film_mark_ = FilmMark{std::size_t(film[0]), std::uint32_t(film[1])};
   }
-  sim->solver_->load(in);
+  sim->method_->load(in);
   return sim;
 }
 

@@ -19,13 +19,13 @@ SnapshotSeries::SnapshotSeries(std::filesystem::path folder, double interval, do
       series_((std::filesystem::create_directories(folder_),
                PvdSeries::reopen(folder_ / "snapshots.pvd", next_))) {}
 
-void SnapshotSeries::write(const Method& solver) {
+void SnapshotSeries::write(const Method& method) {
   char name[32];
   std::snprintf(name, sizeof name, "snapshot_%06lld.vtp",
                 static_cast<long long>(std::llround(next_ / interval_)));
-  write_particles(folder_ / name, solver);
-  series_.append(solver.time(), name);
-  while (next_ <= solver.time()) next_ += interval_;
+  write_particles(folder_ / name, method);
+  series_.append(method.time(), name);
+  while (next_ <= method.time()) next_ += interval_;
 }
 
 }  // namespace snowshed

@@ -13,7 +13,7 @@ namespace {
 /// From the last impact to rest, snow loses the speed of its fall at about the acceleration of
 /// gravity: 0.2 to 0.35 s in the laboratory scene, 0.5 to 0.7 s where it falls from 2 m. This is
 /// the least time that it took:
-constexpr double least_settling_time = 0.25;  // s
+constexpr double min_settling_time = 0.25;  // s
 
 /// Mean acceleration down the panel, from gravity less friction.
 double sliding_acceleration(const Scene& scene) {
@@ -111,7 +111,7 @@ SnowMotion estimate_motion(const Scene& scene) {
   const double slab = motion.sliding_time + motion.fall_time;
   if (bodies > slab) motion.fall_time = bodies;
   if (!scene.bodies.empty()) motion.first_landing = 0.0;
-  const double settling = std::max(least_settling_time, time_to_lose_speed(scene, motion));
+  const double settling = std::max(min_settling_time, time_to_lose_speed(scene, motion));
   motion.event_time = std::min(std::max(slab, bodies) + settling, scene.events.max_time);
   return motion;
 }

@@ -7,25 +7,26 @@
 #include <limits>
 #include <optional>
 
+#include "snowshed/core/angles.hpp"
 #include "snowshed/core/errors.hpp"
 #include "snowshed/particles/point_grid.hpp"
 
 namespace snowshed {
 namespace {
 
-/// Particles that follow on each other lie near to each other.
+/// Consecutive particles are close to each other.
 constexpr std::size_t particles_in_box = 64;
 
 constexpr double depth_over_resolution = 1e-3;  // less is rounding of files, not an overlap
 
 /// Where old snow surrounds a point: within this many particle distances there are ...
 constexpr double reach = 2.2;
-constexpr double least_filled = 0.4;  // ... this share of the particles that whole snow would have,
-constexpr double most_aside = 0.28;   // and their centre is nearer than this, over the reach. On a
-                                      // flat surface it is at 0.38 (3D) and 0.42 (2D).
+constexpr double min_filling = 0.4;  // ... this share of the particles that whole snow would have,
+constexpr double max_offset = 0.28;  // and their centre is nearer than this, over the reach. On a
+                                     // flat surface it is at 0.38 (3D) and 0.42 (2D).
 
-constexpr std::size_t most_notes = 10;  // notes on the bodies of an event
-constexpr std::size_t most_parts = 3;   // parts in a sentence
+constexpr std::size_t max_notes = 10;  // notes on the bodies of an event
+constexpr std::size_t max_parts = 3;   // parts in a sentence
 
 struct PointBox {
   Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
@@ -149,8 +150,8 @@ class OldSnow {
         box_.extend(x + around);
       }
     if (!near_.empty()) grid_.emplace(near_, radius_);
-    const double ball = dimension == 2 ? 3.14159 * reach * reach : 4.18879 * std::pow(reach, 3);
-    least_ = least_filled * ball;
+    const double ball = dimension == 2 ? pi * reach * reach : 4.0 / 3.0 * pi * std::pow(reach, 3);
+    min_count_ = min_filling * ball;
   }
 
   const PointBox& box() const { return box_; }
@@ -164,11 +165,11 @@ class OldSnow {
       sum += y - x;
       ++count;
     });
-    return count >= least_ && sum.norm() < most_aside * radius_ * count;
+    return count >= min_count_ && sum.norm() < max_offset * radius_ * count;
   }
 
  private:
-  double radius_, least_;
+  double radius_, min_count_;
   std::vector<Vec3> near_;
   PointBox box_;
   std::optional<PointGrid> grid_;
@@ -222,7 +223,7 @@ class Obstacles {
       if (count == 0) return;
       const std::string name = words_[k].substr(std::string("inside ").size());
       sentences.push_back(percent(snow.share_of(count)) + " of its particles lie beside " + name +
-                          ", where it is made thicker than it is, and are pushed out");
+                          ", where it is thickened to the resolution, and are pushed out");
     });
   }
 
@@ -259,24 +260,24 @@ std::string body_of(const std::string& path) {
 
 std::string sentence_of(const Particles& snow, int dimension, int event) {
   std::string text;
-  for (std::size_t i = 0; i < std::min(most_parts, snow.parts().size()); ++i) {
+  for (std::size_t i = 0; i < std::min(max_parts, snow.parts().size()); ++i) {
     const Part& part = snow.parts()[i];
     const std::string share = percent(snow.share_of(part.count));
     text += text.empty() ? share + " of its particles lie " : " and " + share + " ";
     text += part.where + ", such as at " + place(part.example, dimension);
   }
-  if (snow.parts().size() > most_parts) text += ", and others elsewhere";
+  if (snow.parts().size() > max_parts) text += ", and others elsewhere";
   return event > 1 ? "in event " + std::to_string(event) + ", " + text : text;
 }
 
-/// No more notes than anybody reads.
+/// Limits the number of notes.
 std::vector<std::string> shortened(std::vector<std::string> notes) {
-  if (notes.size() <= most_notes) return notes;
-  const std::size_t more = notes.size() - most_notes + 1;
-  notes.resize(most_notes - 1);
+  if (notes.size() <= max_notes) return notes;
+  const std::size_t more = notes.size() - max_notes + 1;
+  notes.resize(max_notes - 1);
   notes.push_back(std::to_string(more) +
                   " further bodies of snow lie where snow may not be, or "
-                  "where the grid thickens an obstacle");
+                  "where an obstacle is thickened");
   return notes;
 }
 
@@ -317,7 +318,7 @@ std::vector<std::string> check_placement(const Scene& scene, const std::vector<P
     for (const std::string& sentence : sentences) notes.push_back(body.path + ": " + sentence);
     if (snow.parts().empty()) continue;
     const std::string sentence = sentence_of(snow, scene.dimension, space.event);
-    if (snow.share() > most_misplaced && !body.is_only_noted &&
+    if (snow.share() > max_misplaced && !body.is_only_noted &&
         scene.misplaced_snow == MisplacedSnow::refuse)
       throw InputError(body.path, sentence + "; move it, or set /misplaced_snow to \"allow\"");
     notes.push_back(body.path + ": " + sentence);

@@ -11,7 +11,7 @@
 namespace snowshed {
 
 /// The largest share of a body that may lie where snow may not be.
-inline constexpr double most_misplaced = 0.01;
+inline constexpr double max_misplaced = 0.01;
 
 /// A body of new snow.
 struct PlacedBody {
@@ -37,7 +37,7 @@ struct OccupiedSpace {
 /// particles into it are not seen.) Returns a sentence for each body that has such particles, and
 /// for those that lie only where a thin obstacle is made thicker: from there they are pushed out.
 ///
-/// Throws InputError with share and place where it is more than `most_misplaced` of a body's
+/// Throws InputError with share and place where it is more than `max_misplaced` of a body's
 /// particles, not counting the thickening, unless the scene allows that or the body's
 /// `is_only_noted` is set.
 std::vector<std::string> check_placement(const Scene&, const std::vector<PlacedBody>&,

@@ -87,8 +87,8 @@ std::vector<Cell> cells_of(const LevelSet& shape, int dimension, double spacing,
 }
 
 /// Chooses among the cells that the surface cuts. They are taken in groups of neighbours, each of
-/// which gets as many points as its cells hold snow, in the fullest ones; of cells that are equally
-/// full those that lie farthest apart come first.
+/// which gets as many points as its cells hold snow: the fullest cells first, and among equally
+/// full ones those farthest apart.
 class CutCells {
  public:
   void add(const Cell& cell) { cells_.push_back(cell); }

@@ -86,10 +86,10 @@ PanelFrame panel_frame(const Scene& scene) {
   frame.slope = tilted_slope(panel.tilt);
   frame.length = panel.length;
   frame.width = panel.width;
-  // The grid cannot see a board thinner than a few cells: snow would pass through it, or be
-  // felt from the other side. The face stays where it is; the board grows downward.
-  constexpr double least_cells = 3.0;
-  frame.board = std::max(panel.thickness, least_cells * scene.numerics->resolution());
+  // The grid does not resolve a board thinner than a few cells: snow would pass through it, or act
+  // through it. The face does not move; the board grows downward.
+  constexpr double min_cells = 3.0;
+  frame.board = std::max(panel.thickness, min_cells * scene.numerics->resolution());
   frame.center.z() = panel.height - height_above_ground(scene, frame.lower_edge());
   return frame;
 }

@@ -18,7 +18,7 @@ struct PanelFrame {
   Vec3 slope;     // unit, down the slope
   double length;  // m, along `slope`
   double width;   // m, along y (unused in 2D)
-  double board;   // m, thickness of the board below the face, as the grid sees it
+  double board;   // m, thickness of the board below the face, at least three cells
 
   /// Middle of the lower edge, where the snow leaves the panel.
   Vec3 lower_edge() const { return center + 0.5 * length * slope; }

@@ -19,8 +19,8 @@ namespace snowshed {
 namespace {
 
 // Beyond this, squares and differences of coordinates lose the millimetres.
-constexpr double largest = 1e9;    // m
-constexpr double smallest = 1e-9;  // m
+constexpr double max_length = 1e9;   // m
+constexpr double min_length = 1e-9;  // m
 
 /// Reads the fields of one ShapeSpec; errors name the bad field.
 class Builder {
@@ -174,14 +174,14 @@ class Builder {
   }
 
   void check_axis() const {
-    if ((point(spec_.to, "/to") - point(spec_.from, "/from")).norm() < smallest)
+    if ((point(spec_.to, "/to") - point(spec_.from, "/from")).norm() < min_length)
       fail("/to", describe(spec_.to) + " equals 'from'; the ends of the axis must differ");
   }
 
   enum InPlane { in_plane, any_y };
 
   Vec3 point(const Vec3& value, const char* field, InPlane plane = in_plane) const {
-    if (!(value.cwiseAbs().maxCoeff() <= largest) || !value.allFinite())
+    if (!(value.cwiseAbs().maxCoeff() <= max_length) || !value.allFinite())
       fail(field, describe(value) + "; allowed: finite coordinates up to 1e9 m");
     if (plane == in_plane && dimension_ == 2 && value.y() != 0)
       fail(field, describe(value) + "; y must be 0 in a two-dimensional scene");
@@ -190,12 +190,12 @@ class Builder {
 
   Vec3 direction(const Vec3& value, const char* field, InPlane plane = in_plane) const {
     const Vec3 v = point(value, field, plane);
-    if (v.norm() < smallest) fail(field, describe(value) + "; a direction must not be zero");
+    if (v.norm() < min_length) fail(field, describe(value) + "; a direction must not be zero");
     return v.normalized();
   }
 
   double length(double value, const char* field) const {
-    if (!(value >= smallest && value <= largest))
+    if (!(value >= min_length && value <= max_length))
       fail(field, describe(value) + "; must be positive (1e-9 to 1e9)");
     return value;
   }

@@ -57,8 +57,8 @@ class Checker : public PathVisitor<Checker> {
     vector(key, value, "", between(-1e6, 1e6), doc);
     const double length = dimension_ == 2 ? std::hypot(value.x(), value.z()) : value.norm();
     // Shorter ones lose their direction to rounding when squared.
-    constexpr double shortest = 1e-100;
-    if (length < shortest) throw InputError(at(key), "a direction must not be zero");
+    constexpr double min_length = 1e-100;
+    if (length < min_length) throw InputError(at(key), "a direction must not be zero");
   }
 
   void axis(const char* key, Vec3& value, const char* doc) {
@@ -73,10 +73,10 @@ class Checker : public PathVisitor<Checker> {
   }
 
   void outline(const char* key, Ring& ring, const char*) {
-    constexpr std::size_t most = 100000;
-    if (ring.size() < 3 || ring.size() > most)
-      throw InputError(
-          at(key), std::to_string(ring.size()) + " corners; allowed: 3 to " + std::to_string(most));
+    constexpr std::size_t max_corners = 100000;
+    if (ring.size() < 3 || ring.size() > max_corners)
+      throw InputError(at(key), std::to_string(ring.size()) + " corners; allowed: 3 to " +
+                                    std::to_string(max_corners));
     for (std::size_t i = 0; i < ring.size(); ++i)
       for (const int axis : {0, 1})
         check(at(key) + "/" + std::to_string(i) + "/" + std::to_string(axis), ring[i][axis],

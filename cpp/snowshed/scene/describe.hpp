@@ -189,7 +189,7 @@ void describe(V& v, Slab& s) {
   v.number("length", s.length, "m", allowed::size_or_zero, "Length; 0: as long as the panel");
   v.number("width", s.width, "m", allowed::size_or_zero,
            "Width; 0: two thirds of the panel's; ignored in 2D");
-  v.list("layers", s.layers, between(0, 1000), "In place of a thickness, layers from the panel up");
+  v.list("layers", s.layers, between(0, 1000), "Layers from the panel up, instead of a thickness");
 }
 
 template <class V>
@@ -233,19 +233,19 @@ void describe(V& v, TerrainSpec& t) {
          "Thickness of the released snow, m, in place of that of the areas: an ESRI ASCII grid; "
          "relative to the scene file");
   v.number("max_thickness", t.max_thickness, "m", positive.up_to(100.0),
-           "Largest thickness of the snow that is released or taken up");
+           "Largest thickness of the snow that is released or entrained");
   v.number("max_slope", t.max_slope, "deg", positive.up_to(90.0),
            "Steepest ground between neighbouring nodes under a release, where they differ by more "
            "than 10 m in height");
   v.text("notes", t.notes, "Assumptions about the files, one a line, passed on to the results");
   v.list("release", t.release, between(1, 10000).required(), "Areas of release");
-  v.list("entrainment", t.entrainment, between(0, 10000), "Areas where the slide takes up snow");
+  v.list("entrainment", t.entrainment, between(0, 10000), "Areas where the slide entrains snow");
   v.list("resistance", t.resistance, between(0, 10000),
-         "Areas where forest or the like holds the slide back");
+         "Areas where forest or buildings resist the slide");
 }
 
 /// Largest number of stages in a loading, so that its curve fits into memory.
-inline constexpr int most_stages = 100;
+inline constexpr int max_stages = 100;
 
 template <class V>
 void describe(V& v, SampleSpec& s) {
@@ -300,7 +300,7 @@ template <class V>
 void describe(V& v, Events& e) {
   v.integer("count", e.count, between(1, 1000), "Number of slide-off events");
   v.choice("between", e.between,
-           "Between events, carry the particles on or reseed the stack's volume");
+           "Treatment of the stack between events: keep its particles, or reseed its volume");
   v.number("max_time", e.max_time, "s", allowed::duration, "Longest duration of an event");
   v.number("rest_speed", e.rest_speed, "m/s", positive.up_to(1e4),
            "Speed below which the snow counts as resting");
@@ -379,7 +379,7 @@ void describe(V& v, Scene& s) {
   v.taken_by(Part::sample);
   v.optional("sample", s.sample, "Segmented snow for a loading test");
   if (v.shows(s.numerics, Part::sample))  // other scenes, and their hashes, lack the list
-    v.list("loading", s.loading, between(0, most_stages), "Stages of the loading test");
+    v.list("loading", s.loading, between(0, max_stages), "Stages of the loading test");
   v.taken_by(Part::sample);
   v.optional("cone", s.cone, "Cone that the stages \"penetrate\" push in");
   v.taken_by(Part::obstacles);

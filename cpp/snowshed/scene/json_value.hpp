@@ -41,15 +41,15 @@ Int to_integer(const nlohmann::json& value, const std::string& path, const Range
   if (std::floor(number) != number) throw wrong_type(path, value, allowed);
   // Before the conversion, which is undefined for numbers Int cannot hold. The limit itself is
   // not representable as a double for 64 bits; there the next power of two is already too large.
-  constexpr Int largest = std::numeric_limits<Int>::max();
+  constexpr Int max_value = std::numeric_limits<Int>::max();
   const bool fits = value.is_number_float()
-                        ? number < static_cast<double>(largest)
-                        : number < 0 || value.get<std::uint64_t>() <= std::uint64_t{largest};
+                        ? number < static_cast<double>(max_value)
+                        : number < 0 || value.get<std::uint64_t>() <= std::uint64_t{max_value};
   if (!range.contains(number))
     throw InputError(path, shown(value) + " is outside the allowed range (" + range.text() + ")");
   if (!fits)
     throw InputError(
-        path, shown(value) + " is above " + std::to_string(largest) + ", the largest allowed");
+        path, shown(value) + " is above " + std::to_string(max_value) + ", the largest allowed");
   return value.get<Int>();
 }
 

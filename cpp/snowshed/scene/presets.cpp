@@ -11,10 +11,10 @@ namespace {
 /// Table 4.3.1; with the density and Poisson's ratio of Table 4.1.1 these are Snow's defaults.
 Snow calibrated_snow() { return {}; }
 
-/// Reference values of Table 3.2.1, as far as they differ from the calibrated ones. In our copy of
-/// the thesis bold type survives only as blanks around a number. It marks M 0.5, xi 0.1 and beta
-/// 0.1, and leaves p0 open, for which the middle value is taken. (The thesis's chapter 4 says that
-/// only p0 changed in the calibration, which would make the reference beta 0.2.)
+/// Reference values of Table 3.2.1 that differ from the calibrated ones. In our copy of the thesis
+/// bold type survives only as blanks around a number. It marks M 0.5, xi 0.1 and beta 0.1, and
+/// leaves p0 open, for which the middle value is taken. (The thesis's chapter 4 says that only p0
+/// changed in the calibration, which would make the reference beta 0.2.)
 Snow reference_snow() {
   Snow snow;
   snow.preconsolidation_pressure = 5.0e3;

@@ -26,7 +26,7 @@ std::string place_of(const Vec3& x, int dimension) {
 }
 
 std::string note_on(const Thickening& t, const Obstacle& obstacle, const Scene& scene) {
-  const std::string unit = scene.numerics->facts().length_unit;
+  const std::string unit = scene.numerics->info().length_unit;
   const std::string name =
       obstacle.name.empty() ? "an obstacle" : "obstacle '" + obstacle.name + "'";
   const std::string least = millimetres(2 * scene.numerics->resolution());
@@ -44,7 +44,7 @@ std::vector<Obstacle> resolve_obstacles(const Scene& scene, const std::vector<Ob
                                         std::vector<std::string>& notes) {
   std::vector<Obstacle> resolved = given;
   for (Obstacle& obstacle : resolved) {
-    ThickSolid solid = scene.numerics->as_seen(obstacle.shape, scene.dimension);
+    ThickSolid solid = scene.numerics->thickened(obstacle.shape, scene.dimension);
     if (solid.thickening) notes.push_back(note_on(*solid.thickening, obstacle, scene));
     obstacle.shape = std::move(solid.shape);
   }

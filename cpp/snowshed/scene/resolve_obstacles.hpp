@@ -1,4 +1,4 @@
-// The obstacles of a scene as its method sees them.
+// The obstacles of a scene, thickened to the resolution of its method.
 #pragma once
 
 #include <string>

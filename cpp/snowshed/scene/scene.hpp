@@ -55,8 +55,8 @@ struct ObstacleSpec {
   std::optional<MotionSpec> motion;
 };
 
-/// A body of snow that appears at the start of event `event` (1 is the first;
-/// 0: at the start of every event).
+/// A body of snow that appears at the start of event `event` (1 is the first; 0: at the start of
+/// every event).
 struct BodySpec {
   ShapeSpec shape;
   Vec3 velocity = Vec3::Zero();  // m/s

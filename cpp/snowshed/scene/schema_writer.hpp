@@ -131,16 +131,16 @@ class SchemaWriter {
   void taken_by(Part part) {
     methods_ = json::array();
     for (const MethodDescriptor* method : all_methods())
-      if (method->facts().takes.has(part)) methods_.push_back(method->facts().name);
+      if (method->info().takes.has(part)) methods_.push_back(method->info().name);
   }
 
   void method(const char* key, const char* settings_key, MethodChoice&, const char* doc,
               const char* settings_doc) {
     json names = json::array(), alternatives = json::array();
     for (const MethodDescriptor* method : all_methods()) {
-      json schema = {{"title", method->facts().name}, {"description", method->facts().doc}};
+      json schema = {{"title", method->info().name}, {"description", method->info().doc}};
       schema.update(write(definitions_, MethodChoice(*method)));
-      names.push_back(method->facts().name);
+      names.push_back(method->info().name);
       alternatives.push_back(std::move(schema));
     }
     add(key, {{"enum", names}, {"default", names[0]}}, doc);

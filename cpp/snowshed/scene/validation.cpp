@@ -17,7 +17,7 @@ class SceneRules {
   explicit SceneRules(const Scene& scene) : scene_(scene) {}
 
   void check() const {
-    check_parts(scene_, scene_.numerics->facts());
+    check_parts(scene_, scene_.numerics->info());
     if (scene_.domain) check_domain(*scene_.domain);
     if (scene_.panel) check_panel(*scene_.panel);
     if (scene_.slab) check_slab(*scene_.slab);
@@ -34,7 +34,7 @@ class SceneRules {
     if (scene_.terrain) check_terrain(*scene_.terrain);
     scene_.numerics->validate(view_of(scene_));
     if (scene_.numerics.takes(Part::bodies) && !scene_.slab && scene_.bodies.empty())
-      fail(scene_, "nothing holds snow: give " + path_of(scene_, scene_.slab) + " or " +
+      fail(scene_, "there is no snow; give " + path_of(scene_, scene_.slab) + " or " +
                        path_of(scene_, scene_.bodies));
   }
 
@@ -112,7 +112,7 @@ class SceneRules {
 
   void check_fits(const double& slab, const double& panel) const {
     if (slab > panel)
-      fail(slab, show(slab) + " m is more than the panel has (" + path_and_value(panel) + " m)");
+      fail(slab, show(slab) + " m exceeds that of the panel (" + path_and_value(panel) + " m)");
   }
 
   void check_panel(const Panel& panel) const {
@@ -125,13 +125,13 @@ class SceneRules {
   /// A shape written with its defaults takes up to 13 values, snow fewer. The written scene must
   /// stay within the parser's limit (max_values); otherwise its run could not be resumed.
   void check_number_of_shapes() const {
-    constexpr std::size_t most = 50'000;
+    constexpr std::size_t max_shapes = 50'000;
     std::size_t shapes = 0;
     for (const auto& obstacle : scene_.obstacles) shapes += count(obstacle.shape);
     for (const auto& body : scene_.bodies) shapes += count(body.shape) + body.snow.has_value();
-    if (shapes > most)
-      fail(scene_, std::to_string(shapes) + " shapes in all; at most " + std::to_string(most) +
-                       " are allowed");
+    if (shapes > max_shapes)
+      fail(scene_, std::to_string(shapes) + " shapes in all; at most " +
+                       std::to_string(max_shapes) + " are allowed");
   }
 
   static std::size_t count(const ShapeSpec& shape) {
@@ -147,7 +147,7 @@ class SceneRules {
                                      path_and_value(obstacle.motion->start) + " s)");
   }
 
-  /// Names must differ, because results tell obstacles apart by them.
+  /// Names must differ, because results identify obstacles by them.
   void check_names() const {
     std::set<std::string> names;
     for (const auto& obstacle : assemble_obstacles(scene_)) {
@@ -170,7 +170,7 @@ class SceneRules {
 
   /// Whether the method can provide for the scene's snow, events and output.
   void check_snow_and_events() const {
-    const MethodFacts& method = scene_.numerics->facts();
+    const MethodInfo& method = scene_.numerics->info();
     const std::string name = "the method " + quote(method.name);
     const auto refuse_own = [&](const auto& part) {
       if (part.snow && !method.takes.has(Part::snow))
@@ -181,9 +181,9 @@ class SceneRules {
       for (const Layer& layer : scene_.slab->layers) refuse_own(layer);
     const bool reseeds = scene_.events.between == Between::reseed && scene_.events.count > 1;
     if (reseeds && method.takes.has(Part::bodies) && !method.takes.has(Part::seeding))
-      fail(scene_.events.between, "snow of " + name + " can only be carried on");
+      fail(scene_.events.between, name + " does not support \"reseed\"; use \"carry\"");
     if (scene_.output.energy && method.energies.empty())
-      fail(scene_.output.energy, name + " keeps no balance of energy");
+      fail(scene_.output.energy, name + " has no energy balance");
   }
 
   void check_terrain(const TerrainSpec& terrain) const {
@@ -234,9 +234,9 @@ class SceneRules {
   }
 
   void check_shape(const ShapeSpec& shape, int depth) const {
-    constexpr int deepest = 16;  // well inside the JSON parser's limit and any stack
-    if (depth > deepest)
-      fail(shape, "shapes are nested more than " + std::to_string(deepest) + " deep");
+    constexpr int max_depth = 16;  // well inside the JSON parser's limit and any stack
+    if (depth > max_depth)
+      fail(shape, "shapes are nested more than " + std::to_string(max_depth) + " deep");
     const bool has_axis = shape.type == "cylinder" || shape.type == "capsule";
     if (has_axis && shape.from == shape.to)
       fail(shape.to, "must differ from " + path_of(scene_, shape.from));
@@ -260,7 +260,7 @@ class SceneRules {
 
 }  // namespace
 
-void check_parts(const Scene& scene, const MethodFacts& method) {
+void check_parts(const Scene& scene, const MethodInfo& method) {
   const auto check = [&](const auto& part, bool given, bool taken) {
     if (given && !taken)
       throw InputError(path_of(scene, part),

@@ -6,7 +6,7 @@
 namespace snowshed {
 
 /// Throws InputError at the first part of the scene that the method does not take.
-void check_parts(const Scene& scene, const MethodFacts& method);
+void check_parts(const Scene& scene, const MethodInfo& method);
 
 /// Throws InputError at the first field that contradicts another. Each field must be in its range.
 void check_rules(const Scene& scene);

@@ -73,11 +73,11 @@ class Writer {
   bool shows(const MethodChoice& method, Part part) const { return method.takes(part); }
   void taken_by(Part) {}
 
-  /// The default method is left out: its scenes, and their hashes, stay as they were before there
-  /// was a choice.
+  /// The default method is left out: its scenes and their hashes are those of versions without a
+  /// choice.
   void method(const char* key, const char* settings_key, MethodChoice& method, const char*,
               const char*) {
-    if (!method.is_default()) json_[key] = method->facts().name;
+    if (!method.is_default()) json_[key] = method->info().name;
     json_[settings_key] = write(method, dimension_);
   }
 

@@ -69,13 +69,13 @@ TEST_F(FilmFileTest, GoesOnToTheSameBytes) {
   FilmWriter begun(path("film.bin"), small_header());
   for (int k = 0; k < 7; ++k) begun.append(some_frame(k));
   auto later = FilmWriter::reopen(path("film.bin"),
-                                  [](const FilmFrameFacts& frame) { return frame.time < 0.45; });
+                                  [](const FilmFrameInfo& frame) { return frame.time < 0.45; });
   ASSERT_EQ(later.frames().size(), 5u);
   for (int k = 5; k < 9; ++k) later.append(some_frame(k));
   EXPECT_EQ(content(path("film.bin")), content(path("whole.bin")));
 }
 
-bool all(const FilmFrameFacts&) { return true; }
+bool all(const FilmFrameInfo&) { return true; }
 
 FilmWriter write_film(const std::filesystem::path& file, int frames) {
   FilmWriter writer(file, small_header());
@@ -103,7 +103,7 @@ TEST_F(FilmFileTest, ACompleteFilmIsGoneOnWithAndClosedAgain) {
 TEST_F(FilmFileTest, ReopeningChangesNothingUntilAFrameIsWritten) {
   write_film(path("a.bin"), 4).close();
   const std::string before = content(path("a.bin"));
-  FilmWriter::reopen(path("a.bin"), [](const FilmFrameFacts&) { return false; });
+  FilmWriter::reopen(path("a.bin"), [](const FilmFrameInfo&) { return false; });
   EXPECT_EQ(content(path("a.bin")), before);
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "io/temporary_folder.hpp"
 #include "run/simulation_testing.hpp"
@@ -11,7 +12,13 @@
 namespace snowshed {
 namespace {
 
-using EventSequenceTest = TemporaryFolder;
+class EventSequenceTest : public TemporaryFolder {
+ protected:
+  /// The status in a folder's run.json.
+  static std::string status_in(const std::filesystem::path& folder) {
+    return nlohmann::json::parse(content(folder / "run.json"))["status"].get<std::string>();
+  }
+};
 
 /// Notes what it is told; stops or throws at a report.
 class Witness : public EventObserver {
@@ -26,9 +33,9 @@ class Witness : public EventObserver {
   void progress(const Simulation& sim, const RunReport&) override {
     if (sim.event() == 2 && ++reports_ == throws_at_) throw SimulationError("no further");
   }
-  void event_ended(const Simulation&, const EventFacts& facts) override {
-    note(facts.ended, facts.event);
-    EXPECT_GT(facts.steps, 0);
+  void event_ended(const Simulation&, const EventRecord& record) override {
+    note(name_of(record.ended), record.event);
+    EXPECT_GT(record.steps, 0);
   }
   bool stop_requested() override { return stops_at_ >= 0 && reports_ >= stops_at_; }
 
@@ -62,13 +69,15 @@ TEST_F(EventSequenceTest, GoesOnWhereItWasStopped) {
   EventSequence uninterrupted = EventSequence::create(two_events(), ".", path("a"));
   EXPECT_TRUE(uninterrupted.run(whole, 0));
   EXPECT_FALSE(EventSequence::create(two_events(), ".", path("b")).run(first, 0));
+  EXPECT_EQ(status_in(path("b")), "interrupted");
   EventSequence resumed = EventSequence::resume(two_events(), ".", path("b"));
   ASSERT_TRUE(resumed.simulation().event_running());
   EXPECT_TRUE(resumed.run(second, 0));
+  EXPECT_EQ(status_in(path("b")), "finished");
   expect_same_bits(resumed.simulation(), uninterrupted.simulation());
   ASSERT_EQ(resumed.record().finished.size(), 2u);
   for (int i : {0, 1}) {
-    const EventFacts &a = resumed.record().finished[i], &b = uninterrupted.record().finished[i];
+    const EventRecord &a = resumed.record().finished[i], &b = uninterrupted.record().finished[i];
     EXPECT_EQ(a.steps, b.steps);
     EXPECT_EQ(a.sim_time, b.sim_time);
     EXPECT_EQ(a.laid_height, b.laid_height);
@@ -158,7 +167,7 @@ TEST_F(EventSequenceTest, AFailureBetweenEventsLeavesTheCheckpointOfTheLast) {
   EventSequence sequence = EventSequence::create(scene, ".", path("a"));
   EXPECT_TRUE(sequence.run(quiet, never));
   const std::string before = content(path("a") / "checkpoint.bin");
-  const std::size_t n = sequence.simulation().solver().size();
+  const std::size_t n = sequence.simulation().method().size();
   sequence.simulation().settle(std::vector<double>(n, 0.001), std::vector<double>(n, 0.0));
   sequence.record_failure("no snow");
   EXPECT_TRUE(content(path("a") / "checkpoint.bin") == before);

@@ -52,8 +52,8 @@ TEST(EventsEnd, ByItsTimeLimitToAStep) {
     scene.events.max_time = limit;
     Simulation sim(scene);
     EXPECT_EQ(end_of_event(sim), RunEnd::time_limit);
-    EXPECT_GE(sim.event_time(), limit - 1e-6 * sim.solver().time_step());
-    EXPECT_LT(sim.event_time(), limit + sim.solver().time_step());
+    EXPECT_GE(sim.event_time(), limit - 1e-6 * sim.method().time_step());
+    EXPECT_LT(sim.event_time(), limit + sim.method().time_step());
   }
 }
 

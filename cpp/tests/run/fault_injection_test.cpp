@@ -44,7 +44,7 @@ class Story {
   std::vector<std::function<void()>> later_calls() {
     std::vector<std::function<void()>> all;
     all.push_back([this] {
-      const std::size_t n = sim->solver().size();
+      const std::size_t n = sim->method().size();
       sim->settle(std::vector<double>(n, 1e-4), std::vector<double>(n, -1e-3));
     });
     all.push_back([this] { sim->begin_event(); });
@@ -68,12 +68,12 @@ bool fails_at(std::int64_t n, const std::function<void()>& call) {
 /// Positions may have been rounded: the sort of a step that failed stays.
 void expect_unchanged(const Simulation& now, const ParticleState& particles, double time, int event,
                       bool running) {
-  const ParticleState s = now.solver().state();
+  const ParticleState s = now.method().state();
   ASSERT_EQ(s.ids, particles.ids);
   for (std::size_t i = 0; i < s.ids.size(); ++i)
     ASSERT_LT((s.positions[i] - particles.positions[i]).norm(), 1e-8);
   EXPECT_TRUE(s.velocities == particles.velocities);
-  EXPECT_EQ(now.solver().time(), time);
+  EXPECT_EQ(now.method().time(), time);
   EXPECT_EQ(now.event(), event);
   EXPECT_EQ(now.event_running(), running);
 }
@@ -83,8 +83,8 @@ class SimulationFaults : public TemporaryFolder {
   /// Lets each allocation of each call fail in turn, until the call is done.
   void make_all(Story& story, const std::vector<std::function<void()>>& calls) {
     for (std::size_t k = 0; k < calls.size(); ++k) {
-      const ParticleState before = story.sim->solver().state();
-      const double time = story.sim->solver().time();
+      const ParticleState before = story.sim->method().state();
+      const double time = story.sim->method().time();
       const int event = story.sim->event();
       const bool running = story.sim->event_running();
       for (std::int64_t n = 1; fails_at(n, calls[k]); ++n) {

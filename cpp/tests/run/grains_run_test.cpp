@@ -52,7 +52,7 @@ class GrainsRun : public TemporaryFolder {
   }
 };
 
-const Solver& grains_of(const Simulation& sim) { return dynamic_cast<const Solver&>(sim.solver()); }
+const Solver& grains_of(const Simulation& sim) { return dynamic_cast<const Solver&>(sim.method()); }
 
 const auto to_the_end = [](const RunReport&) { return true; };
 
@@ -79,7 +79,7 @@ TEST_F(GrainsRun, TheCurveBeginsAtRestAndEndsWithEachStage) {
   const auto second = std::find(stage.begin(), stage.end(), 2.0) - stage.begin();
   ASSERT_LT(std::size_t(second), stage.size());
   EXPECT_NEAR(strain[std::size_t(second) - 1], 1e-3, 2e-5);  // a step too far at most
-  EXPECT_EQ(time.back(), sim.solver().time());
+  EXPECT_EQ(time.back(), sim.method().time());
 }
 
 TEST_F(GrainsRun, AResumedRunHasTheSameBitsAndTheSameCurve) {
@@ -89,15 +89,15 @@ TEST_F(GrainsRun, AResumedRunHasTheSameBitsAndTheSameCurve) {
 
   Simulation first(scene());
   first.begin_event();
-  const auto steps = whole.solver().counters().steps;
+  const auto steps = whole.method().counters().steps;
   ASSERT_GT(steps, 20);
   first.run([&](const RunReport& r) { return r.steps < steps / 2; }, 0.0);
   first.save(path("checkpoint"));
   const auto second = Simulation::load(path("checkpoint"));
   EXPECT_EQ(second->run(to_the_end, 1.0), RunEnd::rest);
   EXPECT_EQ(second->curve()->values(), whole.curve()->values());
-  EXPECT_TRUE(second->solver().state().positions == whole.solver().state().positions);
-  EXPECT_TRUE(second->solver().state().velocities == whole.solver().state().velocities);
+  EXPECT_TRUE(second->method().state().positions == whole.method().state().positions);
+  EXPECT_TRUE(second->method().state().velocities == whole.method().state().velocities);
 }
 
 double carried(const LoadingStresses& s) { return std::min(s.top_stress, s.bottom_stress); }
@@ -113,7 +113,7 @@ TEST_F(GrainsRun, PeaksAreThoseOfAllStepsBetweenTwoRows) {
   // Largest stress by row, over the steps.
   std::vector<double> largest{carried(grains_of(sim).stresses())};
   std::size_t rows = 1;
-  while (!*sim.solver().at_rest()) {
+  while (!*sim.method().at_rest()) {
     if (largest.size() == rows) largest.push_back(-1e300);
     sim.step();
     largest.back() = std::max(largest.back(), carried(grains_of(sim).stresses()));
@@ -124,7 +124,7 @@ TEST_F(GrainsRun, PeaksAreThoseOfAllStepsBetweenTwoRows) {
   for (std::size_t row = 0; row < top.size(); ++row)
     EXPECT_EQ(std::min(top[row], bottom[row]), largest[row]) << row;
   EXPECT_EQ(top[0], column(sim, "top_stress_pa")[0]);
-  EXPECT_LT(2 * top.size(), std::size_t(sim.solver().counters().steps));
+  EXPECT_LT(2 * top.size(), std::size_t(sim.method().counters().steps));
   EXPECT_NE(top, column(sim, "top_stress_pa"));  // some steps carry more than the rows around them
 }
 
@@ -197,13 +197,13 @@ TEST_F(GrainsRun, LabelsInSeveralPlacesAreToldOrSplit) {
   write_labels(labels);
   Simulation whole(s);
   whole.begin_event();
-  EXPECT_EQ(whole.solver().size(), 2u);
+  EXPECT_EQ(whole.method().size(), 2u);
   EXPECT_NE(whole.input_remark().find("2 of 2 labels lie in several places, 4 pieces"),
             std::string::npos);
   s.sample->split_labels = true;
   Simulation split(s);
   split.begin_event();
-  EXPECT_EQ(split.solver().size(), 4u);
+  EXPECT_EQ(split.method().size(), 4u);
 }
 
 TEST_F(GrainsRun, FilesOfHolesThatClaimManyLabelsAreRefused) {

@@ -38,7 +38,7 @@ Scene layered_scene(mpm::Transfer transfer = mpm::Transfer::flip) {
 
 /// Total mass by event and material_id.
 std::map<std::pair<int, int>, double> masses(const Simulation& sim) {
-  const ParticleState s = sim.solver().state();
+  const ParticleState s = sim.method().state();
   std::map<std::pair<int, int>, double> sums;
   for (std::size_t i = 0; i < s.masses.size(); ++i)
     sums[{s.events[i], s.material_ids[i]}] += s.masses[i];
@@ -60,7 +60,7 @@ TEST_F(Layers, BringTheirOwnSnowInTheirEvents) {
 TEST_F(Layers, LieOnEachOtherInTheOrderGiven) {
   Simulation sim(layered_scene());
   sim.begin_event();
-  const ParticleState s = sim.solver().state();
+  const ParticleState s = sim.method().state();
   const PanelFrame frame = panel_frame(sim.scene());
   for (std::size_t i = 0; i < s.positions.size(); ++i) {
     const double above = frame.normal.dot(s.positions[i] - frame.center);
@@ -74,7 +74,7 @@ TEST_F(Layers, OfTheScenesOwnSnowNeedNoMaterialIds) {
   scene.slab->layers[0].snow = scene.snow;
   Simulation sim(scene);
   sim.begin_event();
-  EXPECT_TRUE(sim.solver().state().material_ids.empty());
+  EXPECT_TRUE(sim.method().state().material_ids.empty());
   EXPECT_EQ(sim.snows().size(), 1u);
 }
 
@@ -151,7 +151,7 @@ struct Heights {
 };
 
 Heights heights_of_event(const Simulation& sim, int event) {
-  const ParticleState s = sim.solver().state();
+  const ParticleState s = sim.method().state();
   const PanelFrame frame = panel_frame(sim.scene());
   Heights h;
   for (std::size_t i = 0; i < s.positions.size(); ++i) {
@@ -174,7 +174,7 @@ TEST(PanelSnow, LiesOnWhatStayedThere) {
     sim.run(go_on, never);
     top = std::max(top, heights_of_event(sim, event).high);
   }
-  const std::vector<bool> there = sim.on_panel(sim.solver().state().positions);
+  const std::vector<bool> there = sim.on_panel(sim.method().state().positions);
   EXPECT_GT(std::count(there.begin(), there.end(), true), 0.97 * double(there.size()));
 }
 
@@ -182,12 +182,12 @@ TEST(PanelSnow, MayStayThroughAnEventWithoutNewSnow) {
   Simulation sim(rough_scene({0.03, 0, 0.03}));
   sim.begin_event();
   sim.run(go_on, never);
-  const std::size_t particles = sim.solver().size();
+  const std::size_t particles = sim.method().size();
   sim.begin_event();
-  EXPECT_EQ(sim.solver().size(), particles);
+  EXPECT_EQ(sim.method().size(), particles);
   EXPECT_EQ(sim.run(go_on, never), RunEnd::rest);
   sim.begin_event();
-  EXPECT_EQ(sim.solver().size(), 2 * particles);
+  EXPECT_EQ(sim.method().size(), 2 * particles);
   EXPECT_GT(heights_of_event(sim, 3).low, heights_of_event(sim, 1).high);
 }
 
@@ -198,7 +198,7 @@ TEST(PanelSnow, OfABodyIsSeenWithoutASlab) {
   scene.bodies = {body};
   Simulation sim(scene);
   sim.begin_event();
-  for (const bool there : sim.on_panel(sim.solver().state().positions)) EXPECT_TRUE(there);
+  for (const bool there : sim.on_panel(sim.method().state().positions)) EXPECT_TRUE(there);
 }
 
 }  // namespace

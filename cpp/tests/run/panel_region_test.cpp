@@ -37,15 +37,15 @@ TEST(PanelSnow, OfOneStrayGrainDoesNotLiftTheNextSlab) {
   sim.begin_event();
   sim.run(go_on, never);
   const PanelFrame frame = panel_frame(sim.scene());
-  const std::vector<bool> there = sim.on_panel(sim.solver().state().positions);
+  const std::vector<bool> there = sim.on_panel(sim.method().state().positions);
   ASSERT_EQ(std::count(there.begin(), there.end(), true), 0);
   ParticleBatch grain;
   grain.positions = {frame.center + 0.01 * frame.normal};
   grain.mass = 1e-3;
   sim.add_snow(grain);
-  const std::size_t before = sim.solver().size();
+  const std::size_t before = sim.method().size();
   sim.begin_event();
-  const ParticleState s = sim.solver().state();
+  const ParticleState s = sim.method().state();
   double lowest = 1;
   for (std::size_t i = before; i < s.positions.size(); ++i)
     lowest = std::min(lowest, frame.normal.dot(s.positions[i] - frame.center));

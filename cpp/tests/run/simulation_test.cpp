@@ -26,7 +26,7 @@ TEST_F(SimulationTest, AResumedRunEqualsAnUninterruptedOneBitForBit) {
       }
       const auto resumed = with_interruptions(scene, 2, path("checkpoint"));
       expect_same_bits(*resumed, whole);
-      EXPECT_GT(whole.solver().counters().steps, 1000);
+      EXPECT_GT(whole.method().counters().steps, 1000);
     }
 }
 
@@ -50,11 +50,11 @@ TEST_F(SimulationTest, EventsBringTheirSnowAndKeepTheOld) {
     EXPECT_FALSE(sim.begin_event().has_value());
     EXPECT_TRUE(sim.event_running());
     EXPECT_THROW(sim.begin_event(), SimulationError);
-    EXPECT_NEAR(mpm::total_mass(sim.solver().state()), event * 210 * 0.1 * 0.03, 1e-6 * event);
+    EXPECT_NEAR(mpm::total_mass(sim.method().state()), event * 210 * 0.1 * 0.03, 1e-6 * event);
     sim.run(go_on, never);
     EXPECT_THROW(sim.run(go_on, never), SimulationError);
   }
-  const ParticleState s = sim.solver().state();
+  const ParticleState s = sim.method().state();
   EXPECT_EQ(s.events.front(), 1);
   EXPECT_EQ(s.events.back(), 3);
   for (const Vec3& x : s.positions)
@@ -67,9 +67,9 @@ TEST_F(SimulationTest, ReseedingKeepsTheMass) {
   Simulation sim(scene);
   EXPECT_FALSE(sim.begin_event().has_value());
   sim.run(go_on, never);
-  const double before = mpm::total_mass(sim.solver().state());
+  const double before = mpm::total_mass(sim.method().state());
   EXPECT_TRUE(sim.begin_event().has_value());
-  const ParticleState s = sim.solver().state();
+  const ParticleState s = sim.method().state();
   EXPECT_NEAR(mpm::total_mass(s), 2 * before, 1e-5 * before);
 }
 
@@ -127,10 +127,10 @@ TEST_F(SimulationTest, SnowBeyondTheGridIsNotAdded) {
   Simulation sim(scene);
   sim.begin_event();
   sim.run(go_on, never);
-  const std::size_t n = sim.solver().size();
+  const std::size_t n = sim.method().size();
   EXPECT_THROW(sim.begin_event(), InputError);
-  EXPECT_EQ(sim.solver().size(), n);
-  EXPECT_EQ(sim.solver().state().positions.size(), n);
+  EXPECT_EQ(sim.method().size(), n);
+  EXPECT_EQ(sim.method().state().positions.size(), n);
 }
 
 TEST_F(SimulationTest, ACheckpointIsNotReplacedByOneThatCannotBeLoaded) {
@@ -139,7 +139,7 @@ TEST_F(SimulationTest, ACheckpointIsNotReplacedByOneThatCannotBeLoaded) {
   sim.save(path("checkpoint"));
   const std::string good = content(path("checkpoint"));
   // Infinite in single precision.
-  sim.add_velocity(std::vector<Vec3>(sim.solver().size(), Vec3(1e300, 0, 0)));
+  sim.add_velocity(std::vector<Vec3>(sim.method().size(), Vec3(1e300, 0, 0)));
   const std::string said = message_of<SimulationError>([&] { sim.save(path("checkpoint")); });
   EXPECT_NE(said.find("not a finite number"), std::string::npos) << said;
   EXPECT_TRUE(content(path("checkpoint")) == good);
@@ -162,7 +162,7 @@ TEST_F(SimulationTest, EndsAtRestOrAtTheTimeLimit) {
   held.begin_event();
   EXPECT_EQ(held.run(go_on, never), RunEnd::rest);
   EXPECT_LT(held.event_time(), 0.5);
-  EXPECT_EQ(held.solver().motion(0.02).moving_mass, 0.0);
+  EXPECT_EQ(held.method().motion(0.02).moving_mass, 0.0);
 }
 
 TEST_F(SimulationTest, ReportsProgressToItsObserver) {
@@ -178,7 +178,7 @@ TEST_F(SimulationTest, ReportsProgressToItsObserver) {
         EXPECT_GT(r.time_step, 0.0);
         EXPECT_GE(r.progress, 0.0);
         EXPECT_LT(r.progress, 1.0);
-        EXPECT_EQ(r.particles, sim.solver().size());
+        EXPECT_EQ(r.particles, sim.method().size());
         last = r.time;
         return ++reports < 100;
       },
@@ -196,7 +196,7 @@ TEST_F(SimulationTest, SnapshotsAreASeriesOverAllEvents) {
     sim.run(go_on, never);
   }
   const auto files = std::distance(std::filesystem::directory_iterator(path("snapshots")), {});
-  EXPECT_GE(files, 1 + int(sim.solver().time() / 0.1));  // and the index
+  EXPECT_GE(files, 1 + int(sim.method().time() / 0.1));  // and the index
   sim.write_vtp(path("end.vtp"));
   EXPECT_TRUE(std::filesystem::exists(path("end.vtp")));
 }

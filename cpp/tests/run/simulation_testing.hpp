@@ -35,17 +35,17 @@ inline const auto go_on = [](const RunReport&) { return true; };
 inline constexpr double never = 1e9;
 
 inline void expect_same_bits(const Simulation& a, const Simulation& b) {
-  const ParticleState x = a.solver().state(), y = b.solver().state();
+  const ParticleState x = a.method().state(), y = b.method().state();
   EXPECT_TRUE(x.positions == y.positions);
   EXPECT_TRUE(x.velocities == y.velocities);
   EXPECT_EQ(x.plastic_strains, y.plastic_strains);
   EXPECT_EQ(x.pressures, y.pressures);
   EXPECT_EQ(x.events, y.events);
   EXPECT_EQ(x.material_ids, y.material_ids);
-  EXPECT_EQ(a.solver().time(), b.solver().time());
-  EXPECT_EQ(a.solver().counters().steps, b.solver().counters().steps);
-  EXPECT_EQ(capability<KeepsEnergy>(a.solver())->energies(),
-            capability<KeepsEnergy>(b.solver())->energies());
+  EXPECT_EQ(a.method().time(), b.method().time());
+  EXPECT_EQ(a.method().counters().steps, b.method().counters().steps);
+  EXPECT_EQ(capability<KeepsEnergy>(a.method())->energies(),
+            capability<KeepsEnergy>(b.method())->energies());
   EXPECT_EQ(a.event(), b.event());
 }
 

@@ -110,7 +110,7 @@ TEST_P(SnowPlacement, RefusesAddedSnowOutsideTheDomain) {
   sim.begin_event();
   ParticleBatch corner;
   corner.positions = {{1.1, 0, -0.1}};
-  corner.mass = sim.solver().state().masses.front();
+  corner.mass = sim.method().state().masses.front();
   try {
     sim.add_snow(corner);
     ADD_FAILURE() << "not refused";
@@ -154,9 +154,9 @@ TEST(SnowPlacementNotes, MeetAnObstacleWhereItIsNow) {
   Simulation still(scene);
   still.begin_event();
   still.run(go_on, never);
-  const std::size_t particles = still.solver().size();
+  const std::size_t particles = still.method().size();
   EXPECT_THROW(still.begin_event(), InputError);
-  EXPECT_EQ(still.solver().size(), particles);  // all or nothing
+  EXPECT_EQ(still.method().size(), particles);  // all or nothing
   EXPECT_EQ(still.event(), 1);
 }
 
@@ -232,7 +232,7 @@ TEST(SnowPlacementNotes, TellWhereTheGridThickensAnObstacle) {
       R"("ground": {}, "obstacles": [{"name": "shelf", "shape":
         {"type": "box", "center": [0, 0.5], "size": [1, 0.004]}}])";
   const std::string text = said_of(with_bodies(2, "mpm", box(2, 0, 0.602, 0.4, 0.2), parts));
-  expect_part(text, "beside the obstacle \"shelf\", where it is made thicker");
+  expect_part(text, "beside the obstacle \"shelf\", where it is thickened");
   EXPECT_EQ(said_of(with_bodies(2, "mps", box(2, 0, 0.602, 0.4, 0.2), parts)), "");
 }
 
@@ -299,11 +299,11 @@ TEST(MassOfBodies, IsDensityTimesVolumeWhateverTheResolution) {
           }
           Simulation sim(scene);
           sim.begin_event();
-          const double mass = mpm::total_mass(sim.solver().state());
+          const double mass = mpm::total_mass(sim.method().state());
           const double error = solid.shape.find("sphere") == std::string::npos ? 1e-6 : 2e-3;
           EXPECT_NEAR(mass / (density * solid.volume), 1, error) << solid.shape << " " << size;
           if (method == "mps")
-            EXPECT_EQ(double(sim.solver().size()), sim.cost().particles.front()) << solid.shape;
+            EXPECT_EQ(double(sim.method().size()), sim.cost().particles.front()) << solid.shape;
         }
 }
 
@@ -323,9 +323,9 @@ TEST(MassOfBodies, IsThatOfTheSlabByMps) {
       Simulation sim(mps_slab(thickness, spacing));
       sim.begin_event();
       const double density = sim.scene().numerics.as<mps::Settings>().density;
-      EXPECT_NEAR(mpm::total_mass(sim.solver().state()), density * thickness, 1e-9);
-      EXPECT_EQ(double(sim.solver().size()), sim.cost().particles.front());
-      EXPECT_NEAR(double(sim.solver().size()), thickness / (spacing * spacing), 0.5 + 1e-9);
+      EXPECT_NEAR(mpm::total_mass(sim.method().state()), density * thickness, 1e-9);
+      EXPECT_EQ(double(sim.method().size()), sim.cost().particles.front());
+      EXPECT_NEAR(double(sim.method().size()), thickness / (spacing * spacing), 0.5 + 1e-9);
       EXPECT_EQ(sim.notes().empty(), thickness > spacing) << thickness << " " << spacing;
     }
 }
@@ -344,7 +344,7 @@ TEST(MassOfBodies, IsThatOfTheLayersByMps) {
   Simulation sim(scene);
   sim.begin_event();
   const double density = sim.scene().numerics.as<mps::Settings>().density;
-  EXPECT_NEAR(mpm::total_mass(sim.solver().state()), density * 0.055, 1e-9);
+  EXPECT_NEAR(mpm::total_mass(sim.method().state()), density * 0.055, 1e-9);
   EXPECT_TRUE(sim.notes().empty()) << sim.notes().front();
 }
 

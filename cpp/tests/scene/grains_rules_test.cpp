@@ -90,7 +90,7 @@ TEST(GrainsScene, OtherMethodsTakeNoneOfItsParts) {
   EXPECT_THROW(parse_scene(slab + R"("loading": [{"kind": "hold"}]})"), InputError);
   EXPECT_THROW(parse_scene(slab + R"("cone": {}})"), InputError);
   const std::string written = write_scene(parse_scene(slab + R"("ground": {}})"));
-  EXPECT_EQ(written.find("loading"), std::string::npos);  // its hash stays what it was
+  EXPECT_EQ(written.find("loading"), std::string::npos);  // its hash does not change
 }
 
 }  // namespace

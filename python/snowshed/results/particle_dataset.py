@@ -27,7 +27,7 @@ DATASET = (
     "event",
     "material_id",
 )
-#: Names of quantities in files, where they differ.
+#: Names of quantities in files of earlier versions.
 RENAMED = {"snow": "material_id"}
 
 

@@ -175,7 +175,7 @@ class Slab(Record):
     width : float
         Width; 0: two thirds of the panel's; ignored in 2D [m]. 0 <= value <= 1e+06; default 0.
     layers : list of Layer
-        In place of a thickness, layers from the panel up.
+        Layers from the panel up, instead of a thickness.
     """
 
     thickness: Optional[float] = None
@@ -275,7 +275,7 @@ class Terrain(Record):
         Thickness of the released snow, m, in place of that of the areas: an ESRI ASCII grid;
         relative to the scene file.
     max_thickness : float
-        Largest thickness of the snow that is released or taken up [m]. 0 < value <= 100; default
+        Largest thickness of the snow that is released or entrained [m]. 0 < value <= 100; default
         10.
     max_slope : float
         Steepest ground between neighbouring nodes under a release, where they differ by more than
@@ -285,9 +285,9 @@ class Terrain(Record):
     release : list of Area
         Areas of release. Required.
     entrainment : list of Area
-        Areas where the slide takes up snow.
+        Areas where the slide entrains snow.
     resistance : list of ResistanceArea
-        Areas where forest or the like holds the slide back.
+        Areas where forest or buildings resist the slide.
     """
 
     file: Optional[PathLike] = None
@@ -426,7 +426,8 @@ class Events(Record):
     count : int
         Number of slide-off events. 1 <= value <= 1000; default 1.
     between : {"carry", "reseed"}
-        Between events, carry the particles on or reseed the stack's volume. Default "carry".
+        Treatment of the stack between events: keep its particles, or reseed its volume. Default
+        "carry".
     max_time : float
         Longest duration of an event [s]. 0 < value <= 1e+09; default 10.
     rest_speed : float

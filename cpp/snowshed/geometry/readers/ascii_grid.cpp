@@ -15,10 +15,10 @@ namespace snowshed {
 namespace {
 
 // Equal to LARGEST_TERRAIN in python/snowshed/base/limits.py, which gives the reason.
-constexpr double most_nodes = 25e6;
-constexpr double largest_side = 50'000;     // nodes
-constexpr double largest_coordinate = 1e8;  // m
-constexpr double largest_elevation = 1e5;   // m
+constexpr double max_raster_nodes = 25e6;
+constexpr double max_side = 50'000;     // nodes
+constexpr double max_coordinate = 1e8;  // m
+constexpr double max_elevation = 1e5;   // m
 constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 
 struct Header {
@@ -99,15 +99,14 @@ double cell_of(const Header& header, const TextScanner& scanner) {
 /// the largest single number with fewer digits than it needs.
 bool is_missing(double value, double nodata) {
   if (std::isnan(value) || value == nodata) return true;
-  if (std::abs(nodata) > largest_elevation)
-    return std::abs(value - nodata) <= 1e-6 * std::abs(nodata);
+  if (std::abs(nodata) > max_elevation) return std::abs(value - nodata) <= 1e-6 * std::abs(nodata);
   return float(value) == float(nodata);
 }
 
 int count_of(const Header& header, const std::string& key, const TextScanner& scanner) {
   if (!header.has(key)) scanner.fail("the header has no " + key);
   const double count = header.at(key);
-  if (!(count >= 2 && count <= largest_side) || count != std::floor(count))
+  if (!(count >= 2 && count <= max_side) || count != std::floor(count))
     scanner.fail(key + " must be a whole number from 2 to 50000");
   return int(count);
 }
@@ -119,18 +118,18 @@ double first_node(const Header& header, const std::string& axis, double cell,
   if (header.has(centre) == header.has(corner))
     scanner.fail("the header must have one of " + centre + " and " + corner);
   const double value = header.has(centre) ? header.at(centre) : header.at(corner) + cell / 2;
-  if (std::abs(value) > largest_coordinate) scanner.fail(axis + "ll... lies beyond 1e8 m");
+  if (std::abs(value) > max_coordinate) scanner.fail(axis + "ll... lies beyond 1e8 m");
   return value;
 }
 
 }  // namespace
 
-HeightField read_ascii_grid(const std::filesystem::path& file, AsciiGridFacts* facts) {
+HeightField read_ascii_grid(const std::filesystem::path& file, GridAssumptions* assumptions) {
   const std::string text = read_bytes(file);
   const std::string_view mark = "\xEF\xBB\xBF";
   TextScanner scanner(file,
                       std::string_view(text).substr(text.rfind(mark, 0) == 0 ? mark.size() : 0));
-  AsciiGridFacts assumed;
+  GridAssumptions assumed;
   const Header header = read_header(scanner, assumed.decimal_commas);
   HeightField field;
   field.columns = count_of(header, "ncols", scanner);
@@ -141,9 +140,9 @@ HeightField read_ascii_grid(const std::filesystem::path& file, AsciiGridFacts* f
   const bool declared = header.has("nodata_value");
   const double nodata = declared ? header.at("nodata_value") : -9999;
   const std::size_t nodes = std::size_t(field.columns) * std::size_t(field.rows);
-  if (double(nodes) > most_nodes)
+  if (double(nodes) > max_raster_nodes)
     scanner.fail("the header announces " + std::to_string(nodes) + " cells; at most " +
-                 std::to_string(std::size_t(most_nodes)) + " are allowed; crop it first");
+                 std::to_string(std::size_t(max_raster_nodes)) + " are allowed; crop it first");
   // A value takes two bytes at least: a short file cannot ask for much memory.
   if (nodes > text.size())
     scanner.fail("the header announces " + std::to_string(nodes) +
@@ -155,7 +154,7 @@ HeightField read_ascii_grid(const std::filesystem::path& file, AsciiGridFacts* f
       if (read == nodes) scanner.fail("more values than the header announces");
       const double value = number_of(word, scanner, assumed.decimal_commas);
       const bool missing = is_missing(value, nodata);
-      if (!missing && std::abs(value) > largest_elevation)
+      if (!missing && std::abs(value) > max_elevation)
         scanner.fail("'" + std::string(word.substr(0, 40)) + "' is beyond 1e5 m" +
                      (declared ? "" : "; the header has no nodata_value"));
       if (missing && !declared && !std::isnan(value)) ++assumed.undeclared_missing;
@@ -165,7 +164,7 @@ HeightField read_ascii_grid(const std::filesystem::path& file, AsciiGridFacts* f
     }
   if (read != nodes)
     scanner.fail(std::to_string(read) + " values; the header announces " + std::to_string(nodes));
-  if (facts) *facts = assumed;
+  if (assumptions) *assumptions = assumed;
   return field;
 }
 

@@ -9,7 +9,7 @@
 namespace snowshed {
 
 /// Assumptions made when a grid was read.
-struct AsciiGridFacts {
+struct GridAssumptions {
   std::size_t undeclared_missing = 0;  // values of -9999 where the header has no nodata_value
   std::size_t decimal_commas = 0;      // numbers whose decimals follow a comma
 };
@@ -18,8 +18,9 @@ struct AsciiGridFacts {
 /// yllcorner, cellsize (or dx and dy, which must be equal) and, if present, nodata_value (-9999
 /// without it), in any order, then the values, from the north-west, row by row. Values that are not
 /// a number are missing, as are those that are nodata_value in single precision. Nodes are the
-/// centres of the raster's cells. `facts`, if given, gets the assumptions. Throws InputError with
-/// the file and the line.
-HeightField read_ascii_grid(const std::filesystem::path& file, AsciiGridFacts* facts = nullptr);
+/// centres of the raster's cells. `assumptions`, if given, gets the assumptions. Throws InputError
+/// with the file and the line.
+HeightField read_ascii_grid(const std::filesystem::path& file,
+                            GridAssumptions* assumptions = nullptr);
 
 }  // namespace snowshed

@@ -135,17 +135,17 @@ namespace {
 /// Throws InputError if labels are more than a sample may have, before all are read: a
 /// file of holes takes no room on the disk. 512 voxels along each edge are more than can be loaded.
 void check_label_count(const std::filesystem::path& path) {
-  constexpr std::uintmax_t most_bytes = std::uintmax_t(640) << 20;
-  constexpr double most_labels = 512.0 * 512.0 * 512.0;
+  constexpr std::uintmax_t max_bytes = std::uintmax_t(640) << 20;
+  constexpr double max_labels = 512.0 * 512.0 * 512.0;
   const std::uintmax_t size = check_readable(path);
-  if (size > most_bytes)
+  if (size > max_bytes)
     throw InputError(path.string(),
                      std::to_string(size) + " bytes; at most 640 MiB of labels are read");
   std::string head(std::size_t(std::min<std::uintmax_t>(size, 2 * max_header)), '\0');
   std::ifstream(path, std::ios::binary).read(head.data(), std::streamsize(head.size()));
   double count = 1;
   for (const std::size_t n : parse_header(path, head, labels).shape) count *= double(n);
-  if (count > most_labels && count <= double(size))
+  if (count > max_labels && count <= double(size))
     throw InputError(path.string(),
                      "more than 512^3 labels; crop the image, or give larger voxels");
 }

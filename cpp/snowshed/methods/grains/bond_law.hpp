@@ -6,7 +6,7 @@
 
 SNOWSHED_METHOD_VARIANT_BEGIN(grains)
 
-/// Motion of the second of two spheres in a step, as the first sees it.
+/// Motion of the second of two spheres in a step, relative to the first.
 template <class V>
 struct ContactMotion {
   V gap;              // m, between the surfaces, now; negative where they overlap

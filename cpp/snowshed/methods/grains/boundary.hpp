@@ -9,7 +9,7 @@
 
 namespace snowshed::grains {
 
-/// Partners of a grain in contacts besides grains, numbered after the last grain.
+/// Partners of a grain in contacts other than grains, numbered after the last grain.
 enum class Partner : std::uint32_t { bottom_plate, top_plate, west, east, south, north, cone };
 inline constexpr std::uint32_t partners = 7;
 

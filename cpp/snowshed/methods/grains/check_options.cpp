@@ -135,7 +135,7 @@ void check_loading(const Options& o) {
 }  // namespace
 
 void check_stages(const std::vector<LoadingStage>& stages, const Settings& settings) {
-  constexpr double most_shortening = 0.95;  // or nothing is left between the plates
+  constexpr double max_shortening = 0.95;  // or nothing is left between the plates
   double shortening = 0;
   bool loaded = false, open = false;
   for (std::size_t i = 0; i < stages.size(); ++i) {
@@ -144,10 +144,10 @@ void check_stages(const std::vector<LoadingStage>& stages, const Settings& setti
     const bool compresses =
         stage.kind == LoadingKind::compress || stage.kind == LoadingKind::isotropic;
     if (compresses) shortening += stage.strain;
-    if (shortening > most_shortening)
+    if (shortening > max_shortening)
       throw InputError(path + "/strain",
                        "the sample would be compressed by " + show_rounded(shortening) +
-                           " of its height in all; allowed: up to " + show(most_shortening));
+                           " of its height in all; allowed: up to " + show(max_shortening));
     if (stage.kind == LoadingKind::unload && !loaded)
       throw InputError(path + "/kind", "there is nothing to unload; compress the sample before");
     if (open && stage.kind != LoadingKind::penetrate && stage.kind != LoadingKind::hold)

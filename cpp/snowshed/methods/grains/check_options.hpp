@@ -10,8 +10,7 @@ namespace snowshed::grains {
 /// Throws InputError if they do not.
 void check_grains(const Options&);
 
-/// Throws InputError where a stage cannot follow those before it: what it undoes must have been
-/// done, and what it needs must be there.
+/// Throws InputError if a stage cannot follow those before it, such as an unloading without a load.
 void check_stages(const std::vector<LoadingStage>&, const Settings&);
 
 }  // namespace snowshed::grains

@@ -168,7 +168,7 @@ SolverImpl::Restored SolverImpl::restored(const BinaryReader& in) const {
   next.listed_boundary = checked_boundary(archive, parts.listed[0], parts.listed_flags, model_);
   const std::vector<PairHistory> past = checked_pairs(archive, parts.pairs, model_);
 
-  Work& work = result.work;
+  Workspace& work = result.work;
   const std::size_t grains = next.bodies.size();
   if (grains > 0) {
     Listing listing;
@@ -181,7 +181,7 @@ SolverImpl::Restored SolverImpl::restored(const BinaryReader& in) const {
     next.listed = std::move(listing.poses);
     work.groups_of = std::move(listing.groups_of);
     work.results = std::move(listing.results);
-    work.longest_step = listing.longest_step;
+    work.max_step = listing.max_step;
     if (next.pairs.all().size() != past.size()) archive.refuse("pairs of near spheres are missing");
   }
   work.next = next.bodies;
@@ -195,7 +195,7 @@ void SolverImpl::load(const BinaryReader& in) {
   std::vector<std::uint32_t> order(next.state.bodies.size());
   std::iota(order.begin(), order.end(), 0u);
   state_ = std::move(next.state);
-  work_ = std::move(next.work);
+  workspace_ = std::move(next.work);
   order_ = std::move(order);
   soundness_ = {};
 }

@@ -140,12 +140,12 @@ SampleSize measure_sample(const LabelImage& image) {
 }
 
 void check_grain_diameter(double median) {
-  if (median >= smallest_grain && median <= largest_grain) return;
+  if (median >= min_grain_diameter && median <= max_grain_diameter) return;
   char text[200];
   std::snprintf(text, sizeof text,
                 "wrongly scaled: its grains measure %.3g m; those of snow measure %g to %g m; is "
                 "the voxel size in m?",
-                median, smallest_grain, largest_grain);
+                median, min_grain_diameter, max_grain_diameter);
   throw InputError("", text);
 }
 

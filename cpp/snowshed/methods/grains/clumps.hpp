@@ -41,7 +41,7 @@ struct SampleSize {
 SampleSize measure_sample(const LabelImage&);
 
 /// Diameters of grains of snow, m: no grain of real snow is smaller or larger.
-inline constexpr double smallest_grain = 2e-5, largest_grain = 1e-2;
+inline constexpr double min_grain_diameter = 2e-5, max_grain_diameter = 1e-2;
 
 /// Throws InputError unless the median diameter of grains, m, is that of snow. It is not if the
 /// voxel size is in another unit than metres.

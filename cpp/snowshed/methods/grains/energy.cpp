@@ -5,7 +5,7 @@
 
 namespace snowshed::grains {
 
-NamedEnergies named_energies(const Energy& e) {
+NamedEnergies named_energies(const EnergyBalance& e) {
   return {{"kinetic_j", e.kinetic},       {"potential_j", e.potential},
           {"elastic_normal_j", e.normal}, {"elastic_shear_j", e.shear},
           {"friction_j", e.friction},     {"damping_j", e.damping},
@@ -24,7 +24,7 @@ double kinetic_energy(const Model& model, const State& state) {
   return 0.5 * twice;
 }
 
-void store_energy(const Model& model, const State& state, Energy& e) {
+void store_energy(const Model& model, const State& state, EnergyBalance& e) {
   e.kinetic = kinetic_energy(model, state);
   e.potential = e.normal = e.shear = 0;
   for (std::size_t i = 0; i < state.bodies.size(); ++i)

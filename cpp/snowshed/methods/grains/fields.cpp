@@ -68,18 +68,18 @@ MotionSummary SolverImpl::motion(double limit) const {
 }
 
 NamedEnergies SolverImpl::energies() const {
-  if (!model_.keeps_energy) return named_energies(Energy{});
-  Energy energy = state_.energy;
+  if (!model_.keeps_energy) return named_energies(EnergyBalance{});
+  EnergyBalance energy = state_.energy;
   store_energy(model_, state_, energy);
   return named_energies(energy);
 }
 
 std::size_t SolverImpl::bytes() const {
-  return state_.pairs.bytes() + bytes_of(model_.grains, model_.spheres.offsets,
-                                         model_.spheres.grain, model_.bonds, state_.bodies,
-                                         state_.events, state_.listed, work_.next, work_.frames,
-                                         work_.results, work_.groups_of.begin,
-                                         work_.groups_of.entry, work_.damped, order_);
+  return state_.pairs.bytes() +
+         bytes_of(model_.grains, model_.spheres.offsets, model_.spheres.grain, model_.bonds,
+                  state_.bodies, state_.events, state_.listed, workspace_.next, workspace_.frames,
+                  workspace_.results, workspace_.groups_of.begin, workspace_.groups_of.entry,
+                  workspace_.damped, order_);
 }
 
 }  // namespace snowshed::grains

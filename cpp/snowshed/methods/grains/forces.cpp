@@ -34,7 +34,7 @@ BodyFrame frame_of_plate(const Boundary& b, int plate) {
   return f;
 }
 
-View view_of(const Model& model, State& state, Work& work, double dt) {
+View view_of(const Model& model, State& state, Workspace& work, double dt) {
   PairList& l = state.pairs;
   View v{};
   v.bodies = work.frames.data();
@@ -75,7 +75,8 @@ Vec3 surface_velocity(const Boundary& b, Partner partner) {
 }
 
 /// The forces of a wall, without friction, or of the cone on the spheres of a grain.
-void surface_forces(const Model& model, State& state, Work& work, std::size_t group, double dt) {
+void surface_forces(const Model& model, State& state, Workspace& work, std::size_t group,
+                    double dt) {
   const PairGroup& g = state.pairs.groups[group];
   const Partner partner = Partner(g.second - std::uint32_t(model.grains.size()));
   const double rough = partner == Partner::cone ? 1 : 0;  // sides do not take shear
@@ -127,7 +128,7 @@ Vec3 damping_of(double share, const Vec3& force, const Vec3& velocity) {
 }
 
 /// Adds up the forces of the groups on a grain, in their order.
-void gather(const Model& model, State& state, const Work& work, std::size_t i) {
+void gather(const Model& model, State& state, const Workspace& work, std::size_t i) {
   GrainBody& body = state.bodies[i];
   body.force = Vec3(0, 0, -model.grains[i].weight);
   body.torque.setZero();
@@ -146,7 +147,7 @@ void gather(const Model& model, State& state, const Work& work, std::size_t i) {
 }
 
 /// Sums the forces on plates, sides and the cone, and the losses, group by group.
-void sum_up(const Model& model, State& state, const Work& work) {
+void sum_up(const Model& model, State& state, const Workspace& work) {
   Boundary& b = state.boundary;
   for (Vec3* f : {&b.plate_force[0], &b.plate_force[1], &b.cone_force}) f->setZero();
   for (double& f : b.side_force) f = 0;
@@ -180,7 +181,7 @@ void sum_up(const Model& model, State& state, const Work& work) {
 
 }  // namespace
 
-void evaluate_forces(const Model& model, State& state, Work& work, double dt) {
+void evaluate_forces(const Model& model, State& state, Workspace& work, double dt) {
   const std::size_t grains = state.bodies.size();
   const int threads = model.threads_for(state.pairs.size());
   parallel_pieces(std::ptrdiff_t(grains), threads, bodies_in_piece,

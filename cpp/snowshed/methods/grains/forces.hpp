@@ -8,6 +8,6 @@ namespace snowshed::grains {
 /// Finds the forces on all grains and on their surroundings, moves the contacts by a time step of
 /// length dt (s), breaks bonds and counts their energy as lost. The velocities are those of the
 /// middle of the step. Throws nothing.
-void evaluate_forces(const Model&, State&, Work&, double dt);
+void evaluate_forces(const Model&, State&, Workspace&, double dt);
 
 }  // namespace snowshed::grains

@@ -73,9 +73,9 @@ LabelPieces count_pieces(const LabelImage& image) {
 }
 
 void check_labels(const LabelPieces& counts) {
-  constexpr std::size_t smallest_piece = 8, pieces_per_label = 10;  // voxels; of grey values
+  constexpr std::size_t min_piece = 8, pieces_per_label = 10;  // voxels; of grey values
   if (counts.pieces <= pieces_per_label * counts.labels ||
-      counts.voxels >= smallest_piece * counts.pieces)
+      counts.voxels >= min_piece * counts.pieces)
     return;
   throw InputError("", "no labels: its " + std::to_string(counts.labels) + " numbers lie in " +
                            std::to_string(counts.pieces) +

@@ -39,7 +39,7 @@ Listing listing_of(const Model& model, std::vector<GrainPose> poses, const Bound
   listing.pairs = make_list(search, find_pairs(search, poses, boundary), past);
   listing.groups_of = groups_of_bodies(listing.pairs, poses.size());
   listing.results.resize(listing.pairs.groups.size());
-  listing.longest_step = longest_step(model, boundary, listing.pairs, poses);
+  listing.max_step = max_step(model, boundary, listing.pairs, poses);
   listing.poses = std::move(poses);
   return listing;
 }

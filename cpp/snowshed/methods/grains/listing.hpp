@@ -11,7 +11,7 @@ struct Listing {
   std::vector<GrainPose> poses;
   BodyGroups groups_of;
   std::vector<GroupForce> results;
-  double longest_step;  // s
+  double max_step;  // s
 };
 
 /// Looks for the near pairs of these poses. Contacts keep their past.

@@ -21,7 +21,7 @@ struct LoadingGauge {
   double kinetic = 0;                      // J; only needed while a stage holds
 };
 
-/// State of the sample as the loading sees it.
+/// State of the sample that the loading needs.
 struct LoadedSample {
   Vec3 box;                  // m, at the beginning
   double radius;             // m, of the spheres

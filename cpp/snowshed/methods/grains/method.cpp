@@ -1,5 +1,6 @@
-// Grains, as the rest of the program knows them.
+// The descriptor of the grains.
 #include <algorithm>
+#include <utility>
 
 #include "snowshed/core/errors.hpp"
 #include "snowshed/core/message_format.hpp"
@@ -14,19 +15,19 @@
 namespace snowshed::grains {
 namespace {
 
-class Descriptor final : public DescriptorOf<Descriptor, Settings> {
+class Descriptor final : public DescriptorBase<Descriptor, Settings> {
  public:
-  const MethodFacts& facts() const override {
-    static const MethodFacts facts{
+  const MethodInfo& info() const override {
+    static const MethodInfo info{
         "grains",
         "Discrete elements of snow: rigid clumps of spheres with bonds that break",
         {Part::sample},
         "cells",
-        names_of(named_energies(Energy{})),
+        names_of(named_energies(EnergyBalance{})),
         {{"angular_velocity", "rad/s", "Angular velocity", 3},
          {"equivalent_radius", "m", "Radius of the sphere with a grain's volume"},
          {"coordination", "1", "Number of grains that a grain touches", 1, 1.0}}};
-    return facts;
+    return info;
   }
 
   std::string step_setting() const override { return "courant_factor"; }
@@ -51,14 +52,14 @@ class Descriptor final : public DescriptorOf<Descriptor, Settings> {
   }
   std::unique_ptr<Method> build(const SceneView& scene,
                                 const Surroundings& surroundings) const override {
-    return filled_later(scene, surroundings);
+    return empty_solver(scene, surroundings);
   }
 
   CostEstimate cost_of_method(const SceneView& scene, const Surroundings& surroundings,
                               const Method&) const override {
     const Sample& sample = sample_of(surroundings);
     check_loading_time(scene, sample.box.z());
-    const auto grains = filled_later(scene, surroundings);
+    const auto grains = empty_solver(scene, surroundings);
     try {
       grains->add(grains->seed());            // the first step is not known before
     } catch (const SimulationError& error) {  // it is too short
@@ -74,18 +75,24 @@ class Descriptor final : public DescriptorOf<Descriptor, Settings> {
   static const Sample& sample_of(const Surroundings& surroundings) {
     return dynamic_cast<const Input&>(*surroundings.input).sample();
   }
-  std::unique_ptr<Solver> filled_later(const SceneView& scene,
+  std::unique_ptr<Solver> empty_solver(const SceneView& scene,
                                        const Surroundings& surroundings) const {
-    return make_solver({settings_, scene.gravity, sample_of(surroundings), scene.loading,
-                        scene.cone.value_or(Cone{}), scene.output.energy});
+    Options o;
+    o.settings = settings_;
+    o.gravity = scene.gravity;
+    o.sample = sample_of(surroundings);
+    o.loading = scene.loading;
+    o.cone = scene.cone.value_or(Cone{});
+    o.energy = scene.output.energy;
+    return make_solver(std::move(o));
   }
 };
 
 }  // namespace
 
 const MethodDescriptor& descriptor() {
-  static const Descriptor own;
-  return own;
+  static const Descriptor instance;
+  return instance;
 }
 
 }  // namespace snowshed::grains

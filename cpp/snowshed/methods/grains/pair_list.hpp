@@ -58,7 +58,7 @@ struct PairList {
     return {g.first, g.second, {g.shift[0], g.shift[1]}, a[p], b[p]};
   }
   Vec3 shear(std::size_t p) const { return {ux[p], uy[p], uz[p]}; }
-  /// Those pairs that are bonded, which stay listed, or sheared; in order.
+  /// The bonded pairs, which stay listed, and the sheared ones; in order.
   std::vector<PairHistory> histories() const;
   /// All pairs, each to be listed again.
   std::vector<PairHistory> all() const;
@@ -72,19 +72,19 @@ struct PairSearch {
   double radius, skin;  // m
   bool periodic;
   Cone cone;
-  std::size_t most_pairs;  // number that memory is reserved for
+  std::size_t max_pairs;  // number that memory is reserved for
   int threads;
 };
 
 /// The gap below which pairs are listed, as a share of the spheres' radius: twice as far as a
-/// sphere may move before the list is made anew.
+/// sphere may move before a new list is made.
 inline constexpr double skin_per_radius = 0.4;
 
 /// Centre of a plate's sphere relative to the plate's origin, m.
 Vec3 plate_sphere(std::uint32_t number, double radius);
 
 /// All pairs nearer than the skin, ordered. Throws SimulationError if they are more than
-/// `most_pairs`, or if the period is too short.
+/// `max_pairs`, or if the period is too short.
 std::vector<PairKey> find_pairs(const PairSearch&, const std::vector<GrainPose>&, const Boundary&);
 
 /// A list of these pairs, and of the pairs in the history, at any distance.

@@ -16,8 +16,8 @@ std::uint32_t plate_number(int i, int j) {
   return std::uint32_t(i + half_grid) << 16 | std::uint32_t(j + half_grid);
 }
 
-/// Cells at least as wide as pairs are far apart. Spheres outside of the box belong to the cells of
-/// its border, or to those of their images where the box is periodic.
+/// Cells at least as wide as the distance within which pairs are listed. Spheres outside of the box
+/// belong to the cells of its border, or to those of their images where the box is periodic.
 class SphereCells {
  public:
   SphereCells(const PairSearch& s, const std::vector<Vec3>& centres, const Boundary& b,
@@ -52,7 +52,7 @@ class SphereCells {
   }
 
  private:
-  /// Three cells along a period are enough, if they are as wide as pairs are far apart.
+  /// Three cells along a period are enough if they are that wide.
   void shorten(const Vec3& extent, double reach) {
     for (int axis = 0; axis < 2; ++axis) {
       if (extent[axis] < 3 * reach)
@@ -246,9 +246,9 @@ class Finder {
   }
 
   void check_number(std::size_t pairs) const {
-    if (pairs > s_.most_pairs)
+    if (pairs > s_.max_pairs)
       throw SimulationError("the grains overlap so much that more than " +
-                            std::to_string(s_.most_pairs) + " pairs of spheres are near");
+                            std::to_string(s_.max_pairs) + " pairs of spheres are near");
   }
 
   const PairSearch& s_;

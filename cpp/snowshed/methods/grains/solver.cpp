@@ -99,7 +99,7 @@ State SolverImpl::with_batches(const std::vector<ParticleBatch>& batches) const 
 }
 
 /// Takes over a fresh sample: lists, forces, energies.
-void SolverImpl::accept(State next, Work work) {
+void SolverImpl::accept(State next, Workspace work) {
   std::vector<GrainPose> poses = poses_of(next.bodies);
   const std::vector<PairHistory> bonds = initial_bonds(model_, poses, next.boundary);
   Listing listing = listing_of(model_, std::move(poses), next.boundary, bonds);
@@ -109,24 +109,24 @@ void SolverImpl::accept(State next, Work work) {
   next.listed_boundary = next.boundary;
   work.groups_of = std::move(listing.groups_of);
   work.results = std::move(listing.results);
-  work.longest_step = listing.longest_step;
+  work.max_step = listing.max_step;
   work.next = next.bodies;
   work.frames.resize(next.bodies.size() + 2);
   work.damped.resize(next.bodies.size());
   evaluate_forces(model_, next, work, 0.0);
-  next.dt = choose_step(model_, next, work.longest_step);
+  next.dt = choose_step(model_, next, work.max_step);
   double& smallest = next.counters.smallest_dt;
   smallest = smallest > 0 ? std::min(smallest, next.dt) : next.dt;
   std::vector<std::uint32_t> order(next.bodies.size());
   std::iota(order.begin(), order.end(), 0u);
   if (model_.keeps_energy) {
-    Energy before = state_.energy, after = next.energy;
+    EnergyBalance before = state_.energy, after = next.energy;
     store_energy(model_, state_, before);
     store_energy(model_, next, after);
     next.energy.added += after.stored() - before.stored();
   }
   state_ = std::move(next);
-  work_ = std::move(work);
+  workspace_ = std::move(work);
   order_ = std::move(order);
 }
 
@@ -171,8 +171,8 @@ void SolverImpl::drift(double dt) {
   parallel_pieces(std::ptrdiff_t(size()), model_.threads_for(state_.pairs.size()), bodies_in_push,
                   [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
                     for (std::size_t i = std::size_t(begin); i < std::size_t(end); ++i) {
-                      GrainBody& body = work_.next[i] = state_.bodies[i];
-                      work_.damped[i] = push(model_.grains[i], body, 0.5 * dt);
+                      GrainBody& body = workspace_.next[i] = state_.bodies[i];
+                      workspace_.damped[i] = push(model_.grains[i], body, 0.5 * dt);
                       body.position += dt * body.velocity;
                       rotate_freely(body.orientation, body.spin_momentum, model_.grains[i].inertia,
                                     dt);
@@ -183,8 +183,8 @@ void SolverImpl::drift(double dt) {
 /// Throws if a grain has left its surroundings.
 void SolverImpl::check_places() const {
   const double farthest = 5e4 * model_.radius + 10 * model_.box.maxCoeff();
-  for (std::size_t i = 0; i < work_.next.size(); ++i) {
-    const GrainBody& body = work_.next[i];
+  for (std::size_t i = 0; i < workspace_.next.size(); ++i) {
+    const GrainBody& body = workspace_.next[i];
     if (!(body.position.cwiseAbs().maxCoeff() < farthest) || !body.orientation.coeffs().allFinite())
       throw SimulationError("grain " + std::to_string(state_.first_id + i) +
                             " is lost: it has left the surroundings of the sample");
@@ -195,14 +195,14 @@ void SolverImpl::check_places() const {
 bool SolverImpl::must_relist(const Boundary& moved) const {
   const Boundary& then = state_.listed_boundary;
   if (moved.has_top != then.has_top || moved.has_cone != then.has_cone) return true;
-  const double most = 0.5 * skin_per_radius * model_.radius;
-  if (!(moved.travel_since(then) < most)) return true;
-  for (std::size_t i = 0; i < work_.next.size(); ++i) {
+  const double max_travel = 0.5 * skin_per_radius * model_.radius;
+  if (!(moved.travel_since(then) < max_travel)) return true;
+  for (std::size_t i = 0; i < workspace_.next.size(); ++i) {
     const GrainPose& pose = state_.listed[i];
-    const GrainBody& body = work_.next[i];
+    const GrainBody& body = workspace_.next[i];
     // The chord of the rotation between the two: 2 sin(angle / 2).
     const double chord = 2 * (pose.orientation.conjugate() * body.orientation).vec().norm();
-    if (!((body.position - pose.position).norm() + chord * model_.grains[i].reach < most))
+    if (!((body.position - pose.position).norm() + chord * model_.grains[i].reach < max_travel))
       return true;
   }
   return false;
@@ -210,31 +210,31 @@ bool SolverImpl::must_relist(const Boundary& moved) const {
 
 /// All or nothing: the list for the poses in the workspace.
 void SolverImpl::relist(const Boundary& moved) {
-  Listing listing = listing_of(model_, poses_of(work_.next), moved, state_.pairs.histories());
-  double gone = 0;  // J, with a plate that is taken away
+  Listing listing = listing_of(model_, poses_of(workspace_.next), moved, state_.pairs.histories());
+  double removed = 0;  // J, with a plate that is taken away
   if (model_.keeps_energy && moved.has_top != state_.listed_boundary.has_top) {
-    Energy e;
+    EnergyBalance e;
     store_energy(model_, state_, e);
-    gone = e.normal + e.shear;
+    removed = e.normal + e.shear;
     std::swap(state_.pairs, listing.pairs);
     store_energy(model_, state_, e);
     std::swap(state_.pairs, listing.pairs);
-    gone -= e.normal + e.shear;
+    removed -= e.normal + e.shear;
   }
-  state_.energy.added -= gone;
+  state_.energy.added -= removed;
   state_.pairs = std::move(listing.pairs);
   state_.listed = std::move(listing.poses);
   state_.listed_boundary = moved;
-  work_.groups_of = std::move(listing.groups_of);
-  work_.results = std::move(listing.results);
-  work_.longest_step = listing.longest_step;
+  workspace_.groups_of = std::move(listing.groups_of);
+  workspace_.results = std::move(listing.results);
+  workspace_.max_step = listing.max_step;
   ++state_.counters.sorts;
 }
 
 void SolverImpl::step() {
   soundness_.require();
   require_grains();
-  const double dt = choose_step(model_, state_, work_.longest_step);
+  const double dt = choose_step(model_, state_, workspace_.max_step);
   Boundary moved = state_.boundary;
   set_velocities(model_.loading, model_.loaded(), state_.loading, dt, moved);
   moved.move(dt);
@@ -247,18 +247,18 @@ void SolverImpl::step() {
 /// Throws only if forces are not finite.
 void SolverImpl::end_step(const Boundary& moved, double dt) {
   state_.energy.boundary += boundary_work(moved, 0.5 * dt);  // with the forces of before
-  std::swap(state_.bodies, work_.next);
+  std::swap(state_.bodies, workspace_.next);
   state_.boundary = moved;
-  evaluate_forces(model_, state_, work_, dt);
+  evaluate_forces(model_, state_, workspace_, dt);
   parallel_pieces(std::ptrdiff_t(size()), model_.threads_for(state_.pairs.size()), bodies_in_push,
                   [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
                     for (std::size_t i = std::size_t(begin); i < std::size_t(end); ++i)
-                      work_.damped[i] += push(model_.grains[i], state_.bodies[i], 0.5 * dt);
+                      workspace_.damped[i] += push(model_.grains[i], state_.bodies[i], 0.5 * dt);
                   });
   state_.energy.boundary += boundary_work(state_.boundary, 0.5 * dt);
   bool sound = true;
   for (std::size_t i = 0; i < size(); ++i) {
-    state_.energy.damping += work_.damped[i];
+    state_.energy.damping += workspace_.damped[i];
     const GrainBody& body = state_.bodies[i];
     sound = sound && std::isfinite(body.velocity.squaredNorm() + body.spin_momentum.squaredNorm());
   }

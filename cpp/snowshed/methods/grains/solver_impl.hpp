@@ -55,12 +55,12 @@ class SolverImpl final : public Solver {
   /// Contents of an archive.
   struct Restored {
     State state;
-    Work work;
+    Workspace work;
   };
   Restored restored(const BinaryReader&) const;
 
   State with_batches(const std::vector<ParticleBatch>&) const;
-  void accept(State, Work);
+  void accept(State, Workspace);
   double shortened_by() const;
   void require_grains() const;
   void drift(double dt);
@@ -73,7 +73,7 @@ class SolverImpl final : public Solver {
 
   Model model_;
   State state_;
-  Work work_;
+  Workspace workspace_;
   Soundness soundness_;
   std::vector<std::uint32_t> order_;
 };

@@ -36,7 +36,7 @@ struct GrainConstants {
   std::uint32_t first_sphere, spheres;
 };
 
-/// The fewest pairs that a thread is started for.
+/// Minimum number of pairs per thread.
 inline constexpr std::size_t pairs_per_thread = 512;
 
 struct Model {
@@ -78,15 +78,15 @@ struct State {
   double time = 0, dt = 0;  // s
   std::int64_t bonds = 0, broken_in_tension = 0, broken_in_shear = 0;
   StepCounters counters;
-  Energy energy;  // its sums over steps
+  EnergyBalance energy;  // its sums over steps
 };
 
-struct Work {
+struct Workspace {
   std::vector<GrainBody> next;      // where grains will be at the end of a step
   std::vector<BodyFrame> frames;    // one per grain and plate
   std::vector<GroupForce> results;  // one per group of pairs
   BodyGroups groups_of;             // groups of each grain
-  double longest_step = 0;          // s, for the pairs that are listed
+  double max_step = 0;              // s, for the pairs that are listed
   std::vector<double> damped;       // J, of each grain in a step
 };
 

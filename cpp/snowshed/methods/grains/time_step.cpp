@@ -24,8 +24,8 @@ struct GrainStiffness {
 
 }  // namespace
 
-double longest_step(const Model& model, const Boundary& boundary, const PairList& list,
-                    const std::vector<GrainPose>& poses) {
+double max_step(const Model& model, const Boundary& boundary, const PairList& list,
+                const std::vector<GrainPose>& poses) {
   const double k = std::max(model.law.normal_stiffness, model.law.shear_stiffness);
   std::vector<GrainStiffness> stiffness(poses.size());
   for_each_listed_pair(
@@ -48,7 +48,7 @@ double longest_step(const Model& model, const Boundary& boundary, const PairList
   return model.settings.courant_factor / std::sqrt(fastest);
 }
 
-double choose_step(const Model& model, const State& state, double longest) {
+double choose_step(const Model& model, const State& state, double max_step) {
   double fastest = state.boundary.top_speed();
   if (state.loading.stage < int(model.loading.size()))
     fastest = std::max(fastest, model.loading[std::size_t(state.loading.stage)].speed);
@@ -58,7 +58,7 @@ double choose_step(const Model& model, const State& state, double longest) {
     const double spin = body.spin_momentum.norm() / grain.inertia.minCoeff();
     fastest = std::max(fastest, body.velocity.norm() + spin * (grain.reach + model.radius));
   }
-  const double dt = fastest > 0 ? std::min(longest, 0.2 * model.radius / fastest) : longest;
+  const double dt = fastest > 0 ? std::min(max_step, 0.2 * model.radius / fastest) : max_step;
   if (!(dt > 1e-18))
     throw SimulationError("the time step has fallen to " + std::to_string(dt) +
                           " s: a grain moves at " + std::to_string(fastest) + " m/s");

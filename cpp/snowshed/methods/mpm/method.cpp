@@ -53,10 +53,10 @@ void check_crack_band(const Settings& n) {
                        show_rounded(1 / most) + " to " + show_rounded(1 / least) + " times");
 }
 
-class Descriptor final : public DescriptorOf<Descriptor, Settings> {
+class Descriptor final : public DescriptorBase<Descriptor, Settings> {
  public:
-  const MethodFacts& facts() const override {
-    static const MethodFacts facts{
+  const MethodInfo& info() const override {
+    static const MethodInfo info{
         "mpm",
         "The material point method",
         {Part::panel, Part::slab, Part::ground, Part::obstacles, Part::bodies, Part::domain,
@@ -72,7 +72,7 @@ class Descriptor final : public DescriptorOf<Descriptor, Settings> {
           "Volumetric plastic strain, logarithmic, negative in compaction", 1, 0.01},
          {"be_minus_identity", "1", "Elastic left Cauchy-Green tensor less the identity"},
          {"affine", "1/s", "Affine velocity matrix C of APIC, by rows", 9}}};
-    return facts;
+    return info;
   }
 
   void coarsen(double factor) override { settings_.dx *= factor; }
@@ -87,7 +87,7 @@ class Descriptor final : public DescriptorOf<Descriptor, Settings> {
     check_damping(settings_);
     check_crack_band(settings_);
   }
-  ThickSolid as_seen(const Shape& shape, int dimension) const override {
+  ThickSolid thickened(const Shape& shape, int dimension) const override {
     return as_grid_sees(shape, settings_.dx, dimension);
   }
   std::unique_ptr<Method> build(const SceneView& scene,

@@ -10,8 +10,8 @@
 namespace snowshed::mps {
 
 /// Anderson's acceleration of depth one (Anderson 1965, doi:10.1145/321296.321305; Walker and Ni
-/// 2011, doi:10.1137/10078356X): the next point is that combination of the last two results whose
-/// residual would be least, were the iteration linear.
+/// 2011, doi:10.1137/10078356X): the next point combines the last two results such that the
+/// residual would be smallest if the iteration were linear.
 template <int D>
 class AndersonMixing {
  public:
@@ -33,7 +33,7 @@ class AndersonMixing {
         along += residual[i].dot(change);
       }
       const double share = changed > 0 ? along / changed : 0.0;
-      if (std::abs(share) <= most_extrapolation)
+      if (std::abs(share) <= max_extrapolation)
         for (std::size_t i = 0; i < n; ++i) result[i] -= share * (result[i] - last_result_[i]);
     }
     last_square_ = square;
@@ -42,7 +42,7 @@ class AndersonMixing {
   }
 
  private:
-  static constexpr double most_extrapolation = 10;
+  static constexpr double max_extrapolation = 10;
   double last_square_ = 0;  // last square of the residual; 0: there is none
   Vectors last_residual_, last_result_;
 };

@@ -7,7 +7,7 @@
 namespace snowshed::mps {
 namespace {
 
-/// Particles that follow on each other in memory lie near to each other.
+/// Consecutive particles are close to each other.
 constexpr std::size_t particles_in_box = 64;
 
 struct PointBox {
@@ -38,7 +38,7 @@ bool may_touch(const PlacedObstacle& o, const PointBox& box, double reach, int d
 
 }  // namespace
 
-ThickSolid as_particles_see(Shape shape, double spacing, int dimension) {
+ThickSolid thickened_for_particles(Shape shape, double spacing, int dimension) {
   if (shape->is_convex()) return {std::move(shape), std::nullopt};
   return thickened(std::move(shape), spacing, dimension);
 }

@@ -11,10 +11,10 @@
 
 namespace snowshed::mps {
 
-/// A solid as the particles must see it. Parts of solids that are not convex are made two spacings
-/// thick if they are thinner. Thin boxes and other convex solids stay as they are: they have walls
-/// on both sides (WallParticles).
-ThickSolid as_particles_see(Shape shape, double spacing, int dimension);
+/// Returns the solid thickened for the particles: parts of solids that are not convex become two
+/// spacings thick if they are thinner. Thin boxes and other convex solids do not change, because
+/// they have walls on both sides (WallParticles).
+ThickSolid thickened_for_particles(Shape shape, double spacing, int dimension);
 
 /// A particle within the radius of an obstacle's surface.
 template <int D>

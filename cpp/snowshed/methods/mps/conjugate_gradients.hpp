@@ -16,7 +16,7 @@ struct SolveReport {
   bool converged = true;
 };
 
-struct CgWork {
+struct CgWorkspace {
   AlignedVector<double> r, z, p, q;
   std::vector<double> sums;
 };
@@ -48,12 +48,12 @@ void for_each(std::size_t n, int threads, F f) {
 
 }  // namespace conjugate_gradient_details
 
-/// Solves A x = b with a symmetric positive definite A from the x that is given, until the norm of
-/// the residual is at most `tolerance` times `scale`. apply(p, q) computes q = A p, and
-/// precondition(r, z) an approximate z = A^-1 r.
+/// Solves A x = b with a symmetric positive definite A from the given x, until the norm of the
+/// residual is at most `tolerance` times `scale`. apply(p, q) computes q = A p, and precondition(r,
+/// z) an approximate z = A^-1 r.
 template <class Apply, class Precondition>
-SolveReport conjugate_gradients(std::size_t n, double tolerance, double scale, int most,
-                                int threads, CgWork& work, double* x, const double* b,
+SolveReport conjugate_gradients(std::size_t n, double tolerance, double scale, int max_iterations,
+                                int threads, CgWorkspace& work, double* x, const double* b,
                                 const Apply& apply, const Precondition& precondition) {
   namespace cg = conjugate_gradient_details;
   for (auto* vector : {&work.r, &work.z, &work.p, &work.q}) vector->resize(n);
@@ -66,7 +66,7 @@ SolveReport conjugate_gradients(std::size_t n, double tolerance, double scale, i
   });
   const double limit = tolerance * scale;
   double rz = 0;
-  while (std::sqrt(r2) > limit && report.iterations < most) {
+  while (std::sqrt(r2) > limit && report.iterations < max_iterations) {
     precondition(r, z);
     const double next =
         cg::sum_of(n, threads, work.sums, [&](std::size_t i) { return r[i] * z[i]; });

@@ -42,7 +42,7 @@ void describe(SettingsVisitor& v, Settings& s) {
   v.choice("walls", s.walls, "Walls: mirror images of the snow, or particles");
   v.choice("source", s.source, "Right-hand side of the pressure equation");
   v.number("compensation", s.compensation, "", fraction,
-           "Share of the density's error that a step takes away");
+           "Share of the density's error that a step removes");
   v.choice("gradient", s.gradient, "Gradient of the pressure");
   v.choice("splitting", s.splitting, "Whether viscosity acts before the pressure or after it");
   v.choice("coupling", s.coupling, "Steps in which pressure and viscosity are solved together");

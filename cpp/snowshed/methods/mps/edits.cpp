@@ -13,8 +13,8 @@ namespace {
 /// momentum that bodies exchange. A single particle that differs by more is refused as another
 /// snow.
 void check_mass(double mass, double of_cell) {
-  constexpr double least = 0.5, most = 1.5;
-  if (mass < least * of_cell * (1 - 1e-6) || mass > most * of_cell * (1 + 1e-6))
+  constexpr double min_ratio = 0.5, max_ratio = 1.5;
+  if (mass < min_ratio * of_cell * (1 - 1e-6) || mass > max_ratio * of_cell * (1 + 1e-6))
     throw InputError("mass", std::to_string(mass) +
                                  " kg; a particle has the mass of a cell, density times spacing "
                                  "to the power of the dimension (" +

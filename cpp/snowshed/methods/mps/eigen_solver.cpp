@@ -9,8 +9,8 @@ namespace snowshed::mps {
 template <int D>
 SolveReport solve_with_eigen(const NeighbourLists<D>& lists, const AlignedVector<float>& weight,
                              const AlignedVector<double>& diagonal,
-                             const AlignedVector<double>& source, double tolerance, int most,
-                             AlignedVector<double>& x) {
+                             const AlignedVector<double>& source, double tolerance,
+                             int max_iterations, AlignedVector<double>& x) {
   std::vector<int> row_of(lists.size(), -1);
   int rows = 0;
   for (std::size_t i = 0; i < lists.size(); ++i)
@@ -34,7 +34,7 @@ SolveReport solve_with_eigen(const NeighbourLists<D>& lists, const AlignedVector
                            Eigen::IncompleteCholesky<double>>
       solver;
   solver.setTolerance(tolerance);
-  solver.setMaxIterations(most);
+  solver.setMaxIterations(max_iterations);
   solver.compute(matrix);
   const Eigen::VectorXd solution = solver.solveWithGuess(b, guess);
   for (std::size_t i = 0; i < lists.size(); ++i)

@@ -11,7 +11,7 @@ namespace snowshed::mps {
 template <int D>
 SolveReport solve_with_eigen(const NeighbourLists<D>& lists, const AlignedVector<float>& weight,
                              const AlignedVector<double>& diagonal,
-                             const AlignedVector<double>& source, double tolerance, int most,
-                             AlignedVector<double>& x);
+                             const AlignedVector<double>& source, double tolerance,
+                             int max_iterations, AlignedVector<double>& x);
 
 }  // namespace snowshed::mps

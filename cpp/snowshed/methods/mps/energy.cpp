@@ -19,33 +19,33 @@ EnergyBalance stored_energy(const Model<D>& model, const Particles<D>& particles
 /// change of its potential, because particles move with the velocity after the step; that is the
 /// residual.
 template <int D>
-void SolverImpl<D>::book_energy(State<D>& next, double dt) const {
+void SolverImpl<D>::record_energy(State<D>& next, double dt) const {
   const Particles<D>& after = next.particles;
   EnergyBalance& e = next.energy;
   for (std::size_t i = 0; i < after.size(); ++i) {
-    if (!work_.moved[i]) continue;
-    const VecD<D>&before = work_.before[i], &viscous = work_.viscous[i];
-    const VecD<D> mean = 0.5 * (before + work_.projected[i]);
+    if (!workspace_.energy.moved[i]) continue;
+    const VecD<D>&before = workspace_.before[i], &viscous = workspace_.energy.viscous[i];
+    const VecD<D> mean = 0.5 * (before + workspace_.energy.projected[i]);
     const double mass = after.mass[i];
     double friction = 0;
-    for (const WallContact<D>* c = work_.near.contacts.begin(i); c < work_.near.contacts.end(i);
-         ++c) {
+    for (const WallContact<D>* c = workspace_.near.contacts.begin(i);
+         c < workspace_.near.contacts.end(i); ++c) {
       const VecD<D> relative = viscous - c->velocity;
-      friction += dt * mass * work_.drag[work_.near.contacts.place(c)] *
+      friction += dt * mass * workspace_.wall_friction.drag[workspace_.near.contacts.place(c)] *
                   (relative - relative.dot(c->normal) * c->normal).dot(mean);
     }
     e.friction += friction;
-    e.plastic -= mass * work_.viscous_change[i].dot(mean) + friction;
-    e.transfer -=
-        mass *
-        (work_.projected[i] - before - dt * model_.gravity - work_.viscous_change[i]).dot(mean);
-    if (!after.moves(i)) e.sticking += 0.5 * mass * work_.projected[i].squaredNorm();
+    e.plastic -= mass * workspace_.energy.viscous_change[i].dot(mean) + friction;
+    e.transfer -= mass * (workspace_.energy.projected[i] - before - dt * model_.gravity -
+                          workspace_.energy.viscous_change[i])
+                             .dot(mean);
+    if (!after.moves(i)) e.sticking += 0.5 * mass * workspace_.energy.projected[i].squaredNorm();
   }
 }
 
 template EnergyBalance stored_energy(const Model<2>&, const Particles<2>&);
 template EnergyBalance stored_energy(const Model<3>&, const Particles<3>&);
-template void SolverImpl<2>::book_energy(State<2>&, double) const;
-template void SolverImpl<3>::book_energy(State<3>&, double) const;
+template void SolverImpl<2>::record_energy(State<2>&, double) const;
+template void SolverImpl<3>::record_energy(State<3>&, double) const;
 
 }  // namespace snowshed::mps

@@ -1,4 +1,4 @@
-// Snow at rest that is taken up, and moving snow that is deposited.
+// Erosion of snow at rest, and deposition of moving snow.
 #include "snowshed/methods/mps/forces.hpp"
 
 namespace snowshed::mps {
@@ -33,30 +33,30 @@ struct NearSnow {
 /// or a wall where the pressure is below p_d and its speed below u_d. p_d < p_e and u_d < u_e, so
 /// that a particle does not change back at once.
 template <int D>
-void erode_and_deposit(const Model<D>& model, Particles<D>& particles, Work<D>& work) {
+void erode_and_deposit(const Model<D>& model, Particles<D>& particles, Workspace<D>& work) {
   const Settings& s = model.settings();
   if (!s.erosion) return;
-  work.fixed.resize(particles.size());
+  work.changed.resize(particles.size());
   for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {
-    work.fixed[i] = false;
+    work.changed[i] = false;
     const double pressure = particles.pressure[i];
     if (particles.kind[i] == Kind::erodible && pressure > s.erosion_pressure) {
       const NearSnow<D> around(model, particles, work.near, i);
-      work.fixed[i] = around.fastest2 > s.erosion_speed * s.erosion_speed;
+      work.changed[i] = around.fastest2 > s.erosion_speed * s.erosion_speed;
     } else if (particles.moves(i) && pressure < s.deposition_pressure &&
                particles.velocity[i].squaredNorm() < s.deposition_speed * s.deposition_speed) {
-      work.fixed[i] = NearSnow<D>(model, particles, work.near, i).carried;
+      work.changed[i] = NearSnow<D>(model, particles, work.near, i).carried;
     }
   });
   for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {
-    if (!work.fixed[i]) return;
+    if (!work.changed[i]) return;
     const bool erodes = particles.kind[i] == Kind::erodible;
     particles.kind[i] = erodes ? Kind::moving : Kind::erodible;
     if (!erodes) particles.velocity[i].setZero();
   });
 }
 
-template void erode_and_deposit(const Model<2>&, Particles<2>&, Work<2>&);
-template void erode_and_deposit(const Model<3>&, Particles<3>&, Work<3>&);
+template void erode_and_deposit(const Model<2>&, Particles<2>&, Workspace<2>&);
+template void erode_and_deposit(const Model<3>&, Particles<3>&, Workspace<3>&);
 
 }  // namespace snowshed::mps

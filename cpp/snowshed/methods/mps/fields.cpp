@@ -76,20 +76,20 @@ MotionSummary SolverImpl<D>::motion(double limit) const {
 
 template <int D>
 std::size_t SolverImpl<D>::bytes() const {
-  const Neighbourhood<D>& near = work_.near;
+  const Workspace<D>& w = workspace_;
+  const Neighbourhood<D>& near = w.near;
   std::size_t total = near.cells.bytes() + near.lists.bytes() + near.contacts.bytes() +
-                      work_.multigrid.bytes() + work_.velocity_multigrid.bytes() +
-                      work_.walls.bytes();
-  for (const auto* particles :
-       {&state_.particles, &work_.next.particles, &work_.start.particles, &work_.spare})
+                      w.pressure.multigrid.bytes() + w.viscosity.multigrid.bytes() +
+                      w.walls.bytes();
+  for (const auto* particles : {&state_.particles, &w.next.particles, &w.start.particles, &w.spare})
     particles->for_each_array([&](const char*, const auto& array) { total += bytes_of(array); });
   return total +
          bytes_of(near.weight, near.slope, near.even_weight, near.snow_slope, near.moments,
                   near.correction, near.spread, near.asymmetry, near.slip) +
-         bytes_of(work_.pair_rate, work_.rate_correction, work_.coupling, work_.block,
-                  work_.inverse_block, work_.velocity_gradient, work_.concentration,
-                  work_.pressure_sum, work_.yielding, work_.base_pressure, work_.diagonal,
-                  work_.source, work_.pressure, work_.cg.r, work_.cg.z, work_.cg.p, work_.cg.q);
+         bytes_of(w.rates.pair_rate, w.rates.correction, w.viscosity.coupling, w.viscosity.block,
+                  w.viscosity.inverse_block, w.rates.gradient, w.spacing.concentration,
+                  w.pressure.sum, w.spacing.yielding, w.pressure.base, w.pressure.diagonal,
+                  w.pressure.source, w.pressure.values, w.cg.r, w.cg.z, w.cg.p, w.cg.q);
 }
 
 template class SolverImpl<2>;

@@ -10,7 +10,7 @@ namespace snowshed::mps {
 /// Sorts the particles by cells, and finds neighbours, walls, number densities and the free
 /// surface.
 template <int D>
-void find_neighbours(const Model<D>&, Particles<D>&, double time, Work<D>&);
+void find_neighbours(const Model<D>&, Particles<D>&, double time, Workspace<D>&);
 
 /// The slope of each pair, set to zero if the neighbour is a wall of this kind or one farther in.
 /// The array is valid until the next call.
@@ -19,7 +19,7 @@ const float* slope_without(Kind, const Model<D>&, const Particles<D>&, Neighbour
 
 /// The pressures of the yield stress: those of the particles, smoothed and not negative.
 template <int D>
-void smooth_pressures(const Model<D>&, const Particles<D>&, Work<D>&);
+void smooth_pressures(const Model<D>&, const Particles<D>&, Workspace<D>&);
 
 /// sqrt(2 D:D) of a velocity gradient, 1/s.
 template <int D>
@@ -29,19 +29,20 @@ double shear_rate(const Eigen::Matrix<double, D, D>& gradient) {
 
 /// Prepares find_rates for the present places of the particles.
 template <int D>
-void prepare_rates(const Model<D>&, const Particles<D>&, Work<D>&);
+void prepare_rates(const Model<D>&, const Particles<D>&, Workspace<D>&);
 
-/// The sums of slope (u_j - u_i) r^T over each particle's neighbours, left in `velocity_gradient`.
+/// The sums of slope (u_j - u_i) r^T over each particle's neighbours, stored in `rates.gradient`.
 template <int D>
-void sum_velocity_gradients(const Model<D>&, const Particles<D>&, const float* slope, Work<D>&);
+void sum_velocity_gradients(const Model<D>&, const Particles<D>&, const float* slope,
+                            Workspace<D>&);
 
 /// The velocity gradients and shear rates of the present velocities.
 template <int D>
-void find_rates(const Model<D>&, Particles<D>&, Work<D>&);
+void find_rates(const Model<D>&, Particles<D>&, Workspace<D>&);
 
 /// The apparent viscosities of particles, from the shear rates and the smoothed pressures.
 template <int D>
-void find_viscosities(const Model<D>&, Particles<D>&, const Work<D>&);
+void find_viscosities(const Model<D>&, Particles<D>&, const Workspace<D>&);
 
 /// Change of every particle's velocity in a step by gravity, m/s.
 template <int D>
@@ -50,27 +51,27 @@ void add_gravity(const Model<D>&, double dt, Particles<D>&);
 /// Replaces the velocities by those after a step with viscosity, which is implicit in equation
 /// (10). A solve that has not converged leaves them unsound.
 template <int D>
-SolveReport apply_viscosity(const Model<D>&, double dt, Particles<D>&, Work<D>&);
+SolveReport apply_viscosity(const Model<D>&, double dt, Particles<D>&, Workspace<D>&);
 
 /// Makes the matrix of the pressure equations of a step.
 template <int D>
-void prepare_pressure(const Model<D>&, const Particles<D>&, Work<D>&);
+void prepare_pressure(const Model<D>&, const Particles<D>&, Workspace<D>&);
 
 /// Solves the pressure equation (18). A solve that has not converged leaves the pressures unsound.
 template <int D>
-SolveReport solve_pressure(const Model<D>&, double dt, Particles<D>&, Work<D>&);
+SolveReport solve_pressure(const Model<D>&, double dt, Particles<D>&, Workspace<D>&);
 
 /// Adds the effect of the pressure to the velocities, equation (15), and keeps particles from
 /// entering walls within the step. `change` holds the change of the velocities.
 template <int D>
-void apply_pressure(const Model<D>&, double dt, Particles<D>&, Work<D>&);
+void apply_pressure(const Model<D>&, double dt, Particles<D>&, Workspace<D>&);
 
 /// Keeps particles apart as the settings say.
 template <int D>
-void keep_spacing(const Model<D>&, double dt, Particles<D>&, Work<D>&);
+void keep_spacing(const Model<D>&, double dt, Particles<D>&, Workspace<D>&);
 
 /// Erodible particles begin to move, and moving ones are deposited, equation (23).
 template <int D>
-void erode_and_deposit(const Model<D>&, Particles<D>&, Work<D>&);
+void erode_and_deposit(const Model<D>&, Particles<D>&, Workspace<D>&);
 
 }  // namespace snowshed::mps

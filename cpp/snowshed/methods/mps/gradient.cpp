@@ -9,7 +9,7 @@ namespace {
 
 /// Particles do not come nearer to walls than this, in l0, and those that are nearer are pushed out
 /// by at most a part of l0 in a step.
-constexpr double nearest_place = 0.25, largest_push = 0.1;
+constexpr double min_wall_distance = 0.25, max_push = 0.1;
 
 /// The least pressure among a particle and its neighbours, Pa.
 template <int D>
@@ -43,10 +43,10 @@ double base_pressure(const Model<D>& model, const Particles<D>& particles,
 }
 
 template <int D>
-void find_base_pressures(const Model<D>& model, const Particles<D>& particles, Work<D>& work) {
-  work.base_pressure.resize(particles.size());
+void find_base_pressures(const Model<D>& model, const Particles<D>& particles, Workspace<D>& work) {
+  work.pressure.base.resize(particles.size());
   for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {
-    work.base_pressure[i] =
+    work.pressure.base[i] =
         particles.moves(i) ? base_pressure(model, particles, work.near, i) : 0.0;
   });
 }
@@ -56,11 +56,11 @@ void find_base_pressures(const Model<D>& model, const Particles<D>& particles, W
 /// otherwise no part.
 template <int D>
 void sum_beside_wall_particles(const Model<D>& model, const Particles<D>& particles,
-                               Work<D>& work) {
+                               Workspace<D>& work) {
   const Neighbourhood<D>& near = work.near;
   const bool conservative = model.settings().gradient == Gradient::conservative;
   for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {
-    VecD<D>& sum = work.pressure_sum[i];
+    VecD<D>& sum = work.pressure.sum[i];
     sum.setZero();
     if (!particles.moves(i)) return;
     for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) {
@@ -68,23 +68,23 @@ void sum_beside_wall_particles(const Model<D>& model, const Particles<D>& partic
       const bool dummy = particles.kind[j] == Kind::dummy_wall;
       if (dummy && !conservative) continue;
       const double other = dummy ? particles.pressure[i] : particles.pressure[j];
-      sum += (other + work.base_pressure[i]) * double(near.slope[e]) * near.separation(e);
+      sum += (other + work.pressure.base[i]) * double(near.slope[e]) * near.separation(e);
     }
   });
 }
 
 /// The part of the neighbours in gradients of the pressure, Pa/m over the factor of gradients.
 template <int D>
-void sum_pressures(const Model<D>& model, const Particles<D>& particles, Work<D>& work) {
+void sum_pressures(const Model<D>& model, const Particles<D>& particles, Workspace<D>& work) {
   const Neighbourhood<D>& near = work.near;
   const std::size_t n = particles.size();
   find_base_pressures(model, particles, work);
-  work.pressure_sum.resize(n);
+  work.pressure.sum.resize(n);
   if (model.has_wall_particles()) return sum_beside_wall_particles(model, particles, work);
   for_each_piece(n, model.threads_for(n), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     model.kernels.sum_separations(near.rows(), near.offsets().data(), near.slope.data(),
-                                  particles.pressure.data(), work.base_pressure.data(),
-                                  work.pressure_sum.data()->data(), begin, end);
+                                  particles.pressure.data(), work.pressure.base.data(),
+                                  work.pressure.sum.data()->data(), begin, end);
   });
 }
 
@@ -122,15 +122,15 @@ VecD<D> gradient_at_walls(const Model<D>& model, const Particles<D>& particles,
 template <int D>
 void keep_out(const WallContact<D>& c, double spacing, double dt, VecD<D>& velocity) {
   const double approach = (velocity - c.velocity).dot(c.normal);
-  const double room = c.distance - nearest_place * spacing;
-  const double slowest = std::min(-room, largest_push * spacing) / dt;
+  const double room = c.distance - min_wall_distance * spacing;
+  const double slowest = std::min(-room, max_push * spacing) / dt;
   if (approach < slowest) velocity += (slowest - approach) * c.normal;
 }
 
 }  // namespace
 
 template <int D>
-void apply_pressure(const Model<D>& model, double dt, Particles<D>& particles, Work<D>& work) {
+void apply_pressure(const Model<D>& model, double dt, Particles<D>& particles, Workspace<D>& work) {
   const Settings& s = model.settings();
   const Neighbourhood<D>& near = work.near;
   const bool corrected = s.gradient == Gradient::corrected;
@@ -141,8 +141,8 @@ void apply_pressure(const Model<D>& model, double dt, Particles<D>& particles, W
     if (particles.is_wall(i)) return;
     particles.push[i].setZero();
     if (!particles.moves(i)) return;
-    VecD<D> gradient = work.pressure_sum[i] +
-                       gradient_at_walls(model, particles, near, i, work.base_pressure[i], dt);
+    VecD<D> gradient = work.pressure.sum[i] +
+                       gradient_at_walls(model, particles, near, i, work.pressure.base[i], dt);
     if (corrected && !near.surface[i]) gradient = near.correction[i] * gradient;
     particles.push[i] = model.gradient() / s.density * gradient;
     const VecD<D> before = particles.velocity[i];
@@ -155,7 +155,7 @@ void apply_pressure(const Model<D>& model, double dt, Particles<D>& particles, W
                     [&](std::size_t i) { particles.velocity[i] += work.change[i]; });
 }
 
-template void apply_pressure(const Model<2>&, double, Particles<2>&, Work<2>&);
-template void apply_pressure(const Model<3>&, double, Particles<3>&, Work<3>&);
+template void apply_pressure(const Model<2>&, double, Particles<2>&, Workspace<2>&);
+template void apply_pressure(const Model<3>&, double, Particles<3>&, Workspace<3>&);
 
 }  // namespace snowshed::mps

@@ -20,7 +20,7 @@ inline double kernel_weight(double r, double radius) { return r < radius ? radiu
 /// particle and its neighbours says how much of the room around is filled, however they lie: in
 /// hexagons it is 1.0005 times that of squares that fill as much, and in disorder 1.001 to 1.01
 /// times. The sum of w, which is more curved, is 0.993 times it, or 1.003 to 1.025 times (2D,
-/// radius 2.1). Disordered snow whose sum of w is n0 therefore takes up more room than on its
+/// radius 2.1). Disordered snow whose sum of w is n0 therefore needs more room than on its
 /// lattice.
 inline double filling_weight(double w) {
   const double q = 1 / (1 + w), rest = (1 - q) * (1 - q);

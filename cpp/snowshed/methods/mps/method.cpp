@@ -1,4 +1,6 @@
-// The moving particle semi-implicit method, as the rest of the program knows it.
+// The descriptor of the moving particle semi-implicit method.
+#include <utility>
+
 #include "snowshed/core/errors.hpp"
 #include "snowshed/core/message_format.hpp"
 #include "snowshed/methods/descriptor.hpp"
@@ -12,10 +14,10 @@
 namespace snowshed::mps {
 namespace {
 
-class Descriptor final : public DescriptorOf<Descriptor, Settings> {
+class Descriptor final : public DescriptorBase<Descriptor, Settings> {
  public:
-  const MethodFacts& facts() const override {
-    static const MethodFacts facts{
+  const MethodInfo& info() const override {
+    static const MethodInfo info{
         "mps",
         "The moving particle semi-implicit method: snow as a Bingham and dilatant fluid",
         {Part::panel, Part::slab, Part::ground, Part::obstacles, Part::bodies, Part::domain},
@@ -25,7 +27,7 @@ class Descriptor final : public DescriptorOf<Descriptor, Settings> {
          {"shear_rate", "1/s", "Shear rate, the root of 2 D:D"},
          {"apparent_viscosity", "Pa s", "Shear stress over shear rate"},
          {"particle_kind", "1", "0: moving, 1: erodible, 2: inner wall, 3: dummy wall", 1, 1.0}}};
-    return facts;
+    return info;
   }
 
   std::string step_setting() const override {
@@ -50,8 +52,8 @@ class Descriptor final : public DescriptorOf<Descriptor, Settings> {
       throw InputError("/output/energy",
                        "the balance is kept with /numerics/order \"single_move\" only");
   }
-  ThickSolid as_seen(const Shape& shape, int dimension) const override {
-    return as_particles_see(shape, settings_.spacing, dimension);
+  ThickSolid thickened(const Shape& shape, int dimension) const override {
+    return thickened_for_particles(shape, settings_.spacing, dimension);
   }
   std::unique_ptr<Method> build(const SceneView& scene,
                                 const Surroundings& surroundings) const override {
@@ -84,8 +86,8 @@ class Descriptor final : public DescriptorOf<Descriptor, Settings> {
 }  // namespace
 
 const MethodDescriptor& descriptor() {
-  static const Descriptor own;
-  return own;
+  static const Descriptor instance;
+  return instance;
 }
 
 }  // namespace snowshed::mps

@@ -11,8 +11,8 @@ namespace {
 constexpr float jacobi_damping = 0.9f;  // damping of Jacobi sweeps
 // Enlargement of corrections that are constant within aggregates: of particles, and of aggregates.
 constexpr float first_enlargement = 1.4f, enlargement = 1.8f;
-constexpr std::size_t most_direct = 64;  // unknowns of the level that is solved directly
-constexpr std::size_t most_levels = 24;
+constexpr std::size_t max_direct_unknowns = 64;  // unknowns of the level that is solved directly
+constexpr std::size_t max_levels = 24;
 constexpr std::ptrdiff_t rows_in_piece = 128;
 constexpr std::size_t rows_per_thread = 500;
 
@@ -191,11 +191,11 @@ void Multigrid<D, C>::update(const NeighbourLists<D>& lists, const AlignedVector
     inverse_[i] = diagonal_[i] > 0 ? jacobi_damping / diagonal_[i] : 0.0f;
   });
   levels_.clear();
-  levels_.reserve(most_levels);
+  levels_.reserve(max_levels);
   levels_.emplace_back();
   make_first(cells, period_cells);
   fill_first();
-  while (levels_.back().size() > most_direct && levels_.size() < most_levels) {
+  while (levels_.back().size() > max_direct_unknowns && levels_.size() < max_levels) {
     make_next();
     fill_next(levels_[levels_.size() - 2], levels_.back());
   }

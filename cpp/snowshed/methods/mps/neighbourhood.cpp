@@ -12,14 +12,14 @@ namespace {
 /// Particles that see the fluid on all sides are within it, however low their density: the sum of
 /// w r/r over the neighbours and walls, over n0 (after Khayyer and others 2009). On a lattice it is
 /// 0.28 at a plane surface in 2D, and 0.26 in 3D.
-constexpr double least_asymmetry = 0.12;
+constexpr double min_asymmetry = 0.12;
 /// The same for inner walls, on a lattice 0.05 where the surface meets the wall.
-constexpr double least_wall_asymmetry = 0.03;
+constexpr double min_wall_asymmetry = 0.03;
 /// Below this ratio of number densities a particle is at a surface, with any neighbours.
 constexpr double sparse = 0.75;
-/// Least determinant of the matrix of a particle's neighbours for which gradients are corrected; it
-/// is 1 on a lattice, 0.4 at its surface.
-constexpr double least_determinant = 0.1;
+/// Minimum determinant of the matrix of a particle's neighbours for which gradients are corrected;
+/// it is 1 on a lattice, 0.4 at its surface.
+constexpr double min_determinant = 0.1;
 
 template <int D>
 void sort_particles(const CellOrder<D>& cells, Particles<D>& particles, Particles<D>& spare,
@@ -87,7 +87,7 @@ void find_surface(const Model<D>& model, const Particles<D>& particles, Neighbou
         side += double(near.weight[e]) * near.separation(e).stableNormalized();
       for (const WallImage<D>* m = near.images.begin(i); m < near.images.end(i); ++m)
         side += double(m->weight) * m->separation.stableNormalized();
-      surface = side.norm() > (particles.is_wall(i) ? least_wall_asymmetry : least_asymmetry) * n0;
+      surface = side.norm() > (particles.is_wall(i) ? min_wall_asymmetry : min_asymmetry) * n0;
     }
     near.surface[i] = surface;
   });
@@ -143,7 +143,7 @@ void find_corrections(const Model<D>& model, const Particles<D>& particles, Neig
       near.asymmetry[i] = side;
     }
     moment *= model.gradient();
-    if (moment.determinant() > least_determinant) near.correction[i] = moment.inverse();
+    if (moment.determinant() > min_determinant) near.correction[i] = moment.inverse();
   });
 }
 
@@ -173,7 +173,7 @@ void leave_dry_walls(Particles<D>& particles, Neighbourhood<D>& near, int thread
   });
 }
 
-/// Inner walls are made anew in each step. The hydrostatic pressure of the snow around is a first
+/// Each step makes new inner walls. The hydrostatic pressure of the snow around is a first
 /// guess of theirs.
 template <int D>
 void guess_wall_pressures(const Model<D>& model, Particles<D>& particles,
@@ -208,7 +208,8 @@ const float* slope_without(Kind kind, const Model<D>& model, const Particles<D>&
 }
 
 template <int D>
-void find_neighbours(const Model<D>& model, Particles<D>& particles, double time, Work<D>& work) {
+void find_neighbours(const Model<D>& model, Particles<D>& particles, double time,
+                     Workspace<D>& work) {
   Neighbourhood<D>& near = work.near;
   const int threads = model.threads_for(particles.size());
   const double reach = model.reach(), period = model.options.period;
@@ -240,7 +241,7 @@ void find_neighbours(const Model<D>& model, Particles<D>& particles, double time
 
 template const float* slope_without(Kind, const Model<2>&, const Particles<2>&, Neighbourhood<2>&);
 template const float* slope_without(Kind, const Model<3>&, const Particles<3>&, Neighbourhood<3>&);
-template void find_neighbours(const Model<2>&, Particles<2>&, double, Work<2>&);
-template void find_neighbours(const Model<3>&, Particles<3>&, double, Work<3>&);
+template void find_neighbours(const Model<2>&, Particles<2>&, double, Workspace<2>&);
+template void find_neighbours(const Model<3>&, Particles<3>&, double, Workspace<3>&);
 
 }  // namespace snowshed::mps

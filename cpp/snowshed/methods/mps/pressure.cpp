@@ -73,20 +73,20 @@ double image_divergence(const Model<D>& model, const Particles<D>& particles,
 
 /// The divergence of the velocity, 1/s.
 template <int D>
-double divergence(const Model<D>& model, const Particles<D>& particles, const Work<D>& work,
+double divergence(const Model<D>& model, const Particles<D>& particles, const Workspace<D>& work,
                   std::size_t i) {
   using Matrix = Eigen::Matrix<double, D, D>;
   const Neighbourhood<D>& near = work.near;
   const bool corrected = model.settings().gradient == Gradient::corrected && !near.surface[i];
   const Matrix correction = corrected ? near.correction[i] : Matrix(Matrix::Identity());
   if (model.has_wall_particles()) return slip_divergence(model, particles, near, correction, i);
-  return model.gradient() * correction.cwiseProduct(work.velocity_gradient[i]).sum() +
+  return model.gradient() * correction.cwiseProduct(work.rates.gradient[i]).sum() +
          image_divergence(model, particles, near, correction, i);
 }
 
 /// Sums over the present velocities for `divergence`; the published source needs none.
 template <int D>
-void prepare_divergence(const Model<D>& model, const Particles<D>& particles, Work<D>& work) {
+void prepare_divergence(const Model<D>& model, const Particles<D>& particles, Workspace<D>& work) {
   if (model.settings().source == Source::published) return;
   if (model.has_wall_particles())
     find_slip(model, particles, work.near);
@@ -94,7 +94,7 @@ void prepare_divergence(const Model<D>& model, const Particles<D>& particles, Wo
     sum_velocity_gradients(model, particles, work.near.slope.data(), work);
 }
 
-/// The time in which the density's error is taken away by the share `compensation`, s: the step, or
+/// The time in which the share `compensation` of the density's error is removed, s: the step, or
 /// the time in which a particle of usual speed moves by the Courant factor times l0 where that is
 /// longer. With the step alone a single fast particle, which shortens the step, would raise the
 /// pressure of all snow. (Ours.)
@@ -111,7 +111,7 @@ double compensation_time(const Model<D>& model, double dt, const Particles<D>& p
 
 /// Sources smaller than this share of the source by a particle's weight are rounding errors, and
 /// set no tolerance.
-constexpr double least_source = 1e-8;
+constexpr double min_source = 1e-8;
 
 /// Tolerance of densities below the surface, where particles need not form a lattice.
 constexpr double surface_tolerance = 0.002;
@@ -139,7 +139,7 @@ double compensated_excess(const Model<D>& model, const Particles<D>& particles,
 /// pressure of snow at rest; here its weight is one.
 template <int D>
 double source(const Model<D>& model, double dt, double compensation_time,
-              const Particles<D>& particles, const Work<D>& work, std::size_t i) {
+              const Particles<D>& particles, const Workspace<D>& work, std::size_t i) {
   const Settings& s = model.settings();
   const Neighbourhood<D>& near = work.near;
   if (s.source == Source::published)
@@ -152,33 +152,34 @@ double source(const Model<D>& model, double dt, double compensation_time,
 /// Subtracts the mean from the sources. The pressure of a fluid without a free surface is defined
 /// up to a constant, and its equation has a solution only if the mean of the sources is zero.
 template <int D>
-void balance_sources(Work<D>& work, std::size_t n) {
+void balance_sources(Workspace<D>& work, std::size_t n) {
   double sum = 0, count = 0;
   for (std::size_t i = 0; i < n; ++i)
-    if (!work.fixed[i]) {
-      sum += work.source[i];
+    if (!work.pressure.fixed[i]) {
+      sum += work.pressure.source[i];
       ++count;
     }
   for (std::size_t i = 0; i < n; ++i)
-    if (!work.fixed[i]) work.source[i] -= sum / count;
+    if (!work.pressure.fixed[i]) work.pressure.source[i] -= sum / count;
 }
 
 }  // namespace
 
 /// All is divided by -2 d/(lambda n0): sum of w (p_i - p_j) + diagonal of the surface.
 template <int D>
-void prepare_pressure(const Model<D>& model, const Particles<D>& particles, Work<D>& work) {
+void prepare_pressure(const Model<D>& model, const Particles<D>& particles, Workspace<D>& work) {
   const Neighbourhood<D>& near = work.near;
   const std::size_t n = particles.size();
   const int threads = model.threads_for(n);
   const double n0 = model.kernel.number_density;
   const bool mirrored = model.settings().surface == Surface::mirrored;
-  work.fixed.resize(n);
-  work.diagonal.resize(n);
+  work.pressure.fixed.resize(n);
+  work.pressure.diagonal.resize(n);
   for_each_particle(n, threads, [&](std::size_t i) {
-    work.fixed[i] = particles.kind[i] == Kind::dummy_wall || (near.surface[i] && !mirrored);
-    work.diagonal[i] = 0;
-    if (work.fixed[i]) return;
+    work.pressure.fixed[i] =
+        particles.kind[i] == Kind::dummy_wall || (near.surface[i] && !mirrored);
+    work.pressure.diagonal[i] = 0;
+    if (work.pressure.fixed[i]) return;
     double sum = 0;
     for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) {
       const std::size_t j = near.lists.neighbour(e);
@@ -189,52 +190,54 @@ void prepare_pressure(const Model<D>& model, const Particles<D>& particles, Work
     }
     // Missing neighbours at a free surface have the particle's pressure with the opposite sign.
     if (near.surface[i]) sum += 2 * std::max(0.0, n0 - near.density[i]);
-    work.diagonal[i] = std::max(sum, 1e-3 * n0);
+    work.pressure.diagonal[i] = std::max(sum, 1e-3 * n0);
   });
-  work.enclosed = std::none_of(near.surface.begin(), near.surface.begin() + std::ptrdiff_t(n),
-                               [](std::uint8_t at_surface) { return at_surface != 0; });
+  work.pressure.enclosed =
+      std::none_of(near.surface.begin(), near.surface.begin() + std::ptrdiff_t(n),
+                   [](std::uint8_t at_surface) { return at_surface != 0; });
   if (model.settings().preconditioner == Preconditioner::multigrid)
-    work.multigrid.update(near.lists, near.coupling, work.diagonal, near.cells,
-                          near.cells.period_cells(), threads);
+    work.pressure.multigrid.update(near.lists, near.coupling, work.pressure.diagonal, near.cells,
+                                   near.cells.period_cells(), threads);
 }
 
 namespace {
 
-/// Solves for work.pressure, from its present values.
+/// Solves for work.pressure.values, from its present values.
 template <int D>
-SolveReport solve(const Model<D>& model, Work<D>& work) {
+SolveReport solve(const Model<D>& model, Workspace<D>& work) {
   const Settings& s = model.settings();
   const Neighbourhood<D>& near = work.near;
   const std::size_t n = near.lists.size();
   const int threads = model.threads_for(n);
   const auto apply = [&](const double* p, double* q) {
     for_each_piece(n, threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-      model.kernels.apply(near.rows(), near.coupling.data(), work.diagonal.data(), p, q, begin,
-                          end);
+      model.kernels.apply(near.rows(), near.coupling.data(), work.pressure.diagonal.data(), p, q,
+                          begin, end);
     });
   };
   const auto by_conjugate_gradients = [&](const auto& precondition) {
-    return conjugate_gradients(n, s.pressure_tolerance, work.pressure_scale, s.max_iterations,
-                               threads, work.cg, work.pressure.data(), work.source.data(), apply,
-                               precondition);
+    return conjugate_gradients(n, s.pressure_tolerance, work.pressure.scale, s.max_iterations,
+                               threads, work.cg, work.pressure.values.data(),
+                               work.pressure.source.data(), apply, precondition);
   };
   if (s.preconditioner == Preconditioner::multigrid)
-    return by_conjugate_gradients([&](const double* r, double* z) { work.multigrid.apply(r, z); });
+    return by_conjugate_gradients(
+        [&](const double* r, double* z) { work.pressure.multigrid.apply(r, z); });
   if (s.preconditioner == Preconditioner::jacobi)
     return by_conjugate_gradients([&](const double* r, double* z) {
       for_each_particle(n, threads, [&](std::size_t i) {
-        z[i] = work.diagonal[i] > 0 ? r[i] / work.diagonal[i] : 0.0;
+        z[i] = work.pressure.diagonal[i] > 0 ? r[i] / work.pressure.diagonal[i] : 0.0;
       });
     });
-  return solve_with_eigen(near.lists, near.coupling, work.diagonal, work.source,
-                          s.pressure_tolerance, s.max_iterations, work.pressure);
+  return solve_with_eigen(near.lists, near.coupling, work.pressure.diagonal, work.pressure.source,
+                          s.pressure_tolerance, s.max_iterations, work.pressure.values);
 }
 
 }  // namespace
 
 template <int D>
 SolveReport solve_pressure(const Model<D>& model, double dt, Particles<D>& particles,
-                           Work<D>& work) {
+                           Workspace<D>& work) {
   Neighbourhood<D>& near = work.near;
   const std::size_t n = particles.size();
   prepare_divergence(model, particles, work);
@@ -242,34 +245,36 @@ SolveReport solve_pressure(const Model<D>& model, double dt, Particles<D>& parti
   // The Laplacian of a linear pressure, which is not zero because neighbours do not lie evenly
   // around.
   const bool corrected = model.settings().gradient == Gradient::corrected;
-  work.source.resize(n);
-  work.pressure.resize(n);
+  work.pressure.source.resize(n);
+  work.pressure.values.resize(n);
   for_each_particle(n, model.threads_for(n), [&](std::size_t i) {
-    work.pressure[i] = work.fixed[i] ? 0 : particles.pressure[i];
-    work.source[i] = 0;
-    if (work.fixed[i]) return;
+    work.pressure.values[i] = work.pressure.fixed[i] ? 0 : particles.pressure[i];
+    work.pressure.source[i] = 0;
+    if (work.pressure.fixed[i]) return;
     double value = -source(model, dt, relaxation, particles, work, i) / model.laplacian();
     if (corrected) value -= model.settings().density * near.asymmetry[i].dot(particles.push[i]);
     if (near.surface[i]) value = std::max(value, 0.0);  // snow does not hang together there
-    work.source[i] = value;
+    work.pressure.source[i] = value;
   });
-  if (work.enclosed) balance_sources(work, n);
+  if (work.pressure.enclosed) balance_sources(work, n);
   double square = 0;
-  for (std::size_t i = 0; i < n; ++i) square += work.source[i] * work.source[i];
+  for (std::size_t i = 0; i < n; ++i) square += work.pressure.source[i] * work.pressure.source[i];
   const double weight = model.settings().density * model.gravity.norm() * model.settings().spacing;
-  work.pressure_scale = std::max(std::sqrt(square), least_source * weight * std::sqrt(double(n)));
+  work.pressure.scale = std::max(std::sqrt(square), min_source * weight * std::sqrt(double(n)));
   const SolveReport report = solve(model, work);
-  const double least = work.enclosed ? *std::min_element(work.pressure.begin(),
-                                                         work.pressure.begin() + std::ptrdiff_t(n))
-                                     : 0.0;
+  const double least = work.pressure.enclosed
+                           ? *std::min_element(work.pressure.values.begin(),
+                                               work.pressure.values.begin() + std::ptrdiff_t(n))
+                           : 0.0;
   for (std::size_t i = 0; i < n; ++i)
-    particles.pressure[i] = work.fixed[i] ? 0.0 : std::max(0.0, work.pressure[i] - least);
+    particles.pressure[i] =
+        work.pressure.fixed[i] ? 0.0 : std::max(0.0, work.pressure.values[i] - least);
   return report;
 }
 
-template SolveReport solve_pressure(const Model<2>&, double, Particles<2>&, Work<2>&);
-template SolveReport solve_pressure(const Model<3>&, double, Particles<3>&, Work<3>&);
-template void prepare_pressure(const Model<2>&, const Particles<2>&, Work<2>&);
-template void prepare_pressure(const Model<3>&, const Particles<3>&, Work<3>&);
+template SolveReport solve_pressure(const Model<2>&, double, Particles<2>&, Workspace<2>&);
+template SolveReport solve_pressure(const Model<3>&, double, Particles<3>&, Workspace<3>&);
+template void prepare_pressure(const Model<2>&, const Particles<2>&, Workspace<2>&);
+template void prepare_pressure(const Model<3>&, const Particles<3>&, Workspace<3>&);
 
 }  // namespace snowshed::mps

@@ -9,13 +9,14 @@ namespace snowshed::mps {
 namespace {
 
 /// Distance from a wall, in l0, below which the velocity behind it grows no further.
-constexpr double nearest_no_slip = 0.25;
+constexpr double min_no_slip_distance = 0.25;
 
 /// The difference of velocities between a particle and one behind a wall's surface over that
 /// between the particle and the surface.
 template <int D>
 double no_slip_factor(const WallContact<D>& c, const VecD<D>& separation, double spacing) {
-  return std::max(1.0, -separation.dot(c.normal) / std::max(c.distance, nearest_no_slip * spacing));
+  return std::max(1.0,
+                  -separation.dot(c.normal) / std::max(c.distance, min_no_slip_distance * spacing));
 }
 
 /// Calls visit(separation, slope, change of velocity) for each wall particle and image that a
@@ -57,8 +58,8 @@ Eigen::Matrix<double, D, D> rate_correction(const Model<D>& model, const Particl
                 moment += slope * separation * separation.transpose();
               });
   moment *= model.gradient();
-  constexpr double least_determinant = 0.05;  // 1 on a lattice
-  if (!(moment.determinant() > least_determinant)) return model.gradient() * Matrix::Identity();
+  constexpr double min_determinant = 0.05;  // 1 on a lattice
+  if (!(moment.determinant() > min_determinant)) return model.gradient() * Matrix::Identity();
   return model.gradient() * moment.inverse();
 }
 
@@ -94,52 +95,53 @@ double smooth_pressure(const Model<D>& model, const Particles<D>& particles,
 }  // namespace
 
 template <int D>
-void smooth_pressures(const Model<D>& model, const Particles<D>& particles, Work<D>& work) {
-  work.smooth_pressure.resize(particles.size());
+void smooth_pressures(const Model<D>& model, const Particles<D>& particles, Workspace<D>& work) {
+  work.rates.smooth_pressure.resize(particles.size());
   if (model.rheology.friction == 0) return;
   for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {
-    work.smooth_pressure[i] = smooth_pressure(model, particles, work.near, i);
+    work.rates.smooth_pressure[i] = smooth_pressure(model, particles, work.near, i);
   });
 }
 
 template <int D>
-void prepare_rates(const Model<D>& model, const Particles<D>& particles, Work<D>& work) {
+void prepare_rates(const Model<D>& model, const Particles<D>& particles, Workspace<D>& work) {
   Neighbourhood<D>& near = work.near;
   const std::size_t n = particles.size();
   const int threads = model.threads_for(n);
   near.moments.resize(n);
-  work.snow_slope = slope_without(Kind::inner_wall, model, particles, near);
+  work.rates.snow_slope = slope_without(Kind::inner_wall, model, particles, near);
   for_each_piece(n, threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     model.kernels.sum_moments(near.rows(), near.offsets().data(), near.weight.data(),
-                              work.snow_slope, near.moments.data(), begin, end);
+                              work.rates.snow_slope, near.moments.data(), begin, end);
   });
-  work.rate_correction.resize(n);
+  work.rates.correction.resize(n);
   for_each_particle(n, threads, [&](std::size_t i) {
-    if (!particles.is_wall(i)) work.rate_correction[i] = rate_correction(model, particles, near, i);
+    if (!particles.is_wall(i))
+      work.rates.correction[i] = rate_correction(model, particles, near, i);
   });
 }
 
 template <int D>
 void sum_velocity_gradients(const Model<D>& model, const Particles<D>& particles,
-                            const float* slope, Work<D>& work) {
+                            const float* slope, Workspace<D>& work) {
   const Neighbourhood<D>& near = work.near;
-  work.velocity_gradient.resize(particles.size());
+  work.rates.gradient.resize(particles.size());
   for_each_piece(particles.size(), model.threads_for(particles.size()),
                  [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
                    model.kernels.sum_gradients(near.rows(), near.offsets().data(), slope,
                                                particles.velocity.data()->data(),
-                                               work.velocity_gradient.data()->data(), begin, end);
+                                               work.rates.gradient.data()->data(), begin, end);
                  });
 }
 
 template <int D>
-void find_rates(const Model<D>& model, Particles<D>& particles, Work<D>& work) {
+void find_rates(const Model<D>& model, Particles<D>& particles, Workspace<D>& work) {
   using Matrix = Eigen::Matrix<double, D, D>;
   const Neighbourhood<D>& near = work.near;
   const int threads = model.threads_for(particles.size());
-  sum_velocity_gradients(model, particles, work.snow_slope, work);
+  sum_velocity_gradients(model, particles, work.rates.snow_slope, work);
   for_each_particle(particles.size(), threads, [&](std::size_t i) {
-    Matrix& gradient = work.velocity_gradient[i];
+    Matrix& gradient = work.rates.gradient[i];
     if (particles.is_wall(i)) {
       gradient.setZero();
     } else {
@@ -147,30 +149,32 @@ void find_rates(const Model<D>& model, Particles<D>& particles, Work<D>& work) {
                   [&](const VecD<D>& separation, double slope, const VecD<D>& change) {
                     gradient += change * (slope * separation).transpose();
                   });
-      gradient = Matrix(gradient * work.rate_correction[i]);
+      gradient = Matrix(gradient * work.rates.correction[i]);
     }
     particles.rate[i] = shear_rate<D>(gradient);
   });
 }
 
 template <int D>
-void find_viscosities(const Model<D>& model, Particles<D>& particles, const Work<D>& work) {
+void find_viscosities(const Model<D>& model, Particles<D>& particles, const Workspace<D>& work) {
   const Rheology& law = model.rheology;
   for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {
-    const double pressure = law.friction > 0 ? work.smooth_pressure[i] : 0.0;
+    const double pressure = law.friction > 0 ? work.rates.smooth_pressure[i] : 0.0;
     particles.viscosity[i] = law.apparent_viscosity(law.yield_stress(pressure), particles.rate[i]);
   });
 }
 
-template void smooth_pressures(const Model<2>&, const Particles<2>&, Work<2>&);
-template void smooth_pressures(const Model<3>&, const Particles<3>&, Work<3>&);
-template void prepare_rates(const Model<2>&, const Particles<2>&, Work<2>&);
-template void prepare_rates(const Model<3>&, const Particles<3>&, Work<3>&);
-template void sum_velocity_gradients(const Model<2>&, const Particles<2>&, const float*, Work<2>&);
-template void sum_velocity_gradients(const Model<3>&, const Particles<3>&, const float*, Work<3>&);
-template void find_rates(const Model<2>&, Particles<2>&, Work<2>&);
-template void find_rates(const Model<3>&, Particles<3>&, Work<3>&);
-template void find_viscosities(const Model<2>&, Particles<2>&, const Work<2>&);
-template void find_viscosities(const Model<3>&, Particles<3>&, const Work<3>&);
+template void smooth_pressures(const Model<2>&, const Particles<2>&, Workspace<2>&);
+template void smooth_pressures(const Model<3>&, const Particles<3>&, Workspace<3>&);
+template void prepare_rates(const Model<2>&, const Particles<2>&, Workspace<2>&);
+template void prepare_rates(const Model<3>&, const Particles<3>&, Workspace<3>&);
+template void sum_velocity_gradients(const Model<2>&, const Particles<2>&, const float*,
+                                     Workspace<2>&);
+template void sum_velocity_gradients(const Model<3>&, const Particles<3>&, const float*,
+                                     Workspace<3>&);
+template void find_rates(const Model<2>&, Particles<2>&, Workspace<2>&);
+template void find_rates(const Model<3>&, Particles<3>&, Workspace<3>&);
+template void find_viscosities(const Model<2>&, Particles<2>&, const Workspace<2>&);
+template void find_viscosities(const Model<3>&, Particles<3>&, const Workspace<3>&);
 
 }  // namespace snowshed::mps

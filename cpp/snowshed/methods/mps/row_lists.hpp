@@ -18,7 +18,7 @@ class RowLists {
   /// Where an entry stands among all.
   std::size_t place(const T* entry) const { return std::size_t(entry - all_.data()); }
 
-  /// Makes the lists of particles anew: make(begin, end, first, list) appends those of a part of
+  /// Makes new lists of the particles: make(begin, end, first, list) appends those of a part of
   /// the particles to `list`, one after another, and sets first[i + 1] to the length of each.
   template <class Make>
   void update(std::size_t particles, std::size_t in_part, int threads, const Make& make) {

@@ -14,7 +14,7 @@ std::string in_millimetres(double metres) { return show_rounded(1000 * metres) +
 /// Adds a note on a body that is too small for a lattice of particles of equal mass.
 void note_coarse_lattice(const LevelSet& shape, const Settings& settings, double mass_ratio,
                          std::size_t particles, std::vector<std::string>& notes) {
-  constexpr double most_uneven = 0.02;
+  constexpr double max_unevenness = 0.02;
   const double thickness = 2 * shape.inradius();
   const std::string count =
       std::to_string(particles) + (particles == 1 ? " particle" : " particles");
@@ -23,7 +23,7 @@ void note_coarse_lattice(const LevelSet& shape, const Settings& settings, double
                     in_millimetres(settings.spacing) + ": it becomes " + count +
                     " that fill no layer, and neither pressure nor yield stress are resolved; "
                     "give a smaller /numerics/spacing");
-  else if (std::abs(mass_ratio - 1) > most_uneven)
+  else if (std::abs(mass_ratio - 1) > max_unevenness)
     notes.push_back("becomes " + count + " of " + show_rounded(mass_ratio) +
                     " times the mass that a cell of the spacing holds, so that its mass is right; "
                     "give a smaller /numerics/spacing");

@@ -14,8 +14,8 @@ enum class Source { published, compensated };
 enum class Gradient { published, conservative, corrected };
 /// Whether viscosity acts before the pressure, or after it and then the pressure once more.
 enum class Splitting { viscosity_first, pressure_first };
-/// When pressure and viscosity of a step are found together: never, where the plastic viscosity is
-/// stiff, or always. Only where the pressure acts first.
+/// When pressure and viscosity of a step are solved together: never, where the plastic viscosity is
+/// stiff, or always. Only if the pressure acts first.
 enum class Coupling { none, stiff, always };
 /// Where the pressure is zero: at particles of low number density, or half a spacing above them.
 enum class Surface { published, mirrored };
@@ -57,7 +57,7 @@ struct Settings {
 
   Walls walls = Walls::mirrors;
   Source source = Source::compensated;
-  double compensation = 0.1;  // share of the density's error that a step takes away
+  double compensation = 0.1;  // share of the density's error that a step removes
   Gradient gradient = Gradient::corrected;
   Splitting splitting = Splitting::pressure_first;
   Coupling coupling = Coupling::stiff;

@@ -12,9 +12,9 @@ namespace snowshed::mps {
 namespace {
 
 /// If a particle would move farther than this (in l0), the step is repeated with half its length,
-/// at most `most_halvings` times: the particle could pass through a wall.
-constexpr double longest_distance = 0.5;
-constexpr int most_halvings = 20;
+/// at most `max_halvings` times: the particle could pass through a wall.
+constexpr double max_distance = 0.5;
+constexpr int max_halvings = 20;
 
 /// With conservative gradients pairs repel each other with the sum of their pressures, as springs
 /// do: a disturbance of the lattice runs through it with about twice the root of p/rho. A step is
@@ -28,25 +28,25 @@ constexpr double pressure_courant = 0.5;
 constexpr double expected_shear = 0.5;
 
 /// Pressure and viscosity are solved together under three conditions, with the root mean square u
-/// of the speeds. The plastic viscosity eta is at least `least_stiffness` rho l0^2/dt. The fluid
-/// moves: u is more than `least_fall` times rho g l0^2/eta, the speed of a fall that viscosity
+/// of the speeds. The plastic viscosity eta is at least `min_stiffness` rho l0^2/dt. The fluid
+/// moves: u is more than `min_fall` times rho g l0^2/eta, the speed of a fall that viscosity
 /// slows down within l0. (In a stiff fluid at rest errors of the gradients would cause large
 /// pressures, because these hardly move it.) The fluid creeps: rho u^3/(eta g), the square of the
-/// Reynolds number of a body so high that it flows at u, is less than `most_inertia`. Fast flows
+/// Reynolds number of a body so high that it flows at u, is less than `max_inertia`. Fast flows
 /// lose no volume to viscosity, and are solved the cheaper way for any l0.
-constexpr double least_stiffness = 2, least_fall = 2, most_inertia = 1e-3;
+constexpr double min_stiffness = 2, min_fall = 2, max_inertia = 1e-3;
 /// The iteration begins with this share of the last step's viscous force; errors of the pressure
 /// then die out. It ends when the force changes by less than this part of gravity. It also ends if
 /// it diverges; the iterations made until then are kept, because they are better than one.
 constexpr double first_shear = 0.9, coupling_tolerance = 3e-3;
-constexpr int most_couplings = 20;
+constexpr int max_couplings = 20;
 
-void require_converged(const SolveReport& report, const char* what, int most) {
+void require_converged(const SolveReport& report, const char* what, int max_iterations) {
   if (report.converged) return;
   throw SimulationError(
       std::string("the ") + what + " equation has not converged: " + show_rounded(report.residual) +
       " of its right-hand side is left after " + std::to_string(report.iterations) +
-      " iterations; allowed: " + std::to_string(most));
+      " iterations; allowed: " + std::to_string(max_iterations));
 }
 
 /// The last of several solves, with the iterations of all.
@@ -82,7 +82,7 @@ Model<D>::Model(Options o)
       rheology(Rheology::from(options.settings)),
       threads(threads_to_use(options.settings.threads)) {
   for (Obstacle& o : options.obstacles)
-    o.shape = as_particles_see(o.shape, options.settings.spacing, D).shape;
+    o.shape = thickened_for_particles(o.shape, options.settings.spacing, D).shape;
 }
 
 template <int D>
@@ -110,7 +110,8 @@ double SolverImpl<D>::pressure_step(const Particles<D>& particles) const {
 template <int D>
 double SolverImpl<D>::choose_step(const Particles<D>& particles) const {
   const Settings& s = model_.settings();
-  const double speed = std::max(largest_speed(particles), largest_wall_speed(work_.near.contacts));
+  const double speed =
+      std::max(largest_speed(particles), largest_wall_speed(workspace_.near.contacts));
   const double g = model_.gravity.norm(), distance = s.courant_factor * s.spacing;
   const double root = std::sqrt(speed * speed + 4 * g * distance);
   double dt = std::min(s.max_time_step, pressure_step(particles));
@@ -134,138 +135,142 @@ void SolverImpl<D>::move(double dt, Particles<D>& particles) const {
 
 /// The velocities and pressures after a step of dt, from those in the workspace.
 template <int D>
-void SolverImpl<D>::attempt(double dt, State<D>& next) {
+void SolverImpl<D>::try_step(double dt, State<D>& next) {
   add_gravity(model_, dt, next.particles);
   if (model_.settings().splitting == Splitting::pressure_first)
-    act_after_pressure(dt, next);
+    solve_pressure_first(dt, next);
   else
-    act_before_pressure(dt, next);
+    solve_viscosity_first(dt, next);
 }
 
 template <int D>
-void SolverImpl<D>::act_viscosity(double dt, State<D>& next) {
+void SolverImpl<D>::apply_viscosity(double dt, State<D>& next) {
   Particles<D>& p = next.particles;
   const AlignedVector<VecD<D>> before = p.velocity;
-  smooth_pressures(model_, p, work_);
-  next.solves.viscosity = apply_viscosity(model_, dt, p, work_);
+  smooth_pressures(model_, p, workspace_);
+  next.solves.viscosity = mps::apply_viscosity(model_, dt, p, workspace_);
   require_converged(next.solves.viscosity, "viscous", model_.settings().max_iterations);
   for (std::size_t i = 0; i < p.size(); ++i) p.shear[i] = (p.velocity[i] - before[i]) / dt;
   if (!model_.options.energy) return;
-  work_.viscous = p.velocity;
-  work_.viscous_change.resize(p.size());
-  for (std::size_t i = 0; i < p.size(); ++i) work_.viscous_change[i] = p.velocity[i] - before[i];
+  workspace_.energy.viscous = p.velocity;
+  workspace_.energy.viscous_change.resize(p.size());
+  for (std::size_t i = 0; i < p.size(); ++i)
+    workspace_.energy.viscous_change[i] = p.velocity[i] - before[i];
 }
 
-/// Whether pressure and viscosity of a step are found together.
+/// Whether pressure and viscosity of a step are solved together.
 template <int D>
-bool SolverImpl<D>::couples(double dt) const {
+bool SolverImpl<D>::is_coupled(double dt) const {
   const Settings& s = model_.settings();
   if (s.coupling != Coupling::stiff) return s.coupling == Coupling::always;
   const double per_speed = s.viscosity / (s.density * s.spacing * s.spacing);  // 1/s
-  if (dt * per_speed < least_stiffness) return false;
+  if (dt * per_speed < min_stiffness) return false;
   double square = 0;
-  for (const VecD<D>& u : work_.before) square += u.squaredNorm();
-  const double speed = std::sqrt(square / double(work_.before.size()));
+  for (const VecD<D>& u : workspace_.before) square += u.squaredNorm();
+  const double speed = std::sqrt(square / double(workspace_.before.size()));
   const double g = model_.gravity.norm();
-  return per_speed * speed > least_fall * g &&
-         s.density * speed * speed * speed < most_inertia * s.viscosity * g;
+  return per_speed * speed > min_fall * g &&
+         s.density * speed * speed * speed < max_inertia * s.viscosity * g;
 }
 
-/// The pressure acts before viscosity, so that snow that does not yield stays where it is. It
-/// expects a viscous force where snow flows: a share of the last step's. Viscosity may still
-/// compress the snow. The pressure of the next step undoes this; or, where they are coupled, both
-/// act anew until the force is the expected one, accelerated. Ours.
+/// The pressure acts before viscosity, so that unyielded snow does not move. In flowing snow it
+/// includes a share of the last step's viscous force. Viscosity may still compress the snow: the
+/// next step's pressure corrects this, or, in coupled steps, both are iterated with Anderson
+/// acceleration until the force converges (ours).
 template <int D>
-void SolverImpl<D>::act_after_pressure(double dt, State<D>& next) {
+void SolverImpl<D>::solve_pressure_first(double dt, State<D>& next) {
   Particles<D>& p = next.particles;
   const std::size_t n = p.size();
   const int threads = model_.threads_for(n);
-  const bool coupled = couples(dt);
-  prepare_pressure(model_, p, work_);
-  work_.predicted_velocity = p.velocity;
-  work_.flowing.resize(n);
-  work_.expected_shear.resize(n);
+  const bool coupled = is_coupled(dt);
+  prepare_pressure(model_, p, workspace_);
+  workspace_.splitting.predicted_velocity = p.velocity;
+  workspace_.splitting.flowing.resize(n);
+  workspace_.splitting.expected_shear.resize(n);
   for_each_particle(n, threads, [&](std::size_t i) {
-    work_.flowing[i] = p.moves(i) && model_.rheology.flows(p.rate[i]);
-    work_.expected_shear[i].setZero();
-    if (work_.flowing[i])
-      work_.expected_shear[i] = (coupled ? first_shear : expected_shear) * p.shear[i];
+    workspace_.splitting.flowing[i] = p.moves(i) && model_.rheology.flows(p.rate[i]);
+    workspace_.splitting.expected_shear[i].setZero();
+    if (workspace_.splitting.flowing[i])
+      workspace_.splitting.expected_shear[i] =
+          (coupled ? first_shear : expected_shear) * p.shear[i];
   });
   AndersonMixing<D> mixing;
   SolveReport pressure, viscosity;
   for (int k = 0;; ++k) {
     for_each_particle(n, threads, [&](std::size_t i) {
-      p.velocity[i] = work_.predicted_velocity[i] + dt * work_.expected_shear[i];
+      p.velocity[i] =
+          workspace_.splitting.predicted_velocity[i] + dt * workspace_.splitting.expected_shear[i];
     });
-    act_with_expected_shear(dt, next);
+    solve_with_expected_shear(dt, next);
     add_solve(next.solves.pressure, pressure);
     add_solve(next.solves.viscosity, viscosity);
-    if (!coupled || k + 1 == most_couplings) break;
-    work_.shear = p.shear;
+    if (!coupled || k + 1 == max_couplings) break;
+    workspace_.splitting.shear = p.shear;
     double square = 0;
     for (std::size_t i = 0; i < n; ++i) {
-      if (!work_.flowing[i]) work_.shear[i].setZero();
-      square += (work_.shear[i] - work_.expected_shear[i]).squaredNorm();
+      if (!workspace_.splitting.flowing[i]) workspace_.splitting.shear[i].setZero();
+      square +=
+          (workspace_.splitting.shear[i] - workspace_.splitting.expected_shear[i]).squaredNorm();
     }
     const double limit = coupling_tolerance * model_.gravity.norm();
     if (square <= limit * limit * double(n)) break;
-    mixing.mix(work_.expected_shear, work_.shear);
-    std::swap(work_.expected_shear, work_.shear);
+    mixing.mix(workspace_.splitting.expected_shear, workspace_.splitting.shear);
+    std::swap(workspace_.splitting.expected_shear, workspace_.splitting.shear);
   }
   next.solves = {pressure, viscosity};
 }
 
 template <int D>
-void SolverImpl<D>::act_with_expected_shear(double dt, State<D>& next) {
+void SolverImpl<D>::solve_with_expected_shear(double dt, State<D>& next) {
   Particles<D>& p = next.particles;
-  next.solves.pressure = solve_pressure(model_, dt, p, work_);
+  next.solves.pressure = solve_pressure(model_, dt, p, workspace_);
   require_converged(next.solves.pressure, "pressure", model_.settings().max_iterations);
-  apply_pressure(model_, dt, p, work_);
+  apply_pressure(model_, dt, p, workspace_);
   for_each_particle(p.size(), model_.threads_for(p.size()), [&](std::size_t i) {
-    p.velocity[i] = work_.predicted_velocity[i] + work_.change[i];
+    p.velocity[i] = workspace_.splitting.predicted_velocity[i] + workspace_.change[i];
   });
-  act_viscosity(dt, next);
+  apply_viscosity(dt, next);
 }
 
 /// As published.
 template <int D>
-void SolverImpl<D>::act_before_pressure(double dt, State<D>& next) {
+void SolverImpl<D>::solve_viscosity_first(double dt, State<D>& next) {
   const Settings& s = model_.settings();
   Particles<D>& p = next.particles;
-  act_viscosity(dt, next);
+  apply_viscosity(dt, next);
   if (s.order == Order::published) {
     move(dt, p);
-    find_neighbours(model_, p, state_.time + dt, work_);
+    find_neighbours(model_, p, state_.time + dt, workspace_);
   }
-  prepare_pressure(model_, p, work_);
-  next.solves.pressure = solve_pressure(model_, dt, p, work_);
+  prepare_pressure(model_, p, workspace_);
+  next.solves.pressure = solve_pressure(model_, dt, p, workspace_);
   require_converged(next.solves.pressure, "pressure", s.max_iterations);
-  apply_pressure(model_, dt, p, work_);
+  apply_pressure(model_, dt, p, workspace_);
   if (s.order == Order::published) {
-    std::swap(p.velocity, work_.change);
+    std::swap(p.velocity, workspace_.change);
     move(dt, p);
-    std::swap(p.velocity, work_.change);
+    std::swap(p.velocity, workspace_.change);
   }
 }
 
 template <int D>
 void SolverImpl<D>::step() {
   if (size() == 0) throw SimulationError("there is no snow");
-  State<D>&next = work_.next, &start = work_.start;
+  State<D>&next = workspace_.next, &start = workspace_.start;
   next = state_;
   if (model_.has_wall_particles())
-    work_.walls.append_near(state_.time, model_.options.period, model_.particle_mass(),
-                            next.particles);
-  find_neighbours(model_, next.particles, state_.time, work_);
+    workspace_.walls.append_near(state_.time, model_.options.period, model_.particle_mass(),
+                                 next.particles);
+  find_neighbours(model_, next.particles, state_.time, workspace_);
   double dt = choose_step(next.particles);
   start = next;
-  work_.before = start.particles.velocity;
+  workspace_.before = start.particles.velocity;
   const Settings& s = model_.settings();
   for (int halvings = 0;; ++halvings) {
-    attempt(dt, next);
+    try_step(dt, next);
     const double distance = largest_speed(next.particles) * dt;
-    if (distance <= longest_distance * s.spacing && dt <= 2 * pressure_step(next.particles)) break;
-    if (halvings == most_halvings || !std::isfinite(distance))
+    if (distance <= max_distance * s.spacing && dt <= 2 * pressure_step(next.particles)) break;
+    if (halvings == max_halvings || !std::isfinite(distance))
       throw SimulationError("a particle would move " + show_rounded(distance) +
                             " m within a step of " + show_rounded(dt) + " s");
     dt *= 0.5;
@@ -274,16 +279,16 @@ void SolverImpl<D>::step() {
   }
   if (model_.options.energy) {
     const std::size_t n = next.particles.size();
-    work_.moved.resize(n);
-    for (std::size_t i = 0; i < n; ++i) work_.moved[i] = start.particles.moves(i);
+    workspace_.energy.moved.resize(n);
+    for (std::size_t i = 0; i < n; ++i) workspace_.energy.moved[i] = start.particles.moves(i);
   }
-  keep_spacing(model_, dt, next.particles, work_);
-  if (model_.options.energy) work_.projected = next.particles.velocity;
+  keep_spacing(model_, dt, next.particles, workspace_);
+  if (model_.options.energy) workspace_.energy.projected = next.particles.velocity;
   if (s.order == Order::single_move) move(dt, next.particles);
-  erode_and_deposit(model_, next.particles, work_);
+  erode_and_deposit(model_, next.particles, workspace_);
   for (std::size_t i = 0; i < next.particles.size(); ++i)
-    next.particles.density[i] = work_.near.density[i] / model_.kernel.number_density;
-  if (model_.options.energy) book_energy(next, dt);
+    next.particles.density[i] = workspace_.near.density[i] / model_.kernel.number_density;
+  if (model_.options.energy) record_energy(next, dt);
   if (model_.has_wall_particles()) remove_walls(next.particles);
   next.time += dt;
   next.dt = dt;

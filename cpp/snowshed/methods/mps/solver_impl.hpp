@@ -6,12 +6,14 @@
 
 namespace snowshed::mps {
 
+/// A step builds the next state beside the present one, and fails before it takes it over. A failed
+/// step therefore never leaves unsound particles, and the class has no Soundness.
 template <int D>
 class SolverImpl final : public Solver {
  public:
   explicit SolverImpl(Options options) : model_(std::move(options)) {
     if (model_.has_wall_particles())
-      work_.walls =
+      workspace_.walls =
           WallParticles<D>(model_.options.obstacles, model_.settings().spacing, model_.reach());
   }
 
@@ -48,14 +50,14 @@ class SolverImpl final : public Solver {
  private:
   void append(State<D>&, const ParticleBatch&) const;
   void accept(State<D>);
-  void attempt(double dt, State<D>& next);
-  void act_viscosity(double dt, State<D>& next);
-  bool couples(double dt) const;
-  void act_after_pressure(double dt, State<D>& next);
-  void act_with_expected_shear(double dt, State<D>& next);
-  void act_before_pressure(double dt, State<D>& next);
+  void try_step(double dt, State<D>& next);
+  void apply_viscosity(double dt, State<D>& next);
+  bool is_coupled(double dt) const;
+  void solve_pressure_first(double dt, State<D>& next);
+  void solve_with_expected_shear(double dt, State<D>& next);
+  void solve_viscosity_first(double dt, State<D>& next);
   void move(double dt, Particles<D>&) const;
-  void book_energy(State<D>& next, double dt) const;
+  void record_energy(State<D>& next, double dt) const;
   double choose_step(const Particles<D>&) const;
   double pressure_step(const Particles<D>&) const;
   double largest_speed(const Particles<D>&) const;
@@ -65,7 +67,7 @@ class SolverImpl final : public Solver {
 
   Model<D> model_;
   State<D> state_;
-  Work<D> work_;
+  Workspace<D> workspace_;
   IdOrder order_;
 };
 

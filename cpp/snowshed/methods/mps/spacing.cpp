@@ -24,18 +24,21 @@ constexpr Collision inelastic{1.0, 0.0};
 constexpr double shift_factor = 0.05;
 
 template <int D>
-void collide(const Model<D>& model, const Collision& law, Particles<D>& particles, Work<D>& work) {
+void collide(const Model<D>& model, const Collision& law, Particles<D>& particles,
+             Workspace<D>& work) {
   const Neighbourhood<D>& near = work.near;
   const std::size_t n = particles.size();
   const int threads = model.threads_for(n);
-  work.yielding.resize(n);
+  work.spacing.yielding.resize(n);
   work.change.resize(n);
-  for_each_particle(n, threads,
-                    [&](std::size_t i) { work.yielding[i] = particles.moves(i) ? 0.5 : 1.0; });
+  for_each_particle(n, threads, [&](std::size_t i) {
+    work.spacing.yielding[i] = particles.moves(i) ? 0.5 : 1.0;
+  });
   for_each_piece(n, threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    model.kernels.sum_approaches(
-        near.rows(), near.offsets().data(), particles.velocity.data()->data(), work.yielding.data(),
-        law.distance * model.settings().spacing, work.change.data()->data(), begin, end);
+    model.kernels.sum_approaches(near.rows(), near.offsets().data(),
+                                 particles.velocity.data()->data(), work.spacing.yielding.data(),
+                                 law.distance * model.settings().spacing,
+                                 work.change.data()->data(), begin, end);
   });
   for_each_particle(n, threads, [&](std::size_t i) {
     if (particles.moves(i)) particles.velocity[i] -= (1 + law.restitution) * work.change[i];
@@ -44,15 +47,15 @@ void collide(const Model<D>& model, const Collision& law, Particles<D>& particle
 
 /// d/n0 times the sum of w r/r^2, which points from fewer to more particles, 1/m.
 template <int D>
-void find_concentration_gradients(const Model<D>& model, std::size_t n, Work<D>& work) {
+void find_concentration_gradients(const Model<D>& model, std::size_t n, Workspace<D>& work) {
   const Neighbourhood<D>& near = work.near;
-  work.concentration.resize(n);
+  work.spacing.concentration.resize(n);
   for_each_piece(n, model.threads_for(n), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     model.kernels.sum_separations(near.rows(), near.offsets().data(), near.slope.data(), nullptr,
-                                  nullptr, work.concentration.data()->data(), begin, end);
+                                  nullptr, work.spacing.concentration.data()->data(), begin, end);
   });
   for_each_particle(n, model.threads_for(n), [&](std::size_t i) {
-    VecD<D>& gradient = work.concentration[i];
+    VecD<D>& gradient = work.spacing.concentration[i];
     for (const WallImage<D>* m = near.images.begin(i); m < near.images.end(i); ++m)
       gradient += double(m->slope) * m->separation;
     gradient *= model.gradient();
@@ -75,7 +78,7 @@ VecD<D> inward(const AlignedVector<VecD<D>>& gradients, const Neighbourhood<D>& 
 /// towards it, because the surface would rise. Snow at rest is shifted, too, at the speed of a fall
 /// over l0: the corrected gradient does not keep its particles apart (ours).
 template <int D>
-void shift(const Model<D>& model, double dt, Particles<D>& particles, Work<D>& work) {
+void shift(const Model<D>& model, double dt, Particles<D>& particles, Workspace<D>& work) {
   const Neighbourhood<D>& near = work.near;
   const double l0 = model.settings().spacing;
   const double fall = std::sqrt(model.gravity.norm() * l0);
@@ -84,16 +87,16 @@ void shift(const Model<D>& model, double dt, Particles<D>& particles, Work<D>& w
   for_each_particle(particles.size(), threads, [&](std::size_t i) {
     work.change[i].setZero();
     if (!particles.moves(i)) return;
-    VecD<D> gradient = work.concentration[i];
+    VecD<D> gradient = work.spacing.concentration[i];
     if (near.below_surface[i]) {
-      const VecD<D> normal = inward<D>(work.concentration, near, i);
+      const VecD<D> normal = inward<D>(work.spacing.concentration, near, i);
       const double outwards = gradient.dot(normal);
       gradient -= (near.surface[i] ? outwards : std::max(outwards, 0.0)) * normal;
     }
     const double travelled = (particles.velocity[i].norm() + fall) * dt / l0;
     VecD<D> shift = -shift_factor * std::min(1.0, 10 * travelled) * l0 * l0 * gradient;
-    const double most = 0.05 * l0;
-    if (shift.norm() > most) shift *= most / shift.norm();
+    const double max_shift = 0.05 * l0;
+    if (shift.norm() > max_shift) shift *= max_shift / shift.norm();
     work.change[i] = shift;
   });
   for_each_particle(particles.size(), threads,
@@ -103,7 +106,7 @@ void shift(const Model<D>& model, double dt, Particles<D>& particles, Work<D>& w
 }  // namespace
 
 template <int D>
-void keep_spacing(const Model<D>& model, double dt, Particles<D>& particles, Work<D>& work) {
+void keep_spacing(const Model<D>& model, double dt, Particles<D>& particles, Workspace<D>& work) {
   switch (model.settings().spacing_law) {
     case SpacingLaw::none:
       return;
@@ -115,7 +118,7 @@ void keep_spacing(const Model<D>& model, double dt, Particles<D>& particles, Wor
   }
 }
 
-template void keep_spacing(const Model<2>&, double, Particles<2>&, Work<2>&);
-template void keep_spacing(const Model<3>&, double, Particles<3>&, Work<3>&);
+template void keep_spacing(const Model<2>&, double, Particles<2>&, Workspace<2>&);
+template void keep_spacing(const Model<3>&, double, Particles<3>&, Workspace<3>&);
 
 }  // namespace snowshed::mps

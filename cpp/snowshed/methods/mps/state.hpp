@@ -22,7 +22,7 @@
 
 namespace snowshed::mps {
 
-/// Least number of particles per thread: a thread with little work costs more than it saves.
+/// Minimum number of particles per thread: a thread with little work costs more than it saves.
 inline constexpr std::size_t particles_per_thread = 500;
 
 template <int D>
@@ -105,7 +105,7 @@ struct Neighbourhood {
   AlignedVector<std::uint8_t> surface;        // at the free surface
   AlignedVector<std::uint8_t> below_surface;  // a neighbour of one at the free surface
   AlignedVector<std::uint8_t> dry;            // inner wall that no snow touches
-  AlignedVector<VecD<D>> slip;                // velocity of a wall particle as snow sees it, m/s
+  AlignedVector<VecD<D>> slip;                // velocity of a wall particle that acts on snow, m/s
 
   /// A particle's contact with an obstacle, or null.
   const WallContact<D>* contact_with(std::size_t i, std::uint32_t obstacle) const {
@@ -125,42 +125,84 @@ struct Neighbourhood {
   }
 };
 
+/// The equation of the pressure, one value per particle.
 template <int D>
-struct Work {
+struct PressureSolve {
+  AlignedVector<double> diagonal, source, values;  // matrix, right-hand side and solution (Pa)
+  AlignedVector<std::uint8_t> fixed;               // whether the pressure is given
+  bool enclosed = false;                           // whether there is no free surface
+  double scale = 0;                                // norm of the right-hand side
+  AlignedVector<double> base;                      // Pa, see find_base_pressures
+  AlignedVector<VecD<D>> sum;                      // sum of the neighbours' pressures
+  Multigrid<D, 1> multigrid;
+};
+
+/// Velocity gradients and shear rates, from which the apparent viscosities follow.
+template <int D>
+struct ShearRates {
+  AlignedVector<Eigen::Matrix<double, D, D>> gradient;    // velocity gradients, 1/s
+  AlignedVector<Eigen::Matrix<double, D, D>> correction;  // correction of velocity gradients
+  const float* snow_slope = nullptr;                      // near.slope without walls
+  AlignedVector<float> pair_rate;                         // 1/s, midway between a pair
+  AlignedVector<double> smooth_pressure;                  // Pa
+};
+
+/// The equation of the velocities after a step with viscosity.
+template <int D>
+struct ViscousSolve {
+  AlignedVector<VecD<D>> right_side, residual;  // m/s
+  AlignedVector<float> coupling;                // coupling of velocities, one per pair
+  AlignedVector<Eigen::Matrix<double, D, D>> block, inverse_block;
+  AlignedVector<double> diagonal;
+  Multigrid<D, D> multigrid;  // made where it is needed
+};
+
+/// The viscous force that the pressure of a step expects.
+template <int D>
+struct SplitForces {
+  AlignedVector<VecD<D>> predicted_velocity;     // with gravity alone, m/s
+  AlignedVector<VecD<D>> expected_shear, shear;  // viscous force over mass, m/s2
+  AlignedVector<std::uint8_t> flowing;           // whether a viscous force is expected
+};
+
+/// Friction of walls on the particles beside them.
+struct WallFriction {
+  AlignedVector<double> share, hold;  // see find_shares
+  AlignedVector<double> drag;         // one per contact with a wall, 1/s
+};
+
+/// Corrections of the distances between particles.
+template <int D>
+struct SpacingCorrection {
+  AlignedVector<double> yielding;        // share of a collision that the other particle takes
+  AlignedVector<VecD<D>> concentration;  // gradient of the concentration, 1/m, for shifting
+};
+
+/// Values of a step that the energy balance needs.
+template <int D>
+struct EnergyTerms {
+  AlignedVector<VecD<D>> viscous, projected;  // velocities during the step, m/s
+  AlignedVector<VecD<D>> viscous_change;      // change of velocities by viscosity, m/s
+  AlignedVector<std::uint8_t> moved;          // whether a particle could move in the step
+};
+
+template <int D>
+struct Workspace {
   WallParticles<D> walls;  // if the settings ask for them
   State<D> next, start;    // the step's result, and its beginning with the present walls
   Particles<D> spare;
   Neighbourhood<D> near;
-  AlignedVector<VecD<D>> velocity;                    // right-hand side, m/s
-  AlignedVector<VecD<D>> before, viscous, projected;  // velocities of a step, m/s; for the energy
-  AlignedVector<VecD<D>> predicted_velocity;          // with gravity alone, m/s
-  AlignedVector<VecD<D>> expected_shear, shear;       // viscous force over mass, m/s2
-  AlignedVector<std::uint8_t> flowing;                // whether a viscous force is expected
-  AlignedVector<VecD<D>> viscous_change;              // change of velocities by viscosity, m/s
-  AlignedVector<std::uint8_t> moved;                  // whether a particle could move in the step
-  AlignedVector<double> drag;                         // one per contact with a wall, 1/s
-  AlignedVector<double> yielding;        // share of a collision that the other particle takes
-  AlignedVector<double> base_pressure;   // Pa, see find_base_pressures
-  AlignedVector<VecD<D>> pressure_sum;   // sum of the neighbours' pressures
-  AlignedVector<double> share, hold;     // walls' friction, see find_shares
-  AlignedVector<VecD<D>> concentration;  // gradient of the concentration, 1/m, for shifting
-  AlignedVector<VecD<D>> change;         // change of velocities by the pressure, m/s
-  AlignedVector<Eigen::Matrix<double, D, D>> block, inverse_block;
-  AlignedVector<Eigen::Matrix<double, D, D>> velocity_gradient;  // 1/s
-  AlignedVector<Eigen::Matrix<double, D, D>> rate_correction;    // correction of velocity gradients
-  AlignedVector<float> coupling;          // coupling of velocities, one per pair
-  const float* snow_slope = nullptr;      // near.slope without walls
-  AlignedVector<float> pair_rate;         // 1/s, midway between a pair
-  AlignedVector<double> smooth_pressure;  // Pa
-  AlignedVector<double> diagonal, source, pressure;
-  AlignedVector<std::uint8_t> fixed;  // whether the pressure is given
-  bool enclosed = false;              // whether there is no free surface
-  double pressure_scale = 0;          // norm of the right-hand side of the step's pressure
-  CgWork cg;
-  Multigrid<D, 1> multigrid;           // solves for pressures
-  Multigrid<D, D> velocity_multigrid;  // made where it is needed
-  AlignedVector<double> velocity_diagonal;
-  AlignedVector<VecD<D>> velocity_residual;  // m/s
+  AlignedVector<VecD<D>> before;        // velocities at the beginning of the step, m/s
+  AlignedVector<VecD<D>> change;        // change of velocities or positions by one of its parts
+  AlignedVector<std::uint8_t> changed;  // whether a particle is eroded or deposited
+  SplitForces<D> splitting;
+  PressureSolve<D> pressure;
+  ViscousSolve<D> viscosity;
+  ShearRates<D> rates;
+  WallFriction wall_friction;
+  SpacingCorrection<D> spacing;
+  EnergyTerms<D> energy;
+  CgWorkspace cg;  // shared by both solves
 };
 
 inline constexpr std::ptrdiff_t particles_in_piece = 256;

@@ -10,7 +10,7 @@ namespace snowshed::mps {
 namespace {
 
 /// Distance from a wall, in l0, below which its friction grows no further.
-constexpr double nearest_friction = 0.25;
+constexpr double min_friction_distance = 0.25;
 
 /// The share of the wall's shear stress that acts on a particle at a distance, in l0: that of the
 /// first or of the second layer of a lattice, whose sum is one.
@@ -30,8 +30,8 @@ double hold(const Model<D>& model, float weight, const VecD<D>& to_wall, const W
   return at_surface ? double(weight) * std::max(0.0, below) : 0.0;
 }
 
-/// Sum of these weights over the particles that touch a wall particle's obstacle, but at least most
-/// of that on a lattice: a wall particle beside the snow has less friction.
+/// Sum of these weights over the particles that touch a wall particle's obstacle, but at least
+/// most of that on a lattice: a wall particle beside the snow has less friction.
 template <int D>
 double hold_of_all(const Model<D>& model, const Particles<D>& particles,
                    const Neighbourhood<D>& near, std::size_t wall) {
@@ -51,19 +51,19 @@ double hold_of_all(const Model<D>& model, const Particles<D>& particles,
 /// The share of each contact with a wall in the wall's shear stress. The particles around a wall
 /// particle share all of its friction.
 template <int D>
-void find_shares(const Model<D>& model, const Particles<D>& particles, Work<D>& work) {
+void find_shares(const Model<D>& model, const Particles<D>& particles, Workspace<D>& work) {
   const Neighbourhood<D>& near = work.near;
   const int threads = model.threads_for(particles.size());
-  work.share.resize(near.contacts.all().size());
+  work.wall_friction.share.resize(near.contacts.all().size());
   if (!model.has_wall_particles()) {
-    for (std::size_t k = 0; k < work.share.size(); ++k)
-      work.share[k] = share_of_mirror(near.contacts.all()[k].distance / model.settings().spacing,
-                                      model.second_layer);
+    for (std::size_t k = 0; k < work.wall_friction.share.size(); ++k)
+      work.wall_friction.share[k] = share_of_mirror(
+          near.contacts.all()[k].distance / model.settings().spacing, model.second_layer);
     return;
   }
-  work.hold.resize(particles.size());
+  work.wall_friction.hold.resize(particles.size());
   for_each_particle(particles.size(), threads, [&](std::size_t j) {
-    if (particles.is_wall(j)) work.hold[j] = hold_of_all(model, particles, near, j);
+    if (particles.is_wall(j)) work.wall_friction.hold[j] = hold_of_all(model, particles, near, j);
   });
   for_each_particle(particles.size(), threads, [&](std::size_t i) {
     for (const WallContact<D>* c = near.contacts.begin(i); c < near.contacts.end(i); ++c) {
@@ -71,9 +71,9 @@ void find_shares(const Model<D>& model, const Particles<D>& particles, Work<D>& 
       for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) {
         const std::size_t j = near.lists.neighbour(e);
         if (particles.is_wall(j) && particles.event[j] == c->obstacle)
-          sum += hold(model, near.weight[e], near.separation(e), *c) / work.hold[j];
+          sum += hold(model, near.weight[e], near.separation(e), *c) / work.wall_friction.hold[j];
       }
-      work.share[near.contacts.place(c)] = sum;
+      work.wall_friction.share[near.contacts.place(c)] = sum;
     }
   });
 }
@@ -82,12 +82,12 @@ void find_shares(const Model<D>& model, const Particles<D>& particles, Work<D>& 
 /// rate midway, and of the mean of both pressures. Walls have none: they act by their drag.
 template <int D>
 void find_couplings(const Model<D>& model, double factor, const Particles<D>& particles,
-                    Work<D>& work) {
+                    Workspace<D>& work) {
   const Neighbourhood<D>& near = work.near;
   const NeighbourLists<D>& lists = near.lists;
   const Rheology& law = model.rheology;
   const int threads = model.threads_for(lists.size());
-  work.coupling.resize(lists.pairs());
+  work.viscosity.coupling.resize(lists.pairs());
   const auto for_each_pair = [&](const auto& coupling) {
     for_each_particle(lists.size(), threads, [&](std::size_t i) {
       for (std::uint32_t e = lists.begin(i); e < lists.end(i); ++e) {
@@ -97,7 +97,8 @@ void find_couplings(const Model<D>& model, double factor, const Particles<D>& pa
     });
   };
   const auto set = [&](std::uint32_t e, double viscosity, bool is_wall) {
-    work.coupling[e] = is_wall ? 0.0f : float(factor * viscosity * double(near.even_weight[e]));
+    work.viscosity.coupling[e] =
+        is_wall ? 0.0f : float(factor * viscosity * double(near.even_weight[e]));
   };
   if (law.is_newtonian()) {
     for_each_pair([&](std::size_t, std::size_t, std::uint32_t e, bool is_wall) {
@@ -105,20 +106,22 @@ void find_couplings(const Model<D>& model, double factor, const Particles<D>& pa
     });
     return;
   }
-  work.pair_rate.resize(lists.pairs());
+  work.rates.pair_rate.resize(lists.pairs());
   for_each_piece(lists.size(), threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     model.kernels.pair_rates(near.rows(), near.offsets().data(), particles.velocity.data()->data(),
-                             work.velocity_gradient.data()->data(), work.pair_rate.data(), begin,
+                             work.rates.gradient.data()->data(), work.rates.pair_rate.data(), begin,
                              end);
   });
   for_each_pair([&](std::size_t i, std::size_t j, std::uint32_t e, bool is_wall) {
     if (j < i) return;
     const double pressure =
-        law.friction > 0 ? 0.5 * (work.smooth_pressure[i] + work.smooth_pressure[j]) : 0.0;
-    set(e, law.apparent_viscosity(law.yield_stress(pressure), double(work.pair_rate[e])), is_wall);
+        law.friction > 0 ? 0.5 * (work.rates.smooth_pressure[i] + work.rates.smooth_pressure[j])
+                         : 0.0;
+    set(e, law.apparent_viscosity(law.yield_stress(pressure), double(work.rates.pair_rate[e])),
+        is_wall);
   });
   for_each_pair([&](std::size_t i, std::size_t j, std::uint32_t e, bool) {
-    if (j < i) work.coupling[e] = work.coupling[lists.mirror(e)];
+    if (j < i) work.viscosity.coupling[e] = work.viscosity.coupling[lists.mirror(e)];
   });
 }
 
@@ -137,9 +140,9 @@ constexpr double first_guess = 0.01;
 constexpr double loosest_solve = 0.1, solve_share = 0.03;
 
 /// With the diagonal alone few iterations suffice if viscosity does not reach far in a step. After
-/// `most_by_diagonal` iterations multigrid takes over. Its sweeps of the particles' velocities are
-/// damped by `sweep_damping`.
-constexpr int most_by_diagonal = 12;
+/// `max_diagonal_iterations` iterations multigrid takes over. Its sweeps of the particles'
+/// velocities are damped by `sweep_damping`.
+constexpr int max_diagonal_iterations = 12;
 constexpr double sweep_damping = 0.9;
 
 /// The wall's shear stress is that of the snow at the rate u/h with which it slides by, h its
@@ -149,7 +152,7 @@ template <int D>
 double wall_drag(const Model<D>& model, const Particles<D>& particles, double share, std::size_t i,
                  const WallContact<D>& c) {
   const Settings& s = model.settings();
-  const double height = std::max(c.distance, nearest_friction * s.spacing);
+  const double height = std::max(c.distance, min_friction_distance * s.spacing);
   if (share == 0) return 0;
   const VecD<D> relative = particles.velocity[i] - c.velocity;
   const double rate = (relative - relative.dot(c.normal) * c.normal).norm() / height;
@@ -166,22 +169,23 @@ double wall_drag(const Model<D>& model, const Particles<D>& particles, double sh
 /// On the levels above the particles the walls' drag acts equally in all directions.
 template <int D>
 void prepare_velocity_multigrid(const Model<D>& model, const Particles<D>& particles,
-                                Work<D>& work) {
+                                Workspace<D>& work) {
   const std::size_t n = particles.size();
   const int threads = model.threads_for(n);
-  work.velocity_diagonal.resize(n);
-  work.velocity_residual.resize(n);
-  for_each_particle(n, threads,
-                    [&](std::size_t i) { work.velocity_diagonal[i] = work.block[i].trace() / D; });
-  work.velocity_multigrid.update(work.near.lists, work.coupling, work.velocity_diagonal,
-                                 work.near.cells, work.near.cells.period_cells(), threads);
+  work.viscosity.diagonal.resize(n);
+  work.viscosity.residual.resize(n);
+  for_each_particle(n, threads, [&](std::size_t i) {
+    work.viscosity.diagonal[i] = work.viscosity.block[i].trace() / D;
+  });
+  work.viscosity.multigrid.update(work.near.lists, work.viscosity.coupling, work.viscosity.diagonal,
+                                  work.near.cells, work.near.cells.period_cells(), threads);
 }
 
 /// z = M^-1 r: a damped Jacobi sweep, the levels above, and another sweep.
 template <int D, class Apply, class Smooth>
 void precondition_velocities(std::size_t n, int threads, const Apply& apply, const Smooth& smooth,
-                             Work<D>& work, const double* r, double* z) {
-  double* const residual = work.velocity_residual.data()->data();
+                             Workspace<D>& work, const double* r, double* z) {
+  double* const residual = work.viscosity.residual.data()->data();
   const auto find_residual = [&] {
     apply(z, residual);
     for_each_particle(n * D, threads, [&](std::size_t k) { residual[k] = r[k] - residual[k]; });
@@ -192,7 +196,7 @@ void precondition_velocities(std::size_t n, int threads, const Apply& apply, con
   smooth(r, z);
   damp(z);
   find_residual();
-  work.velocity_multigrid.correct(residual, z);
+  work.viscosity.multigrid.correct(residual, z);
   find_residual();
   smooth(residual, residual);
   damp(residual);
@@ -204,59 +208,60 @@ void precondition_velocities(std::size_t n, int threads, const Apply& apply, con
 template <int D>
 SolveReport solve_viscosity(const Model<D>& model, double dt, const Velocities<D>& start,
                             double tolerance, double scale, Particles<D>& particles,
-                            Work<D>& work) {
+                            Workspace<D>& work) {
   using Matrix = Eigen::Matrix<double, D, D>;
   const std::size_t n = particles.size();
   const int threads = model.threads_for(n);
   const Neighbourhood<D>& near = work.near;
   find_couplings(model, dt / model.settings().density * model.laplacian(), particles, work);
-  work.velocity.resize(n);
-  work.block.resize(n);
-  work.inverse_block.resize(n);
-  work.drag.resize(near.contacts.all().size());
+  work.viscosity.right_side.resize(n);
+  work.viscosity.block.resize(n);
+  work.viscosity.inverse_block.resize(n);
+  work.wall_friction.drag.resize(near.contacts.all().size());
   for_each_particle(n, threads, [&](std::size_t i) {
     const bool moves = particles.moves(i);
     double sum = 0;
     for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e)
-      sum += double(work.coupling[e]);
+      sum += double(work.viscosity.coupling[e]);
     Matrix block = (1 + sum) * Matrix::Identity();
     VecD<D> right = start[i];
     if (moves)
       for (const WallContact<D>* c = near.contacts.begin(i); c < near.contacts.end(i); ++c) {
-        double& drag = work.drag[near.contacts.place(c)];
-        drag = wall_drag(model, particles, work.share[near.contacts.place(c)], i, *c);
+        double& drag = work.wall_friction.drag[near.contacts.place(c)];
+        drag = wall_drag(model, particles, work.wall_friction.share[near.contacts.place(c)], i, *c);
         const Matrix along = dt * drag * (Matrix::Identity() - c->normal * c->normal.transpose());
         block += along;
         right += along * c->velocity;
       }
-    work.velocity[i] = moves ? right : VecD<D>(VecD<D>::Zero());
-    work.block[i] = moves ? block : Matrix(Matrix::Zero());
-    work.inverse_block[i] = moves ? Matrix(block.inverse()) : Matrix(Matrix::Zero());
+    work.viscosity.right_side[i] = moves ? right : VecD<D>(VecD<D>::Zero());
+    work.viscosity.block[i] = moves ? block : Matrix(Matrix::Zero());
+    work.viscosity.inverse_block[i] = moves ? Matrix(block.inverse()) : Matrix(Matrix::Zero());
   });
 
   const auto apply = [&](const double* p, double* q) {
     for_each_piece(n, threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-      model.kernels.apply_to_velocities(near.rows(), work.coupling.data(),
-                                        work.block.data()->data(), p, q, begin, end);
+      model.kernels.apply_to_velocities(near.rows(), work.viscosity.coupling.data(),
+                                        work.viscosity.block.data()->data(), p, q, begin, end);
     });
   };
   const auto smooth = [&](const double* r, double* z) {
     for_each_particle(n, threads, [&](std::size_t i) {
-      VecD<D>::Map(z + i * D) = work.inverse_block[i] * VecD<D>::Map(r + i * D);
+      VecD<D>::Map(z + i * D) = work.viscosity.inverse_block[i] * VecD<D>::Map(r + i * D);
     });
   };
-  const auto solve = [&](int most, const auto& precondition) {
-    return conjugate_gradients(n * D, tolerance, scale, most, threads, work.cg,
-                               particles.velocity.data()->data(), work.velocity.data()->data(),
-                               apply, precondition);
+  const auto solve = [&](int max_iterations, const auto& precondition) {
+    return conjugate_gradients(n * D, tolerance, scale, max_iterations, threads, work.cg,
+                               particles.velocity.data()->data(),
+                               work.viscosity.right_side.data()->data(), apply, precondition);
   };
-  const int most = model.settings().max_iterations;
-  const SolveReport first = solve(std::min(most, most_by_diagonal), smooth);
-  if (first.converged || most <= most_by_diagonal) return first;
+  const int max_iterations = model.settings().max_iterations;
+  const SolveReport first = solve(std::min(max_iterations, max_diagonal_iterations), smooth);
+  if (first.converged || max_iterations <= max_diagonal_iterations) return first;
   prepare_velocity_multigrid(model, particles, work);
-  const SolveReport second = solve(most - most_by_diagonal, [&](const double* r, double* z) {
-    precondition_velocities<D>(n, threads, apply, smooth, work, r, z);
-  });
+  const SolveReport second =
+      solve(max_iterations - max_diagonal_iterations, [&](const double* r, double* z) {
+        precondition_velocities<D>(n, threads, apply, smooth, work, r, z);
+      });
   return {first.iterations + second.iterations, second.residual, second.converged};
 }
 
@@ -295,7 +300,7 @@ void add_gravity(const Model<D>& model, double dt, Particles<D>& particles) {
 /// accelerated.
 template <int D>
 SolveReport apply_viscosity(const Model<D>& model, double dt, Particles<D>& particles,
-                            Work<D>& work) {
+                            Workspace<D>& work) {
   const Settings& s = model.settings();
   // The iterations begin near the velocities before the step, not at those that forces have driven
   // apart, so that creeping snow comes to rest. They do not begin quite at rest, because viscosity
@@ -337,7 +342,7 @@ SolveReport apply_viscosity(const Model<D>& model, double dt, Particles<D>& part
 
 template void add_gravity(const Model<2>&, double, Particles<2>&);
 template void add_gravity(const Model<3>&, double, Particles<3>&);
-template SolveReport apply_viscosity(const Model<2>&, double, Particles<2>&, Work<2>&);
-template SolveReport apply_viscosity(const Model<3>&, double, Particles<3>&, Work<3>&);
+template SolveReport apply_viscosity(const Model<2>&, double, Particles<2>&, Workspace<2>&);
+template SolveReport apply_viscosity(const Model<3>&, double, Particles<3>&, Workspace<3>&);
 
 }  // namespace snowshed::mps

@@ -7,8 +7,8 @@ namespace snowshed::mps {
 namespace {
 
 constexpr std::size_t particles_with_images = 256;
-/// Least distance of a particle's image from a wall, in l0.
-constexpr double nearest_image = 0.1;
+/// Minimum distance of a particle's image from a wall, in l0.
+constexpr double min_image_distance = 0.1;
 /// Two walls make a corner, with images behind both, if the cosine between their normals is
 /// smaller.
 constexpr double corner = 0.7;
@@ -73,7 +73,7 @@ void WallImages<D>::update(const NeighbourLists<D>& lists, const RowLists<WallCo
   images_.update(lists.size(), particles_with_images, threads,
                  [&](std::size_t begin, std::size_t end, std::uint32_t* first,
                      std::vector<WallImage<D>>& list) {
-                   ImageMaker<D> maker{contacts, reach, nearest_image * spacing, list};
+                   ImageMaker<D> maker{contacts, reach, min_image_distance * spacing, list};
                    for (std::size_t i = begin; i < end; ++i) {
                      const std::size_t before = list.size();
                      const bool near = contacts.begin(i) < contacts.end(i);

@@ -7,7 +7,7 @@
 
 namespace snowshed::mps {
 
-/// The image of particle k behind a wall, or behind two at once in a corner, as particle i sees it.
+/// The image of particle k behind a wall, or behind two at once in a corner, for particle i.
 /// For a plane wall r'^2 = r^2 + 4 h_i h_k with the distances h from the wall, which is used for
 /// curved walls, too: so i sees the image of k as far away as k that of i.
 template <int D>

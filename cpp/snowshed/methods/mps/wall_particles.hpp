@@ -50,8 +50,8 @@ class WallParticles {
     VecD<D> position;  // m
     double depth = 0;  // m, of the layer
   };
-  /// The lattice from which the particles of an obstacle are made. Cells near to each other ask for
-  /// the same points, and each asks a shape that may be of many triangles.
+  /// The lattice from which the particles of an obstacle are made. Neighbouring cells need the same
+  /// points, and each point evaluates a shape that may have many triangles.
   struct Lattice {
     Mat3 axes = Mat3::Identity();
     Vec3 origin = Vec3::Zero();

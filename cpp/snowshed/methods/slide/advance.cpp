@@ -10,7 +10,7 @@
 
 namespace snowshed::slide {
 
-void advance(const Model& model, State& state, Work& work) {
+void advance(const Model& model, State& state, Workspace& work) {
   const Particles& p = state.particles;
   const View view = view_of(model, state, work);
   for_each_piece(work, p.size(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
@@ -33,7 +33,7 @@ template <class Array>
 void keep(const std::vector<std::uint32_t>& new_place, Array& array) {
   std::size_t count = 0;
   for (std::size_t i = 0; i < new_place.size(); ++i)
-    if (new_place[i] != gone) array[count++] = array[i];
+    if (new_place[i] != removed_particle) array[count++] = array[i];
   array.resize(count);
 }
 
@@ -51,16 +51,16 @@ void reorder(const std::vector<std::uint32_t>& order, AlignedVector<double>& scr
 
 }  // namespace
 
-void remove_marked(State& state, Work& work) {
+void remove_marked(State& state, Workspace& work) {
   if (!std::memchr(work.removed.data(), 1, work.removed.size())) return;
   Particles& p = state.particles;
   std::vector<std::uint32_t>& new_place = work.new_places;
   new_place.resize(p.size());
   std::uint32_t count = 0;
   for (std::size_t i = 0; i < p.size(); ++i) {
-    new_place[i] = work.removed[i] ? gone : count++;
+    new_place[i] = work.removed[i] ? removed_particle : count++;
     if (!work.removed[i]) continue;
-    state.balance.left += p.mass[i];
+    state.balance.left_terrain += p.mass[i];
     ++state.balance.particles_left;
   }
   p.for_each_array([&](const char*, auto& array) { keep(new_place, array); });
@@ -74,7 +74,7 @@ namespace {
 
 /// Gives new ids to the particles from `begin` on, which still have the ids of those they split
 /// from. The new ids follow the order of these, so that they do not depend on the order of storage.
-void number_new(State& state, Work& work, std::size_t begin) {
+void number_new(State& state, Workspace& work, std::size_t begin) {
   Particles& p = state.particles;
   std::vector<std::uint32_t>& order = work.new_places;
   order.resize(p.size() - begin);
@@ -86,14 +86,14 @@ void number_new(State& state, Work& work, std::size_t begin) {
 
 }  // namespace
 
-void split_heavy(const Model& model, State& state, Work& work) {
+void split_heavy(const Model& model, State& state, Workspace& work) {
   Particles& p = state.particles;
-  if (work.none_splits || (state.erodible.empty() && !model.compatible())) return;
+  if (work.no_particle_splits || (state.erodible.empty() && !model.compatible())) return;
   const std::size_t before = p.size();
   for (std::size_t i = 0; i < before; ++i) {
     if (!(p.mass[i] > p.fresh_mass[i] * model.settings.split_ratio)) continue;
     const double area =
-        p.mass[i] / (model.settings.density * std::max(work.thickness[i], least_thickness));
+        p.mass[i] / (model.settings.density * std::max(work.thickness[i], min_thickness));
     const double distance = 0.41 * std::sqrt(area / pi);
     Vec3 along{p.ux[i], p.uy[i], p.uz[i]};
     const double speed = along.norm();
@@ -117,13 +117,13 @@ void split_heavy(const Model& model, State& state, Work& work) {
     put(i, x - along, behind);
     put(p.size() - 1, x + along, ahead);
   }
-  work.none_splits = p.size() == before && state.erodible.empty();
+  work.no_particle_splits = p.size() == before && state.erodible.empty();
   if (p.size() == before) return;
   number_new(state, work, before);
   work.bond_lists.update(state.bonds, p.size());
 }
 
-void sort_by_cell(State& state, Work& work) {
+void sort_by_cell(State& state, Workspace& work) {
   const std::vector<std::uint32_t>& order = work.cells.order();
   AlignedVector<double> scratch(order.size());
   work.new_places.resize(order.size());

@@ -1,4 +1,4 @@
-// Areas on the map where a slide is released, entrains snow, or is held back by forest.
+// Areas on the map where a slide is released, entrains snow, or is resisted by forest or buildings.
 #pragma once
 
 #include <memory>
@@ -15,7 +15,7 @@ struct Area {
   std::string name;
   Polygon polygon;
   double thickness = 0;  // m of snow, normal to the ground; unused for areas of resistance
-  /// In place of that: the thickness in the cells around nodes. Only of releases.
+  /// Instead, for releases: the thickness in the cells around nodes.
   std::shared_ptr<const HeightField> map;
   double max_thickness = 100;  // m, that the map may give
 };

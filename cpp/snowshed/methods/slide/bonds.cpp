@@ -11,7 +11,7 @@ namespace {
 
 using Triangle = std::array<std::uint32_t, 3>;
 
-constexpr double longest_ratio = 1.1;
+constexpr double max_length_ratio = 1.1;
 
 class MapPoints {
  public:
@@ -131,7 +131,7 @@ Bonds bonds_between(const Particles& particles, std::size_t begin, double spacin
   StopCheck give_up(stop);
   Bonds bonds;
   if (particles.size() < begin + 3) return bonds;
-  const MapPoints points(particles, begin, longest_ratio * spacing * (1 + 1e-6), stop);
+  const MapPoints points(particles, begin, max_length_ratio * spacing * (1 + 1e-6), stop);
   std::vector<std::pair<Triangle, double>> triangles;
   points.for_each_triangle(
       [&](const Triangle& t, double longest) { triangles.push_back({t, longest}); }, stop);
@@ -151,7 +151,7 @@ Bonds bonds_between(const Particles& particles, std::size_t begin, double spacin
     bonds.add(std::uint32_t(i), std::uint32_t(j), along.norm());
   };
   for (const auto& [t, longest] : triangles) {
-    if (longest > longest_ratio * shortest) continue;
+    if (longest > max_length_ratio * shortest) continue;
     connect(t[0], t[1]);
     connect(t[0], t[2]);
     connect(t[1], t[2]);
@@ -159,8 +159,8 @@ Bonds bonds_between(const Particles& particles, std::size_t begin, double spacin
   return bonds;
 }
 
-double longest_bond_step(const Bonds& bonds, const Particles& particles,
-                         const AlignedVector<double>& thickness, double modulus) {
+double max_bond_step(const Bonds& bonds, const Particles& particles,
+                     const AlignedVector<double>& thickness, double modulus) {
   std::vector<double> stiffness(particles.size(), 0.0);
   for (std::size_t b = 0; b < bonds.size(); ++b) {
     const std::uint32_t k = bonds.first[b], l = bonds.second[b];
@@ -178,7 +178,7 @@ void renumber(Bonds& bonds, const std::vector<std::uint32_t>& new_place) {
   std::size_t count = 0;
   for (std::size_t b = 0; b < bonds.size(); ++b) {
     const std::uint32_t first = new_place[bonds.first[b]], second = new_place[bonds.second[b]];
-    if (first == gone || second == gone) continue;
+    if (first == removed_particle || second == removed_particle) continue;
     bonds.first[count] = first;
     bonds.second[count] = second;
     bonds.rest_length[count++] = bonds.rest_length[b];

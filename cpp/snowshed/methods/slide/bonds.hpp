@@ -37,16 +37,16 @@ Bonds bonds_between(const Particles& particles, std::size_t begin, double spacin
                     const std::vector<Area>* areas, const StopRequest& stop = {});
 
 /// Removes the bonds of particles that are gone and renumbers the rest: `new_place[i]` is where
-/// particle i is stored now, `gone` where it is not.
-inline constexpr std::uint32_t gone = 0xffffffff;
+/// particle i is stored now, `removed_particle` where it is not.
+inline constexpr std::uint32_t removed_particle = 0xffffffff;
 void renumber(Bonds& bonds, const std::vector<std::uint32_t>& new_place);
 
 /// Returns the longest step in which the vibration of bonds does not grow, s; infinite without
 /// bonds. A bond has the stiffness k = E h / sqrt(3). A particle of mass m whose bonds have the
 /// stiffness K in all vibrates with omega^2 <= 2 K / m (Gershgorin), and forces at the end points
 /// of the velocities before are stable where omega dt <= sqrt(2).
-double longest_bond_step(const Bonds& bonds, const Particles& particles,
-                         const AlignedVector<double>& thickness, double modulus);
+double max_bond_step(const Bonds& bonds, const Particles& particles,
+                     const AlignedVector<double>& thickness, double modulus);
 
 /// Removes the bonds that are marked.
 void remove_bonds(Bonds& bonds, const std::vector<char>& marked);

@@ -22,10 +22,10 @@ void visit_state(Archive& archive, State& s) {
   archive.array("erodible", s.erodible, s.erodible.size());
   auto& b = s.balance;
   archive.numbers("clock", s.time, s.dt, s.kinetic_energy, s.peak_kinetic, b.released, b.entrained,
-                  b.left, s.step);
+                  b.left_terrain, s.step);
   auto& e = s.energy;
   archive.numbers("energy", e.coulomb, e.turbulent, e.resistance, e.viscosity, e.entrainment,
-                  e.broken, e.left, e.added);
+                  e.broken, e.left_terrain, e.added);
   auto& c = s.counters;
   archive.counts("counters", c.steps, c.sorts, c.particle_updates, s.bonds_made, b.particles_left,
                  s.stopped, s.next_id);
@@ -70,10 +70,10 @@ void SolverImpl::check(const BinaryReader& in) const { read_state(in, model_); }
 
 void SolverImpl::load(const BinaryReader& in) {
   State next = read_state(in, model_);
-  Work work;
+  Workspace work;
   refresh(model_, next, work);
   state_ = std::move(next);
-  work_ = std::move(work);
+  workspace_ = std::move(work);
   order_.forget();
   soundness_ = {};
 }

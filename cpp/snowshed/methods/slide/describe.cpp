@@ -31,13 +31,14 @@ void describe(SettingsVisitor& v, Settings& s) {
   v.number("min_bond_length", s.min_bond_length, "m", allowed::size_or_zero,
            "Length below which a bond exerts no force");
   v.number("entrained_density", s.entrained_density, "kg/m3", positive.up_to(1000.0),
-           "Density of the snow that is taken up");
-  v.number("erosion_energy", s.erosion_energy, "J/kg", non_negative.up_to(1e12),
-           "Friction work that takes up a kilogram of snow; 0: all that the slide sweeps over");
+           "Density of the entrained snow");
+  v.number(
+      "erosion_energy", s.erosion_energy, "J/kg", non_negative.up_to(1e12),
+      "Friction work that entrains a kilogram of snow; 0: all snow below the slide is entrained");
   v.number("entrainment_shear", s.entrainment_shear, "Pa", non_negative.up_to(1e12),
-           "Shear strength of the snow that is taken up");
+           "Shear strength of the entrained snow");
   v.number("entrainment_work", s.entrainment_work, "J/kg", non_negative.up_to(1e12),
-           "Work that breaks up the snow that is taken up");
+           "Work that breaks up the entrained snow");
   v.number("split_ratio", s.split_ratio, "", Range{1.0, 1e6, true, false, Need::optional},
            "A particle splits when its mass exceeds this multiple of a fresh particle's");
   v.number("stop_ratio", s.stop_ratio, "", fraction,

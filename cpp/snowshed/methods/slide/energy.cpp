@@ -24,8 +24,8 @@ double bond_energy(double modulus, double thickness, double length, double rest)
 struct Drag {
   double turbulent, resistance;
 };
-Drag drag_parts(const Model& model, const Work& work, std::size_t i) {
-  const double h = std::max(work.thickness[i], least_thickness);
+Drag drag_parts(const Model& model, const Workspace& work, std::size_t i) {
+  const double h = std::max(work.thickness[i], min_thickness);
   const double all = work.loads.drag[i];
   const double turbulent = std::min(all, model.friction.drag / (model.settings.density * h));
   return model.resistance.empty() ? Drag{all, 0.0} : Drag{turbulent, all - turbulent};
@@ -57,7 +57,7 @@ double raised_integral(double n) {
 
 /// The potential of the pressure (kernels/surface_pressure.hpp), J: sum_k m_k g n_z h_k / 2, by
 /// which the snow's centre of mass lies above the ground, raised at few neighbours.
-double pressure_energy(const Model& model, const State& state, const Work& work) {
+double pressure_energy(const Model& model, const State& state, const Workspace& work) {
   const double radius = model.terrain.cell();
   const Particles& p = state.particles;
   double sum = 0;
@@ -73,16 +73,16 @@ double pressure_energy(const Model& model, const State& state, const Work& work)
 
 }  // namespace
 
-NamedEnergies named_energies(const Energy& e) {
+NamedEnergies named_energies(const EnergyBalance& e) {
   return {{"kinetic_j", e.kinetic},     {"potential_j", e.potential},
           {"bonds_j", e.bonds},         {"coulomb_j", e.coulomb},
           {"turbulent_j", e.turbulent}, {"resistance_j", e.resistance},
           {"viscosity_j", e.viscosity}, {"entrainment_j", e.entrainment},
-          {"broken_bonds_j", e.broken}, {"left_terrain_j", e.left},
+          {"broken_bonds_j", e.broken}, {"left_terrain_j", e.left_terrain},
           {"added_j", e.added},         {"residual_j", e.residual()}};
 }
 
-void store_energy(const Model& model, const State& state, const Work& work, Energy& e) {
+void store_energy(const Model& model, const State& state, const Workspace& work, EnergyBalance& e) {
   const Particles& p = state.particles;
   e.kinetic = e.bonds = 0;
   e.potential = pressure_energy(model, state, work);
@@ -108,8 +108,8 @@ void EnergyAudit::begin_step(const State& state) {
   heights_.assign(state.particles.z.begin(), state.particles.z.end());
 }
 
-void EnergyAudit::after_ground(const Model& model, const State& state, const Work& work,
-                               Energy& e) {
+void EnergyAudit::after_ground(const Model& model, const State& state, const Workspace& work,
+                               EnergyBalance& e) {
   for (std::size_t i = 0; i < before_.size(); ++i) {
     const double mixed = work.loads.speed[i] * work.loads.speed[i];
     const Vec3 u = velocity_at(state, i);
@@ -122,8 +122,8 @@ void EnergyAudit::after_ground(const Model& model, const State& state, const Wor
 }
 
 /// The energy of the bonds that break.
-void EnergyAudit::add_broken(const Model& model, const State& state, const Work& work,
-                             Energy& e) const {
+void EnergyAudit::add_broken(const Model& model, const State& state, const Workspace& work,
+                             EnergyBalance& e) const {
   const Bonds& bonds = state.bonds;
   for (std::size_t b = 0; b < bonds.size(); ++b) {
     const double* k = &work.predicted[4 * std::size_t(bonds.first[b])];
@@ -137,14 +137,14 @@ void EnergyAudit::add_broken(const Model& model, const State& state, const Work&
   }
 }
 
-void EnergyAudit::after_motion(const Model& model, const State& state, const Work& work,
-                               Energy& e) const {
+void EnergyAudit::after_motion(const Model& model, const State& state, const Workspace& work,
+                               EnergyBalance& e) const {
   add_broken(model, state, work, e);
   const Loads& l = work.loads;
   for (std::size_t i = 0; i < before_.size(); ++i) {
     const double mass = state.particles.mass[i];
     if (work.removed[i]) {
-      e.left += mass * (0.5 * before_[i].squaredNorm() + model.gravity * heights_[i]);
+      e.left_terrain += mass * (0.5 * before_[i].squaredNorm() + model.gravity * heights_[i]);
       continue;
     }
     // Friction shortens the velocity; afterwards the ground turns it.

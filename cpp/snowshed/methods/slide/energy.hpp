@@ -10,34 +10,34 @@ namespace snowshed::slide {
 
 struct Model;
 struct State;
-struct Work;
+struct Workspace;
 
 /// The energy of a slide, J. The first three are the present store; the others are sums over all
 /// steps of the energy that left it. The balance closes when `residual` is small beside the drop of
 /// potential energy.
-struct Energy {
+struct EnergyBalance {
   double kinetic = 0, potential = 0;  // the latter with that of the snow's thickness
   double bonds = 0;                   // elastic
   double coulomb = 0, turbulent = 0;  // friction with the ground: mu sigma, and rho g u^2 / xi
-  double resistance = 0;              // loss to forest and the like
+  double resistance = 0;              // loss to forest and buildings
   double viscosity = 0;               // artificial
   double entrainment = 0;             // to bring snow up to speed, and to break it loose
   double broken = 0;                  // energy that bonds held as they broke
-  double left = 0;                    // carried beyond the terrain
-  double added = 0;                   // brought by snow that was released or taken up
+  double left_terrain = 0;            // carried beyond the terrain
+  double added = 0;                   // energy of snow when it was released or entrained
 
   double stored() const { return kinetic + potential + bonds; }
   double spent() const {
-    return coulomb + turbulent + resistance + viscosity + entrainment + broken + left;
+    return coulomb + turbulent + resistance + viscosity + entrainment + broken + left_terrain;
   }
   double residual() const { return stored() + spent() - added; }
 };
 
 /// Returns the balance as tables have it, names with units.
-NamedEnergies named_energies(const Energy&);
+NamedEnergies named_energies(const EnergyBalance&);
 
 /// Fills in the energy that is stored now.
-void store_energy(const Model&, const State&, const Work&, Energy&);
+void store_energy(const Model&, const State&, const Workspace&, EnergyBalance&);
 
 /// Audits the energy of a step: it is called between its parts, reads velocities and loads, and
 /// changes nothing. The work of a force is its product with the particle's displacement. The works
@@ -52,12 +52,12 @@ class EnergyAudit {
 
   void begin_step(const State&);
   /// After friction, viscosity and entrainment are known.
-  void after_ground(const Model&, const State&, const Work&, Energy&);
+  void after_ground(const Model&, const State&, const Workspace&, EnergyBalance&);
   /// Before bonds that break and particles that left the terrain are removed.
-  void after_motion(const Model&, const State&, const Work&, Energy&) const;
+  void after_motion(const Model&, const State&, const Workspace&, EnergyBalance&) const;
 
  private:
-  void add_broken(const Model&, const State&, const Work&, Energy&) const;
+  void add_broken(const Model&, const State&, const Workspace&, EnergyBalance&) const;
 
   std::vector<Vec3> before_;  // m/s
   std::vector<double> masses_, heights_;

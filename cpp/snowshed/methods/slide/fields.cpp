@@ -24,7 +24,7 @@ void SolverImpl::visit_fields(Visit visit) const {
   component("y", p.uy);
   component("z", p.uz);
   show.column("mass", p.mass);
-  show.column("thickness", work_.thickness);
+  show.column("thickness", workspace_.thickness);
   show.column("id", p.id);
   show.column("event", p.event);
 }
@@ -51,8 +51,8 @@ ParticleState SolverImpl::state() const {
     s.velocities.push_back({p.ux[i], p.uy[i], p.uz[i]});
     s.masses.push_back(p.mass[i]);
     // Hydrostatic, at the base.
-    s.pressures.push_back(model_.settings.density * model_.gravity * work_.places.nz[i] *
-                          work_.thickness[i]);
+    s.pressures.push_back(model_.settings.density * model_.gravity * workspace_.places.nz[i] *
+                          workspace_.thickness[i]);
     s.ids.push_back(p.id[i]);
     s.events.push_back(p.event[i]);
   }
@@ -71,7 +71,7 @@ PointCloud SolverImpl::snapshot() const {
   for (std::uint32_t k = 0; k < order.size(); ++k) {
     const std::uint32_t i = order[k];
     place[i] = k;
-    thickness.push_back(float(work_.thickness[i]));
+    thickness.push_back(float(workspace_.thickness[i]));
     speed.push_back(float(Vec3(p.ux[i], p.uy[i], p.uz[i]).norm()));
   }
   std::vector<std::int32_t> count(order.size(), 0);
@@ -87,21 +87,21 @@ PointCloud SolverImpl::snapshot() const {
   return cloud;
 }
 
-/// Mass that was released and taken up, and where it is: the sums differ by rounding alone.
+/// Mass that was released and entrained, and where it is: the sums differ by rounding alone.
 ReportsRun::Section SolverImpl::run_section() const {
   const MassBalance& m = state_.balance;
   const double on_terrain = compensated_sum(state_.particles.mass.data(), size());
   return {"mass_balance",
           {{"released_kg", m.released},
            {"entrained_kg", m.entrained},
-           {"left_terrain_kg", m.left},
+           {"left_terrain_kg", m.left_terrain},
            {"on_terrain_kg", on_terrain},
-           {"residual_kg", m.released + m.entrained - m.left - on_terrain}}};
+           {"residual_kg", m.released + m.entrained - m.left_terrain - on_terrain}}};
 }
 
 NamedEnergies SolverImpl::energies() const {
-  Energy energy = state_.energy;
-  if (model_.keeps_energy) store_energy(model_, state_, work_, energy);
+  EnergyBalance energy = state_.energy;
+  if (model_.keeps_energy) store_energy(model_, state_, workspace_, energy);
   return named_energies(energy);
 }
 
@@ -113,17 +113,17 @@ MotionSummary SolverImpl::motion(double limit) const {
 }
 
 std::size_t SolverImpl::bytes() const {
-  std::size_t total = model_.terrain.bytes() + work_.cells.bytes() + work_.fields.bytes() +
-                      work_.bond_lists.bytes();
+  std::size_t total = model_.terrain.bytes() + workspace_.cells.bytes() +
+                      workspace_.fields.bytes() + workspace_.bond_lists.bytes();
   state_.particles.for_each_array(
       [&total](const char*, const auto& array) { total += bytes_of(array); });
   const Bonds& bonds = state_.bonds;
   total += bytes_of(bonds.first, bonds.second, bonds.rest_length, state_.peaks.thickness,
-                    state_.peaks.speed, state_.erodible, work_.thickness, work_.predicted,
-                    work_.pushed, work_.sorted_pressing, work_.bond_force);
-  const Loads& l = work_.loads;
+                    state_.peaks.speed, state_.erodible, workspace_.thickness, workspace_.predicted,
+                    workspace_.pushed, workspace_.sorted_pressing, workspace_.bond_force);
+  const Loads& l = workspace_.loads;
   total += bytes_of(l.ax, l.ay, l.az, l.yield, l.drag, l.speed);
-  Places::for_each_array(work_.places, [&](const auto& array) { total += bytes_of(array); });
+  Places::for_each_array(workspace_.places, [&](const auto& array) { total += bytes_of(array); });
   return total;
 }
 

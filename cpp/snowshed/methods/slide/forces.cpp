@@ -7,14 +7,14 @@
 namespace snowshed::slide {
 namespace {
 
-constexpr double least_speed = 1e-6;  // m/s
+constexpr double min_speed = 1e-6;  // m/s
 
 /// The node nearest to a place.
 std::size_t nearest_node(const Terrain& terrain, const GridPlace& p) {
   return terrain.index(p.column + int(p.east >= 0.5), p.row + int(p.north >= 0.5));
 }
 
-/// Snow that a particle takes up; returns its mass (kg) and slows the particle down.
+/// Lets a particle entrain snow, which slows it down; returns the snow's mass, kg.
 double entrain(const Model& model, double erodible, double stress, double area, double dt,
                double speed, double& mass, Vec3& u) {
   const Settings& s = model.settings;
@@ -30,15 +30,15 @@ double entrain(const Model& model, double erodible, double stress, double area, 
   const double energy = worked * s.entrainment_shear + taken * s.entrainment_work;
   u *= mass / (mass + taken);
   mass += taken;
-  if (energy > 0) u *= std::max(0.0, 1 - energy / (0.5 * mass * (speed * speed + least_speed)));
+  if (energy > 0) u *= std::max(0.0, 1 - energy / (0.5 * mass * (speed * speed + min_speed)));
   return taken;
 }
 
-/// Entrainment by one particle; returns the mass that it takes up, kg.
+/// Entrainment by one particle; returns the entrained mass, kg.
 double entrain_by(const Model& model, const State& state, View& v, Particles& p, std::size_t i,
                   std::size_t node) {
   const double density = model.settings.density, dt = state.step;
-  const double h = std::max(v.thickness[i], least_thickness), speed = v.speed[i];
+  const double h = std::max(v.thickness[i], min_thickness), speed = v.speed[i];
   const double pressing = model.friction.friction > 0 ? v.yield[i] / model.friction.friction : 0.0;
   const double stress =
       v.drag[i] > 0 || pressing > 0 ? model.friction.stress(pressing * density * h, speed) : 0.0;
@@ -54,8 +54,8 @@ double entrain_by(const Model& model, const State& state, View& v, Particles& p,
   return taken;
 }
 
-/// The snow that particles sweep up, and the resistance of forest and the like.
-void sweep(const Model& model, State& state, Work& work) {
+/// Applies entrainment, and the resistance of forest and buildings.
+void apply_entrainment_and_resistance(const Model& model, State& state, Workspace& work) {
   View v = view_of(model, state, work);
   Particles& p = state.particles;
   for (std::size_t i = 0; i < p.size(); ++i) {
@@ -63,7 +63,7 @@ void sweep(const Model& model, State& state, Work& work) {
     if (!work.entrained.empty())
       work.entrained[i] = state.erodible[node] > 0 ? entrain_by(model, state, v, p, i, node) : 0.0;
     if (!model.resistance.empty())
-      v.drag[i] += model.resistance[node] / std::max(v.thickness[i], least_thickness);
+      v.drag[i] += model.resistance[node] / std::max(v.thickness[i], min_thickness);
     if (model.compatible() && !work.entrained.empty()) {  // forces on the mass before, there
       const double share = 1 - work.entrained[i] / p.mass[i];
       for (double* load : {v.ax, v.ay, v.az, v.yield, v.drag}) load[i] *= share;
@@ -72,24 +72,25 @@ void sweep(const Model& model, State& state, Work& work) {
   for (std::size_t i = 0; i < work.entrained.size(); ++i) {
     if (work.entrained[i] == 0) continue;
     const std::size_t node = nearest_node(model.terrain, work.places.at(i));
-    double& left = state.erodible[node];
-    left = std::max(0.0, left - work.entrained[i] / model.terrain.nodes()[node].area);
+    double& rest = state.erodible[node];
+    rest = std::max(0.0, rest - work.entrained[i] / model.terrain.nodes()[node].area);
     state.balance.entrained += work.entrained[i];
   }
 }
 
 }  // namespace
 
-void apply_ground(const Model& model, State& state, Work& work) {
+void apply_ground(const Model& model, State& state, Workspace& work) {
   const std::size_t n = state.particles.size();
   const View view = view_of(model, state, work);
   for_each_piece(work, n, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     chosen_kernels().ground(view, begin, end);
   });
-  if (!state.erodible.empty() || !model.resistance.empty()) sweep(model, state, work);
+  if (!state.erodible.empty() || !model.resistance.empty())
+    apply_entrainment_and_resistance(model, state, work);
 }
 
-void apply_neighbours(const Model& model, State& state, Work& work) {
+void apply_neighbours(const Model& model, State& state, Workspace& work) {
   if (!work.entrained.empty()) work.cells.copy_masses(state.particles.mass);
   const View view = view_of(model, state, work);
   const Kernels& kernels = chosen_kernels();
@@ -110,7 +111,7 @@ void apply_neighbours(const Model& model, State& state, Work& work) {
   work.bonds_break = breaks;
 }
 
-void remove_broken(State& state, Work& work) {
+void remove_broken(State& state, Workspace& work) {
   if (!work.bonds_break) return;
   remove_bonds(state.bonds, work.broken);
   work.bond_lists.update(state.bonds, state.particles.size());

@@ -4,9 +4,10 @@
 
 namespace snowshed::slide {
 void GridFields::reserve(const Terrain& terrain, bool keeps_sums) {
-  const std::size_t most = (std::size_t(terrain.columns()) + 2) * (std::size_t(terrain.rows()) + 2);
-  nodes_.reserve(most);
-  if (keeps_sums) sums_.reserve(most);
+  const std::size_t max_nodes =
+      (std::size_t(terrain.columns()) + 2) * (std::size_t(terrain.rows()) + 2);
+  nodes_.reserve(max_nodes);
+  if (keeps_sums) sums_.reserve(max_nodes);
 }
 
 void GridFields::take_shape(const CellLists& cells) {

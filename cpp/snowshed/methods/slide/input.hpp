@@ -13,7 +13,7 @@ namespace snowshed::slide {
 
 class Input final : public MethodInput {
  public:
-  /// Reads the raster and brings it onto the computing grid. In compatible mode elevations are
+  /// Reads the raster and resamples it to the computing grid. In compatible mode elevations are
   /// rounded to single precision, as AvaFrame reads them. Throws InputError.
   Input(const TerrainSpec&, const Settings&, const std::filesystem::path& base_dir);
 

@@ -24,8 +24,8 @@ struct FewNeighbours {
 };
 inline constexpr FewNeighbours few_neighbours{3.7, 1.32};
 
-/// Least thickness by which anything is divided, m.
-inline constexpr double least_thickness = 1e-6;
+/// Minimum thickness in divisors, m.
+inline constexpr double min_thickness = 1e-6;
 
 /// Number of entries that may be read after those of the sorted arrays; their values are not used.
 inline constexpr std::size_t sorted_padding = 8;

@@ -1,4 +1,6 @@
-// The snow slide, as the rest of the program knows it.
+// The descriptor of the snow slide.
+#include <utility>
+
 #include "snowshed/core/errors.hpp"
 #include "snowshed/core/message_format.hpp"
 #include "snowshed/methods/descriptor.hpp"
@@ -10,17 +12,17 @@
 namespace snowshed::slide {
 namespace {
 
-class Descriptor final : public DescriptorOf<Descriptor, Settings> {
+class Descriptor final : public DescriptorBase<Descriptor, Settings> {
  public:
-  const MethodFacts& facts() const override {
-    static const MethodFacts facts{
+  const MethodInfo& info() const override {
+    static const MethodInfo info{
         "slide",
         "The snow slide: depth-averaged particles with cohesive bonds on terrain",
         {Part::terrain},
         "cells",
-        names_of(named_energies(Energy{})),
+        names_of(named_energies(EnergyBalance{})),
         {{"thickness", "m", "Thickness of the snow, normal to the ground", 1, 0.005}}};
-    return facts;
+    return info;
   }
 
   std::string step_setting() const override { return "time_step"; }
@@ -43,8 +45,13 @@ class Descriptor final : public DescriptorOf<Descriptor, Settings> {
   std::unique_ptr<Method> build(const SceneView& scene,
                                 const Surroundings& surroundings) const override {
     const auto& input = dynamic_cast<const Input&>(*surroundings.input);
-    return make_solver(
-        {settings_, scene.gravity, input.terrain(), input.areas(), scene.output.energy});
+    Options o;
+    o.settings = settings_;
+    o.gravity = scene.gravity;
+    o.terrain = input.terrain();
+    o.areas = input.areas();
+    o.energy = scene.output.energy;
+    return make_solver(std::move(o));
   }
 
   CostEstimate cost_of_method(const SceneView& scene, const Surroundings& surroundings,
@@ -61,8 +68,8 @@ class Descriptor final : public DescriptorOf<Descriptor, Settings> {
 }  // namespace
 
 const MethodDescriptor& descriptor() {
-  static const Descriptor own;
-  return own;
+  static const Descriptor instance;
+  return instance;
 }
 
 }  // namespace snowshed::slide

@@ -132,7 +132,7 @@ double thickness_at(const Area& area, double x, double y) {
   return m.height(column, row);
 }
 
-/// The snow of a raster of thickness: the thickest, m, and that of all its cells, m3.
+/// The snow of a thickness raster: the thickest, m, and that of all its cells, m3.
 struct SnowOfMap {
   double thickest = 0, volume = 0;
 };
@@ -158,7 +158,7 @@ double mean_thickness(const Area& area, const Terrain& terrain, std::size_t inde
   const int south = node_of(b.low[1] + rounding, m.south, m.cell);
   const int north = node_of(b.high[1] - rounding, m.south, m.cell);
   if (west < 0 || south < 0 || east >= m.columns || north >= m.rows)
-    refuse_area(index, area.name, "reaches beyond the raster of thickness");
+    refuse_area(index, area.name, "reaches beyond the thickness raster");
   double volume = 0, covered = 0;
   for (int row = south; row <= north; ++row)
     for (int column = west; column <= east; ++column) {
@@ -168,8 +168,8 @@ double mean_thickness(const Area& area, const Terrain& terrain, std::size_t inde
       const double h = m.height(column, row);
       if (!(h > 0 && h <= area.max_thickness))
         refuse_area(index, area.name,
-                    "the raster of thickness says " +
-                        (std::isnan(h) ? "nothing" : std::to_string(h) + " m") + " at (" +
+                    "the thickness raster has " +
+                        (std::isnan(h) ? "no value" : std::to_string(h) + " m") + " at (" +
                         std::to_string(terrain.west() + x) + ", " +
                         std::to_string(terrain.south() + y) + "); allowed: above 0 and at most " +
                         std::to_string(area.max_thickness) + " m");
@@ -305,8 +305,8 @@ double mass_per_particle(const Settings& s, double cell) {
 }
 
 void check_effort(const Settings& s, const Terrain& terrain, const std::vector<Area>& areas) {
-  constexpr double most_particles = 2e6;    // they take a gigabyte and some seconds
-  constexpr double most_comparisons = 3e9;  // comparisons of a particle with a corner: some seconds
+  constexpr double max_particles = 2e6;    // they take a gigabyte and some seconds
+  constexpr double max_comparisons = 3e9;  // comparisons of a particle with a corner: some seconds
   const double cell = terrain.cell();
   double particles = 0, corners = 0;
   const HeightField* map = nullptr;  // all areas share one
@@ -324,14 +324,14 @@ void check_effort(const Settings& s, const Terrain& terrain, const std::vector<A
     for (const Ring& hole : area.polygon.holes) corners += double(hole.size());
   }
   std::ostringstream text;
-  if (particles > most_particles) {
-    text << s.layer_thickness << " m makes " << particles << " particles; at most "
-         << most_particles << " are allowed: give thicker layers";
+  if (particles > max_particles) {
+    text << s.layer_thickness << " m makes " << particles << " particles; at most " << max_particles
+         << " are allowed: give thicker layers";
     throw InputError("/numerics/layer_thickness", text.str());
   }
-  if (particles * corners > most_comparisons) {
+  if (particles * corners > max_comparisons) {
     text << corners << " corners and " << particles << " particles; their product may be at most "
-         << most_comparisons << ": simplify the outlines";
+         << max_comparisons << ": simplify the outlines";
     throw InputError("/terrain/release", text.str());
   }
 }

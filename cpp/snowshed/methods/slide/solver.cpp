@@ -48,7 +48,7 @@ void check_no_hole(const Terrain& terrain, const Polygon& area, const std::strin
 }
 
 /// Largest number of steps that stiff bonds may need in place of one.
-constexpr double most_parts = 100;
+constexpr double max_substeps = 100;
 
 void check_on_terrain(const Terrain& terrain, const std::vector<Area>& areas,
                       const std::string& kind) {
@@ -115,39 +115,40 @@ void SolverImpl::append(State& state, const ParticleBatch& batch, const StopRequ
 
 /// Shortens the steps for the bonds. With these steps snow may pile up to four times its thickness
 /// before bonds become too stiff. Compatible mode takes the given step.
-void SolverImpl::choose_step(State& next, const Work& work) const {
+void SolverImpl::choose_step(State& next, const Workspace& work) const {
   const Settings& s = model_.settings;
   if (model_.compatible()) return;
-  const double longest =
-      0.5 * longest_bond_step(next.bonds, next.particles, work.thickness, s.bond_modulus);
-  const double parts = std::ceil(s.time_step / longest);
-  if (parts > most_parts)
+  const double max_step =
+      0.5 * max_bond_step(next.bonds, next.particles, work.thickness, s.bond_modulus);
+  const double parts = std::ceil(s.time_step / max_step);
+  if (parts > max_substeps)
     throw InputError("/numerics/time_step",
                      show_rounded(s.time_step) + " s; bonds with a modulus of " +
                          show_rounded(s.bond_modulus) + " Pa need steps of at most " +
-                         show_rounded(longest) + " s; at most " + show_rounded(most_parts) +
+                         show_rounded(max_step) + " s; at most " + show_rounded(max_substeps) +
                          " are taken in place of one");
   next.step = s.time_step / std::max(1.0, parts);
   next.counters.smallest_dt = std::min(next.counters.smallest_dt, next.step);
 }
 
 /// Counts the energy that a change from outside adds to the present one.
-void SolverImpl::count_as_added(const State& next, const Work& work, Energy& sums) const {
+void SolverImpl::count_as_added(const State& next, const Workspace& work,
+                                EnergyBalance& sums) const {
   if (!model_.keeps_energy) return;
-  Energy before, after;
-  store_energy(model_, state_, work_, before);
+  EnergyBalance before, after;
+  store_energy(model_, state_, workspace_, before);
   store_energy(model_, next, work, after);
   sums.added += after.stored() - before.stored();
 }
 
 /// Takes over a state and updates the workspace.
 void SolverImpl::accept(State next) {
-  Work work;
+  Workspace work;
   refresh(model_, next, work, &next.peaks);
   choose_step(next, work);
   count_as_added(next, work, next.energy);
   state_ = std::move(next);
-  work_ = std::move(work);
+  workspace_ = std::move(work);
   order_.forget();
 }
 
@@ -179,7 +180,7 @@ void SolverImpl::add_velocity(const std::vector<Vec3>& changes) {
   check_velocity_changes(changes, size());
   const std::vector<std::uint32_t>& at = order_by_id();
   for (std::size_t k = 0; k < at.size(); ++k) {
-    const Vec3 n = work_.places.normal(at[k]);
+    const Vec3 n = workspace_.places.normal(at[k]);
     const Vec3 along = changes[k] - changes[k].dot(n) * n;  // snow stays on the ground
     next.particles.ux[at[k]] += along.x();
     next.particles.uy[at[k]] += along.y();
@@ -191,47 +192,47 @@ void SolverImpl::add_velocity(const std::vector<Vec3>& changes) {
 
 /// In the order of their cells particles find their neighbours faster. All or nothing: the
 /// workspace has the memory for this.
-void SolverImpl::sort_now_and_then() {
+void SolverImpl::sort_if_due() {
   if (state_.counters.steps % steps_between_sorts != 0) return;
-  if (std::is_sorted(work_.cells.order().begin(), work_.cells.order().end())) return;
-  sort_by_cell(state_, work_);
-  refresh(model_, state_, work_);
+  if (std::is_sorted(workspace_.cells.order().begin(), workspace_.cells.order().end())) return;
+  sort_by_cell(state_, workspace_);
+  refresh(model_, state_, workspace_);
   order_.forget();
   ++state_.counters.sorts;
 }
 
 void SolverImpl::choose_threads() {
-  const int most = model_.threads_for(size());
+  const int max_threads = model_.threads_for(size());
   const bool by_trial = size() < particles_for_threads;
-  work_.threads = by_trial ? work_.thread_choice.begin(most) : most;
+  workspace_.threads = by_trial ? workspace_.thread_choice.begin(max_threads) : max_threads;
 }
 
 void SolverImpl::step() {
   soundness_.require();
   if (size() == 0) throw SimulationError("there is no snow on the terrain");
-  work_.make_room(model_, state_);
-  sort_now_and_then();
+  workspace_.reserve_memory(model_, state_);
+  sort_if_due();
   choose_threads();
   // Nothing from here on allocates.
   const bool audited = model_.keeps_energy;
-  EnergyAudit& audit = work_.audit;
+  EnergyAudit& audit = workspace_.audit;
   if (audited) audit.begin_step(state_);
-  apply_ground(model_, state_, work_);
-  if (audited) audit.after_ground(model_, state_, work_, state_.energy);
-  apply_neighbours(model_, state_, work_);
-  advance(model_, state_, work_);
-  if (audited) audit.after_motion(model_, state_, work_, state_.energy);
-  remove_broken(state_, work_);
-  remove_marked(state_, work_);
-  split_heavy(model_, state_, work_);
-  refresh_fields(model_, state_, work_, &state_.peaks);
+  apply_ground(model_, state_, workspace_);
+  if (audited) audit.after_ground(model_, state_, workspace_, state_.energy);
+  apply_neighbours(model_, state_, workspace_);
+  advance(model_, state_, workspace_);
+  if (audited) audit.after_motion(model_, state_, workspace_, state_.energy);
+  remove_broken(state_, workspace_);
+  remove_marked(state_, workspace_);
+  split_heavy(model_, state_, workspace_);
+  refresh_fields(model_, state_, workspace_, &state_.peaks);
   state_.dt = state_.step;
   ++state_.counters.steps;
-  const bool as_asked = state_.counters.smallest_dt == model_.settings.time_step;
-  state_.time = as_asked ? double(state_.counters.steps) * state_.dt : state_.time + state_.dt;
+  const bool step_is_given = state_.counters.smallest_dt == model_.settings.time_step;
+  state_.time = step_is_given ? double(state_.counters.steps) * state_.dt : state_.time + state_.dt;
   state_.counters.particle_updates += std::int64_t(size());
   order_.forget();
-  work_.thread_choice.end();
+  workspace_.thread_choice.end();
   if (size() == 0) state_.stopped = true;
   if (!std::isfinite(state_.kinetic_energy)) {
     soundness_.lose();

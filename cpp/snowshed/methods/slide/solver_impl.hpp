@@ -52,7 +52,7 @@ class SolverImpl final : public Solver {
   }
   const Terrain& terrain() const override { return model_.terrain; }
   const PeakFields& peaks() const override { return state_.peaks; }
-  const GridFields& flow() const override { return work_.fields; }
+  const GridFields& flow() const override { return workspace_.fields; }
   const Bonds& bonds() const override { return state_.bonds; }
   std::int64_t bonds_made() const override { return state_.bonds_made; }
   const MassBalance& mass_balance() const override { return state_.balance; }
@@ -60,16 +60,16 @@ class SolverImpl final : public Solver {
  private:
   void append(State&, const ParticleBatch&, const StopRequest&) const;
   void accept(State);
-  void sort_now_and_then();
+  void sort_if_due();
   void choose_threads();
-  void choose_step(State& next, const Work& work) const;
-  void count_as_added(const State& next, const Work& work, Energy& sums) const;
+  void choose_step(State& next, const Workspace& work) const;
+  void count_as_added(const State& next, const Workspace& work, EnergyBalance& sums) const;
   template <class Visit>
   void visit_fields(Visit) const;
 
   Model model_;
   State state_;
-  Work work_;
+  Workspace workspace_;
   Soundness soundness_;
   IdOrder order_;
 };

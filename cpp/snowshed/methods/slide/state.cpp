@@ -47,7 +47,7 @@ State::State(const Model& model)
       erodible(erodible_at_nodes(model)),
       step(model.settings.time_step) {}
 
-void Work::make_room(const Model& model, State& state) {
+void Workspace::reserve_memory(const Model& model, State& state) {
   // Each particle may split.
   const std::size_t now = state.particles.size(), most = state.erodible.empty() ? now : 2 * now;
   state.particles.for_each_array([most](const char*, auto& array) { array.reserve(most); });
@@ -102,7 +102,7 @@ void view_model(const Model& model, View& v) {
   v.added_speed = model.compatible() ? 1e-6 : 0.0;
 }
 
-void view_places(const Model& model, Work& work, View& v) {
+void view_places(const Model& model, Workspace& work, View& v) {
   Places& p = work.places;
   v.column = p.column.data();
   v.row = p.row.data();
@@ -141,7 +141,7 @@ void view_particles(const State& state, View& v) {
   v.mass = p.mass.data();
 }
 
-void view_loads(Work& work, View& v) {
+void view_loads(Workspace& work, View& v) {
   Loads& l = work.loads;
   v.ax = l.ax.data();
   v.ay = l.ay.data();
@@ -154,7 +154,7 @@ void view_loads(Work& work, View& v) {
   v.removed = work.removed.data();
 }
 
-void view_bonds(const State& state, Work& work, View& v) {
+void view_bonds(const State& state, Workspace& work, View& v) {
   if (state.bonds.size() == 0) return;
   v.bond_first = state.bonds.first.data();
   v.bond_second = state.bonds.second.data();
@@ -167,7 +167,7 @@ void view_bonds(const State& state, Work& work, View& v) {
 
 }  // namespace
 
-View view_of(const Model& model, State& state, Work& work) {
+View view_of(const Model& model, State& state, Workspace& work) {
   View v{};
   view_model(model, v);
   view_places(model, work, v);
@@ -179,7 +179,7 @@ View view_of(const Model& model, State& state, Work& work) {
   return v;
 }
 
-void refresh_places(const Model& model, const State& state, Work& work, std::size_t begin,
+void refresh_places(const Model& model, const State& state, Workspace& work, std::size_t begin,
                     std::size_t end) {
   View view{};
   view_model(model, view);
@@ -191,10 +191,10 @@ void refresh_places(const Model& model, const State& state, Work& work, std::siz
   });
 }
 
-void refresh(const Model& model, const State& state, Work& work, PeakFields* raised) {
+void refresh(const Model& model, const State& state, Workspace& work, PeakFields* raised) {
   const std::size_t n = state.particles.size();
   work.threads = model.threads_for(n);
-  work.none_splits = false;
+  work.no_particle_splits = false;
   work.places.resize(n);
   refresh_places(model, state, work, 0, n);
   work.bond_lists.update(state.bonds, n);
@@ -213,7 +213,7 @@ double lightest(const Particles& p) {
 
 }  // namespace
 
-void refresh_fields(const Model& model, const State& state, Work& work, PeakFields* raised) {
+void refresh_fields(const Model& model, const State& state, Workspace& work, PeakFields* raised) {
   const Particles& p = state.particles;
   work.cells.update(work.places.column, work.places.row);
   work.fields.take_shape(work.cells);

@@ -23,7 +23,7 @@
 
 namespace snowshed::slide {
 
-/// The fewest particles that a thread is started for.
+/// Minimum number of particles per thread.
 inline constexpr std::size_t particles_per_thread = 400;
 /// For steps with fewer particles a trial decides whether threads make them faster.
 inline constexpr std::size_t particles_for_threads = 20000;
@@ -32,7 +32,7 @@ struct Model {
   Model(const Settings&, double gravity, const HeightField&, Areas, bool keeps_energy);
 
   bool compatible() const { return settings.mode == Mode::compatible; }
-  /// The most threads for a step of this number of particles.
+  /// Maximum number of threads for a step of this number of particles.
   int threads_for(std::size_t particles) const {
     return snowshed::threads_for(particles, particles_per_thread, threads);
   }
@@ -47,9 +47,9 @@ struct Model {
   bool keeps_energy;
 };
 
-/// Snow that left the terrain, and snow that was taken up.
+/// Masses of the snow that was released, that was entrained, and that left the terrain.
 struct MassBalance {
-  double released = 0, entrained = 0, left = 0;  // kg
+  double released = 0, entrained = 0, left_terrain = 0;  // kg
   std::int64_t particles_left = 0;
 };
 
@@ -68,7 +68,7 @@ struct State {
   bool stopped = false;
   std::uint32_t next_id = 0;
   StepCounters counters;
-  Energy energy;  // its sums over steps
+  EnergyBalance energy;  // its sums over steps
 };
 
 /// Places of the particles in the grid, and the normals of the ground there.
@@ -105,7 +105,7 @@ struct Loads {
   }
 };
 
-struct Work {
+struct Workspace {
   Places places;
   AlignedVector<double> thickness;  // m, of the snow at the particles
   CellLists cells;
@@ -122,33 +122,33 @@ struct Work {
   bool bonds_break = false;          // whether any of them does in this step
   std::vector<std::uint32_t> new_places;
   std::vector<double> piece_sums;
-  bool none_splits = false;  // no particle is too heavy, and none becomes heavier
+  bool no_particle_splits = false;  // no particle is too heavy, and none becomes heavier
   EnergyAudit audit;
   int threads = 1;  // threads that share the loops
   ThreadChoice thread_choice;
 
   /// Reserves all memory that a step of this state can need, so that a step cannot fail half-way.
-  void make_room(const Model&, State&);
+  void reserve_memory(const Model&, State&);
 };
 
 /// Iterations that a thread takes at a time.
 inline constexpr std::ptrdiff_t particles_in_piece = 64;
 
 /// The kernels' view of a slide, valid until an array of it changes its size.
-View view_of(const Model&, State&, Work&);
+View view_of(const Model&, State&, Workspace&);
 
 /// Calls f(begin, end) for pieces of this number of particles or bonds.
 template <class F>
-void for_each_piece(const Work& work, std::size_t count, F f) {
+void for_each_piece(const Workspace& work, std::size_t count, F f) {
   parallel_pieces(std::ptrdiff_t(count), work.threads, particles_in_piece, f);
 }
 
 /// Updates the workspace from the particles: places, cells, fields, bonds. The fields raise the
 /// given peaks.
-void refresh(const Model&, const State&, Work&, PeakFields* raised = nullptr);
+void refresh(const Model&, const State&, Workspace&, PeakFields* raised = nullptr);
 /// The places of the particles [begin, end), which the workspace has room for.
-void refresh_places(const Model&, const State&, Work&, std::size_t begin, std::size_t end);
+void refresh_places(const Model&, const State&, Workspace&, std::size_t begin, std::size_t end);
 /// The same as `refresh` if bonds and the particles' places are known already.
-void refresh_fields(const Model&, const State&, Work&, PeakFields* raised);
+void refresh_fields(const Model&, const State&, Workspace&, PeakFields* raised);
 
 }  // namespace snowshed::slide

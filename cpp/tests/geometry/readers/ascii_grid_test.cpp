@@ -68,12 +68,12 @@ TEST_F(AsciiGrid, TellsWhatItAssumed) {
   write_plainly(path("a.asc"),
                 "ncols 2\nnrows 2\nxllcorner 0,5\nyllcorner 0\ncellsize 1\n"
                 "1,25 2\n3 -9999\n");
-  AsciiGridFacts facts;
-  const HeightField f = read_ascii_grid(path("a.asc"), &facts);
+  GridAssumptions assumptions;
+  const HeightField f = read_ascii_grid(path("a.asc"), &assumptions);
   EXPECT_DOUBLE_EQ(f.height(0, 1), 1.25);
   EXPECT_DOUBLE_EQ(f.west, 1);
-  EXPECT_EQ(facts.decimal_commas, 2u);
-  EXPECT_EQ(facts.undeclared_missing, 1u);
+  EXPECT_EQ(assumptions.decimal_commas, 2u);
+  EXPECT_EQ(assumptions.undeclared_missing, 1u);
 }
 
 TEST_F(AsciiGrid, LinesMayBreakAnywhere) {

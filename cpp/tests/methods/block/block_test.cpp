@@ -33,8 +33,8 @@ TEST_F(Block, SlidesAsGalileiSays) {
   sim.begin_event();
   EXPECT_EQ(sim.run(to_the_end, 10), RunEnd::time_limit);
   const double tilt = radians(30), a = 9.81 * (std::sin(tilt) - 0.2 * std::cos(tilt));
-  EXPECT_NEAR(sim.solver().state().positions[0].norm(), a * 0.5 * 0.5 / 2, 1e-12);
-  EXPECT_NEAR(capability<KeepsEnergy>(sim.solver())->energies().back().second, 0, 1e-12);
+  EXPECT_NEAR(sim.method().state().positions[0].norm(), a * 0.5 * 0.5 / 2, 1e-12);
+  EXPECT_NEAR(capability<KeepsEnergy>(sim.method())->energies().back().second, 0, 1e-12);
 }
 
 TEST_F(Block, RestsWhereFrictionHoldsIt) {
@@ -43,7 +43,7 @@ TEST_F(Block, RestsWhereFrictionHoldsIt) {
   Simulation sim(held, ".");
   sim.begin_event();
   EXPECT_EQ(sim.run(to_the_end, 10), RunEnd::rest);
-  EXPECT_EQ(sim.solver().state().positions[0], Vec3(0, 0, 0));
+  EXPECT_EQ(sim.method().state().positions[0], Vec3(0, 0, 0));
 }
 
 TEST_F(Block, ResumesToTheSameBits) {
@@ -53,9 +53,9 @@ TEST_F(Block, ResumesToTheSameBits) {
   whole.save(path("checkpoint"));
   const auto resumed = Simulation::load(path("checkpoint"));
   for (Simulation* sim : {&whole, resumed.get()}) sim->run(to_the_end, 10);
-  EXPECT_EQ(resumed->solver().state().positions, whole.solver().state().positions);
-  EXPECT_EQ(resumed->solver().state().velocities, whole.solver().state().velocities);
-  EXPECT_EQ(resumed->solver().counters().steps, 500);
+  EXPECT_EQ(resumed->method().state().positions, whole.method().state().positions);
+  EXPECT_EQ(resumed->method().state().velocities, whole.method().state().velocities);
+  EXPECT_EQ(resumed->method().counters().steps, 500);
 }
 
 TEST_F(Block, RunsIntoAResultsFolder) {

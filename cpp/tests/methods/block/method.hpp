@@ -1,4 +1,4 @@
-// The block, as the rest of the program knows it.
+// The descriptor of the block.
 #pragma once
 
 #include <cmath>
@@ -8,12 +8,12 @@
 
 namespace snowshed::block {
 
-class Descriptor final : public DescriptorOf<Descriptor, Settings> {
+class Descriptor final : public DescriptorBase<Descriptor, Settings> {
  public:
-  const MethodFacts& facts() const override {
-    static const MethodFacts facts{"block",  "A rigid block on a plane",      {},
-                                   "blocks", names_of(Solver({}).energies()), {}};
-    return facts;
+  const MethodInfo& info() const override {
+    static const MethodInfo info{"block",  "A rigid block on a plane",      {},
+                                 "blocks", names_of(Solver({}).energies()), {}};
+    return info;
   }
   std::string step_setting() const override { return "time_step"; }
   void validate(const SceneView& scene) const override {

@@ -1,5 +1,5 @@
-// Lack of memory with grains: every allocation of a run in which bonds break and pairs are looked
-// for anew fails once. Each failed call must leave the grains as they were, and the run must end
+// Lack of memory with grains: every allocation of a run in which bonds break and pairs are searched
+// again fails once. Each failed call must leave the grains as they were, and the run must end
 // with the same bits.
 #include "io/temporary_folder.hpp"
 #include "methods/fault_story.hpp"
@@ -49,12 +49,12 @@ class GrainsFaults : public TemporaryFolder {};
 
 TEST_F(GrainsFaults, LeaveNoTrace) {
   GrainsStory whole(path("whole")), faulty(path("faulty"));
-  std::int64_t most_broken = 0;
+  std::int64_t max_broken = 0;
   const int faults = fail_every_allocation(whole, faulty, expect_same_grains, [&](const Solver& m) {
-    most_broken = std::max(most_broken, m.measures().broken_in_tension);
+    max_broken = std::max(max_broken, m.measures().broken_in_tension);
   });
   if (HasFailure()) return;
-  EXPECT_GT(most_broken, 0);
+  EXPECT_GT(max_broken, 0);
   EXPECT_GT(whole.method->counters().sorts, 0);
   RecordProperty("faults", faults);
   EXPECT_GE(faults, 200);

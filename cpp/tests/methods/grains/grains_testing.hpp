@@ -125,7 +125,7 @@ struct PosedGrains {
 
   Model model;
   State state;
-  Work work;
+  Workspace work;
 };
 
 }  // namespace snowshed::grains

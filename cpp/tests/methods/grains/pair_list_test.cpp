@@ -136,7 +136,7 @@ TEST(GrainPairs, KeepTheirPastAndTheirBondsFromListToList) {
 TEST(GrainPairs, ThatAreTooManyAreAnError) {
   const Strewn strewn(false);
   PairSearch search = strewn.search();
-  search.most_pairs = 10;
+  search.max_pairs = 10;
   EXPECT_THROW(find_pairs(search, strewn.poses, strewn.boundary), SimulationError);
 }
 

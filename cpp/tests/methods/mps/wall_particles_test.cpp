@@ -31,7 +31,7 @@ Particles<D> at_rest(const std::vector<Vec3>& positions) {
 template <int D>
 std::pair<double, double> densities(const Options& o, Particles<D> p) {
   const Model<D> model(o);
-  Work<D> work;
+  Workspace<D> work;
   work.walls = WallParticles<D>(model.options.obstacles, o.settings.spacing, model.reach());
   work.walls.append_near(0, o.period, model.particle_mass(), p);
   find_neighbours(model, p, 0.0, work);

@@ -52,7 +52,7 @@ TEST(SlideBonds, OfParticlesThatAreGoneAreGone) {
   bonds.add(0, 1, 1.0);
   bonds.add(1, 2, 2.0);
   bonds.add(0, 2, 3.0);
-  renumber(bonds, {0, gone, 1});
+  renumber(bonds, {0, removed_particle, 1});
   ASSERT_EQ(bonds.size(), 1u);
   EXPECT_EQ(bonds.second[0], 1u);
   EXPECT_EQ(bonds.rest_length[0], 3.0);

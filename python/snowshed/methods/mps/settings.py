@@ -76,7 +76,7 @@ class MpsSettings(MethodSettings):
     source : {"published", "compensated"}
         Right-hand side of the pressure equation. Default "compensated".
     compensation : float
-        Share of the density's error that a step takes away. 0 <= value <= 1; default 0.1.
+        Share of the density's error that a step removes. 0 <= value <= 1; default 0.1.
     gradient : {"published", "conservative", "corrected"}
         Gradient of the pressure. Default "corrected".
     splitting : {"viscosity_first", "pressure_first"}

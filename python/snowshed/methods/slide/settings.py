@@ -52,14 +52,14 @@ class SlideSettings(MethodSettings):
     min_bond_length : float
         Length below which a bond exerts no force [m]. 0 <= value <= 1e+06; default 0.001.
     entrained_density : float
-        Density of the snow that is taken up [kg/m3]. 0 < value <= 1000; default 100.
+        Density of the entrained snow [kg/m3]. 0 < value <= 1000; default 100.
     erosion_energy : float
-        Friction work that takes up a kilogram of snow; 0: all that the slide sweeps over [J/kg]. 0
-        <= value <= 1e+12; default 5000.
+        Friction work that entrains a kilogram of snow; 0: all snow below the slide is entrained
+        [J/kg]. 0 <= value <= 1e+12; default 5000.
     entrainment_shear : float
-        Shear strength of the snow that is taken up [Pa]. 0 <= value <= 1e+12; default 0.
+        Shear strength of the entrained snow [Pa]. 0 <= value <= 1e+12; default 0.
     entrainment_work : float
-        Work that breaks up the snow that is taken up [J/kg]. 0 <= value <= 1e+12; default 0.
+        Work that breaks up the entrained snow [J/kg]. 0 <= value <= 1e+12; default 0.
     split_ratio : float
         A particle splits when its mass exceeds this multiple of a fresh particle's. 1 < value <=
         1e+06; default 1.5.

@@ -24,7 +24,7 @@ struct PackAhead {
 
 SNOWSHED_INLINE void mix(const View& s, const Lanes& l, PackAhead& ahead) {
   const Pack thickness = l.load(s.thickness);
-  const Pack h = max(thickness, broadcast<Pack>(least_thickness));
+  const Pack h = max(thickness, broadcast<Pack>(min_thickness));
   const PackRecord flow = flow_at(s, stored_place(s, l));
   const PackVec u = mixed(s, l.load(s.ux, s.uy, s.uz), {flow.b, flow.c, flow.d},
                           l.load(s.nx, s.ny, s.nz), l.load(s.mass), h);
@@ -45,7 +45,7 @@ SNOWSHED_INLINE void load_ground(const View& s, const Lanes& l, const PackAhead&
   const Pack along_normal = -s.gravity * mean.z;
   // Friction does not act on snow that leaves the ground.
   const Pack pressing = max(Pack{}, Pack(-(along_normal + curvature)));  // m/s2
-  const Pack h = max(l.load(s.thickness), broadcast<Pack>(least_thickness));
+  const Pack h = max(l.load(s.thickness), broadcast<Pack>(min_thickness));
   const Pack drag = select(pressing > 0.0, Pack(s.friction_drag / (s.density * h)), Pack{});
 
   PackVec acceleration = Pack(-along_normal) * mean;

@@ -34,7 +34,7 @@ SNOWSHED_INLINE void raise_mean_speed(const View& s, int row) {
     return binomial_mean(sums_at(column, row - 2), sums_at(column, row - 1), sums_at(column, row),
                          sums_at(column, row + 1), sums_at(column, row + 2));
   };
-  const double least_square_mass = s.fading_mass * s.fading_mass;
+  const double min_square_mass = s.fading_mass * s.fading_mass;
   Quad a{}, b{}, c{}, d = mean_along_column(0);
   for (int column = -1; column < s.flow_columns + 2; ++column) {
     const Quad e = mean_along_column(column + 2);
@@ -46,7 +46,7 @@ SNOWSHED_INLINE void raise_mean_speed(const View& s, int row) {
     const int terrain_column = s.flow_column + column;
     const double mass = mean[0];
     if (!(mass > 0) || terrain_column < 0 || terrain_column >= s.columns) continue;
-    const double per_mass = mass / (mass * mass + least_square_mass);
+    const double per_mass = mass / (mass * mass + min_square_mass);
     const double square = mean[1] * mean[1] + mean[2] * mean[2] + mean[3] * mean[3];
     raise_speed(s, std::ptrdiff_t(terrain_row) * s.columns + terrain_column,
                 square * per_mass * per_mass);

@@ -5,8 +5,8 @@
 
 SNOWSHED_METHOD_VARIANT_BEGIN(slide)
 
-inline constexpr double least_slide_speed = 1e-6;  // m/s
-inline constexpr double at_rest = 2e-15;           // m/s, above the rounding error of a root
+inline constexpr double min_slide_speed = 1e-6;  // m/s
+inline constexpr double at_rest = 2e-15;         // m/s, above the rounding error of a root
 
 /// A velocity after friction, and the time for which the particle moves, s.
 struct PackSlowed {
@@ -19,7 +19,7 @@ struct PackSlowed {
 SNOWSHED_INLINE PackSlowed slowed(const View& s, const PackVec& u, const Pack& yield,
                                   const Pack& drag) {
   const Pack dt = broadcast<Pack>(s.time_step);
-  const Pack square = max(dot(u, u), broadcast<Pack>(least_square));
+  const Pack square = max(dot(u, u), broadcast<Pack>(min_square));
   const Pack per_speed = inverse_sqrt(square);
   const Pack rest = max(Pack{}, Pack(square * per_speed - dt * yield));
   const Pack after = 2.0 * rest / (1.0 + length_from(Pack(1.0 + 4.0 * drag * dt * rest)));
@@ -30,18 +30,18 @@ SNOWSHED_INLINE PackSlowed slowed(const View& s, const PackVec& u, const Pack& y
 SNOWSHED_INLINE PackSlowed slowed_implicitly(const View& s, const PackVec& u, const Pack& stress,
                                              const Pack& speed) {
   const Pack dt = broadcast<Pack>(s.time_step);
-  const Pack rate = stress / max(speed, broadcast<Pack>(least_slide_speed));
+  const Pack rate = stress / max(speed, broadcast<Pack>(min_slide_speed));
   return {Pack(1.0 / (1.0 + dt * rate)) * u, dt};
 }
 
 SNOWSHED_INLINE PackSlowed slowed_explicitly(const View& s, const PackVec& u, const Pack& stress,
                                              const Pack& before) {
   const Pack dt = broadcast<Pack>(s.time_step);
-  const Pack square = max(dot(u, u), broadcast<Pack>(least_square));
+  const Pack square = max(dot(u, u), broadcast<Pack>(min_square));
   const Pack per_speed = inverse_sqrt(square), speed = square * per_speed;
   const PackMask moves = speed >= dt * stress;
   const Pack left = select(moves, Pack(1.0 - dt * stress * per_speed), Pack{});
-  const Pack until_rest = speed / max(stress, broadcast<Pack>(least_square));
+  const Pack until_rest = speed / max(stress, broadcast<Pack>(min_square));
   return {left * u, select(moves, dt, select(before > at_rest, until_rest, Pack{}))};
 }
 

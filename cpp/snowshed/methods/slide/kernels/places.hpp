@@ -10,9 +10,9 @@ SNOWSHED_METHOD_VARIANT_BEGIN(slide)
 using PackVec = SimdVec<Pack>;
 
 /// Smaller squares count as zero in roots.
-inline constexpr double least_square = 1e-30;
+inline constexpr double min_square = 1e-30;
 SNOWSHED_INLINE Pack length_from(const Pack& square) {
-  const Pack s = max(square, broadcast<Pack>(least_square));
+  const Pack s = max(square, broadcast<Pack>(min_square));
   return s * inverse_sqrt(s);
 }
 
@@ -73,9 +73,9 @@ inline constexpr int packs_in_batch = 64 / pack_lanes;
 /// Calls f(begin, end, packs) for batches of a range.
 template <class F>
 SNOWSHED_INLINE void for_each_batch(std::ptrdiff_t begin, std::ptrdiff_t end, const F& f) {
-  constexpr std::ptrdiff_t most = packs_in_batch * pack_lanes;
-  for (; begin < end; begin += most) {
-    const std::ptrdiff_t last = end - begin < most ? end : begin + most;
+  constexpr std::ptrdiff_t batch = packs_in_batch * pack_lanes;
+  for (; begin < end; begin += batch) {
+    const std::ptrdiff_t last = end - begin < batch ? end : begin + batch;
     f(begin, last, int((last - begin + pack_lanes - 1) / pack_lanes));
   }
 }

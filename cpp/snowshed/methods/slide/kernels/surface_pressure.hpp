@@ -32,8 +32,7 @@ SNOWSHED_INLINE void count_neighbours_of(const View& s, std::uint32_t first,
     const Neighbours<V> sources(s, e);
     const V mass = within(load_beyond<V>(s.sorted_mass + e), e, end);
     for (int k = 0; k < count; ++k) {
-      const V square =
-          max(Separation<V>(s, first + k, sources).square(), broadcast<V>(least_square));
+      const V square = max(Separation<V>(s, first + k, sources).square(), broadcast<V>(min_square));
       const V inside = max(V{}, V(s.cell - square * inverse_sqrt(square)));
       sum[k] += mass * inside * inside * inside;
     }

@@ -1,4 +1,4 @@
-# Finds Eigen and nlohmann-json, which are header-only, and zlib. The system's packages are preferred.
+# Finds Eigen, nlohmann-json and zlib. The system's packages are preferred.
 # The Python wheels `cmeel-eigen`, `nlohmann-json` and `cmeel-zlib` contain the same.
 add_library(snowshed_headers INTERFACE)
 
