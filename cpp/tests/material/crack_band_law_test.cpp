@@ -15,9 +15,10 @@ using namespace cam_clay_testing;
 constexpr double strength = 7e3;  // Pa, initial p0
 
 template <class T>
-RegularisedCamClay<T> banded(double softening, const LawConstants& s = calibrated, int dimension = 3) {
+RegularisedCamClay<T> banded(double softening, const LawConstants& s = calibrated,
+                             int dimension = 3) {
   auto law = RegularisedCamClay<T>::from(s.youngs_modulus, s.poissons_ratio, s.slope, s.cohesion,
-                                    s.hardening, dimension);
+                                         s.hardening, dimension);
   law.softening = T(softening);
   law.band_begin = T(law.initial_plastic_strain(strength));
   return law;
@@ -103,6 +104,49 @@ TEST(CrackBandLaw, OfOneIsCamClayBitForBit) {
     ASSERT_EQ(a.q, b.q);
     ASSERT_EQ(ev, ev_of_law);
   }
+}
+
+/// Snow that is held at its strain relaxes towards the yield surface: n steps of dt leave
+/// (tau / (dt + tau))^n of the overstress, which short steps bring to exp(-t / tau).
+TEST(Relaxation, OverstressDecaysExponentially) {
+  constexpr double tau = 1e-4, time = 1.5e-4;
+  const auto law = banded<double>(1.0);
+  const double ev = law.initial_plastic_strain(strength);
+  // At the centre of the ellipse the flow has no volume, so q alone relaxes.
+  const double centre = 0.5 * (1 - 0.2) * strength;
+  PQ<double> on_surface{centre, 3 * strength};
+  double ev_there = ev;
+  ASSERT_TRUE(law.return_map(on_surface, ev_there));
+  for (const int steps : {50, 500}) {
+    const double dt = time / steps, overstress = tau / (dt + tau);
+    PQ<double> s{centre, 3 * strength};
+    double ev_now = ev;
+    for (int n = 0; n < steps; ++n) law.return_map(s, ev_now, overstress);
+    const double left = (s.q - on_surface.q) / (3 * strength - on_surface.q);
+    EXPECT_NEAR(left, std::pow(overstress, steps), 1e-6);
+    EXPECT_NEAR(left, std::exp(-time / tau), 0.5 * dt / tau);
+    EXPECT_NEAR(s.p, centre, 1e-6 * strength);
+  }
+}
+
+/// A part of the way back keeps the volume balance, and lies between the trial and the surface.
+TEST(Relaxation, APartOfTheWayBackKeepsTheVolume) {
+  Random random(3);
+  const auto law = banded<double>(0.5);
+  int yielded = 0;
+  for (int i = 0; i < 5000; ++i) {
+    const PQ<double> trial{3e4 * (2 * random.uniform() - 1), 3e4 * random.uniform()};
+    const double before = -0.1 * random.uniform(), overstress = random.uniform();
+    PQ<double> back = trial, part = trial;
+    double ev_back = before, ev_part = before;
+    if (!law.return_map(back, ev_back)) continue;
+    ++yielded;
+    law.return_map(part, ev_part, overstress);
+    ASSERT_NEAR(part.p, back.p + overstress * (trial.p - back.p), 1e-6);
+    ASSERT_NEAR(part.q, back.q + overstress * (trial.q - back.q), 1e-6);
+    ASSERT_NEAR(part.p - trial.p, law.elastic.bulk * (ev_part - before), 1e-5);
+  }
+  EXPECT_GT(yielded, 1000);
 }
 
 }  // namespace

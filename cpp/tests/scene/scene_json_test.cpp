@@ -73,7 +73,7 @@ TEST(SceneJson, EveryFieldIsRead) {
     "seeding": {"particles_per_voxel": 3, "pattern": "regular", "seed": 18446744073709551615,
                 "allow_sparse": true},
     "numerics": {"dx": 0.02, "precision": "double", "transfer": "apic", "flip_ratio": 0.5,
-                 "crack_band_length": 0.03, "contact": "touch", "contact_radius": 0.7,
+                 "crack_band_length": 0.03, "relaxation_time": 0.0001, "contact": "touch", "contact_radius": 0.7,
                  "fields": "events", "event_friction": 0.5,
                  "basis": "cubic", "courant_factor": 0.3, "strain_limit": 0.1, "sleep_speed": 0.4,
                  "sleep_time": 0.7, "threads": 3},
@@ -92,8 +92,8 @@ TEST(SceneJson, EveryFieldIsRead) {
   EXPECT_TRUE(
       scene.numerics.as<mpm::Settings>() ==
       (mpm::Settings{mpm::Scheme::thesis, 0.02, mpm::Precision::float64, mpm::Transfer::apic, 0.5,
-                     std::nullopt, 0, 0.03, mpm::ContactRule::touch, 0.7, mpm::Fields::events, 0.5,
-                     mpm::Basis::cubic, 0.3, 0.1, 0.4, 0.7, 3}));
+                     std::nullopt, 0, 0.03, 1e-4, mpm::ContactRule::touch, 0.7, mpm::Fields::events,
+                     0.5, mpm::Basis::cubic, 0.3, 0.1, 0.4, 0.7, 3}));
   EXPECT_TRUE(scene.events == (Events{4, Between::reseed, 3, 0.1, 0.2}));
   EXPECT_TRUE(scene.output == (Output{0.25, false, 0.5, true, 30}));
 

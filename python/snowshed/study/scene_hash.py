@@ -40,6 +40,7 @@ SETTINGS_WITHOUT_EFFECT = ("threads", "scheme")
 FORMER_BEHAVIOUR: Mapping[str, object] = {
     "damping_length": 0.0,
     "crack_band_length": 0.0,
+    "relaxation_time": 0.0,
     "contact": "kernel",
     "contact_radius": 0.6,
     "fields": "one",

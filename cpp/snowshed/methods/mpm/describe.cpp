@@ -12,11 +12,10 @@ void describe(SettingsVisitor& v, Settings& n) {
   v.alias("courant_factor", "step_factor");  // its name up to version 0.1
   v.number("dx", n.dx, "m", allowed::size, "Size of grid cells and voxels");
   const Scheme before = n.scheme;
-  v.choice(
-      "scheme", n.scheme,
-      "Mechanisms that belong together: objective sets transfer affine_flip, damping_rate 380 "
-      "1/s, damping_length and crack_band_length 0.01 m, relaxation_time 1e-4 s, contact touch "
-      "and fields of events, unless they are given; thesis keeps the defaults of these settings");
+  v.choice("scheme", n.scheme,
+           "Mechanisms that belong together: objective sets transfer affine_flip, damping_rate 380 "
+           "1/s, damping_length and crack_band_length 0.01 m, contact touch and fields of events, "
+           "unless they are given; thesis keeps the defaults of these settings");
   if (n.scheme != before) n.adopt(n.scheme);  // fields that are read next may differ from it
   v.choice("precision", n.precision, "Floating-point type of the particles and the grid");
   v.choice("transfer", n.transfer, "Transfer of velocities between particles and grid");
@@ -33,8 +32,8 @@ void describe(SettingsVisitor& v, Settings& n) {
            "crack takes the same energy per area on any grid; 0: the law itself");
   v.number(
       "relaxation_time", n.relaxation_time, "s", allowed::time,
-      "Time in which stress beyond the yield surface relaxes, so that fast cracks have a width "
-      "that the grid resolves; 0: at once, the law itself");
+      "Time in which stress beyond the yield surface relaxes, a viscosity of snow that yields; "
+      "0: at once, the law itself");
   v.choice(
       "contact", n.contact,
       "Snow on which a node of an obstacle acts: all whose splines reach the node (kernel), or "

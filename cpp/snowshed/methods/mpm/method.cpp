@@ -39,7 +39,6 @@ void check_scheme(const Settings& n) {
   require(n.fields == Fields::events, "fields", "\"one\"", "\"events\"");
   require(n.damps_over_length(), "damping_length", "0", "a length");
   require(n.crack_band_length > 0, "crack_band_length", "0", "a length");
-  require(n.relaxation_time > 0, "relaxation_time", "0", "a time");
 }
 
 /// The law that softens dx over the crack band's length as fast: on finer grids snow would strain

@@ -55,7 +55,6 @@ struct Settings {
     transfer = Transfer::affine_flip;
     damping_rate = 380.0;
     damping_length = crack_band_length = 0.01;
-    relaxation_time = 1e-4;
     contact = ContactRule::touch;
     fields = Fields::events;
   }

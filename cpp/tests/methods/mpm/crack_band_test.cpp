@@ -22,11 +22,12 @@ Obstacle jaw(double side, double half_length) {
 /// A bar with a notch as wide as deep in the middle of its top, pulled apart along x: the plastic
 /// work over the area that breaks, J/m2.
 double energy_of_crack(int dimension, double dx, double crack_band_length, Transfer transfer,
-                       double time = 0.12) {
+                       double time = 0.12, double relaxation_time = 0) {
   Options o = options_for({dimension, Precision::float32, transfer}, dx);
   o.gravity = 0;
   o.energy = true;
   o.settings.crack_band_length = crack_band_length;
+  o.settings.relaxation_time = relaxation_time;
   o.settings.damping_rate = 380;
   if (transfer == Transfer::affine_flip) o.settings.damping_length = 0.01;
   const double half_length = dimension == 2 ? 0.15 : 0.08;
@@ -66,6 +67,16 @@ TEST(CrackBand, ACrackTakesTheSameEnergyOnAnyGrid) {
 TEST(CrackBand, ACrackTakesNearlyTheSameEnergyInThreeDimensions) {
   const double coarse = energy_of_crack(3, 0.01, 0.01, Transfer::affine_flip, 0.06);
   EXPECT_NEAR(energy_of_crack(3, 0.005, 0.01, Transfer::affine_flip, 0.06), coarse, 0.13 * coarse);
+}
+
+/// The ends move apart at 4 cm/s, so that the strain rate in the notch is 4 1/s, and the overstress
+/// several times the tensile strength.
+TEST(Relaxation, AFastCrackTakesMoreEnergy) {
+  for (const Transfer transfer : {Transfer::flip, Transfer::affine_flip}) {
+    const double at_once = energy_of_crack(2, 0.01, 0.01, transfer, 0.06);
+    EXPECT_GT(energy_of_crack(2, 0.01, 0.01, transfer, 0.06, 1e-3), 1.5 * at_once);
+    EXPECT_NEAR(energy_of_crack(2, 0.01, 0.01, transfer, 0.06, 1e-7), at_once, 0.05 * at_once);
+  }
 }
 
 TEST(CrackBand, ActsWithAnyTransfer) {
