@@ -3,12 +3,12 @@
 Usage: python benchmarks/beside_mps_basic.py PROGRAM [--radius 2.1 3.1]
 [--particles2d 1458 9800] [--particles3d 19652] [--threads 1 2]
 
-PROGRAM is that of MPS-Basic (Koshizuka and Shibata laboratory, MIT licence), compiled with
-optimisation and OpenMP. Both let a column of water collapse that is twice as high as wide, in a
-basin twice as long as it, with the same distance between particles and the same radius of the
-pressure's weights. A step of a particle of water is the unit, and the best of three runs counts.
+PROGRAM is the program of MPS-Basic (Koshizuka and Shibata laboratory, MIT licence), compiled with
+optimisation and OpenMP. In both programs a column of water, twice as high as wide, collapses in a
+basin twice as long as the column, with the same distance between particles and the same radius of
+the pressure's weights. The unit is a step of one water particle, and the best of three runs counts.
 MPS-Basic's walls are particles, too, and ours are mirrors: its speed with its walls among the
-particles is told as well. Writes benchmarks/results/DATE-mps.json. Nothing else should run on the
+particles is printed, too. Writes benchmarks/results/DATE-mps.json. Nothing else should run on the
 machine meanwhile.
 """
 
@@ -36,7 +36,7 @@ from snowshed.scene.scene import Scene  # noqa: E402
 from snowshed.scene.shape import Shape  # noqa: E402
 
 SPACING = 0.01  # m
-GRADIENT_RADIUS = 2.1  # of MPS-Basic, in spacings, as it comes
+GRADIENT_RADIUS = 2.1  # of MPS-Basic, in spacings, by default
 BASIN = 2  # its length, in widths of the column
 LAYERS = 4  # of its wall: two whose pressure is known, and two behind them
 STEP = 4e-4  # s, of MPS-Basic, in its own proportion to the spacing
@@ -88,7 +88,7 @@ class Column:
     across
         Particles along its width. It is twice as high, and as deep as wide.
     radius
-        Of the weights, in spacings.
+        Radius of the weights, in spacings.
     """
 
     dimension: int
@@ -102,12 +102,12 @@ class Column:
 
     @property
     def particles(self) -> int:
-        """How many there are, without walls."""
+        """Number of water particles."""
         return 2 * self.across**self.dimension
 
     @property
     def width(self) -> float:
-        """Of the column, m."""
+        """Width of the column, m."""
         return self.across * SPACING
 
 
@@ -175,7 +175,7 @@ def write_basin(column: Column, folder: Path) -> int:
 
 
 def their_seconds(program: Path, column: Column, steps: int, threads: int, folder: Path) -> float:
-    """Return the time MPS-Basic takes for so many steps, with its start, s."""
+    """Return the time of MPS-Basic for a number of steps, including its start, s."""
     far = (BASIN + 1) * column.width + 2 * LAYERS * SPACING
     text = SETTINGS.format(
         dimension=column.dimension,
@@ -236,7 +236,7 @@ def compare(program: Path, column: Column, threads: int) -> dict[str, float]:
 def main() -> None:
     """Print a table of speeds and their ratios, and keep it."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("program", type=Path, help="that of MPS-Basic")
+    parser.add_argument("program", type=Path, help="program of MPS-Basic")
     parser.add_argument("--radius", type=float, nargs="*", default=[2.1, 3.1])
     parser.add_argument("--particles2d", type=int, nargs="*", default=[1458, 9800])
     parser.add_argument("--particles3d", type=int, nargs="*", default=[19652])

@@ -6,17 +6,17 @@ ISeeSnow is an intercomparison of avalanche models (doi:10.5194/egusphere-2025-6
 under EUPL-1.2 and not part of snowshed. FOLDER has one folder per case with the elevations
 (``DEM_*.asc``), the release (``*.shp``) and the peak rasters of a model (``*_pft.asc``, thickness
 in m, and ``*_pfv.asc``, speed in m/s); rasters may be packed (``.xz``). The release is 1.5 m thick
-and mu is 0.4; xi is 2000 m/s2, but for cases with Coulomb in their name, which have none. All else
-is the default mode's default, without bonds.
+and mu is 0.4; xi is 2000 m/s2, except in cases with Coulomb in their name, which have none. All
+other settings are the defaults, without bonds.
 
-Printed are, for both and as a ratio,
+The program prints, for both and as a ratio:
 
 - peak speed and peak thickness: the largest values of the rasters;
 - area: the number of cells whose peak thickness exceeds 0.1 m, times the area of a cell;
 - farthest x: the largest coordinate among these cells;
 
 and cell by cell, over the cells where either exceeds 0.1 m: the mean absolute difference over the
-mean of the model's values, and which share of these cells both have in common.
+mean of the model's values, and the share of these cells that both have in common.
 """
 
 from __future__ import annotations

@@ -3,7 +3,7 @@
 Usage: python benchmarks/strength_beside_yade.py FOLDER/samples/field-318-*-coarser2.npy
 [--strain 0.15]
 
-The files are those of `snowshed reproduce hagenmuller --quick -o FOLDER`: labels on voxels of
+The files are those of `snowshed reproduce hagenmuller2015 --quick -o FOLDER`: labels on voxels of
 100 um. Both engines press the same clumps, bonds and plates with the same law. Ice has its own
 density, and the plate is so fast that density times speed squared is that of the reproduction.
 Prints the peak below 5 % of strain and the means from 5 to 10 and from 10 to 15 %, kPa, and writes

@@ -1,10 +1,11 @@
-"""From an image of snow to the stack below a panel, by way of loading tests of its grains.
+"""From an image of snow, through loading tests of its grains, to the stack below a panel.
 
     python examples/image_to_stack.py [FOLDER [VOXELS [COARSER [DX]]]]
 
-The image is synthetic (318 kg/m3, voxels of 50 um), since none comes with snowshed: give
-``segment`` your own instead. COARSER is how many voxels make a sphere, DX the grid of the scene in
-m. Half a minute on two free cores. Draws ``image_to_stack.png`` into the folder.
+The image is synthetic (318 kg/m3, voxels of 50 um), because snowshed ships none; pass your own to
+``segment``. COARSER is the number of voxels along the edge of a sphere, DX the grid of the scene in
+m. The example takes half a minute on two free cores, and draws ``image_to_stack.png`` into the
+folder.
 """
 
 import json

@@ -19,7 +19,7 @@ LAMMPS_PYTHON = "SNOWSHED_LAMMPS_PYTHON"  # names the interpreter that has LAMMP
 
 @dataclass(frozen=True)
 class Record:
-    """What an engine measured, over time."""
+    """Measurements of an engine over time."""
 
     time: np.ndarray  # s
     force: np.ndarray  # N, on the top plate

@@ -1,7 +1,7 @@
-"""Voxels of snow as clumps of spheres, for engines that know nothing of images.
+"""Spheres and bonds from voxels, for engines without images.
 
-Written apart from the solver, of which it is a witness: both make the same spheres, bonds, masses
-and moments of inertia of an image. Needs NumPy only, since engines bring their own Python.
+The module is independent of the solver and checks it: both make the same spheres, bonds, masses and
+moments of inertia from an image. It needs only NumPy, because engines bring their own Python.
 """
 
 from __future__ import annotations
@@ -22,17 +22,18 @@ class VoxelSample:
     Attributes
     ----------
     centres, grain
-        Of all voxels of ice, (n, 3) in m, and the grain that each belongs to, (n,).
+        Centres of all voxels of ice, (n, 3) in m, and the grain of each, (n,).
     surface
-        Which voxels meet air or another grain, and are spheres, (n,).
+        Whether a voxel meets air or another grain, and is a sphere, (n,).
     bonds
         Pairs of voxels of two grains that share a face, (m, 2).
     mass, centre, inertia
-        Of each grain, kg, m and kg m2: (g,), (g, 3), (g, 3, 3). Each voxel is a cube.
+        Mass, centre of mass and moments of inertia of each grain, kg, m and kg m2: (g,), (g, 3),
+        (g, 3, 3). Each voxel is a cube.
     box
-        Edges, m.
+        Edges of the box, m.
     radius
-        Of the spheres, m.
+        Radius of the spheres, m.
     """
 
     centres: np.ndarray
@@ -83,7 +84,7 @@ class VoxelSample:
 
     @property
     def height(self) -> float:
-        """Between the plates, m."""
+        """Distance between the plates, m."""
         return float(self.box[2])
 
     def save(self, file: Path) -> None:
@@ -92,7 +93,7 @@ class VoxelSample:
 
     @classmethod
     def load(cls, file: Path) -> VoxelSample:
-        """Read what `save` wrote."""
+        """Read a file that `save` wrote."""
         with np.load(file) as data:
             found = {field.name: data[field.name] for field in fields(cls)}
         return cls(**{**found, "radius": float(found["radius"])})

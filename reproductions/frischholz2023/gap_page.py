@@ -1,7 +1,7 @@
 """The page ``docs/trust/thesis-gap.md``: how our stacks differ from the thesis's, and why.
 
 Every number on it comes from the files in the folder ``data``, which hold results of longer runs;
-``python -m reproductions.frischholz2023.gap_page`` writes it anew.
+``python -m reproductions.frischholz2023.gap_page`` writes it again.
 """
 
 from __future__ import annotations
@@ -93,7 +93,7 @@ def _scatter_part(stacks: pd.DataFrame) -> list[str]:
     return [
         "## The two trimming rules of A.4.2",
         "The table measures the same stacks by [two trimming rules]"
-        f"(../methods/stack.md#two-readings-of-a42): {panels} panels up to "
+        f"(../methods/stack.md#two-trimming-rules-in-a42): {panels} panels up to "
         f"{stacks['panel.length'].max():g} m long, {seeds} seedings each, cells of {cells}. The "
         "columns are the deviation between seedings relative to the mean (root mean square over "
         "panels and events), and the quartiles of H/L of the rows.",

@@ -281,7 +281,7 @@ def test_the_executable_goes_on_with_what_python_began(
 
 
 def assert_same_results(out, measured):
-    """The same bits of particles; tables as far as single precision tells."""
+    """The same bits of particles; tables agree to single precision."""
     assert particle_files(out) == particle_files(measured)
     for name in ("particles.pvd", "snapshots/snapshots.pvd"):
         assert (out / name).read_bytes() == (measured / name).read_bytes()

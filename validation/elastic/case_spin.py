@@ -19,12 +19,12 @@ YOUNGS_MODULUS, POISSONS_RATIO, DENSITY = 1e6, 0.3, 210.0  # Pa, 1, kg/m3
 #: The rim turns at a fifth of the speed of waves in a rod, sqrt(E/rho).
 RATE = 0.2 * math.sqrt(YOUNGS_MODULUS / DENSITY) / RADIUS  # rad/s
 TURN = 2 * math.pi / RATE  # s
-#: Settings that are the case's own.
+#: Settings of this case that scenes do not have.
 OWN = frozenset({"begins", "turns"})
 #: Steps between two samples, or between two damped velocities.
 STEPS = 4
-#: If a body is to begin in equilibrium: for how many turns its breathing is damped, and what part
-#: of the radial velocities is taken away each time.
+#: For bodies that begin in equilibrium: the number of turns in which the radial oscillation is
+#: damped, and the share of the radial velocities that is removed each time.
 SETTLING, DAMPED = 1.0, 0.1
 
 DISC: Settings = {
@@ -118,7 +118,7 @@ class Spinning:
         return float(self.drive.mean(np.hypot(x, z) - self.radii))
 
     def settle(self) -> None:
-        """Damp the breathing away: forces along the radius leave the angular momentum alone."""
+        """Damp the radial oscillation; radial forces do not change the angular momentum."""
         core = self.drive.core
         while core.time_s < SETTLING * TURN:
             self.drive.step(STEPS)
@@ -198,11 +198,11 @@ CASE = Case(
     ),
     description="""
     An elastic disc (2D) of 1 m radius, or a cylinder half as high (3D), spins without gravity; its
-    rim moves at a fifth of the speed of waves in a rod. Set spinning undeformed, it breathes about
-    its centrifugal equilibrium; if it is to begin in equilibrium, its breathing is damped during a
-    first turn by forces along the radius, which leave the angular momentum alone. Angular momentum,
-    with that of the affine fields of APIC, and energy should not change. Its mean expansion over
-    time, half a percent of the radius, is compared with that of the equilibrium.
+    rim moves at a fifth of the speed of waves in a rod. From an undeformed start its radius
+    oscillates about the centrifugal equilibrium; for a start in equilibrium, this oscillation is
+    damped during a first turn by radial forces, which do not change the angular momentum. Angular
+    momentum, with that of the affine fields of APIC, and energy should not change. Its mean
+    expansion over time, half a percent of the radius, is compared with that of the equilibrium.
     """,
     quantities=(
         Quantity(
@@ -235,23 +235,23 @@ CASE = Case(
     matrix=matrix,
     measure=measure,
     remarks="""
-    APIC keeps angular momentum to rounding, in single precision too (some 1e-7 per turn). FLIP does
-    not. Particles that take their velocities from the grid keep nothing of how they turn within
-    their cells: a step of PIC loses the part (dx/R)² of a disc's angular momentum, just what the
-    affine fields of APIC carry, and one of FLIP with the ratio a loses 1 - a of that. There are a
-    thousand steps in a turn of a disc ten cells in radius, so that PIC stops it within a fraction
-    of a turn, FLIP with 0.95 takes 40 % per turn, with 0.99 11 % (5 % at twenty cells: first order
-    in dx, as steps become more). Snowballs a few cells large turn far too little with the default.
+    APIC conserves angular momentum to rounding, also in single precision (about 1e-7 per turn).
+    FLIP does not. Particles that take their velocities from the grid lose the rotation within a
+    cell. A step of PIC loses the share (dx/R)² of a disc's angular momentum, which the affine
+    fields of APIC keep. A step of FLIP with ratio a loses (1 - a)(dx/R)². A disc ten cells in
+    radius takes a thousand steps per turn, so PIC stops it within a fraction of a turn. FLIP with
+    0.95 loses 40 % per turn, with 0.99 11 % (5 % at twenty cells: first order in dx, because there
+    are more steps). Snowballs of a few cells rotate far too slowly with the default.
 
     Pure FLIP loses only what its interpolated changes of velocity miss: 2.6 % per turn at five
-    cells, 0.4 % at ten, 0.05 % at twenty. The cylinder does like the disc.
+    cells, 0.4 % at ten, 0.05 % at twenty. The cylinder behaves like the disc.
 
-    Energy goes with the square of the momentum. APIC loses less than 0.1 % per turn at ten
-    cells, that of the breathing; a disc in equilibrium 0.003 %.
+    The energy loss follows the square of the momentum. APIC loses less than 0.1 % per turn at ten
+    cells, through the radial oscillation; a disc in equilibrium loses 0.003 %.
 
-    The expansion is 2 % too small at ten cells and 0.7 % at twenty (cubic splines: 3 % at ten);
-    the closed form is for small strains and leaves out that the disc slows down by a percent as it
-    expands. With 4 particles per cell it is 4 % larger, with random seeding 15 %: what is unevenly
-    filled with particles is softer.
+    The expansion is 2 % too small at ten cells and 0.7 % at twenty (cubic splines: 3 % at ten).
+    The closed form holds for small strains, and assumes that the disc does not slow down as it
+    expands, although it does by a percent. With 4 particles per cell the expansion is 4 % larger,
+    with random seeding 15 %, because unevenly filled cells are softer.
     """,
 )

@@ -25,8 +25,8 @@ def problem_of(case: Case, settings: Settings) -> Settings:
     {'friction': 0.3}
     """
     sizes = {quantity.order_in for quantity in case.quantities}
-    ways = {*ACCURACY, *SAMPLING, *sizes}
-    return {name: value for name, value in settings.items() if name not in ways}
+    solution_settings = {*ACCURACY, *SAMPLING, *sizes}
+    return {name: value for name, value in settings.items() if name not in solution_settings}
 
 
 def varying(settings: Iterable[Settings]) -> list[str]:

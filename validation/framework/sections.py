@@ -35,12 +35,10 @@ COSTS: Mapping[str, Callable[[MeasuredSolution], str]] = {
 }
 #: Stands for what the cell to the left says.
 SAME = "←"
-CONVERGENCE = (
-    "Dashed: the slope of the order named. Red, where there is one: the largest error allowed."
-)
+CONVERGENCE = "Dashed: the slope of the order named. Red line, if any: the largest allowed error."
 WORK_PRECISION = (
-    "Left is quick, low is accurate; no other way of solving the same problem beats the points "
-    "with letters in both. Red, where there is one: the largest error allowed."
+    "Points on the left are fast, points at the bottom are accurate. No other settings for the "
+    "same problem beat the points with letters. Red line, if any: the largest allowed error."
 )
 
 
@@ -325,7 +323,7 @@ def _cheapest_rows(
             groups.setdefault((answer.quantity, settings_key(answer.problem)), []).append(answer)
     titles = {quantity.name: quantity.title for quantity in case.quantities}
     problems = varying(group[0].problem for group in groups.values())
-    ways = varying(
+    solution_settings = varying(
         {
             k: v
             for k, v in measurement.settings.items()
@@ -337,7 +335,7 @@ def _cheapest_rows(
     rows: list[list[str]] = []
     for group in groups.values():
         texts = [
-            _cheapest_cell(answer, ways)
+            _cheapest_cell(answer, solution_settings)
             for answer in sorted(group, key=lambda answer: -answer.wanted)
         ]
         rows.append(
@@ -351,10 +349,10 @@ def _cheapest_rows(
     return rows
 
 
-def _cheapest_cell(answer: Cheapest, ways: Sequence[str]) -> str:
+def _cheapest_cell(answer: Cheapest, solution_settings: Sequence[str]) -> str:
     if not answer.reached:
         return f"not reached; best {formatting.percent(answer.error)}"
-    with_what = setting_labels.settings(answer.solution.settings, ways)
+    with_what = setting_labels.settings(answer.solution.settings, solution_settings)
     return f"{formatting.duration(answer.solution.wall_s)}: {with_what}".rstrip(": ")
 
 

@@ -84,10 +84,9 @@ CASE = Case(
     source="springs in a row, and strength times area, in closed form",
     description="""
     Two blocks of 5 x 5 x 3 voxels fill the box and are frozen to each other and to both plates. The
-    top plate moves until the bond breaks, or presses. Strength times area is what the bond bears,
-    and three layers of springs of stiffness E r give the modulus. Compared are the largest stress
-    and the slope of the stress; and the energy that is missing at the end, over the work of the
-    plate.
+    top plate moves until the bond breaks, or presses. The bond bears strength times area, and three
+    layers of springs of stiffness E r give the modulus. The largest stress and the slope of the
+    stress are compared, and the energy residual at the end relative to the work of the plate.
     """,
     quantities=(
         Quantity("strength", "strength, Pa", bar=0.02, bar_for={"speed": 0.005}),

@@ -72,12 +72,12 @@ CASE = Case(
     source="itself, with the slowest plate and without scaled density; the balance of energy",
     description="""
     Synthetic snow, a random field of waves that is cut at a level and into cells, is compressed by
-    5 % between plates and smooth walls. Compared is the mean stress from 4 to 5 %: over the time
-    step, over the scaled density and the speed, over the size of the spheres with the snow kept,
-    and over the volume, each with three samples. There is no exact answer. The error is the
-    departure from the snow of 27 cells on 5 voxels a cell, loaded at 0.02 m/s without scaled
-    density; for volumes it is mostly the scatter between samples. What has an exact answer is the
-    balance of energy, and that of the forces on the two plates, which holds at rest.
+    5 % between plates and smooth walls. The mean stress from 4 to 5 % is compared for
+    several time steps, scaled densities, speeds, sphere sizes (of the same snow) and volumes, each
+    with three samples. There is no exact answer. The reference is the snow of 27 cells on 5 voxels
+    per cell, loaded at 0.02 m/s without scaled density; for volumes the error is mostly the scatter
+    between samples. The energy balance and the balance of the forces on the two plates at rest have
+    exact answers.
     """,
     quantities=(
         Quantity("stress", "mean stress from 4 to 5 % strain, Pa"),

@@ -103,9 +103,8 @@ def _against_carried(name: str, runs: Sequence[LabRun], settings: Settings) -> M
 
 
 DESCRIPTION = """
-Between two slabs the snow either goes on as it is (carry), or it is turned into a solid, which is
-filled with new particles at rest (reseed, the thesis's way). Mass must be the same to round-off,
-with either.
+Between two slabs the stack is either kept as it is (carry), or converted to a solid and reseeded at
+rest (reseed, as in the thesis). Both must conserve mass to round-off.
 
 For reseeding, the stack just before and just after each conversion is compared: height and length
 by the rule that leaves out the outermost 3 % of the mass, those of the largest connected body

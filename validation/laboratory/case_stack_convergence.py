@@ -195,8 +195,8 @@ The damping of FLIP is the second large error. The share of PIC, 1 - flip_ratio,
 step, so the damping per second depends on the time step. At dx 0.01 m after five slabs a flip_ratio
 of 0.95, 0.99 or 0.999 gives heights of 0.20, 0.14 and 0.11 m, and lengths of 0.31, 0.41 and 0.72 m.
 A third of the time step (courant_factor 0.3) does almost what 0.95 does: 0.20 and 0.33 m. With
-flip_ratio raised to 0.9967 along with it, the same share per second, the stack is what it was. APIC
-is not so sensitive: 0.14 and 0.44 m, and with a third of the step 0.15 and 0.39 m. Stacks can be
+flip_ratio raised to 0.9967, too, the same share per second, the stack does not change. APIC is less
+sensitive: 0.14 and 0.44 m, and with a third of the step 0.15 and 0.39 m. Stacks can be
 compared only at equal flip_ratio and equal time step.
 
 Random seeding moves the height by 2 to 5 % and the length by 2 to 11 % (one standard deviation, 2D)

@@ -269,7 +269,7 @@ def record(
     grids: Optional[Iterable[Grid]] = None,
     **settings: Value,
 ) -> None:
-    """Make the reference of a scheme anew, hours in all.
+    """Compute the reference of a scheme again; this takes hours.
 
     The file is written after each run. Runs that it holds already, of the same version, are kept.
 

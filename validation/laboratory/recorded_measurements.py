@@ -2,7 +2,7 @@
 
 ``python -m validation.laboratory.recorded_measurements`` writes those of the scheme objective among
 the package's recorded measurements, from which ``--accuracy`` and the error of a stack come. The
-full suite measures the same anew.
+full suite measures the same again.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ SCHEME = "objective"
 
 
 def measurements_of(scheme: str) -> list[MeasuredSolution]:
-    """Return the measurements of the full matrix with a scheme, as far as its runs tell them.
+    """Return the measurements of the full matrix with a scheme, that its runs provide.
 
     Raises
     ------
@@ -60,10 +60,10 @@ def _measured(settings: Settings) -> MeasuredSolution:
 
 
 def undisturbed(runs: Sequence[RecordedRun]) -> list[RecordedRun]:
-    """Return runs of one grid with the times that they take at the pace of the quickest.
+    """Return the runs of one grid with wall times scaled to the speed of the fastest run.
 
     Recorded runs are made several at once, on machines with other work, which only adds to their
-    times. The pace is the number of updates of particles in a second, over all events of a run.
+    times. The speed is the number of particle updates per second, over all events of a run.
 
     Raises
     ------

@@ -102,10 +102,9 @@ CASE = Case(
     source="Bird, Dai & Yarusso (1983), Reviews in Chemical Engineering 1, 1-70",
     description="""
     A slug of a Bingham fluid, twelve times as long as wide, falls between two upright plates, to
-    which it sticks. Its middle moves as a fluid between plates does that its weight drives: a plug,
-    half as wide as the gap, between two sheared layers. Compared are, as means over 0.2 s of the
-    steady flow, the plug's speed and width, and the mean speed, which is the discharge over the
-    gap.
+    which it sticks. Its middle moves like a fluid between plates under its own weight: a plug, half
+    as wide as the gap, between two sheared layers. The plug's speed and width and the mean speed
+    (the discharge over the gap) are compared, as means over 0.2 s of the steady flow.
     """,
     remarks="""
     The slug's ends add 0.4 % to the speed of its middle: with 10 particles across it was 9.3 % too

@@ -115,7 +115,8 @@ CASES = (
         source="Newton's law with Coulomb's friction, g (sin a - cos a tan phi)",
         description="""
         Snow without cohesion, 0.1 m thick and 2.4 m long, with a friction angle of 24 degrees,
-        slides down a plane for 0.2 s. Compared is the mean speed of its middle sixth.
+        slides down a plane for 0.2 s. The mean speed of its middle sixth is
+        compared.
         """,
         quantities=(
             Quantity("speed", "speed, m/s", bar=0.02, bar_for={"spacing": 0.01}),

@@ -144,8 +144,9 @@ DAM_BREAK = Case(
         "Nuclear Science and Engineering 123, 421-434"
     ),
     description="""
-    A column of water, 2 1/4 inches wide and twice as high, collapses. Compared is the foremost
-    particle, half a distance ahead, in widths of the column over T* = t √(2g/a): with another
+    A column of water, 2 1/4 inches wide and twice as high, collapses. The position
+    of the foremost particle is compared, half a distance ahead, in widths of the column over
+    T* = t √(2g/a): with another
     method for water without friction that is released suddenly (volume of fluid, Gerris), and with
     two measured series, as they stand and with the origin of time of Martin and Moyce's tables,
     which bring their runs together at X* = 1.44, T* = 1.19.

@@ -170,9 +170,9 @@ CASE = Case(
     ),
     description="""
     A slab, 20 cm long and 4 cm thick, is released in the middle of a panel 2 m long and tilted by
-    40 degrees. It slides off the lower edge and falls. Compared are the place of its centre of mass
-    1 m below the edge; how far it strays, from the moment when all snow is three
-    cells past the edge, from the parabola of that moment; and how fast it turns.
+    40 degrees. It slides off the lower edge and falls. Three quantities are compared: the position
+    of its centre of mass 1 m below the edge; the deviation from the parabola that begins when all
+    snow is three cells past the edge; and the angular velocity.
     """,
     quantities=(
         Quantity("landing", "distance of landing from the edge, m", bar=0.01),

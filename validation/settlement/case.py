@@ -295,25 +295,25 @@ def _quantities(finest: float) -> tuple[Quantity, ...]:
 SETTING = """
     A column of snow 40 cm high, between frictionless walls on a floor to which it sticks, settles
     under its own weight until it rests. Its motion is damped by hand so that it never swings back.
-    Compared are how far the snow of the uppermost cell has sunk and the pressure, in means over
-    layers one cell thick; errors of pressure are over the pressure at the bottom.
+    The settlement of the uppermost cell and the pressure are compared as means over layers one cell
+    thick. Pressure errors are relative to the pressure at the bottom.
 """
 FLOOR = """
-The floor costs most. The grid stops its nodes on and below the floor, but between the floor and the
-first free node snow still moves, so the column stands as if its floor lay about a third of a cell
-too low, and the lowest cell carries 11 to 16 % too much pressure, at any resolution, with the next
-one too little (cubic splines: 22 %). This is an error of first order in dx: the settlement is right
-to 1 % from 80 cells of height on (160 where snow yields), and no sooner. All this if the floor lies
-on a row of nodes. Halfway between two rows errors are five times as large, at three quarters of
-a cell fourteen times.
+The floor causes the largest error. The grid stops the nodes on and below the floor, but snow
+between the floor and the first free node still moves. The column therefore behaves as if the floor
+were a third of a cell lower. The pressure in the lowest cell is 11 to 16 % too high at any
+resolution (22 % with cubic splines), and that in the next cell is too low. This error is of first
+order in dx: the settlement is within 1 % from 80 cells of height on (160 where snow yields). These
+numbers hold if the floor lies on a row of nodes. Halfway between two rows errors are five times as
+large, at three quarters of a cell fourteen times.
 """
 RANDOM_SEEDING = """
-Random seeding, the default, makes snow softer: where particles happen to be sparse the grid strains
-more than it should, and what is dense does not make up for it. At 6 particles per voxel the column
-settles by another 1 to 3 % if it is elastic and by 4 to 6 % if it yields, and no finer grid helps,
-for there are as many particles in a cell as before. More particles do: with 24 or more the excess
-is about half a percent. Single particles scatter by 8 % of the bottom's pressure, those of a
-lattice by 2 to 4 %; means over a cell are what should be read.
+Random seeding, the default, makes snow softer. Where particles are sparse the grid strains too
+much, and denser places do not make up for it. At 6 particles per voxel the column settles by
+another 1 to 3 % if it is elastic and by 4 to 6 % if it yields. A finer grid does not help, because
+a cell holds as many particles as before. With 24 or more particles the excess is about half a
+percent. The pressure of single particles scatters by 8 % of the bottom's, on a lattice by 2 to 4 %.
+Use means over a cell.
 """
 
 ELASTIC = Case(

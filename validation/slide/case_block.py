@@ -17,7 +17,7 @@ FRICTION, TURBULENCE, THICKNESS = 0.325, 300.0, 0.5  # 1, m/s2, m
 HALF = 15.0  # m, half the block's edge on the map
 MIDDLE = 3.0  # m, from the block's middle: particles whose motion is measured
 SLIDING = 3.0  # s; edges make themselves felt in the middle only later
-#: Friction that stops a block that was thrown down the slope at a speed, m/s.
+#: Friction that stops a block, and the speed at which it starts down the slope, m/s.
 STOPPING, THROWN = 1.1, 4.0
 OWN = frozenset({"law"})
 
@@ -76,10 +76,10 @@ def measure(settings: Settings) -> Outcome:
     speed = float((drive.core.velocities()[middle] @ down).mean())
     if stops:
         exact = THROWN**2 / (-2 * PLANE.coulomb(STOPPING))
-        return drive.outcome([relative("way", distance, exact), absolute("creep", speed, 0.0)])
+        return drive.outcome([relative("distance", distance, exact), absolute("creep", speed, 0.0)])
     motion = block_motion(str(settings["law"]), drive.core.time_s)
     return drive.outcome(
-        [relative("way", distance, motion.distance), relative("speed", speed, motion.speed)]
+        [relative("distance", distance, motion.distance), relative("speed", speed, motion.speed)]
     )
 
 
@@ -105,12 +105,12 @@ CASE = Case(
     ),
     description="""
     Half a metre of snow, 30 m long and wide on the map, slides down a plane of 35 degrees for 3 s,
-    without bonds and without artificial viscosity. Compared are the distance and the speed of its
-    middle, where the thickness stays what it was. With μ = 1.1 a block that was thrown down the
-    slope at 4 m/s must stop after v²/(2 a), and then stay exactly where it is.
+    without bonds and without artificial viscosity. The distance and the speed of its
+    middle are compared, where the thickness does not change. With μ = 1.1 a block that starts down
+    the slope at 4 m/s must stop after v²/(2 a), and must not move afterwards.
     """,
     quantities=(
-        Quantity("way", "distance down the slope, m", bar=0.005, bar_for={"time_step": 0.01}),
+        Quantity("distance", "distance down the slope, m", bar=0.005, bar_for={"time_step": 0.01}),
         Quantity("speed", "speed, m/s", bar=0.005, bar_for={"time_step": 0.01}),
         Quantity("creep", "speed after stopping, m/s", bar=1e-9, relative=False),
     ),

@@ -55,7 +55,7 @@ EXTREMES: tuple[Settings, ...] = (
 
 
 def measure(settings: Settings) -> Outcome:
-    """Run some steps, and look at mass, numbers and what must lie still."""
+    """Run some steps, and check the mass, the numbers and the snow that must not move."""
     height = GROUNDS[str(settings["ground"])]
     settings = {"layer_thickness": float(settings["thickness"]) / 2, **settings}
     snow = rectangle(-12.3, -12.3, 12.3, 12.3, float(settings["thickness"]))
@@ -97,19 +97,20 @@ CASE = Case(
     description="""
     A slab slides over cliffs, steps, pits, a gully of one cell, level ground and a sharp ridge, 1
     mm to 10 m thick; and on a slope with time steps, bonds, friction, viscosity and particles at
-    the extremes of what is allowed. No number may be other than finite, the mass on the terrain and
-    beyond it stays what it was, and with μ = 2 snow on a slope of 38 degrees stays where it is.
+    the extremes of what is allowed. All numbers must be finite, the mass on and
+    beyond the terrain must be conserved, and with μ = 2 snow on a slope of 38 degrees must not
+    move.
     """,
     quantities=(
-        Quantity("unsound", "coordinates that are no number", bar=0.0, relative=False),
+        Quantity("unsound", "coordinates that are not finite", bar=0.0, relative=False),
         Quantity("mass", "change of mass", bar=1e-12),
         Quantity("creep", "median speed that friction holds, m/s", bar=0.0, relative=False),
     ),
     matrix=matrix,
     measure=measure,
     remarks="""
-    Bonds that are too stiff for the time step shorten it; where more than a hundred steps were
-    needed in place of one, an error names the step that they need. Left alone the slab would shake
-    itself to pieces.
+    Bonds that are too stiff for the time step shorten it. If more than a hundred steps would
+    replace one, an error gives the required step. Without shorter steps the slab would oscillate
+    until it breaks up.
     """,
 )

@@ -1,8 +1,8 @@
-"""Notes: what a reader assumed, filled, left out or changed.
+"""Notes: assumptions and changes that a reader made, issued as warnings.
 
 A note is a Python warning of its own class, so that scripts can filter it, turn it into an error or
-record it. The command line prints it as "note: …". What is stored with results is recorded by
-`recorded`.
+record it. The command line prints it as "note: …". `recorded` collects the notes that are stored
+with results.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ class SnowshedNote(UserWarning):
 
 
 def tell(text: str) -> None:
-    """Say a note; the warning names the line outside the package that led to it.
+    """Issue a note; the warning names the calling line outside the package.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ def held() -> Iterator[list[str]]:
 
 @contextmanager
 def told_on_failure(notes: Iterable[str]) -> Iterator[None]:
-    """Tell notes if the block fails, so that no result of it shows them."""
+    """Issue notes if the block fails, because no result will show them."""
     try:
         yield
     except BaseException:

@@ -39,7 +39,7 @@ def loads(text: Union[str, bytes]) -> Any:
     except _RepeatedKeyError:
         decoded = text if isinstance(text, str) else text.decode(json.detect_encoding(text))
         path, line = next(_repeated(decoded))
-        said = f"{path}: this key appears twice, in line {line} again"
+        said = f"{path}: this key appears twice, the second time in line {line}"
     raise ValueError(said)
 
 

@@ -63,11 +63,11 @@ def energy_figure(table: pd.DataFrame, scene: Mapping[str, Any]) -> Figure:
         lines = {name: table[name] for name in taken}
         largest = max((np.abs(line).max() for line in (released, *lines.values())), default=0.0)
         visible = {n: line for n, line in lines.items() if np.abs(line).max() > SMALL * largest}
-        shown = {"released by height, and brought": released, **visible}
+        shown = {"released from height and added": released, **visible}
         if "residual_j" in table:
             shown["gained (+) or lost by time integration"] = table["residual_j"]
         _draw(below, table, shown, per_width)
-        below.set_title("Released energy, and its sinks, cumulative")
+        below.set_title("Cumulative released energy and its sinks")
         below.set_xlabel("time through all events, s")
         describe(figure, f"Energy balance\n{_caption(scene)}")
     return figure

@@ -154,7 +154,7 @@ def _colourings(
     colourings = []
     if events > 1:
         labels = [f"event {k}" for k in range(1, events + 1)] if events <= MOST_LABELS else None
-        title = "Brought by" if labels else "Brought by event"
+        title = "Released in" if labels else "Released in event"
         colourings.append(Colouring("event", title, 1.0, float(events), labels))
     for quantity, (low, high) in zip(film.quantities, ranges):
         if high > low:
@@ -164,7 +164,7 @@ def _colourings(
         labels = [f"snow {k + 1}" for k in range(materials + 1)]
         colourings.append(Colouring("material", "Snow", 0.0, float(materials), labels))
     if not colourings:
-        colourings.append(Colouring("event", "Brought by", 1.0, 2.0, ["event 1"]))
+        colourings.append(Colouring("event", "Released in", 1.0, 2.0, ["event 1"]))
     return colourings
 
 

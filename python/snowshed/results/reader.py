@@ -161,7 +161,7 @@ class Results:
         Parameters
         ----------
         event
-            Its number, from 1; None: the last one there is.
+            Its number, from 1; None: the last event.
 
         Returns
         -------

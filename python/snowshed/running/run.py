@@ -173,7 +173,7 @@ class _Observer:
         self._tell(self.own.simulation.time_s, 0.0)
 
     def noted(self, note: str) -> None:
-        """Give a note of the core, which is in run.json already."""
+        """Issue a note of the core; run.json has it already."""
         tell(note)
 
     def progress(self, report: dict[str, Any]) -> None:

@@ -1,6 +1,6 @@
 """The core's sequence of events in a results folder: opened, and run to its end.
 
-Notes (`snowshed.base.notes`) that readers of the results need are given here and written into
+Notes (`snowshed.base.notes`) that readers of the results need are issued here and written into
 run.json, so that every caller sees the same.
 """
 
@@ -40,14 +40,14 @@ def seal_files(sequence: _core.EventSequence, folder: PathLike, *names: str) -> 
 
 
 def say_note(sequence: _core.EventSequence, note: str) -> None:
-    """Give a note on a run, and add it once to run.json."""
+    """Issue a note on a run, and add it once to run.json."""
     sequence.add_note(note)
     tell(note)
 
 
 @contextmanager
 def telling(core: _core.Simulation) -> Iterator[None]:
-    """Give the notes of a simulation within the block."""
+    """Issue the notes that a simulation makes within the block."""
     said = len(core.notes)
     yield
     for note in core.notes[said:]:

@@ -120,7 +120,7 @@ class Simulation:
             If it cannot be seeded, or more than 1 % of a body lies where snow must not be (unless
             the scene's ``misplaced_snow`` is "allow").
         SimulationError
-            If the present event has not ended, or its stack cannot be seeded afresh.
+            If the present event has not ended, or the stack cannot be reseeded.
         """
         with telling(self._core):
             self._core.begin_event()

@@ -2,9 +2,9 @@
 
 Each event runs until the snow rests: slower than ``events.rest_speed`` (root mean square, as the
 core defines it) for ``events.rest_time``, or until ``events.max_time``; the table has the reason.
-Between events the particles carry over with their state (``carry``), or the stack is turned into a
-solid and seeded afresh at rest (``reseed``, as in the thesis). Reseeding also restores the bonds in
-the stack, and gives it n times the slab's volume; conversions.csv has the changes of mass, height,
+Between events the particles carry over with their state (``carry``), or the stack is converted to a
+solid and reseeded at rest (``reseed``, as in the thesis). Reseeding also restores the bonds in the
+stack, and gives it n times the slab's volume; conversions.csv has the changes of mass, height,
 length and outline. A stack that is carried over ages (``snowshed.running.ageing``) only on request.
 """
 

@@ -237,8 +237,8 @@ class Scene(Record):
         kind = method_named(method).settings
         if isinstance(settings, MethodSettings) and not isinstance(settings, kind):
             raise InputError(
-                f"{where}: the method {method or DEFAULT!r} takes {kind.__name__}, and these are "
-                f"{type(settings).__name__}; set {SETTINGS_KEY} to None, then {NAME_KEY}"
+                f"{where}: the method {method or DEFAULT!r} takes {kind.__name__}, not "
+                f"{type(settings).__name__}; set {SETTINGS_KEY} to None first, then {NAME_KEY}"
             )
 
     @classmethod

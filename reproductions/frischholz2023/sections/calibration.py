@@ -65,7 +65,7 @@ def build(work: ThesisComputation) -> Content:
     """
     stage, folder = work.study_stages["calibration"], work.folder.of_stage("calibration")
     if not stage.state().finished:
-        raise InputError("the grid is ranked when all of it is computed")
+        raise InputError("the grid can be ranked only when all its runs are computed")
     measured = synthetic(read_table(work.folder.runs, TRUTH))
     result = calibrate(measured, read_simulated(work.folder.runs, GRID), steps=work.settings.steps)
     write(result, folder)
@@ -93,7 +93,7 @@ def synthetic(truth: pd.DataFrame) -> list[Measurement]:
     """
     truth = truth.dropna(subset=["height_m", "length_m"])
     if truth.empty:
-        raise InputError("the runs that stand for the measurements are not computed")
+        raise InputError("the synthetic measurements are not computed")
     errors = np.random.default_rng(ERRORS_SEED)
     measured = []
     for row in truth.sort_values(["panel.tilt", "event"]).to_dict("records"):

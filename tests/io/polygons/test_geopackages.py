@@ -118,7 +118,7 @@ def test_a_name_that_is_no_text_is_refused(package):
 def test_a_hot_journal_is_not_played_back(package):
     journal = package.with_name("a.gpkg-journal")
     journal.write_bytes(b"\xd9\xd5\x05\xf9\x20\xa1\x63\xd7" + bytes(512))
-    with pytest.raises(InputError, match="a program that wrote to it was cut off"):
+    with pytest.raises(InputError, match="an interrupted write left"):
         read_areas(package)
     assert journal.exists()
 

@@ -111,7 +111,7 @@ def slab_thickness(data: Mapping[str, Any]) -> Optional[float]:
 
 
 def nearest(stacks: Sequence[RecordedStack], wanted: Mapping[str, Value]) -> list[RecordedStack]:
-    """Return the stacks whose settings are nearest to the wanted ones; the first counts most."""
+    """Return the stacks with the nearest settings; earlier settings have priority."""
     chosen = list(stacks)
     for name, value in wanted.items():
         recorded = {stack.settings[name] for stack in chosen if name in stack.settings}
@@ -122,7 +122,7 @@ def nearest(stacks: Sequence[RecordedStack], wanted: Mapping[str, Value]) -> lis
 
 
 def circumstances(data: Mapping[str, Any]) -> dict[str, Value]:
-    """Return what recorded runs are chosen by: dimension, and the number and kind of events."""
+    """Return the criteria for recorded runs: dimension, and the number and kind of events."""
     events = data["events"]
     return {
         "dimension": data["dimension"],

@@ -126,7 +126,7 @@ def assured_errors(solved: Sequence[Solution], order_in: Optional[str]) -> list[
 
 
 def quickest(costs: Sequence[float], errors: Sequence[float], wanted: float) -> int:
-    """Return the index of the cheapest whose error is small enough, or of the smallest error.
+    """Return the index of the cheapest accurate solution, or else of the most accurate one.
 
     Examples
     --------

@@ -86,8 +86,8 @@ class StackError:
         )
         return (
             f"error of the stack in recorded runs ({_where(self.settings)}, {cells} in the "
-            f"slab{mine}): {bias}, against the finest recorded grid of this scheme, itself not "
-            "converged"
+            f"slab{mine}): {bias}, against the finest recorded grid of this scheme, which "
+            "has not converged either"
             + (f"; single runs scatter by {scatter}" if scatter else "")
             + (f"; {lengths}" if lengths else "")
         )

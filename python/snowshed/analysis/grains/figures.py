@@ -39,8 +39,8 @@ def sensitivity_figure(comparison: pd.DataFrame, title: str = "") -> Figure:
         headline(
             figure,
             (f"{title}: " if title else "")
-            + "stress over that of the base; bars: 95 % by the scatter between samples, "
-            "hollow where it may be none",
+            + "ratio of the stress to the base; bars: 95 % interval from the scatter between "
+            "samples; hollow: may be no effect",
         )
         grid = figure.subplots(1, len(stresses), sharey=True, squeeze=False)[0]
         for axes, stress in zip(grid, stresses):
@@ -77,4 +77,4 @@ def _finish(axes: Axes, base: Any, title: str) -> None:
     value = float(base["value_pa"])
     unit, size = ("MPa", 1e6) if value >= 1e6 else ("kPa", 1e3)
     axes.set_title(f"{title}\nbase {value / size:.3g} {unit}")
-    axes.set_xlabel("ratio; grey: samples differ so")
+    axes.set_xlabel("ratio (grey: scatter between samples)")

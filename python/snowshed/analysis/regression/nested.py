@@ -24,7 +24,7 @@ from snowshed.io.folders import claim_folder
 from snowshed.study.locks import holding, is_held
 
 IDENTITY = "regression.json"
-FORMAT = 2  # of the results of folds; another one is computed anew
+FORMAT = 2  # of the results of folds; another one is computed again
 POLL_S = 0.25  # s between checks of interrupts
 
 

@@ -150,7 +150,7 @@ def read_rows(
     measure
         One of `snowshed.snow.stack.quantities.MEASURES`. "stack": height and length of 97 % of the
         snow, as the thesis measures, by the trimming rule that the table names; "body": of the
-        largest connected body; "outermost_first" or "equal_pace": as "stack", by that reading.
+        largest connected body; "outermost_first" or "equal_pace": as "stack", by that rule.
     where
         Columns and the value they must have: only these rows are read.
     inputs

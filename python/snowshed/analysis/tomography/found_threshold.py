@@ -30,7 +30,7 @@ def found_threshold(name: str, parts: Parts) -> tuple[float, str]:
     name
         Name of the image in messages.
     parts
-        Returns the numbers of the image in parts along z, each time anew.
+        Returns the numbers of the image in parts along z, from the first at each call.
 
     Raises
     ------

@@ -77,11 +77,11 @@ class Ended(Generic[Task, Result]):
     death
         Description of how its process ended, if it died.
     last_words
-        The last line that a process that ended so wrote to stderr; may be empty.
+        Last line on stderr of a process that died; may be empty.
     hung
-        Whether that process was killed because the task took too long.
+        Whether the process was killed because the task took too long.
     never_began
-        Whether that process ended before it was ready, so that no other would begin either.
+        Whether the process died before it was ready; other processes would fail, too.
     """
 
     task: Task
@@ -207,8 +207,8 @@ class _Process(Generic[Task, Result]):
         self._errors = tempfile.TemporaryFile("a+b")  # noqa: SIM115 - `end` closes it
         ours, theirs = socket.socketpair()
         with theirs:
-            # In a session of its own a Ctrl-C does not reach it: who made the pool stops it once,
-            # in order. The current folder is not to be searched for modules.
+            # In its own session it does not receive Ctrl-C; the owner of the pool stops it. The
+            # current folder is not searched for modules.
             self._process = subprocess.Popen(
                 [sys.executable, "-m", "snowshed.base.pool.process", str(theirs.fileno())]
                 + ["forked"] * isolation.forked,

@@ -13,7 +13,7 @@ MOST_STEPS = 200
 
 
 class Drive:
-    """The first event of a scene, run as far as asked.
+    """The first event of a scene, run to given times.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Two ways to the same snow: threads, a checkpoint, and the executable."""
+"""Reproducibility checks: threads, a checkpoint, the executable."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def panel_scene(dx: float, threads: int) -> Scene:
 
 
 def threads_error() -> float:
-    """Return the part of the particles that two threads move otherwise than one."""
+    """Return the share of particles that differ between one and two threads."""
     single, two = (Drive(panel_scene(FINE, threads)) for threads in (1, 2))
     for drive in (single, two):
         drive.step(STEPS)
@@ -39,20 +39,20 @@ def threads_error() -> float:
 
 
 def checkpoint_error() -> float:
-    """Return the part of the particles that move otherwise after a checkpoint than without it."""
+    """Return the share of particles that differ between a run and its continuation."""
     uninterrupted, interrupted = (Drive(panel_scene(COARSE, threads=1)).core for _ in range(2))
-    uninterrupted.run(_go_on)
+    uninterrupted.run(_continue)
     interrupted.run(lambda report: bool(report["steps"] < STEPS), 0.0)
     with TemporaryDirectory() as folder:
         checkpoint = str(Path(folder) / "checkpoint.bin")
         interrupted.save(checkpoint)
         resumed = _core.Simulation.load(checkpoint)
-    resumed.run(_go_on)
+    resumed.run(_continue)
     return different(uninterrupted, resumed)
 
 
 def executable_error() -> float:
-    """Return the part of the particles that ``snowshed-run`` moves otherwise than Python.
+    """Return the share of particles that differ between ``snowshed-run`` and Python.
 
     Raises
     ------
@@ -73,7 +73,7 @@ def executable_error() -> float:
             raise _core.SimulationError(f"exit code {done.returncode}: {done.stderr.strip()}")
         particles = read_particles(out / "particles" / "event_001.vtp")
     here = Drive(panel_scene(COARSE, threads=1)).core
-    here.run(_go_on)
+    here.run(_continue)
     return _different_rows(particles["position"], here.positions().astype(np.float32))
 
 
@@ -92,12 +92,12 @@ def executable() -> str:
     return program
 
 
-def _go_on(report: object) -> bool:
+def _continue(report: object) -> bool:
     return True
 
 
 def different(first: _core.Simulation, other: _core.Simulation) -> float:
-    """Return the part of the particles whose positions or velocities differ in any bit."""
+    """Return the share of particles whose positions or velocities differ in any bit."""
     states = (np.hstack([core.positions(), core.velocities()]) for core in (first, other))
     return _different_rows(*states)
 

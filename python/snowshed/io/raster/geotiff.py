@@ -200,7 +200,7 @@ def _check_size(source: Any, path: Path, band: int) -> None:
     if rows * columns * together * np.dtype(source.dtypes[band - 1]).itemsize > RASTER_BLOCK:
         raise InputError(
             f"{path}: blocks of {columns} columns, {rows} rows and {together} bands take more than "
-            f"{RASTER_BLOCK >> 20} MB; write it anew: gdal_translate -co TILED=YES"
+            f"{RASTER_BLOCK >> 20} MB; convert it: gdal_translate -co TILED=YES"
         )
 
 

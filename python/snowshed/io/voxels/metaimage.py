@@ -63,7 +63,7 @@ def open_metaimage(path: Path) -> VoxelFile:
     image = VoxelFile(str(path), opened.shape, opened.dtype, opened.read_layers, spacing)
     turn = _turn(fields)
     if not turn.is_none:
-        tell(f"{path}: the image is turned as its {fields.given(*MATRICES)} says")
+        tell(f"{path}: the image is rotated according to its {fields.given(*MATRICES)}")
     return turned(image, turn)
 
 
@@ -163,8 +163,8 @@ def _tell_of_scale(fields: HeaderFields) -> None:
         raise fields.wrong("ElementToIntensityFunctionSlope", "only positive ones are read")
     if (slope, offset) != (1.0, 0.0):
         tell(
-            f"{fields.path}: numbers, and thresholds, are those that are stored, without "
-            f"ElementToIntensityFunctionSlope {slope:g} and Offset {offset:g}"
+            f"{fields.path}: the stored numbers are used; ElementToIntensityFunctionSlope "
+            f"{slope:g} and Offset {offset:g} are not applied, also not to thresholds"
         )
 
 

@@ -135,7 +135,7 @@ def _by_ome(name: str, text: str) -> Description:
     for entry in data:
         shift = _count(entry.get("FirstZ", "0")) - _count(entry.get("IFD", "0"))
         if shift and max(_count(pixels.get(f"Size{axis}", "1")) for axis in "CT") == 1:
-            raise InputError(f"{name}: its pages are not in the order of z; save it anew")
+            raise InputError(f"{name}: its pages are not in the order of z; save it again")
     sizes = zip(KINDS, "CZT")
     counts = {kind: _count(pixels.get(f"Size{axis}", "1")) for kind, axis in sizes}
     slices, notes = _stack(name, counts)
