@@ -149,7 +149,7 @@ def main() -> None:
     options = parser.parse_args()
     print(f"{os.cpu_count()} cores; microseconds for a particle step")
     print(f"{'':>23} {'AvaFrame':>21} {'':>10} {'ratio':>15}")
-    units = [f"{one:>10}" for one in ("particles", "loop", "step", "snowshed")]
+    units = [f"{unit:>10}" for unit in ("particles", "loop", "step", "snowshed")]
     print(f"{'':>12}", *units, f"{'loop':>8} {'step':>6}")
     for wanted in options.particles:
         with tempfile.TemporaryDirectory() as name:

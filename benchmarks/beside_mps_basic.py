@@ -117,8 +117,8 @@ def our_scene(column: Column, threads: int) -> Scene:
     faces = [((0, 0, 0), (0, 0, 1)), ((0, 0, 0), (1, 0, 0)), ((BASIN * width, 0, 0), (-1, 0, 0))]
     if not plane:
         faces += [((0, 0, 0), (0, 1, 0)), ((0, width, 0), (0, -1, 0))]
-    kept = [0, 2] if plane else [0, 1, 2]
-    walls = [Shape.plane(*([vector[d] for d in kept] for vector in face)) for face in faces]
+    axes = [0, 2] if plane else [0, 1, 2]
+    walls = [Shape.plane(*([vector[d] for d in axes] for vector in face)) for face in faces]
     size = (width, 2 * width) if plane else (width, width, 2 * width)
     return Scene(
         dimension=column.dimension,
@@ -242,11 +242,12 @@ def main() -> None:
     parser.add_argument("--particles3d", type=int, nargs="*", default=[19652])
     parser.add_argument("--threads", type=int, nargs="*", default=[1, 2])
     options = parser.parse_args()
-    sizes = [(2, one) for one in options.particles2d] + [(3, one) for one in options.particles3d]
+    sizes = [(2, count) for count in options.particles2d]
+    sizes += [(3, count) for count in options.particles3d]
     columns = [Column.of(*size, radius) for size in sizes for radius in options.radius]
     heads = ("", "radius", "threads", "water", "+ walls", "ours/s", "its/s", "+ walls/s")
     print(*(f"{head:>9}" for head in (*heads, "ratio", "+ walls", "our step", "its step")))
-    cases = [compare(options.program, one, n) for one in columns for n in options.threads]
+    cases = [compare(options.program, column, n) for column in columns for n in options.threads]
     keep_cases(cases, "mps")
 
 

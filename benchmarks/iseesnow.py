@@ -42,13 +42,13 @@ REACHED = 0.1  # m
 
 def unpacked(folder: Path, pattern: str, to: Path) -> Path:
     """Return the file that matches a pattern in a folder, or a copy without ``.xz``."""
-    found = sorted([*folder.glob(pattern), *folder.glob(pattern + ".xz")])
-    if not found:
+    files = sorted([*folder.glob(pattern), *folder.glob(pattern + ".xz")])
+    if not files:
         raise SystemExit(f"{folder}: there is no {pattern}")
-    if found[0].suffix != ".xz":
-        return found[0]
-    copy = to / found[0].stem
-    with lzma.open(found[0]) as packed, copy.open("wb") as plain:
+    if files[0].suffix != ".xz":
+        return files[0]
+    copy = to / files[0].stem
+    with lzma.open(files[0]) as packed, copy.open("wb") as plain:
         shutil.copyfileobj(packed, plain)
     return copy
 

@@ -73,7 +73,7 @@ def whole_run(name: str, scene: Scene) -> Case:
     with tempfile.TemporaryDirectory() as folder:
         table = run_events(scene, folder, pictures=False)
         run = json.loads((Path(folder) / "run.json").read_text(encoding="utf-8"))
-    kept = (
+    stored = (
         "updates_per_s",
         "particle_updates",
         "slept_updates",
@@ -83,7 +83,7 @@ def whole_run(name: str, scene: Scene) -> Case:
     )
     return {
         "case": name,
-        **{key: run[key] for key in kept},
+        **{key: run[key] for key in stored},
         "height_m": table.height_m.round(3).tolist(),
         "length_m": table.length_m.round(3).tolist(),
     }

@@ -42,9 +42,9 @@ def ours(file: Path, strain: float) -> list[float]:
     stage = LoadingStage(kind="compress", speed=SPEED, strain=strain)
     scene = grains_scene(file, VOXEL, [stage], settings=GrainsSettings(damping=0.2, threads=1))
     with tempfile.TemporaryDirectory() as name:
-        found = run(scene.update({"gravity": 0}), Path(name) / "out", pictures=False).summary
-    stresses = (found.strength_pa, found.mean_stress_5_10_pa, found.mean_stress_10_15_pa)
-    return [float("nan") if one is None else one / 1e3 for one in stresses]
+        summary = run(scene.update({"gravity": 0}), Path(name) / "out", pictures=False).summary
+    stresses = (summary.strength_pa, summary.mean_stress_5_10_pa, summary.mean_stress_10_15_pa)
+    return [float("nan") if value is None else value / 1e3 for value in stresses]
 
 
 def theirs(file: Path, strain: float) -> list[float]:
@@ -56,7 +56,7 @@ def theirs(file: Path, strain: float) -> list[float]:
     strains = record.time * SPEED / sample.height
     stress = np.abs(record.force) / (sample.box[0] * sample.box[1]) / 1e3
     within = [stress[(strains > low) & (strains <= high)] for low, high in RANGES]
-    means = [float(one.mean()) if len(one) else float("nan") for one in within]
+    means = [float(part.mean()) if len(part) else float("nan") for part in within]
     return [float(stress[strains <= RANGES[0][0]].max()), *means]
 
 
@@ -73,7 +73,7 @@ def main() -> None:
     for file in options.samples:
         for engine, press in (("snowshed", ours), ("Yade", theirs)):
             stresses = press(file, options.strain)
-            print(f"{file.stem[-20:]:>20} {engine:>9}", *(f"{one:>8.3g}" for one in stresses))
+            print(f"{file.stem[-20:]:>20} {engine:>9}", *(f"{value:>8.3g}" for value in stresses))
             cases.append({"sample": file.stem, "engine": engine, "kpa": stresses})
     keep_cases(cases, "yade-strength")
 

@@ -75,5 +75,5 @@ def _run(
     )
     if done.returncode or not files[2].exists():
         raise RuntimeError(f"{program[0]} failed:\n{done.stdout[-2000:]}\n{done.stderr[-2000:]}")
-    with np.load(files[2]) as found:
-        return Record(found["time_s"], found["top_n"], found["bonds"], float(found["wall_s"]))
+    with np.load(files[2]) as data:
+        return Record(data["time_s"], data["top_n"], data["bonds"], float(data["wall_s"]))

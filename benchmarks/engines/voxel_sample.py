@@ -50,11 +50,11 @@ class VoxelSample:
     def of_labels(cls, labels: np.ndarray, voxel: float) -> VoxelSample:
         """Return the sample of an image (nz, ny, nx): 0 is air, any other number a grain."""
         image = np.ascontiguousarray(labels.transpose(2, 1, 0))
-        places = np.argwhere(image)
-        _, grain = np.unique(image[tuple(places.T)], return_inverse=True)
+        voxels = np.argwhere(image)
+        _, grain = np.unique(image[tuple(voxels.T)], return_inverse=True)
         grain = grain.reshape(-1)
         number = np.full(image.shape, -1)
-        number[tuple(places.T)] = np.arange(len(places))
+        number[tuple(voxels.T)] = np.arange(len(voxels))
         padded = np.pad(image, 1)
         inner = np.ones(image.shape, dtype=bool)
         bonds = []
@@ -68,12 +68,12 @@ class VoxelSample:
             bonds.append(
                 np.stack([number[tuple(joined.T)], number[tuple((joined + face).T)]], axis=1)
             )
-        centres = voxel * (places + 0.5)
+        centres = voxel * (voxels + 0.5)
         mass, centre, inertia = _weigh(centres, grain, voxel)
         return cls(
             centres=centres,
             grain=grain,
-            surface=~inner[tuple(places.T)],
+            surface=~inner[tuple(voxels.T)],
             bonds=np.concatenate(bonds),
             mass=mass,
             centre=centre,
@@ -95,8 +95,8 @@ class VoxelSample:
     def load(cls, file: Path) -> VoxelSample:
         """Read a file that `save` wrote."""
         with np.load(file) as data:
-            found = {field.name: data[field.name] for field in fields(cls)}
-        return cls(**{**found, "radius": float(found["radius"])})
+            arrays = {field.name: data[field.name] for field in fields(cls)}
+        return cls(**{**arrays, "radius": float(arrays["radius"])})
 
 
 def _weigh(

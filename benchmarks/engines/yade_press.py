@@ -1,11 +1,11 @@
 """Confined compression of a sample with Yade: yade -n -x yade_press.py SAMPLE PRESS OUT [steps].
 
-SAMPLE is what `VoxelSample.save` writes, PRESS what `Press.save` writes, OUT an NPZ file with
-time_s, top_n (force on the top plate), bonds, and wall_s of the steps.
+SAMPLE is a file of `VoxelSample.save`, PRESS a file of `Press.save`, OUT an NPZ file with time_s,
+top_n (force on the top plate), bonds, and wall_s of the steps.
 
 Yade weighs a clump by its spheres. So all voxels become spheres here, also the inner ones, with the
-mass of a voxel. What is left of the inertia, that of a cube and not of a ball, is isotropic and is
-added. For measurements of speed, with a number of steps, only the surface is made, with that mass.
+mass of a voxel. The difference in inertia between a cube and a ball is isotropic and is added. For
+measurements of speed, with a number of steps, only the surface is made, with that mass.
 
 The folder of this file must be in PYTHONPATH.
 """

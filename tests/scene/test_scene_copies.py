@@ -71,7 +71,7 @@ def test_settings_are_those_of_the_method():
     with pytest.raises(InputError, match="'mpm' takes MpmSettings, not SlideSettings"):
         Scene(numerics=SlideSettings())
     scene = Scene(numerics=MpmSettings(dx=0.02))
-    with pytest.raises(InputError, match=r"Scene\.method: .* set numerics to None, then method"):
+    with pytest.raises(InputError, match=r"^Scene\.method: .* set numerics to None first"):
         scene.method = "slide"
     scene.numerics = None
     scene.method = "slide"

@@ -24,7 +24,7 @@ GRIDS: Sequence[Settings] = (
     {"dx": 0.01, "seedings": 12},
     {"dx": 0.005, "seedings": 6},
 )
-#: The same in space, as far as they are affordable.
+#: The same in space, on the affordable grids.
 GRIDS_3D: Sequence[Settings] = (
     {"dimension": 3, "dx": 0.02, "seedings": 8},
     {"dimension": 3, "dx": 0.01, "seedings": 1},

@@ -20,7 +20,7 @@ from snowshed.snow.stack.quantities import MEASURES
 from validation.framework.case import Outcome
 from validation.framework.drive import apply_settings
 
-#: The reading of A.4.2 by which the recorded stacks were measured; others are compared with them.
+#: The trimming rule by which the recorded stacks were measured; others are compared with them.
 TRIMMING = "equal_pace"
 #: Columns of events.csv that are compared, by the names they have here.
 COMPARED: Mapping[str, str] = {

@@ -21,8 +21,8 @@ MARTIN_MOYCE = ((0.832, 1.217), (1.219, 1.474), (1.997, 2.292), (2.547, 2.995), 
 KOSHIZUKA_OKA = ((0.381, 1.111), (0.769, 1.252), (1.153, 1.505), (1.537, 1.892), (1.935, 2.241), (2.323, 2.615), (2.719, 3.003), (3.096, 3.624))  # fmt: skip # noqa: E501
 #: Front of such water, released suddenly, as a volume of fluid (benchmarks/engines/gerris_dam.gfs).
 GERRIS = ((0.5, 1.16), (1.0, 1.53), (1.5, 2.03), (2.0, 2.64), (2.5, 3.32), (3.0, 4.07), (3.5, 4.85))
-#: Martin and Moyce's tables, as others print them, do not count the time from when water was let
-#: go: fronts of both columns twice as high as wide, 1 1/8 and 2 1/4 inches, are here.
+#: Martin and Moyce's tables, as others print them, do not count the time from the release of the
+#: water: fronts of both columns twice as high as wide, 1 1/8 and 2 1/4 inches, are here.
 ORIGIN = (1.19, 1.44)  # T*, X*
 
 

@@ -12,7 +12,7 @@ from collections.abc import Iterable
 
 LONGEST = 60  # characters
 #: Control characters (but tab and end of line), line separators, marks and overrides of the
-#: direction, and what stands for bytes of names that are no UTF-8.
+#: direction, and substitutes of bytes of names that are not UTF-8.
 HARMFUL = re.compile(
     "[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff]"
 )

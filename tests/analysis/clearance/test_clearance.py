@@ -140,7 +140,7 @@ def test_a_forecast_counts_the_seasons(winters):
 
 @pytest.mark.slow
 def test_its_probability_is_that_of_counting(tmp_path):
-    """Known friction and adhesion: burial in 200 made winters and in 200 others."""
+    """Known friction and adhesion: burial in 200 synthetic winters and in 200 others."""
     asked = winters_of(SHORT.winters(200, seed=11))
     counted = winters_of(SHORT.winters(200, seed=12))
     told = answer_of(asked, tmp_path / "runs").buried(HEIGHT)
@@ -221,7 +221,7 @@ def test_no_burial_in_ten_winters_is_no_proof():
     assert burial_interval(1.0, 10)[1] == 1.0
 
 
-# --- made winters --------------------------------------------------------------------------
+# --- synthetic winters --------------------------------------------------------------------------
 
 
 def test_made_winters_have_the_climate_that_they_are_fitted_to():

@@ -39,7 +39,7 @@ _MEAN = ("TAVG", Quantity("temperature", "degrees F", *FAHRENHEIT))
 _WATER = ("PRCP", Quantity("precipitation", "inches", 1e3 * INCH))
 _NEW = ("SNOW", Quantity("snowfall", "inches", INCH))
 _DEPTH = ("SNWD", Quantity("snow_depth", "inches", INCH))
-#: ACIS columns, by what is left of their names in small letters without blanks: those of the
+#: ACIS columns, by their names in small letters without blanks: those of the
 #: service, of its data listings, and of the tables of NOWData.
 ACIS: Mapping[str, tuple[str, Quantity]] = {
     **dict.fromkeys(("maxt", "maxtemp", "maxtemperature", "temperaturemaximum"), _HIGHEST),
