@@ -22,6 +22,14 @@ OUTSIDE = ("reproductions", "validation", "benchmarks", "examples", "tools")
 #: Names that say nothing about their values.
 EMPTY_NAMES = {"found", "one", "way", "kept", "places"}
 
+#: Names of limits that are not `max_` or `min_`.
+SUPERLATIVES = re.compile(
+    r"_?(MOST|LEAST|LARGEST|LONGEST|SMALLEST|SHORTEST|HIGHEST|LOWEST|DEEPEST|WIDEST|FEWEST)(_|$)"
+    r"|_?(most|least)_"
+)
+#: Names of columns in stored tables.
+STORED_NAMES = {"most_seeds"}
+
 #: First words of descriptions that begin with their object or a relative clause.
 OPENINGS = re.compile(r"(Of|What|By|That|How|Which|Whose|Where to) ")
 #: Constructions that need a second reading.
@@ -93,6 +101,17 @@ def bound_names(tree):
             yield node.lineno, node.arg
         elif isinstance(node, ast.FunctionDef):
             yield node.lineno, node.name.strip("_")
+
+
+@pytest.mark.parametrize("room", CLEAN)
+def test_limits_are_named_max_and_min(room):
+    wrong = [
+        f"{name_of(path)}:{line}: {name}"
+        for path in sources([room])
+        for line, name in bound_names(ast.parse(path.read_text(encoding="utf-8")))
+        if SUPERLATIVES.match(name) and name not in STORED_NAMES
+    ]
+    assert wrong == []
 
 
 @pytest.mark.parametrize("room", CLEAN)

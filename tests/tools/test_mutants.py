@@ -234,7 +234,7 @@ def test_all_that_pass_say_nothing(workshop):
 def test_a_crash_and_a_hang_are_failures(workshop, monkeypatch):
     crashed = workshop(code=139)
     assert crashed.first_failure(["cpp:Sum*"]) == "cpp:Sum* (exit code 139)"
-    monkeypatch.setattr(trial, "LONGEST", 0.5)
+    monkeypatch.setattr(trial, "TIME_LIMIT", 0.5)
     assert workshop().first_failure(["tests/a.py"], 9) == "tests/a.py (hangs)"
 
 

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from tools.mutants.sources import SWITCH_HEADER
 
-LONGEST = 900  # s; tests that take longer hang
+TIME_LIMIT = 900  # s; tests that take longer hang
 CPP_FAILED = re.compile(r"^\[  FAILED  \] ([\w/]+\.[\w/]+)", re.M)
 PYTHON_FAILED = re.compile(r"^(?:FAILED|ERROR) (\S+)", re.M)
 
@@ -109,7 +109,11 @@ class Workshop:
         options = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True}
         try:
             ended = subprocess.run(
-                list(map(str, words)), cwd=self.source, env=environment, timeout=LONGEST, **options
+                list(map(str, words)),
+                cwd=self.source,
+                env=environment,
+                timeout=TIME_LIMIT,
+                **options,
             )
         except subprocess.TimeoutExpired as late:
             return None, str(late.stdout or "")

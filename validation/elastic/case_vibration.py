@@ -148,7 +148,7 @@ BAR = Case(
             bar=0.01,
             bar_for={"dx": 0.05, "basis": "quadratic", "pattern": "regular"},
             order_in="dx",
-            least_order=1.8,
+            min_order=1.8,
         ),
         Quantity("lost", "part of the amplitude lost per period", order_in="dx"),
         Quantity(

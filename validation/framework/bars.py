@@ -62,8 +62,8 @@ def compare(table: pd.DataFrame, cases: Iterable[Case]) -> list[Bar]:
             rows = rows_of(table, case.name, quantity.name)
             if quantity.bar is not None:
                 bars.append(_error_bar(case.name, quantity, quantity.bar, rows))
-            if quantity.least_order is not None and quantity.order_in is not None:
-                bars.append(_order_bar(case.name, quantity, quantity.least_order, rows))
+            if quantity.min_order is not None and quantity.order_in is not None:
+                bars.append(_order_bar(case.name, quantity, quantity.min_order, rows))
     return bars
 
 

@@ -47,7 +47,7 @@ class Quantity:
         not be given.
     order_in:
         The setting whose power law the error follows (``"dx"``, ``"courant_factor"``), if any.
-    least_order:
+    min_order:
         The smallest order of convergence allowed.
     relative:
         Whether the error is relative to the exact value (shown in %) or in the quantity's unit.
@@ -58,7 +58,7 @@ class Quantity:
     bar: Optional[float] = None
     bar_for: Wanted = field(default_factory=dict)
     order_in: Optional[str] = None
-    least_order: Optional[float] = None
+    min_order: Optional[float] = None
     relative: bool = True
 
     def error_text(self, error: Optional[float]) -> str:

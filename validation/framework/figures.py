@@ -43,9 +43,9 @@ FIRST = ("transfer", "law", "between", "dimension", "events", "basis", "precisio
 #: Points on a Pareto front closer than this part are not both named.
 NEARLY = 0.1
 #: Problems of a quantity that get a Pareto front, at most.
-MOST_FRONTS = 3
+MAX_FRONTS = 3
 #: Times too short to be measured lie here, s.
-SHORTEST = 1e-6
+MIN_TIME = 1e-6
 #: Errors of exact answers are zero; on a logarithmic axis they lie here.
 ZERO = 1e-17
 
@@ -144,7 +144,7 @@ def work_precision_figure(
     Parameters
     ----------
     panels
-        Quantities, and the problems they were solved for in. No more than `MOST_FRONTS` of these
+        Quantities, and the problems they were solved for in. No more than `MAX_FRONTS` of these
         get a front: those that were solved in most ways.
     choices
         All choices of settings of the case.
@@ -214,7 +214,7 @@ def _draw_convergence(
     sizes = sorted({size for convergence in series for size in convergence.sizes})
     axes.set_xticks(sizes, [formatting.number(size) for size in sizes])
     axes.minorticks_off()
-    _draw_slope(axes, series, quantity.least_order)
+    _draw_slope(axes, series, quantity.min_order)
     _errors_on(axes, quantity)
 
 
@@ -256,7 +256,7 @@ def _draw_work_precision(
 def _with_fronts(problems: Sequence[Problem]) -> list[Problem]:
     """Return the problems that were solved in most ways; one way alone makes no front."""
     several = [problem for problem in problems if len(problem[1]) > 1]
-    return sorted(several, key=lambda problem: -len(problem[1]))[:MOST_FRONTS]
+    return sorted(several, key=lambda problem: -len(problem[1]))[:MAX_FRONTS]
 
 
 def _draw_points(
@@ -291,7 +291,7 @@ def _draw_front(
 
 
 def _time(solution: Solution) -> float:
-    return max(solution.wall_s, SHORTEST)
+    return max(solution.wall_s, MIN_TIME)
 
 
 def _size(solution: Solution) -> float:

@@ -26,7 +26,7 @@ from validation.framework.case import Case, Outcome
 from validation.framework.measurement_file import MeasurementFile
 from validation.framework.process import Answer, measure_once, measuring_pool
 
-LONGEST = 60  # characters of what a progress bar says is being measured
+MAX_LABEL_LENGTH = 60  # characters of the label of a progress bar
 
 
 class Task(NamedTuple):
@@ -88,7 +88,8 @@ def measure_cases(
             if progress is not None:
                 fraction, left_s = estimate.after(done)
                 before = len(tasks) - len(due)
-                doing = f"{task.case.name}: {setting_labels.settings(task.settings)}"[:LONGEST]
+                label = f"{task.case.name}: {setting_labels.settings(task.settings)}"
+                doing = label[:MAX_LABEL_LENGTH]
                 told = Progress(
                     fraction, before + done, len(tasks), "measured", doing, left_s=left_s
                 )

@@ -94,13 +94,13 @@ def vortex_matrix(full: bool) -> list[Settings]:
 
 #: Where the effect of the step's size is studied, and the step of the reference.
 STEP_STUDY: Settings = {"dx": 1 / 16, "particles_per_voxel": 9}
-SMALLEST = 0.9 / 32
+MIN_COURANT_FACTOR = 0.9 / 32
 
 
 def measure_steps(settings: Settings) -> Outcome:
     """Compare the displacements at the end with those of a very small step, and with the motion."""
     body, off, exact = _end(settings)
-    _, limit, _ = _end({**settings, "courant_factor": SMALLEST})
+    _, limit, _ = _end({**settings, "courant_factor": MIN_COURANT_FACTOR})
     step = root_mean_square(off - limit) / root_mean_square(exact)
     error = root_mean_square(off) / root_mean_square(exact)
     return body.drive.outcome(
@@ -159,7 +159,7 @@ FORCED = """
 def _displacement(bar_for: Settings) -> Quantity:
     scheme: Settings = {"basis": "quadratic", "precision": "double", **bar_for}
     title = "rms error of displacement over its rms"
-    return Quantity("displacement", title, bar_for=scheme, order_in="dx", least_order=1.8)
+    return Quantity("displacement", title, bar_for=scheme, order_in="dx", min_order=1.8)
 
 
 IN_WAVES = Case(
@@ -230,7 +230,7 @@ IN_TIME = Case(
             "rms effect of the time step on the displacement",
             bar_for={"motion": "vortex", "amplitude": 1.0, "transfer": "flip", "flip_ratio": 1.0},
             order_in="courant_factor",
-            least_order=0.9,
+            min_order=0.9,
         ),
         Quantity(
             "displacement", "rms error of displacement over its rms", order_in="courant_factor"

@@ -203,7 +203,7 @@ STRESS = Quantity(
     bar=BAR,
     bar_for={"increment": BAR_AT},
     order_in="increment",
-    least_order=0.9,
+    min_order=0.9,
 )
 EXTRAPOLATED = Quantity(
     "extrapolated_stress",
@@ -211,7 +211,7 @@ EXTRAPOLATED = Quantity(
     bar=BAR,
     bar_for={"increment": EXTRAPOLATED_BAR_AT},
     order_in="increment",
-    least_order=1.5,
+    min_order=1.5,
 )
 REMARKS = """
 Backward Euler is of first order: an increment ten times smaller brings one more digit, and no more.

@@ -127,7 +127,7 @@ CASE = Case(
                 "artificial_viscosity": None,
             },
             order_in="layer_thickness",
-            least_order=0.5,
+            min_order=0.5,
         ),
         Quantity(
             "front",

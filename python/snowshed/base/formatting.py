@@ -21,7 +21,7 @@ UNITS_OF_TIME = (
     (inf, 86400, "days", 1),
 )
 NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
-LONGEST_NUMBER = 400  # characters
+MAX_NUMBER = 400  # characters
 
 
 def exact(value: float) -> str:
@@ -142,7 +142,7 @@ def number_in(text: str) -> float:
     (-1500.0, 2.0, nan, nan)
     """
     text = text.strip(" \t")
-    if len(text) > LONGEST_NUMBER or not NUMBER.fullmatch(text):
+    if len(text) > MAX_NUMBER or not NUMBER.fullmatch(text):
         return math.nan
     value = float(text)
     return value if math.isfinite(value) else math.nan

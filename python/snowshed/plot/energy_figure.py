@@ -23,7 +23,7 @@ SUMS = ("added_j", "residual_j")
 SMALL = 1e-3  # smaller shares of the largest energy are not drawn
 SCALES = ((1e9, "GJ"), (1e6, "MJ"), (1e3, "kJ"), (1.0, "J"), (1e-3, "mJ"), (1e-6, "µJ"))
 WIDTH, HEIGHT = 9.0, 6.4  # inches
-MOST_MARKED = 40  # events whose ends are marked
+MAX_MARKED_EVENTS = 40  # events whose ends are marked
 
 
 def energy_figure(table: pd.DataFrame, scene: Mapping[str, Any]) -> Figure:
@@ -102,7 +102,7 @@ def _draw(
 def _beginnings(table: pd.DataFrame) -> Sequence[float]:
     """Return when the events after the first began, if they are few."""
     begun = table.groupby("event")["time_s"].min().tolist()[1:]
-    return begun if len(begun) <= MOST_MARKED else []
+    return begun if len(begun) <= MAX_MARKED_EVENTS else []
 
 
 def _named(name: str) -> str:

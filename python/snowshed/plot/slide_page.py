@@ -21,7 +21,7 @@ from snowshed.methods.slide.maps import SlideMaps
 from snowshed.methods.slide.validity import ReleaseArea
 from snowshed.plot.figure_style import STYLE, blank_figure
 from snowshed.plot.html_page import Grid, Picture, template
-from snowshed.plot.slide_figure import LEAST_SHOWN, PEAKS, slide_figure
+from snowshed.plot.slide_figure import MIN_SHOWN_THICKNESS, PEAKS, slide_figure
 from snowshed.plot.terrain_map import (
     Extent,
     Outline,
@@ -207,7 +207,7 @@ def _peak(maps: SlideMaps, outlines: Sequence[Outline], quantity: str) -> Pictur
 def _window(maps: SlideMaps, outlines: Sequence[Outline]) -> tuple[slice, slice, Extent]:
     """Return the rows and columns to show, and the map coordinates of their outer edges."""
     ground = maps.raster(maps.terrain)
-    west, east, south, north = focus(ground, maps.peak_thickness > LEAST_SHOWN, outlines)
+    west, east, south, north = focus(ground, maps.peak_thickness > MIN_SHOWN_THICKNESS, outlines)
     edges = extent(ground)
     c0, c1 = (round((x - edges[0]) / maps.cell) for x in (west, east))
     r0, r1 = (round((y - edges[2]) / maps.cell) for y in (south, north))
@@ -251,7 +251,9 @@ def _in_percent(outline: Outline, part: Extent) -> str:
 
 def _largest(frames: Sequence[Frame]) -> float:
     """Return the thickness that hardly any snow exceeds, m."""
-    values = np.concatenate([frame.thickness[frame.thickness > LEAST_SHOWN] for frame in frames])
+    values = np.concatenate(
+        [frame.thickness[frame.thickness > MIN_SHOWN_THICKNESS] for frame in frames]
+    )
     return float(np.quantile(values, 0.995)) if values.size else 1.0
 
 
@@ -259,7 +261,7 @@ def _overlay(thickness: Any, largest: float) -> str:
     """Return the snow as a PNG with one pixel per cell, transparent without snow."""
     share = 0.15 + 0.85 * np.clip(thickness / largest, 0.0, 1.0)
     pixels = np.asarray(mpl.colormaps[COLOURS](share, bytes=True))
-    pixels[..., 3] = np.where(thickness > LEAST_SHOWN, 225, 0)
+    pixels[..., 3] = np.where(thickness > MIN_SHOWN_THICKNESS, 225, 0)
     file = io.BytesIO()
     imsave(file, np.ascontiguousarray(pixels[::-1]), format="png")
     return base64.b64encode(file.getvalue()).decode()
@@ -305,7 +307,7 @@ def multiples_figure(
             draw_terrain(axes, ground, part, labels=False)
             thickness = np.full(ground.heights.shape, np.nan)
             cut = frame.window(rows, columns)
-            thickness[rows, columns] = np.where(cut > LEAST_SHOWN, cut, np.nan)
+            thickness[rows, columns] = np.where(cut > MIN_SHOWN_THICKNESS, cut, np.nan)
             drawn = draw_values(axes, ground, thickness, cmap=COLOURS, norm=norm)
             draw_outlines(axes, outlines)
             axes.set_title(f"{frame.time:.0f} s" if frame.time >= 10 else f"{frame.time:.1f} s")

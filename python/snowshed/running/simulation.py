@@ -39,7 +39,7 @@ Order = Literal["id", "storage"]
 Ended = Literal["rest", "time_limit", "reached"]
 Until = Union[Literal["rest"], float, Callable[["Simulation"], bool]]
 
-MOST_STEPS = 64  # most steps at a time: between them Python checks for Ctrl-C
+MAX_STEPS = 64  # at a time: between them Python checks for Ctrl-C
 CHECK_INTERVAL = 0.1  # s of wall time; the same where the core itself runs to rest
 
 
@@ -135,8 +135,8 @@ class Simulation:
         SimulationError
             If no event runs, or the simulation cannot continue.
         """
-        for left in range(whole_number("count", count, lowest=0), 0, -MOST_STEPS):
-            self._core.step(min(left, MOST_STEPS))
+        for left in range(whole_number("count", count, lowest=0), 0, -MAX_STEPS):
+            self._core.step(min(left, MAX_STEPS))
 
     def run(self, until: Until = "rest", *, every: int = 16) -> Ended:
         """Take steps of the present event, or of the next one, until a condition holds.
@@ -178,7 +178,7 @@ class Simulation:
         while self.time < until:
             # Half of the remaining time at the present time step, because the step may grow.
             left = 0.5 * (until - self.time) / self._core.time_step_s if self.time else 1
-            self._core.step(max(1, min(MOST_STEPS, int(left))))
+            self._core.step(max(1, min(MAX_STEPS, int(left))))
         return "reached"
 
     def _run_until(self, condition: Callable[[Simulation], bool], every: int) -> Ended:

@@ -38,7 +38,7 @@ from snowshed.running.sequence import say_note, seal_files
 from snowshed.snow.stack.measure import StackMeasure
 from snowshed.snow.stack.particles import measure_particles
 
-LARGEST_RESIDUAL = 0.01  # of the largest energy
+MAX_RESIDUAL = 0.01  # of the largest energy
 #: Columns of events.csv for the number of the event and the time of its computation.
 ROW_KEYS = ("event", "wall_s")
 KINDS: Mapping[str, type] = {**dict.fromkeys(WORDS, str), "event": int, "steps": int}
@@ -186,10 +186,10 @@ class StackRun(MethodRun):
 def _warn_of_residual(facts: Mapping[str, Any]) -> None:
     """Warn where the time integration gained or lost too much energy."""
     share = facts["energy_residual"]
-    if share is not None and share > LARGEST_RESIDUAL:
+    if share is not None and share > MAX_RESIDUAL:
         warnings.warn(
             f"event {facts['event']}: the energy balance has a residual of {share:.2g} of the "
-            f"largest energy, above {LARGEST_RESIDUAL:g}; a smaller courant_factor or dx may help",
+            f"largest energy, above {MAX_RESIDUAL:g}; a smaller courant_factor or dx may help",
             FutureWarning,
             stacklevel=caller_level(),
         )

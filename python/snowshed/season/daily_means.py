@@ -13,13 +13,13 @@ from snowshed.base.arrays import Booleans, Floats, Integers
 from snowshed.io.weather.observation import Observation, Station
 
 #: Days without a row that are set in between two rows; in longer gaps there are no days at all.
-LONGEST_GAP = 60
+MAX_GAP_DAYS = 60
 WHOLE_DAY = 18.0  # hours of a day that an amount must cover to be that of the day
 #: The clock time at which new snow is read in most countries.
 MORNING = 7.0
 NEAR = timedelta(hours=3)  # readings of sums of a day that stand for one at another time
 #: No snow falls faster; MeteoIO's filters cut the rate of the snow depth at 0.2 m/h.
-FASTEST = 0.3  # m/h
+MAX_RATE = 0.3  # m/h
 SEVERAL = 3  # changes of the depth on a day, of a sensor that is read all day
 FOLLOWING = 2.0  # hours between readings that are held against that rate
 
@@ -112,7 +112,7 @@ def _calendar(dates: set[date]) -> list[date]:
     """Return the days that are known and those of short gaps between them."""
     days: list[date] = []
     for day in sorted(dates):
-        if days and (day - days[-1]).days - 1 <= LONGEST_GAP:
+        if days and (day - days[-1]).days - 1 <= MAX_GAP_DAYS:
             days += [days[-1] + timedelta(n) for n in range(1, (day - days[-1]).days)]
         days.append(day)
     return days
@@ -187,7 +187,7 @@ def _depths(
     levels: dict[date, list[float]] = {}
     seams: set[date] = set()
     jumps: list[tuple[date, float]] = []
-    fastest = FASTEST if _is_continuous(station.rows) else np.inf
+    fastest = MAX_RATE if _is_continuous(station.rows) else np.inf
     shift, seam = 0.0, False
     before: Observation | None = None
     for row in station.rows:

@@ -15,11 +15,11 @@ import numpy as np
 
 from snowshed.base.arrays import Booleans, Floats, Integers
 from snowshed.base.formatting import plural
-from snowshed.season.daily_means import LONGEST_GAP, StationDays
+from snowshed.season.daily_means import MAX_GAP_DAYS, StationDays
 from snowshed.season.extremes import RECORD_DAY, RECORD_WORDS
 
-LEAST_RISE = 0.02  # m; smaller rises of the snow depth are noise of the sensor
-LONGEST_TOTAL = 4  # days from reading to reading whose rise is still an observation
+MIN_RISE = 0.02  # m; smaller rises of the snow depth are noise of the sensor
+MAX_TOTAL_DAYS = 4  # days from reading to reading whose rise is still an observation
 SPIKE = 0.3  # m; from there on a change may be a spike
 TAKEN_BACK = 0.8  # of a spike, by the reading that ends it
 NO_MELT = 1.0  # degrees C; below, so much new snow does not vanish within days
@@ -112,24 +112,24 @@ def _take_rise(days: StationDays, snow: DepthSnow, before: int, after: int, rise
     if rise > RECORD_DAY * span:
         snow.notes.append(f"the snow depth rises by {said}, which is not snowfall: {RECORD_WORDS}")
         return
-    if span > LONGEST_GAP + 1:
-        if rise >= LEAST_RISE:
+    if span > MAX_GAP_DAYS + 1:
+        if rise >= MIN_RISE:
             snow.notes.append(f"the snow depth rises by {said}, over a gap; it is not counted")
         snow.snow[after] = 0.0
         return
-    if span > LONGEST_TOTAL and rise < LEAST_RISE:
+    if span > MAX_TOTAL_DAYS and rise < MIN_RISE:
         return  # the snow may have fallen and settled: unknown
-    share = rise / span if rise >= LEAST_RISE else 0.0
+    share = rise / span if rise >= MIN_RISE else 0.0
     snow.snow[own] = share
     if span > 1 and share:
         snow.totals.append(SharedRise(range(before + 1, after + 1), rise))
-    if span > LONGEST_TOTAL:
+    if span > MAX_TOTAL_DAYS:
         snow.filled[own] = True
 
 
 def _tell_gaps(days: StationDays, snow: DepthSnow) -> None:
     """Note the rises that are spread over unobserved days."""
-    gaps = [total for total in snow.totals if len(total.days) > LONGEST_TOTAL]
+    gaps = [total for total in snow.totals if len(total.days) > MAX_TOTAL_DAYS]
     if not gaps:
         return
     most = max(gaps, key=lambda total: total.rise)
@@ -186,7 +186,7 @@ def _longest(change: float, days: int) -> int:
 def _tell_jumps(days: StationDays, snow: DepthSnow) -> None:
     seams = [(day, rise) for day, rise in days.jumps if day in _seam_dates(days)]
     others = [(day, rise) for day, rise in days.jumps if day not in _seam_dates(days)]
-    rising = [(day, rise) for day, rise in seams if abs(rise) >= LEAST_RISE]
+    rising = [(day, rise) for day, rise in seams if abs(rise) >= MIN_RISE]
     if rising:
         snow.notes.append(
             f"the snow depth jumps at {plural(len(rising), 'joint')} of two series "

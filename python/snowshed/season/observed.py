@@ -19,7 +19,7 @@ from snowshed.base.arrays import Booleans, Floats, Integers
 from snowshed.base.formatting import plural
 from snowshed.io.weather.observation import Station
 from snowshed.season.daily_means import StationDays, days_of_station
-from snowshed.season.depth_rises import LEAST_RISE, DepthSnow, SharedRise, snow_of_depth
+from snowshed.season.depth_rises import MIN_RISE, DepthSnow, SharedRise, snow_of_depth
 from snowshed.season.extremes import RECORD_DAY, RECORD_WORDS
 from snowshed.season.gauge import RULE, snow_of_gauge
 from snowshed.season.season_record import SeasonRecord
@@ -231,7 +231,7 @@ def _notes(snow: _DailySnow, days: StationDays, calendar: Calendar) -> Iterator[
         yield RULE
     if Source.DEPTH in snow.source:
         yield (
-            f"new snow is the daily rise of the snow depth, from {100 * LEAST_RISE:g} cm; it is "
+            f"new snow is the daily rise of the snow depth, from {100 * MIN_RISE:g} cm; it is "
             "too small, because snow settles meanwhile"
         )
     yield from _contradictions(snow, calendar)

@@ -19,7 +19,7 @@ from snowshed.season.weather_row import Weather
 from snowshed.season.winter_years import Calendar, SnowSeason, snow_season_of
 
 COVERAGE = 0.9  # of the days of the snow season, on which snow must have been observed
-LONGEST_ROW_GAP = 3  # days between two rows of a table, covered by the later row
+MAX_ROW_GAP_DAYS = 3  # days between two rows of a table, covered by the later row
 LISTED = timedelta(days=1.5)  # from row to row, half of them more, in a list of snowfalls
 
 
@@ -157,7 +157,7 @@ def observed_days(rows: Sequence[Weather], begin: date, after: date) -> int:
     if any(row.source is not Source.GIVEN for row in rows):
         return number
     for earlier, later in zip(days, days[1:]):
-        if later - earlier - 1 <= LONGEST_ROW_GAP:
+        if later - earlier - 1 <= MAX_ROW_GAP_DAYS:
             number += max(min(later, last) - max(earlier + 1, first), 0)
     return number
 

@@ -9,7 +9,7 @@ from snowshed.season.source import Source
 
 HEAD = ("winter", "snow observed", "new snow, m", "source", "filled", "not known", "counts")
 ALIGN = "lrrlrrl"
-MOST_ROWS = 24  # on a console
+MAX_ROWS = 24  # on a console
 
 
 def title(winters: WinterList) -> str:
@@ -32,9 +32,9 @@ def quality_rows(winters: WinterList) -> list[tuple[str, ...]]:
 
 def console_rows(rows: list[tuple[str, ...]]) -> tuple[list[tuple[str, ...]], int]:
     """Return the rows for a console, and the number of further rows."""
-    if len(rows) <= MOST_ROWS:
+    if len(rows) <= MAX_ROWS:
         return rows, 0
-    half = MOST_ROWS // 2
+    half = MAX_ROWS // 2
     return [*rows[:half], ("...",) * len(HEAD), *rows[-half:]], len(rows) - 2 * half
 
 

@@ -17,8 +17,8 @@ from snowshed.season.settings import SeasonSettings
 from snowshed.snow.relations.stiffness import YOUNGS_MODULUS
 from snowshed.snow.relations.strength import TENSILE_STRENGTH
 
-MOST_EVENTS = 1000  # as in a scene
-MOST_SNOWS = 250  # a scene has up to 256
+MAX_EVENTS = 1000  # as in a scene
+MAX_SNOWS = 250  # a scene has up to 256
 
 
 def season_scene(
@@ -43,8 +43,8 @@ def season_scene(
     """
     scene: dict[str, Any] = base.copied_data()
     released = [day for day in days if day.event is not None]
-    if len(released) > MOST_EVENTS:
-        raise InputError(f"{len(released)} releases; a scene has at most {MOST_EVENTS} events")
+    if len(released) > MAX_EVENTS:
+        raise InputError(f"{len(released)} releases; a scene has at most {MAX_EVENTS} events")
     if scene.get("bodies"):
         raise InputError("/bodies: a season lays its own snow; remove further bodies")
     natural: dict[str, Any] = scene["snow"]
@@ -110,6 +110,6 @@ def _densities(released: Sequence[Day]) -> list[float]:
         densities = [
             max(step * round(day.slab_load / day.slab_thickness / step), step) for day in released
         ]
-        if len(set(densities)) <= MOST_SNOWS:
+        if len(set(densities)) <= MAX_SNOWS:
             break
     return densities

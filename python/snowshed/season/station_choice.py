@@ -21,7 +21,7 @@ from snowshed.base.arrays import Booleans, Floats
 from snowshed.season.source import Source
 
 CONTRADICTION = 2.0  # one column over the other, over a winter
-LEAST_DIFFERENCE = 0.1  # m over a winter
+MIN_DIFFERENCE = 0.1  # m over a winter
 COLD = -4.0  # degrees C; what falls on such days is snow for certain
 
 
@@ -112,7 +112,7 @@ class Chooser:
             return StationChoice([self.only], others[0] if others else None, sums)
         with_hand = Source.HAND in self.columns
         choice = (self._with_hand if with_hand else self._without_hand)(winter, there, sums)
-        if max(sums.values(), default=0.0) <= LEAST_DIFFERENCE:
+        if max(sums.values(), default=0.0) <= MIN_DIFFERENCE:
             return choice
         unkept = {source for source in self._idle_columns if source in sums}
         return replace(choice, contradicted=choice.contradicted | unkept)
@@ -165,7 +165,7 @@ class Chooser:
         if first not in self.columns or other not in self.columns:
             return False
         less, more = sorted(self._pair(first, other, days))
-        return bool(more > CONTRADICTION * less and more - less > LEAST_DIFFERENCE)
+        return bool(more > CONTRADICTION * less and more - less > MIN_DIFFERENCE)
 
     def _pair(self, reference: Source, other: Source, days: Booleans) -> tuple[float, float]:
         """Return the sums of two columns on the days of both."""
@@ -176,7 +176,7 @@ class Chooser:
     def _cold_gauge(self, winter: Booleans) -> bool:
         """Return whether the gauge has snow on days on which nothing else can fall."""
         gauge = self.columns[Source.GAUGE]
-        return float(gauge.snow[winter & gauge.known & self._cold].sum()) > LEAST_DIFFERENCE
+        return float(gauge.snow[winter & gauge.known & self._cold].sum()) > MIN_DIFFERENCE
 
     def _sums(self, winter: Booleans) -> dict[Source, float]:
         """Return the sum of each column on the common days of columns with data in the winter."""
@@ -198,7 +198,7 @@ class Chooser:
             both = own.known & column.known
             if other is Source.GAUGE:
                 both &= self._cold
-            least = LEAST_DIFFERENCE if Source.HAND in (source, other) else 0.0
+            least = MIN_DIFFERENCE if Source.HAND in (source, other) else 0.0
             if other is not source and float(column.snow[both].sum()) > least:
                 return True
         return False

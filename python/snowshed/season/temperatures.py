@@ -10,9 +10,9 @@ import numpy as np
 
 from snowshed.base.arrays import Booleans, Floats, Integers
 
-LONGEST_INTERPOLATION = 3  # days without temperature, between which a straight line is drawn
+MAX_INTERPOLATED_DAYS = 3  # days without temperature, between which a straight line is drawn
 AROUND = 7  # half width of the window of the mean, days of the year
-LEAST = 5  # measured days for such a mean
+MIN_MEASURED_DAYS = 5  # measured days for such a mean
 YEAR = 366
 
 
@@ -43,7 +43,7 @@ def filled_temperatures(
     ordinals = np.array([day.toordinal() for day in dates])
     measured_days = np.flatnonzero(~np.isnan(measured))
     lined: Floats = np.interp(ordinals, ordinals[measured_days], measured[measured_days])
-    far = _distance(ordinals, ordinals[measured_days]) > LONGEST_INTERPOLATION
+    far = _distance(ordinals, ordinals[measured_days]) > MAX_INTERPOLATED_DAYS
     usual = _usual(dates, measured)
     climate = far & ~np.isnan(usual)
     filled = np.where(climate, usual, lined)
@@ -97,7 +97,7 @@ def _usual(dates: Sequence[date], measured: Floats) -> Floats:
     window = np.arange(-AROUND, AROUND + 1)
     around = (np.arange(YEAR)[:, None] + window) % YEAR
     total, number = sums[around].sum(axis=1), counts[around].sum(axis=1)
-    means = np.where(number >= LEAST, total / np.maximum(number, 1), np.nan)
+    means = np.where(number >= MIN_MEASURED_DAYS, total / np.maximum(number, 1), np.nan)
     return np.asarray(means[place], dtype=float)
 
 

@@ -28,7 +28,7 @@ from snowshed.season.checks import NO_SNOW, check_rows
 from snowshed.season.observed import record_of
 from snowshed.season.season_record import SeasonRecord
 from snowshed.season.source import AUTO, CHOICES
-from snowshed.season.weather_row import MOST_SNOWFALL, Weather
+from snowshed.season.weather_row import MAX_SNOWFALL, Weather
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -48,7 +48,7 @@ class _Column:
 
 COLUMNS: Mapping[str, _Column] = {
     "snowfall_m": _Column(
-        0.0, MOST_SNOWFALL, "m", required=True, filled=True, hint="; is it in cm, mm or inches?"
+        0.0, MAX_SNOWFALL, "m", required=True, filled=True, hint="; is it in cm, mm or inches?"
     ),
     "temperature_c": _Column(-90.0, 40.0, "degrees C", required=True, filled=True),
     "density_kg_m3": _Column(10.0, 700.0, "kg/m3"),

@@ -9,7 +9,7 @@ from typing import Optional
 from snowshed.season.source import Source
 
 #: In a row, which may hold the snow of several days.
-MOST_SNOWFALL = 3.0  # m
+MAX_SNOWFALL = 3.0  # m
 
 
 @dataclass(frozen=True)

@@ -24,7 +24,7 @@ from snowshed.study.table import read_table
 if TYPE_CHECKING:
     import pandas as pd
 
-LARGEST_STUDY = 1_000_000  # runs
+MAX_RUNS = 1_000_000  # runs
 
 #: Parameters that cannot vary, because they do not change a result.
 WITHOUT_EFFECT = ("title", "output", "numerics.threads")
@@ -162,8 +162,8 @@ class Study:
         for part in self.parts:
             self._check(part)
         count = sum(math.prod(len(factor) for factor in part) for part in self._seeded())
-        if count > LARGEST_STUDY:
-            raise InputError(f"has {count} runs; at most {LARGEST_STUDY} are allowed")
+        if count > MAX_RUNS:
+            raise InputError(f"has {count} runs; at most {MAX_RUNS} are allowed")
 
     @property
     def axes(self) -> list[str]:

@@ -32,7 +32,7 @@ from snowshed.study.workers import Workers
 
 POLL_S = 0.25  # s between checks of interrupts and progress
 ELSEWHERE_S = 1.0  # s between checks of what other processes compute
-MOST_NOTES = 10  # that are said after a session, each once
+MAX_NOTES = 10  # that are said after a session, each once
 DEATHS = 3  # workers that may die of a run before it counts as failed
 
 
@@ -174,10 +174,10 @@ def _compute(
 
 def _tell_of_runs(notes: Counter[str]) -> None:
     """Give the notes on runs, the most frequent first."""
-    for note, runs in notes.most_common(MOST_NOTES):
+    for note, runs in notes.most_common(MAX_NOTES):
         tell(f"{runs} {'run' if runs == 1 else 'runs'}: {note}")
-    if len(notes) > MOST_NOTES:
-        tell(f"{len(notes) - MOST_NOTES} further notes on runs")
+    if len(notes) > MAX_NOTES:
+        tell(f"{len(notes) - MAX_NOTES} further notes on runs")
 
 
 def _check_version(store: Store, pending: Sequence[StoredRun]) -> None:

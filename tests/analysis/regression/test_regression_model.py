@@ -369,7 +369,7 @@ def test_nothing_in_a_file_is_executed(file, tmp_path):
 
 
 def test_a_file_that_unpacks_to_too_much_is_refused(file, monkeypatch):
-    monkeypatch.setattr("snowshed.analysis.regression.model_file.LARGEST", 1000)
+    monkeypatch.setattr("snowshed.analysis.regression.model_file.MAX_BYTES", 1000)
     with pytest.raises(InputError, match="at most 1000 are allowed"):
         load_model(file)
 

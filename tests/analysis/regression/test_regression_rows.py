@@ -86,7 +86,7 @@ def test_stacks_that_still_move_are_counted(tmp_path):
 
 def test_too_many_rows_are_refused(tmp_path, monkeypatch):
     write_table(made_up_rows(few_inputs()), tmp_path / "rows.csv")
-    monkeypatch.setattr(rows_module, "MOST_ROWS", 95)
+    monkeypatch.setattr(rows_module, "MAX_ROWS", 95)
     with pytest.raises(InputError, match="96 rows; at most 95 are allowed"):
         read_rows(tmp_path / "rows.csv")
 

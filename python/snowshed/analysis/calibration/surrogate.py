@@ -29,7 +29,7 @@ SMOOTHNESS = 2.5
 LENGTHS = (0.1, 30.0)
 AMPLITUDE = (1e-2, 1e2)
 NOISE = (1e-5, 2.0)
-FEWEST_POINTS = 6  # parameter sets
+MIN_POINTS = 6  # parameter sets
 
 Output = tuple[str, float, int]  # quantity, tilt, event
 
@@ -140,10 +140,10 @@ class Surrogate:
             rows = stacks.rows
             rows = rows[(rows["tilt"] == tilt) & (rows["event"] == event)]
             count = rows[SET].nunique()
-            if count < FEWEST_POINTS:
+            if count < MIN_POINTS:
                 raise InputError(
                     f"{count} parameter sets have event {event} at tilt {tilt:g}; the surrogate "
-                    f"needs at least {FEWEST_POINTS}"
+                    f"needs at least {MIN_POINTS}"
                 )
             points = unit.loc[rows[SET]].to_numpy(float)
             processes.append(Process.fitted(points, rows[quantity].to_numpy(float)))

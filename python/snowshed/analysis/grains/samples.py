@@ -20,8 +20,8 @@ from snowshed.io.voxels.array_files import open_npy
 from snowshed.methods.grains.sample_folder import LABELS, find_sample
 
 #: Least number of voxels of a sample along an edge.
-LEAST_VOXELS = 6
-LARGEST_LABEL = 2**31 - 1
+MIN_VOXELS = 6
+MAX_LABEL = 2**31 - 1
 
 
 @dataclass(frozen=True)
@@ -113,10 +113,10 @@ class LabelledSample:
         if factor == 1:
             return self
         counts = [length // factor for length in self.labels.shape]
-        if factor < 1 or min(counts) < LEAST_VOXELS:
+        if factor < 1 or min(counts) < MIN_VOXELS:
             raise InputError(
                 f"{self.name}: {self.labels.shape} voxels cannot be made {factor} times coarser; "
-                f"at least {LEAST_VOXELS} must remain along each edge"
+                f"at least {MIN_VOXELS} must remain along each edge"
             )
         image = downscaled(IceImage(self.labels > 0, self.voxel_size, self.name), factor)
         nz, ny, nx = counts
@@ -138,10 +138,10 @@ class LabelledSample:
         if not 0 < part <= 1:
             raise InputError(f"part {part:g}: above 0 and up to 1 are allowed")
         lengths = [round(part * length) for length in self.labels.shape]
-        if min(lengths) < LEAST_VOXELS:
+        if min(lengths) < MIN_VOXELS:
             raise InputError(
                 f"{self.name}: {part:g} of {self.labels.shape} voxels are fewer than "
-                f"{LEAST_VOXELS} along an edge"
+                f"{MIN_VOXELS} along an edge"
             )
         cut = tuple(
             slice((size - length) // 2, (size - length) // 2 + length)
@@ -182,8 +182,8 @@ class LabelledSample:
 
 def _checked_labels(file: Path, labels: AnyIntegers, split: bool) -> Labels:
     """Return labels as the core takes them; tell where one lies in several places."""
-    if int(labels.min()) < 0 or int(labels.max()) > LARGEST_LABEL:
-        raise InputError(f"{file}: no labels; 0 is air, grains are 1 to {LARGEST_LABEL:,}")
+    if int(labels.min()) < 0 or int(labels.max()) > MAX_LABEL:
+        raise InputError(f"{file}: no labels; 0 is air, grains are 1 to {MAX_LABEL:,}")
     labelled = labels.astype(np.int32)
     try:
         note = _core.label_note(labelled, split)

@@ -25,7 +25,7 @@ TARGETS: Mapping[str, str] = {"ratio": "", "height": "m", "length": "m"}
 STACK = ("height", "length")
 PATH = re.compile(r"[a-z]\w{0,60}(\.\w{1,60}){1,6}", re.ASCII)
 #: Kernel matrices grow with the square of the rows, the time to fit with their cube.
-FEWEST_ROWS, MOST_ROWS = 20, 5000
+MIN_ROWS, MAX_ROWS = 20, 5000
 
 
 @dataclass(frozen=True)
@@ -234,8 +234,8 @@ def _rows(table: StackTable, measure: Measure, names: Sequence[str]) -> StackRow
     table.refuse(INPUTS[0], (events < 1) | (events % 1 != 0), "a whole number, 1 or more")
     selected = rows_of(inputs, height, length)
     _check_enough(len(selected), left_out)
-    if len(selected) > MOST_ROWS:
-        raise InputError(f"{len(selected)} rows; at most {MOST_ROWS} are allowed")
+    if len(selected) > MAX_ROWS:
+        raise InputError(f"{len(selected)} rows; at most {MAX_ROWS} are allowed")
     frame = table.frame
     moving = int((frame["ended"] == "time_limit").sum()) if "ended" in frame else 0
     return replace(
@@ -244,9 +244,9 @@ def _rows(table: StackTable, measure: Measure, names: Sequence[str]) -> StackRow
 
 
 def _check_enough(rows: int, left_out: int) -> None:
-    if rows < FEWEST_ROWS:
+    if rows < MIN_ROWS:
         lost = f" (and {left_out} without a stack)" if left_out else ""
-        raise InputError(f"{rows} rows{lost}; at least {FEWEST_ROWS} are needed")
+        raise InputError(f"{rows} rows{lost}; at least {MIN_ROWS} are needed")
 
 
 def _check_seeds(table: StackTable, inputs: Floats) -> None:

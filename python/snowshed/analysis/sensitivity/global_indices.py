@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 RESAMPLES = 500  # of the bootstrap
 CONFIDENCE = 0.95
 RANDOM = 1
-FEWEST = 2  # blocks
+MIN_BLOCKS = 2  # blocks
 SAME_STEP = 1e-3  # relative difference of equal steps: files hold rounded numbers
 
 
@@ -177,10 +177,10 @@ def _analyzed(
     table_rows: list[dict[str, Any]] = []
     for event, target, values in _values(stored):
         complete = np.isfinite(values.reshape(-1, design.size)).all(axis=1)
-        if complete.sum() < FEWEST:
+        if complete.sum() < MIN_BLOCKS:
             raise InputError(
                 f"event {event}: {complete.sum()} of {complete.size} blocks of {design.size} runs "
-                f"are complete; at least {FEWEST} are needed"
+                f"are complete; at least {MIN_BLOCKS} are needed"
             )
         columns = analyze(np.repeat(complete, design.size), values)
         for number, name in enumerate(design.names):

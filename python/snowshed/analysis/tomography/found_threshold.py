@@ -14,10 +14,10 @@ from snowshed.base.extras import require
 from snowshed.base.formatting import number
 
 BINS = 1024  # of a histogram of anything but small whole numbers
-MOST_VALUES = 1 << 16  # whole numbers with a bin each
+MAX_VALUES = 1 << 16  # whole numbers with a bin each
 #: Labels of grains have at least so many numbers above 0, of which none has most of the ice, and
 #: this part of the neighbours in the ice have the same number. Of grey values, few have.
-LEAST_LABELS, MOST_OF_ONE, SAME_NEIGHBOURS = 8, 0.5, 0.75
+MIN_LABELS, MAX_SHARE_OF_LABEL, SAME_NEIGHBOURS = 8, 0.5, 0.75
 
 Parts = Callable[[], Iterable[NDArray[Any]]]
 
@@ -83,7 +83,7 @@ class _Histogram:
         cls, name: str, lowest: Union[int, float], highest: Union[int, float]
     ) -> _Histogram:
         integers = isinstance(lowest, int) and isinstance(highest, int)
-        if integers and highest - lowest < MOST_VALUES:
+        if integers and highest - lowest < MAX_VALUES:
             bins = int(highest - lowest) + 1
             return cls(lowest, 1.0, bins, True, np.zeros(bins, dtype=np.int64))
         width = (float(highest) - float(lowest)) / BINS
@@ -109,7 +109,7 @@ class _Histogram:
         """Whether many values occur above 0, and none of them dominates."""
         above = self.counts[1:] if self.whole else self.counts
         seen = int(np.count_nonzero(above))
-        return seen >= LEAST_LABELS and above.max() < MOST_OF_ONE * above.sum()
+        return seen >= MIN_LABELS and above.max() < MAX_SHARE_OF_LABEL * above.sum()
 
     def otsu(self) -> float:
         """Return Otsu's threshold; it is found in bins, where values may be of any size."""

@@ -9,7 +9,7 @@ from snowshed.base.arrays import Floats
 from snowshed.scene.scene import Scene
 
 #: The most steps between two readings of the clock.
-MOST_STEPS = 200
+MAX_STEPS = 200
 
 
 class Drive:
@@ -54,7 +54,7 @@ class Drive:
         """Take steps until a time of the event, s, and no further than the step that reaches it."""
         while self.core.time_s < time_s:
             left = (time_s - self.core.time_s) / self.core.time_step_s if self.core.time_s else 1
-            self.step(max(1, min(MOST_STEPS, int(left))))
+            self.step(max(1, min(MAX_STEPS, int(left))))
 
     def mean(self, values: Floats) -> Floats:
         """Return the mean over all particles, weighted by mass, of rows of values."""

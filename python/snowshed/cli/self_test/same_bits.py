@@ -20,7 +20,7 @@ from snowshed.scene.scene import Scene
 FINE, COARSE = 0.0025, 0.02
 STEPS = 200
 #: Limit on the run time of the executable, far beyond the usual time, s.
-LONGEST_S = 120.0
+TIME_LIMIT_S = 120.0
 
 
 def panel_scene(dx: float, threads: int) -> Scene:
@@ -67,7 +67,7 @@ def executable_error() -> float:
         scene.save(file)
         command = [executable(), str(file), "-o", str(out), "--quiet"]
         done = subprocess.run(
-            command, capture_output=True, text=True, timeout=LONGEST_S, check=False
+            command, capture_output=True, text=True, timeout=TIME_LIMIT_S, check=False
         )
         if done.returncode != 0:
             raise _core.SimulationError(f"exit code {done.returncode}: {done.stderr.strip()}")

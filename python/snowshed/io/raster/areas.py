@@ -24,7 +24,7 @@ from snowshed.io.raster.thickness import ThicknessField, thickness_fields, thick
 
 Ring = Sequence[Sequence[float]]
 
-LONGEST_NAME = 200  # characters
+MAX_NAME = 200  # characters
 
 
 @dataclass(frozen=True)
@@ -107,7 +107,7 @@ def _areas(
     named = next((field for field in layer.fields if field.strip().lower() == "name"), "")
     facts = [
         (
-            shortened(str(record.get(named) or f"area {number}"), LONGEST_NAME),
+            shortened(str(record.get(named) or f"area {number}"), MAX_NAME),
             thickness_of(fields, record, f"{path}, feature {number}"),
         )
         for number, record in enumerate(layer.records, 1)

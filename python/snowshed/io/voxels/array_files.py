@@ -23,7 +23,7 @@ from snowshed.io.voxels.voxel_file import VoxelFile, check_size, check_type, che
 TYPES = (
     "uint8", "int8", "uint16", "int16", "uint32", "int32", "uint64", "int64", "float32", "float64"
 )  # fmt: skip
-LONGEST_HEADER = 10_000
+MAX_HEADER = 10_000
 COLUMNS_FIRST = Turn((2, 1, 0))
 
 
@@ -43,7 +43,7 @@ def open_npy(path: Path) -> VoxelFile:
             read = {(1, 0): npy_format.read_array_header_1_0}.get(
                 version, npy_format.read_array_header_2_0
             )
-            shape, columns_first, dtype = read(file, max_header_size=LONGEST_HEADER)
+            shape, columns_first, dtype = read(file, max_header_size=MAX_HEADER)
         except DAMAGED as error:
             raise InputError(f"{path}: damaged: no NPY file: {error}") from None
         start = file.tell()

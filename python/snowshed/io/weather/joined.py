@@ -16,7 +16,7 @@ from snowshed.io.weather.observation import RANGES, Observation, Station, change
 from snowshed.io.weather.plain import read_plain
 from snowshed.io.weather.recognise import read_station
 
-MOST_FILES = 200
+MAX_FILES = 200
 FAR, HIGHER = 2.0, 100.0  # km and m between the positions of what should be one station
 DEGREE = 111.2  # km of latitude
 TEMPERATURE, DEPTH = "temperature", "snow_depth"
@@ -58,8 +58,8 @@ def read_stations(paths: Sequence[Path], temperature: Optional[Path] = None) -> 
     OSError
         If one cannot be read.
     """
-    if len(paths) > MOST_FILES:
-        raise InputError(f"{len(paths)} weather files; at most {MOST_FILES} are allowed")
+    if len(paths) > MAX_FILES:
+        raise InputError(f"{len(paths)} weather files; at most {MAX_FILES} are allowed")
     if not paths:
         raise InputError("no weather file is given")
     files = [_read(path) for path in paths]

@@ -29,7 +29,7 @@ from snowshed.scene.scene import Scene
 from snowshed.scene.shape import Shape
 
 DEEP, HIGH = 6, 3  # cells of the grid below the lowest and above the highest ground
-MOST_SAMPLES = 20_000_000
+MAX_SAMPLES = 20_000_000
 
 Span = tuple[float, float]
 
@@ -148,10 +148,10 @@ def signed_distances(
     """
     bottom = float(heights.min()) - DEEP * spacing
     count = math.ceil((float(heights.max()) - bottom) / spacing) + HIGH + 1
-    if len(xs) * len(ys) * count > MOST_SAMPLES:
+    if len(xs) * len(ys) * count > MAX_SAMPLES:
         raise InputError(
             f"spacing: {spacing:g} m makes a grid of {len(xs)} x {len(ys)} x {count} samples; at "
-            f"most {MOST_SAMPLES} are allowed in all"
+            f"most {MAX_SAMPLES} are allowed in all"
         )
     zs = bottom + spacing * np.arange(count)
     points = np.stack(np.meshgrid(xs, ys, zs, indexing="ij"), axis=-1).reshape(-1, 3)
