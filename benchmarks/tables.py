@@ -82,11 +82,11 @@ def scaling(cases: list[Case]) -> None:
         if not case["case"].startswith("scaling_"):
             continue
         particles = int(case["case"].split("/")[1])
-        whole = (
+        process = (
             f"{1e6 * case['peak_memory_mb'] / particles:.0f}" if "peak_memory_mb" in case else ""
         )
         speed, memory = case["updates_per_s"] / 1e6, case["bytes_per_particle"]
-        print(f"| {particles:,} | {speed:.1f} | {memory:.0f} | {whole} |")
+        print(f"| {particles:,} | {speed:.1f} | {memory:.0f} | {process} |")
     print(
         f"\nThe time of a step grows with the particle number to the power {exponent(cases):.3f}."
     )

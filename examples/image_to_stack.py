@@ -36,7 +36,7 @@ def main(folder: Path, voxels: int = 40, coarser: int = 2, dx: float = 0.01) -> 
     (snow,) = material.glob("snow-*.json")
     command(f"panel --preset lab-50 --dim 2 --dx {dx} --snow {snow} -o {stack}")
     draw(folder, material, snow)
-    tell(snow, stack)
+    print_results(snow, stack)
 
 
 def stages() -> list[str]:
@@ -71,7 +71,7 @@ def draw(folder: Path, material: Path, snow: Path) -> None:
     save_figure(figure, folder / "image_to_stack.png")
 
 
-def tell(snow: Path, stack: Path) -> None:
+def print_results(snow: Path, stack: Path) -> None:
     """Print the fitted snow and the table of events."""
     data = json.loads(snow.read_text(encoding="utf-8"))
     provenance = data.pop("provenance")

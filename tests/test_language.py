@@ -21,6 +21,7 @@ CLEAN += ("analysis", "cli", "reproductions", "validation", "benchmarks", "examp
 OUTSIDE = ("reproductions", "validation", "benchmarks", "examples", "tools")
 #: Names that say nothing about their values.
 EMPTY_NAMES = {"found", "one", "way", "kept", "places"}
+EMPTY_NAMES |= {"ready", "told", "said", "lies", "whole", "made"}
 
 #: Names of limits that are not `max_` or `min_`.
 SUPERLATIVES = re.compile(

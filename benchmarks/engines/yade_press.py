@@ -49,10 +49,10 @@ class Pressed:
         self._set_engines()
         self.bonds = self._bond(sample)
 
-    def _add_grains(self, sample: VoxelSample, rough: int, made: np.ndarray) -> np.ndarray:
+    def _add_grains(self, sample: VoxelSample, rough: int, is_sphere: np.ndarray) -> np.ndarray:
         ids = np.full(len(sample.grain), -1)
         for grain in range(len(sample.mass)):
-            members = np.flatnonzero((sample.grain == grain) & made)
+            members = np.flatnonzero((sample.grain == grain) & is_sphere)
             spheres = [
                 utils.sphere(tuple(sample.centres[m]), sample.radius, material=rough)
                 for m in members

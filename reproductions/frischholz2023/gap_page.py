@@ -45,7 +45,7 @@ from snowshed.analysis.regression.summary import QUARTILES
 from snowshed.base.formatting import percent
 from snowshed.io.atomic import write_text
 from snowshed.io.csv_table import write_csv
-from snowshed.plot.html_page import Grid
+from snowshed.plot.html_page import HtmlTable
 from snowshed.snow.stack.trimming import DEFAULT_TRIMMING, TRIMMINGS
 
 if TYPE_CHECKING:
@@ -87,7 +87,7 @@ def _scatter_part(stacks: pd.DataFrame) -> list[str]:
         ]
         for name in TRIMMINGS
     ]
-    grid = Grid(["trimming rule", *names.values(), *QUARTILES], rows, "l" + "r" * 7)
+    grid = HtmlTable(["trimming rule", *names.values(), *QUARTILES], rows, "l" + "r" * 7)
     other = next(name for name in TRIMMINGS if name != DEFAULT_TRIMMING)
     ours, theirs = (scatter(stacks, name, "length") for name in (DEFAULT_TRIMMING, other))
     return [

@@ -160,10 +160,10 @@ def mps_checkpoint(folder: Path) -> Path:
 
 def store(folder: Path) -> Path:
     from snowshed.study.outcome import RunOutcome
-    from snowshed.study.scene_hash import Run
+    from snowshed.study.scene_hash import RunKey
     from snowshed.study.store import Store
 
-    runs = [Run.of(tiny_scene(**{"panel.friction": mu}).resolve()) for mu in (0.1, 0.2)]
+    runs = [RunKey.of(tiny_scene(**{"panel.friction": mu}).resolve()) for mu in (0.1, 0.2)]
     with Store.create(folder / "store") as store:
         store.register("tiny", ["panel.friction"], runs)
         rows = [{"event": 1, "wall_s": 0.5, "height_m": 0.25, "ended": "rest"}]

@@ -6,13 +6,13 @@ import math
 
 import numpy as np
 
-from snowshed.analysis.accuracy.measurements import Measured, Settings
+from snowshed.analysis.accuracy.measurements import CaseSettings, Measured
 from snowshed.base.arrays import Floats
 from snowshed.scene.scene import Scene
 from snowshed.scene.shape import Shape
 from validation.elastic.bodies import TRANSFERS, elastic_scene, from_plane, in_plane
 from validation.framework.case import Case, Outcome, Quantity
-from validation.framework.drive import Drive, relative
+from validation.framework.drive import TimedEventDriver, relative
 
 RADIUS, HEIGHT = 1.0, 0.5  # m; the height of the cylinder, in 3D
 YOUNGS_MODULUS, POISSONS_RATIO, DENSITY = 1e6, 0.3, 210.0  # Pa, 1, kg/m3
@@ -27,7 +27,7 @@ STEPS = 4
 #: damped, and the share of the radial velocities that is removed each time.
 SETTLING, DAMPED = 1.0, 0.1
 
-DISC: Settings = {
+DISC: CaseSettings = {
     "dimension": 2,
     "dx": 0.1,
     "begins": "undeformed",
@@ -37,17 +37,17 @@ DISC: Settings = {
     "pattern": "regular",
     "particles_per_voxel": 9,
 }
-CYLINDER: Settings = {**DISC, "dimension": 3, "dx": 0.2, "particles_per_voxel": 8}
+CYLINDER: CaseSettings = {**DISC, "dimension": 3, "dx": 0.2, "particles_per_voxel": 8}
 FLIP, APIC = TRANSFERS[0], TRANSFERS[3]
 
 
-def spin_scene(settings: Settings) -> Scene:
+def spin_scene(settings: CaseSettings) -> Scene:
     """Return a disc, or a cylinder about the y axis, still at rest."""
     if settings["dimension"] == 2:
         shape = Shape.sphere((0.0, 0.0), RADIUS)
     else:
         shape = Shape.cylinder((0.0, -HEIGHT / 2, 0.0), (0.0, HEIGHT / 2, 0.0), RADIUS)
-    material: Settings = {
+    material: CaseSettings = {
         "youngs_modulus": YOUNGS_MODULUS,
         "poissons_ratio": POISSONS_RATIO,
         "density": DENSITY,
@@ -82,15 +82,15 @@ def expansion(radius: Floats) -> Floats:
 class Spinning:
     """A body that has been set spinning about the y axis."""
 
-    def __init__(self, settings: Settings) -> None:
-        self.drive = Drive(spin_scene(settings))
+    def __init__(self, settings: CaseSettings) -> None:
+        self.drive = TimedEventDriver(spin_scene(settings))
         x, z = in_plane(self.drive.core.positions()).T
         self.radii = np.hypot(x, z)
         self._inertia = self._moment_of_inertia_in_cell(settings)
         self.drive.core.add_velocity(from_plane(RATE * np.stack([z, -x], axis=1)))
 
     @staticmethod
-    def _moment_of_inertia_in_cell(settings: Settings) -> float:
+    def _moment_of_inertia_in_cell(settings: CaseSettings) -> float:
         """Return what an affine velocity field carries, over its mass: dx^2/4 or dx^2/3."""
         return float(settings["dx"]) ** 2 / (4 if settings["basis"] == "quadratic" else 3)
 
@@ -141,7 +141,7 @@ def per_turn(ratio: float, time: float) -> float:
     return math.expm1(math.log(abs(ratio)) * TURN / time)
 
 
-def measure(settings: Settings) -> Outcome:
+def measure(settings: CaseSettings) -> Outcome:
     """Let a body spin for some turns and see what it keeps."""
     body = Spinning(settings)
     drive, turns = body.drive, float(settings["turns"])
@@ -165,10 +165,10 @@ def measure(settings: Settings) -> Outcome:
     return drive.outcome(measured)
 
 
-def matrix(full: bool) -> list[Settings]:
+def matrix(full: bool) -> list[CaseSettings]:
     """Return transfers in 2D and 3D, and in full resolutions, precisions and other variations."""
     sizes = (0.2, 0.1, 0.05) if full else (0.1,)
-    listed: list[Settings] = [
+    listed: list[CaseSettings] = [
         {**DISC, "dx": dx, **transfer} for transfer in TRANSFERS for dx in sizes
     ]
     listed += [{**DISC, **APIC, "precision": "float"}]
@@ -181,7 +181,7 @@ def matrix(full: bool) -> list[Settings]:
     listed += [{**DISC, **FLIP, "dx": dx, "begins": "equilibrium"} for dx in sizes]
     listed += [{**DISC, **transfer, "basis": "cubic"} for transfer in (FLIP, APIC)]
     listed += [{**DISC, **APIC, "begins": "equilibrium", "basis": "cubic"}]
-    seedings: list[Settings] = [{"particles_per_voxel": 4}, {"pattern": "poisson", "seed": 1}]
+    seedings: list[CaseSettings] = [{"particles_per_voxel": 4}, {"pattern": "poisson", "seed": 1}]
     listed += [{**DISC, **transfer, **seeding} for seeding in seedings for transfer in (FLIP, APIC)]
     listed += [{**DISC, **APIC, "begins": "equilibrium", "particles_per_voxel": 4}]
     listed += [{**CYLINDER, **transfer} for transfer in TRANSFERS[1:3]]

@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Optional, Union
 
-from snowshed.analysis.accuracy.measurements import Measured, Settings, Value
+from snowshed.analysis.accuracy.measurements import CaseSettings, Measured, Value
 from snowshed.base.formatting import number, percent
 
 #: Settings that are asked for; None: not given. Of several values in a tuple any will do.
@@ -108,6 +108,6 @@ class Case:
     source: str
     description: str
     quantities: Sequence[Quantity]
-    matrix: Callable[[bool], list[Settings]]
-    measure: Callable[[Settings], Outcome]
+    matrix: Callable[[bool], list[CaseSettings]]
+    measure: Callable[[CaseSettings], Outcome]
     remarks: str = ""

@@ -16,7 +16,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from snowshed.analysis.accuracy import setting_labels
-from snowshed.analysis.accuracy.measurements import Settings, Value
+from snowshed.analysis.accuracy.measurements import CaseSettings, Value
 from snowshed.analysis.accuracy.solutions import Solution, settings_key
 from snowshed.base import formatting
 from snowshed.plot.figure_style import BODY, COLOURS, FAINT, INK, STYLE, blank_figure
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 StylesOfValues = Mapping[str, Mapping[Optional[Value], Any]]
 
 #: The settings that make a problem, and the ways in which it was solved.
-Problem = Tuple[Settings, Sequence[Solution]]
+Problem = Tuple[CaseSettings, Sequence[Solution]]
 
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
 DASHES = ("-", (0, (5, 2)), (0, (1, 1.4)), (0, (6, 1.5, 1, 1.5)), (0, (9, 3)))
@@ -74,7 +74,10 @@ class LineStyles:
 
     @classmethod
     def of(
-        cls, choices: Sequence[Settings], drawn: Sequence[Settings], along: Collection[str] = ()
+        cls,
+        choices: Sequence[CaseSettings],
+        drawn: Sequence[CaseSettings],
+        along: Collection[str] = (),
     ) -> LineStyles:
         """Return the styles of the lines.
 
@@ -96,7 +99,7 @@ class LineStyles:
             of_name[name] = dict(zip(values, cycle(of_values)))
         return cls(*of_names)
 
-    def for_line(self, settings: Settings) -> dict[str, Any]:
+    def for_line(self, settings: CaseSettings) -> dict[str, Any]:
         """Return the arguments that draw the line of some settings."""
         return {
             "color": _pick(self.colours, settings, COLOURS[0]),
@@ -104,7 +107,7 @@ class LineStyles:
             "linestyle": _pick(self.dashes, settings, DASHES[0]),
         }
 
-    def key(self, drawn: Sequence[Settings]) -> list[Line2D]:
+    def key(self, drawn: Sequence[CaseSettings]) -> list[Line2D]:
         """Return the entries of a legend: every value that is drawn."""
         kinds = (("color", self.colours), ("marker", self.markers), ("linestyle", self.dashes))
         return [
@@ -117,7 +120,7 @@ class LineStyles:
 
 
 def convergence_figure(
-    panels: Sequence[tuple[Quantity, Sequence[Convergence]]], choices: Sequence[Settings]
+    panels: Sequence[tuple[Quantity, Sequence[Convergence]]], choices: Sequence[CaseSettings]
 ) -> Figure:
     """Draw errors against the setting they fall with, both axes logarithmic.
 
@@ -137,7 +140,7 @@ def convergence_figure(
 
 
 def work_precision_figure(
-    panels: Sequence[tuple[Quantity, Sequence[Problem]]], choices: Sequence[Settings]
+    panels: Sequence[tuple[Quantity, Sequence[Problem]]], choices: Sequence[CaseSettings]
 ) -> Figure:
     """Draw errors against the time of the solution, with Pareto fronts and the names on them.
 
@@ -179,7 +182,7 @@ def _entry(keyword: str, shape: Any, label: str) -> Line2D:
 
 
 @contextmanager
-def _figure(styles: LineStyles, drawn: Sequence[Settings], *, rows: int) -> Iterator[Figure]:
+def _figure(styles: LineStyles, drawn: Sequence[CaseSettings], *, rows: int) -> Iterator[Figure]:
     """Yield a figure for some rows of panels, with a legend of the styles that are drawn."""
     with matplotlib.rc_context(STYLE):
         figure = blank_figure(8.2, 2.9 * rows + 0.6)
@@ -397,7 +400,7 @@ def _widened(low: float, high: float) -> tuple[float, float]:
     return low / factor, high * factor
 
 
-def _pick(styles: StylesOfValues, settings: Settings, plain: Any) -> Any:
+def _pick(styles: StylesOfValues, settings: CaseSettings, plain: Any) -> Any:
     for name, shapes in styles.items():
         return shapes.get(settings.get(name), plain)
     return plain

@@ -15,9 +15,9 @@ from typing import NamedTuple, Optional
 from snowshed import _core
 from snowshed.analysis.accuracy import setting_labels
 from snowshed.analysis.accuracy.measurements import (
+    CaseSettings,
     Measured,
     MeasuredSolution,
-    Settings,
     measurement_key,
 )
 from snowshed.base.machine import cpu_name
@@ -33,7 +33,7 @@ class Task(NamedTuple):
     """One entry of a case's matrix."""
 
     case: Case
-    settings: Settings
+    settings: CaseSettings
 
     @property
     def key(self) -> str:
@@ -90,10 +90,10 @@ def measure_cases(
                 before = len(tasks) - len(due)
                 label = f"{task.case.name}: {setting_labels.settings(task.settings)}"
                 doing = label[:MAX_LABEL_LENGTH]
-                told = Progress(
+                report = Progress(
                     fraction, before + done, len(tasks), "measured", doing, left_s=left_s
                 )
-                progress(told)
+                progress(report)
             answer = measure_once(pool, task.case.measure, task.settings)
             held[task.key] = _measurement(task, answer)
             file.append(held[task.key])

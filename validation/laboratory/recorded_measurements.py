@@ -13,7 +13,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from snowshed._core import InputError
-from snowshed.analysis.accuracy.measurements import MeasuredSolution, Settings
+from snowshed.analysis.accuracy.measurements import CaseSettings, MeasuredSolution
 from snowshed.analysis.accuracy.mechanisms import scheme_of
 from snowshed.analysis.accuracy.recorded import PACKAGED, load_recorded, record
 from validation.laboratory.case_stack_convergence import CASE, compared, matrix
@@ -36,7 +36,7 @@ def measurements_of(scheme: str) -> list[MeasuredSolution]:
     return [_measured(entry) for entry in matrix(True) if scheme_of(entry) == scheme]
 
 
-def _measured(settings: Settings) -> MeasuredSolution:
+def _measured(settings: CaseSettings) -> MeasuredSolution:
     dimension, dx = int(settings["dimension"]), float(settings["dx"])
     runs = recorded_runs(dimension, dx, scheme_of(settings))
     if len(runs) != settings["seedings"]:

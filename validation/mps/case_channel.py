@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from snowshed.analysis.accuracy.measurements import Settings
+from snowshed.analysis.accuracy.measurements import CaseSettings
 from snowshed.base.arrays import Floats
 from snowshed.methods.mps.settings import MpsSettings
 from snowshed.scene.components import Body, Obstacle
@@ -63,7 +63,7 @@ def middle_flow(positions: Floats, fall: Floats) -> tuple[float, float, float]:
     return plug, float(speeds.mean()), plug_width(positions_x, speeds)
 
 
-def measure(settings: Settings) -> Outcome:
+def measure(settings: CaseSettings) -> Outcome:
     """Let a long slug fall until its flow is steady, and compare its middle."""
     spacing = 2 * HALF_GAP / int(settings["across"])
     plates = [
@@ -89,10 +89,10 @@ def measure(settings: Settings) -> Outcome:
     )
 
 
-def matrix(full: bool) -> list[Settings]:
+def matrix(full: bool) -> list[CaseSettings]:
     """Return distances between particles, with both kinds of walls."""
     across, beside = (ACROSS, ACROSS[:2]) if full else (ACROSS[:2], ACROSS[:1])
-    listed: list[Settings] = [{"across": count} for count in across]
+    listed: list[CaseSettings] = [{"across": count} for count in across]
     return listed + [{"across": count, "walls": "particles"} for count in beside]
 
 

@@ -9,13 +9,13 @@ from typing import Union
 
 import numpy as np
 
-from snowshed.analysis.accuracy.measurements import Measured, Settings
+from snowshed.analysis.accuracy.measurements import CaseSettings, Measured
 from snowshed.base.arrays import Floats
 from snowshed.scene.components import Body, Condition, Obstacle
 from snowshed.scene.scene import Scene
 from snowshed.scene.shape import Shape
 from validation.framework.case import Case, Outcome, Quantity
-from validation.framework.drive import Drive, apply_settings, relative
+from validation.framework.drive import TimedEventDriver, apply_settings, relative
 from validation.material_paths.rate_equations import RateEquations
 
 HEIGHT, WIDTH_CELLS = 0.4, 8  # m; the width is so many cells at any resolution
@@ -139,7 +139,7 @@ class YieldingColumn:
 Column = Union[ElasticColumn, YieldingColumn]
 
 
-def column_scene(settings: Settings) -> Scene:
+def column_scene(settings: CaseSettings) -> Scene:
     """Return a column between frictionless walls on a sticky floor."""
     dimension, dx = int(settings["dimension"]), float(settings["dx"])
     floor, width = float(settings["floor_offset"]) * dx, WIDTH_CELLS * dx
@@ -176,7 +176,7 @@ def _wall(corner: Floats, axis: int, side: int, condition: Condition) -> Obstacl
     return Obstacle(shape=plane, condition=condition, friction=0.0)
 
 
-def settle(drive: Drive, periods: float) -> None:
+def settle(drive: TimedEventDriver, periods: float) -> None:
     """Let a column come to rest, damped so strongly that it nowhere sinks too far and comes back.
 
     Snow that yields would keep the mark of a swing. Velocities fall at the rate 2 omega, critical
@@ -190,9 +190,9 @@ def settle(drive: Drive, periods: float) -> None:
         drive.damp(2 * omega * (drive.core.time_s - before))
 
 
-def measure(settings: Settings, column: Column, periods: float) -> Outcome:
+def measure(settings: CaseSettings, column: Column, periods: float) -> Outcome:
     """Settle a column and compare the means over its layers, one cell thick, with what is exact."""
-    drive = Drive(column_scene(settings))
+    drive = TimedEventDriver(column_scene(settings))
     dx = float(settings["dx"])
     start = drive.core.positions()[:, 2]
     settle(drive, periods)
@@ -219,19 +219,19 @@ def measure(settings: Settings, column: Column, periods: float) -> Outcome:
     )
 
 
-def measure_elastic(settings: Settings) -> Outcome:
+def measure_elastic(settings: CaseSettings) -> Outcome:
     """Settle a column of elastic snow."""
     column = ElasticColumn(int(settings["dimension"]))
     return measure({**settings, "model": "elastic"}, column, periods=4)
 
 
-def measure_yielding(settings: Settings) -> Outcome:
+def measure_yielding(settings: CaseSettings) -> Outcome:
     """Settle a column of snow that yields."""
     column = YieldingColumn(int(settings["dimension"]))
     return measure({**settings, "model": "cam_clay"}, column, periods=10)
 
 
-REGULAR: Settings = {
+REGULAR: CaseSettings = {
     "dimension": 2,
     "dx": 0.01,
     "pattern": "regular",
@@ -241,8 +241,8 @@ REGULAR: Settings = {
     "precision": "float",
     "floor_offset": 0.0,
 }
-RANDOM: Settings = {**REGULAR, "pattern": "poisson", "particles_per_voxel": 6}
-METHODS: tuple[Settings, ...] = (
+RANDOM: CaseSettings = {**REGULAR, "pattern": "poisson", "particles_per_voxel": 6}
+METHODS: tuple[CaseSettings, ...] = (
     {"particles_per_voxel": 9},
     {"particles_per_voxel": 16},
     {"transfer": "apic"},
@@ -252,10 +252,10 @@ METHODS: tuple[Settings, ...] = (
 )
 
 
-def elastic_matrix(full: bool) -> list[Settings]:
+def elastic_matrix(full: bool) -> list[CaseSettings]:
     """Return resolutions, and in full seedings, bases and other variations."""
     sizes = (0.04, 0.02, 0.01, 0.005, 0.0025) if full else (0.02, 0.01, 0.005)
-    listed: list[Settings] = [{**REGULAR, "dx": dx} for dx in sizes]
+    listed: list[CaseSettings] = [{**REGULAR, "dx": dx} for dx in sizes]
     if not full:
         return [*listed, {**RANDOM, "dx": 0.01, "seed": 1}]
     listed += [{**RANDOM, "dx": dx, "seed": seed} for dx in sizes for seed in (1, 2, 3)]
@@ -267,10 +267,10 @@ def elastic_matrix(full: bool) -> list[Settings]:
     return [*listed, {**REGULAR, "dx": 0.02, "particles_per_voxel": 8, "dimension": 3}]
 
 
-def yielding_matrix(full: bool) -> list[Settings]:
+def yielding_matrix(full: bool) -> list[CaseSettings]:
     """Return resolutions, and in full seedings and other variations."""
     sizes = (0.02, 0.01, 0.005, 0.0025) if full else (0.02, 0.01)
-    listed: list[Settings] = [{**REGULAR, "dx": dx} for dx in sizes]
+    listed: list[CaseSettings] = [{**REGULAR, "dx": dx} for dx in sizes]
     if full:
         listed += [{**RANDOM, "dx": dx, "seed": seed} for dx in sizes[:3] for seed in (1, 2, 3)]
         listed += [{**REGULAR, "basis": "cubic"}]
@@ -279,7 +279,7 @@ def yielding_matrix(full: bool) -> list[Settings]:
 
 
 def _quantities(finest: float) -> tuple[Quantity, ...]:
-    lattice: Settings = {
+    lattice: CaseSettings = {
         "dx": finest,
         "pattern": "regular",
         "basis": "quadratic",

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from snowshed.analysis.accuracy.measurements import Measured, Settings
+from snowshed.analysis.accuracy.measurements import CaseSettings, Measured
 from validation.framework.case import Case, Outcome, Quantity
 from validation.slide.site import Height, Site, rectangle, slide_drive
 
@@ -25,7 +25,7 @@ GROUNDS: Mapping[str, Height] = {
     "ridge": lambda x, y: -np.abs(x) * 3.0,
 }
 
-DEFAULTS: Settings = {
+DEFAULTS: CaseSettings = {
     "ground": "slope",
     "thickness": 0.5,
     "cell": 2.0,
@@ -35,7 +35,7 @@ DEFAULTS: Settings = {
     "bonds": True,
 }
 #: Variations on the slope, one at a time.
-EXTREMES: tuple[Settings, ...] = (
+EXTREMES: tuple[CaseSettings, ...] = (
     {"time_step": 1e-5},
     {"time_step": 1.0, "bonds": False},
     {"bond_modulus": 0.0},
@@ -54,7 +54,7 @@ EXTREMES: tuple[Settings, ...] = (
 )
 
 
-def measure(settings: Settings) -> Outcome:
+def measure(settings: CaseSettings) -> Outcome:
     """Run some steps, and check the mass, the numbers and the snow that must not move."""
     height = GROUNDS[str(settings["ground"])]
     settings = {"layer_thickness": float(settings["thickness"]) / 2, **settings}
@@ -77,12 +77,12 @@ def measure(settings: Settings) -> Outcome:
     return drive.outcome(measured)
 
 
-def matrix(full: bool) -> list[Settings]:
+def matrix(full: bool) -> list[CaseSettings]:
     """Return grounds with thicknesses, and settings at their extremes."""
     steps = 3000 if full else STEPS
     thicknesses = (0.001, 0.05, 0.5, 10.0) if full else (0.001, 10.0)
-    base: Settings = {**DEFAULTS, "steps_to_take": steps}
-    listed: list[Settings] = [
+    base: CaseSettings = {**DEFAULTS, "steps_to_take": steps}
+    listed: list[CaseSettings] = [
         {**base, "ground": ground, "thickness": thickness}
         for ground in GROUNDS
         for thickness in thicknesses

@@ -50,14 +50,14 @@ def momentum_bound(precision: str, steps: int) -> float:
     return epsilon * (100 + steps)
 
 
-def names_its_cause(message: str) -> bool:
+def has_cause(message: str) -> bool:
     """Return whether an error names its parameter or particle.
 
     Examples
     --------
-    >>> names_its_cause("particle 7 at (0.1, 0.2) m: ...")
+    >>> has_cause("particle 7 at (0.1, 0.2) m: ...")
     True
-    >>> names_its_cause("something went wrong")
+    >>> has_cause("something went wrong")
     False
     """
     return _NAMES.search(message) is not None
@@ -73,7 +73,7 @@ def judge(record: Mapping[str, Any]) -> tuple[str, str]:
 
 
 def _error_fault(record: Mapping[str, Any]) -> str:
-    if not names_its_cause(str(record["message"])):
+    if not has_cause(str(record["message"])):
         return f"the error names no cause: {record['message']}"
     return _state_fault(record) if "finite" in record else ""
 

@@ -18,7 +18,7 @@ class SnowshedNote(UserWarning):
     """A fact that the reader of a result should know; the program has no fault."""
 
 
-def tell(text: str) -> None:
+def issue_note(text: str) -> None:
     """Issue a note; the warning names the calling line outside the package.
 
     Parameters
@@ -29,7 +29,7 @@ def tell(text: str) -> None:
     Examples
     --------
     >>> with recorded() as notes:
-    ...     tell("the raster has feet; they were turned into metres")
+    ...     issue_note("the raster has feet; they were turned into metres")
     >>> notes
     ['the raster has feet; they were turned into metres']
     """
@@ -66,13 +66,13 @@ def recorded() -> Iterator[list[str]]:
 
 
 @contextmanager
-def held() -> Iterator[list[str]]:
+def held_notes() -> Iterator[list[str]]:
     """Collect the notes of a block, each once; issue them only if the block fails.
 
     Examples
     --------
-    >>> with held() as notes:
-    ...     tell("a summary will have this note")
+    >>> with held_notes() as notes:
+    ...     issue_note("a summary will have this note")
     >>> notes
     ['a summary will have this note']
     """
@@ -89,13 +89,13 @@ def held() -> Iterator[list[str]]:
 
 
 @contextmanager
-def told_on_failure(notes: Iterable[str]) -> Iterator[None]:
+def issued_on_failure(notes: Iterable[str]) -> Iterator[None]:
     """Issue notes if the block fails, because no result will show them."""
     try:
         yield
     except BaseException:
         for note in notes:
-            tell(note)
+            issue_note(note)
         raise
 
 

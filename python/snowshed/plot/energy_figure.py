@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 #: Energies that the snow holds, and those of height, whose zero is arbitrary.
-HELD, OF_HEIGHT = ("kinetic_j", "elastic_j", "bonds_j"), ("gravitational_j", "potential_j")
+STORED, POTENTIAL = ("kinetic_j", "elastic_j", "bonds_j"), ("gravitational_j", "potential_j")
 #: The other columns that are not losses.
 SUMS = ("added_j", "residual_j")
 SMALL = 1e-3  # smaller shares of the largest energy are not drawn
@@ -50,15 +50,15 @@ def energy_figure(table: pd.DataFrame, scene: Mapping[str, Any]) -> Figure:
     ['energy, mJ', 'energy, mJ']
     """
     energies = [str(name) for name in table if str(name).endswith("_j")]
-    held = [name for name in HELD if name in energies]
-    taken = [name for name in energies if name not in (*HELD, *OF_HEIGHT, *SUMS)]
-    height = sum(table[name] for name in energies if name in OF_HEIGHT)
+    stored = [name for name in STORED if name in energies]
+    taken = [name for name in energies if name not in (*STORED, *POTENTIAL, *SUMS)]
+    height = sum(table[name] for name in energies if name in POTENTIAL)
     released = (table["added_j"] - height).rename("released")
     with rc_context(STYLE):
         figure = blank_figure(WIDTH, HEIGHT)
         above, below = figure.subplots(2, 1, sharex=True, height_ratios=(2, 3))
         per_width = " per m of width" if scene.get("dimension") == 2 else ""
-        _draw(above, table, {name: table[name] for name in held}, per_width)
+        _draw(above, table, {name: table[name] for name in stored}, per_width)
         above.set_title("In the snow")
         lines = {name: table[name] for name in taken}
         largest = max((np.abs(line).max() for line in (released, *lines.values())), default=0.0)

@@ -96,9 +96,9 @@ def _draw_forces(axes: Axes, contacts: GrainContacts) -> None:
     for pulls, colour in ((False, BODY), (True, STACK)):
         chosen = (pulling == pulls) & drawn_ones
         for side in (0, 1):
-            ways, complete = contacts.arms(side)
+            arms, complete = contacts.arms(side)
             shown = np.flatnonzero(chosen & complete)
-            ends = np.stack([contacts.points[shown] - ways[shown], contacts.points[shown]], axis=1)
+            ends = np.stack([contacts.points[shown] - arms[shown], contacts.points[shown]], axis=1)
             lines, widths = 1e3 * ends[:, :, [0, 2]], MAX_LINE_WIDTH * size[shown] / largest
             drawn = LineCollection(list(lines), linewidths=widths, colors=colour)
             drawn.set(alpha=0.75, capstyle="round")

@@ -20,7 +20,7 @@ from snowshed.methods.slide.frames import Frame
 from snowshed.methods.slide.maps import SlideMaps
 from snowshed.methods.slide.validity import ReleaseArea
 from snowshed.plot.figure_style import STYLE, blank_figure
-from snowshed.plot.html_page import Grid, Picture, template
+from snowshed.plot.html_page import HtmlTable, Picture, template
 from snowshed.plot.slide_figure import MIN_SHOWN_THICKNESS, PEAKS, slide_figure
 from snowshed.plot.terrain_map import (
     Extent,
@@ -138,8 +138,8 @@ def headline(figures: Mapping[str, Any]) -> str:
 
 
 def _facts(figures: Mapping[str, Any]) -> list[tuple[str, str]]:
-    made = figures["bonds_made"]
-    broken = f"{figures['bonds_broken']:,} of {made:,}" if made else "no bonds"
+    bonds = figures["bonds_made"]
+    broken = f"{figures['bonds_broken']:,} of {bonds:,}" if bonds else "no bonds"
     return [
         ("run-out", f"{figures['run_out_m']:.1f} m from the middle of the release"),
         ("drop", f"{figures['drop_m']:.1f} m"),
@@ -152,7 +152,7 @@ def _facts(figures: Mapping[str, Any]) -> list[tuple[str, str]]:
     ]
 
 
-def _area_table(areas: Sequence[ReleaseArea]) -> Grid:
+def _area_table(areas: Sequence[ReleaseArea]) -> HtmlTable:
     head = ("area", "thickness, m", "on the map, m²", "along the ground, m²", "volume, m³",
             "slope, °", "altitude, m")  # fmt: skip
     rows = [
@@ -167,10 +167,10 @@ def _area_table(areas: Sequence[ReleaseArea]) -> Grid:
         )
         for area in areas
     ]
-    return Grid(head, rows, "lrrrrrr")
+    return HtmlTable(head, rows, "lrrrrrr")
 
 
-def _mass_table(figures: Mapping[str, Any]) -> Grid:
+def _mass_table(figures: Mapping[str, Any]) -> HtmlTable:
     released, entrained = figures["released_kg"], figures["entrained_kg"]
     left = figures["left_terrain_kg"]
     rows = [
@@ -179,10 +179,12 @@ def _mass_table(figures: Mapping[str, Any]) -> Grid:
         ("left the terrain", 0.0 - left),
         ("on the terrain at the end", released + entrained - left),
     ]
-    return Grid(("mass", "t"), [(name, f"{1e-3 * value + 0.0:,.3f}") for name, value in rows], "lr")
+    return HtmlTable(
+        ("mass", "t"), [(name, f"{1e-3 * value + 0.0:,.3f}") for name, value in rows], "lr"
+    )
 
 
-def _settings_table(scene: Mapping[str, Any]) -> Grid:
+def _settings_table(scene: Mapping[str, Any]) -> HtmlTable:
     settings = scene["numerics"]
     rows = [
         (name, _shown(settings[name]), parameter.unit, parameter.description)
@@ -190,7 +192,7 @@ def _settings_table(scene: Mapping[str, Any]) -> Grid:
         for section, _, name in [parameter.path.partition(".")]
         if section == "numerics" and name in settings and name != "threads"
     ]
-    return Grid(("setting", "value", "unit", "meaning"), rows, "lrll")
+    return HtmlTable(("setting", "value", "unit", "meaning"), rows, "lrll")
 
 
 def _shown(value: Any) -> str:

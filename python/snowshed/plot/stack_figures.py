@@ -29,7 +29,7 @@ from snowshed.plot.figure_style import (
     describe,
     quiet,
 )
-from snowshed.snow.stack.measure import Extent, StackMeasure, level
+from snowshed.snow.stack.measure import Extent, StackMeasure, levelled_positions
 from snowshed.snow.stack.quantities import QUANTITIES
 
 if TYPE_CHECKING:
@@ -326,7 +326,7 @@ def _round_down(value: float) -> float:
 def _tilted(points: Floats, tilt: float) -> Floats:
     """Turn (x, z) from levelled ground back to where it is."""
     x, z = points.T
-    return level(np.column_stack([x, 0 * x, z]), -tilt)[:, [0, 2]]
+    return levelled_positions(np.column_stack([x, 0 * x, z]), -tilt)[:, [0, 2]]
 
 
 def _panel_ends(frame: dict[str, Any]) -> tuple[Floats, Floats]:

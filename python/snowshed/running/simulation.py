@@ -25,7 +25,7 @@ from snowshed.base.paths import PathLike
 from snowshed.results.fields import Fields
 from snowshed.results.grid import grid_dataset, scene_grid
 from snowshed.results.particle_dataset import DATASET, particle_dataset
-from snowshed.running.sequence import telling
+from snowshed.running.sequence import issuing_notes
 from snowshed.scene.components import Snow
 from snowshed.scene.resolved import snows_of
 from snowshed.scene.scene import ResolvedScene, SceneLike, resolve_scene
@@ -122,7 +122,7 @@ class Simulation:
         SimulationError
             If the present event has not ended, or the stack cannot be reseeded.
         """
-        with telling(self._core):
+        with issuing_notes(self._core):
             self._core.begin_event()
 
     def step(self, count: int = 1) -> None:
@@ -240,7 +240,7 @@ class Simulation:
         given = points("positions", positions, self.dimension)
         speed = points("velocity", np.atleast_2d(np.asarray(velocity)), self.dimension, 1)[0]
         heavy = self._seeded_mass(snows[kind]) if mass is None else positive("mass", mass)
-        with telling(self._core):
+        with issuing_notes(self._core):
             self._core.add_snow(given, heavy, tuple(speed.tolist()), kind)
 
     def add_velocity(self, changes: ArrayLike) -> None:
@@ -318,11 +318,11 @@ class Simulation:
 
     def on_panel(self, order: Order = "id") -> Booleans:
         """Return whether each particle (n,) lies on the panel."""
-        lies = self._core.on_panel()
+        on_panel = self._core.on_panel()
         if _checked(order) == "storage":
-            by_id, lies = lies, np.empty_like(lies)
-            lies[self._core.order_by_id()] = by_id
-        return lies
+            by_id, on_panel = on_panel, np.empty_like(on_panel)
+            on_panel[self._core.order_by_id()] = by_id
+        return on_panel
 
     def _read(self, name: str, order: Order) -> Numbers:
         read = self._core.field_by_id if _checked(order) == "id" else self._core.field

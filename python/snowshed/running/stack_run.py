@@ -34,7 +34,7 @@ from snowshed.results.solids_file import write_solids
 from snowshed.running.conversion import conversion_row
 from snowshed.running.method_run import Cell, MethodRun
 from snowshed.running.scene_notes import notes_after
-from snowshed.running.sequence import say_note, seal_files
+from snowshed.running.sequence import record_note, seal_files
 from snowshed.snow.stack.measure import StackMeasure
 from snowshed.snow.stack.particles import measure_particles
 
@@ -56,11 +56,11 @@ class StackRun(MethodRun):
         self.results = RunFolder(self.folder)
         self.stack: Optional[StackMeasure] = None
         ageing = self.options.ageing
-        told = None if ageing is None else ageing.data
+        ageing_data = None if ageing is None else ageing.data
         if self.options.resume:
-            self._continue_tables(told)
-        elif told is not None:
-            self.results.write_ageing(told)
+            self._continue_tables(ageing_data)
+        elif ageing_data is not None:
+            self.results.write_ageing(ageing_data)
         self._fill_in(self.sequence.finished_events)
 
     def _continue_tables(self, ageing: Optional[dict[str, Any]]) -> None:
@@ -115,7 +115,7 @@ class StackRun(MethodRun):
         _warn_of_residual(facts)
         if facts["event"] == self.simulation.event_count:
             for note in notes_after(parse_events(self.results.events.path), self.scene.data):
-                say_note(self.sequence, note)
+                record_note(self.sequence, note)
 
     def before_checkpoint(self) -> None:
         """Store the checksums of the tables, which are cut to the checkpoint when a run resumes.
@@ -150,7 +150,7 @@ class StackRun(MethodRun):
         return [{name: _value(name, cell) for name, cell in row.items()} for row in table]
 
     @classmethod
-    def packed(cls, folder: Path) -> Iterable[tuple[int, bytes]]:
+    def stored_data(cls, folder: Path) -> Iterable[tuple[int, bytes]]:
         """Yield each event with the particles after it."""
         return ((event, particles.packed()) for event, particles in read_event_particles(folder))
 

@@ -44,13 +44,13 @@ def _drawing(data: Mapping[str, Any]) -> str:
     scale = min(WIDTH / (right - left), MAX_HEIGHT / (top - bottom))
     ground = ((left, -tilt * left), (right, -tilt * right), (right, bottom), (left, bottom))
     shapes = "".join(
-        f'<polygon fill="{color}" points="'
+        f'<polygon fill="{colour}" points="'
         + " ".join(f"{scale * (x - left):.1f},{scale * (top - z):.1f}" for x, z in points)
         + '"/>'
-        for color, points in [(GROUND, ground), *solids]
+        for colour, points in [(GROUND, ground), *solids]
     )
     size = f'width="{scale * (right - left):.0f}" height="{scale * (top - bottom):.0f}"'
-    others = len(data.get("obstacles") or ()) - sum(color == SOLID for color, _ in solids)
+    others = len(data.get("obstacles") or ()) - sum(colour == SOLID for colour, _ in solids)
     note = f"<p>{others} obstacles of other shapes are not drawn.</p>" if others else ""
     return f'<svg xmlns="http://www.w3.org/2000/svg" {size}>{shapes}</svg>{note}'
 

@@ -9,7 +9,7 @@ from snowshed._core import InputError
 from snowshed.base.limits import WEATHER_GAP
 from snowshed.io.csv_table import TableRow
 from snowshed.season.extremes import RECORD_DAY, RECORD_WINTER, RECORD_WORDS
-from snowshed.season.source import Source
+from snowshed.season.source import SnowSource
 from snowshed.season.weather_row import MAX_SNOWFALL, Weather
 
 MAX_ROWS = 100_000  # daily data of the longest records, and hourly seasons
@@ -89,7 +89,7 @@ def _check_years(rows: Sequence[Weather], table_rows: Sequence[TableRow]) -> Non
         if days <= YEAR:
             continue
         few = min(number, len(rows) - number) <= FEW
-        if days > WEATHER_GAP or (few and days > LONE and later.source is Source.GIVEN):
+        if days > WEATHER_GAP or (few and days > LONE and later.source is SnowSource.GIVEN):
             raise InputError(
                 f"{table_rows[number].where}, column date: {later.date.date()} is "
                 f"{days / 365.25:.0f} "

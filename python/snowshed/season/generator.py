@@ -17,7 +17,7 @@ import numpy as np
 
 from snowshed._core import InputError
 from snowshed.base.arrays import Booleans
-from snowshed.season.source import Source
+from snowshed.season.source import SnowSource
 from snowshed.season.weather_row import MAX_SNOWFALL, Weather
 
 MIN_DAYS = 20  # of a month, to fit it
@@ -79,7 +79,7 @@ class Climate:
         InputError
             If no month with snow has enough days.
         """
-        days = [day for day in days if day.source is not Source.MISSING]
+        days = [day for day in days if day.source is not SnowSource.MISSING]
         snows = np.array([day.snowfall >= MIN_SNOWFALL for day in days])
         temperatures = np.array([day.temperature for day in days])
         months = np.array([day.date.month for day in days])

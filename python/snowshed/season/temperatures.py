@@ -17,7 +17,7 @@ YEAR = 366
 
 
 def filled_temperatures(
-    dates: Sequence[date], measured: Floats, told: Optional[Booleans] = None
+    dates: Sequence[date], measured: Floats, is_measured: Optional[Booleans] = None
 ) -> tuple[Floats, Booleans, list[str]]:
     """Return the temperature of every day, the days far from a measurement, and notes.
 
@@ -31,7 +31,7 @@ def filled_temperatures(
         Days, in order.
     measured : (n,)
         Temperatures, degrees C; NaN: not measured; at least one is measured.
-    told : (n,)
+    is_measured : (n,)
         The days that notes count; None: all.
 
     Examples
@@ -47,7 +47,7 @@ def filled_temperatures(
     usual = _usual(dates, measured)
     climate = far & ~np.isnan(usual)
     filled = np.where(climate, usual, lined)
-    gaps = np.isnan(measured) & (True if told is None else told)
+    gaps = np.isnan(measured) & (True if is_measured is None else is_measured)
     return filled, far, _notes(dates, gaps & climate, gaps & far & ~climate, gaps & ~far)
 
 

@@ -151,10 +151,10 @@ class StackTable:
     @classmethod
     def _of_results(cls, folder: Path) -> StackTable:
         """Read a results folder; all numbers and choices of its scene's panel are axes."""
-        from snowshed.study.scene_hash import Run
+        from snowshed.study.scene_hash import RunKey
         from snowshed.study.table import scene_columns
 
-        run = Run.of(ResolvedScene.load(folder / "scene.json"))
+        run = RunKey.of(ResolvedScene.load(folder / "scene.json"))
         scene = scene_data(run.scene)
         axes = [f"panel.{name}" for name in scene.get("panel", {})]
         facts = {"hash": run.hash, **scene_columns(scene, axes)}

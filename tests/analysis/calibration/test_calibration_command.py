@@ -15,7 +15,7 @@ from snowshed.analysis import (
     calibrate,
     calibration_study,
     read_measurements,
-    read_simulated,
+    read_simulated_stacks,
 )
 from snowshed.cli.main import main
 from snowshed.study import Factor, Span, Study, axis, latin_hypercube
@@ -94,7 +94,7 @@ def test_without_a_library_nothing_is_computed(
 def test_what_it_prints(evaluated, capsys):
     from snowshed.cli.commands.calibrate import print_calibration
 
-    stacks = read_simulated(evaluated / "store")
+    stacks = read_simulated_stacks(evaluated / "store")
     measurements = read_measurements(evaluated / "stacks.csv")
     print_calibration(calibrate(measurements, stacks, steps=100))
     shown = capsys.readouterr().out
@@ -109,7 +109,7 @@ def test_runs_that_are_not_computed_are_told(evaluated, tmp_path, capsys):
 
     grid = calibration_study(read_measurements(evaluated / "stacks.csv"))
     fill(tmp_path / "store", grid, pending=40)
-    stacks = read_simulated(tmp_path / "store")
+    stacks = read_simulated_stacks(tmp_path / "store")
     assert stacks.pending == 40
     print_calibration(calibrate(read_measurements(evaluated / "stacks.csv"), stacks, steps=100))
     assert "40 runs of the study are not computed yet" in " ".join(capsys.readouterr().out.split())
@@ -166,7 +166,7 @@ def test_real_snow_is_recovered_from_its_own_coarse_stacks(tmp_path):
         at = (float(row["panel.tilt"]), int(row["event"]), 1)
         measurements.append(Measurement(*at, quantity, noisy, 0.03 * value))
     study.run(tmp_path, jobs=1, threads=1)
-    found = calibrate(measurements, read_simulated(tmp_path, "sample"))
+    found = calibrate(measurements, read_simulated_stacks(tmp_path, "sample"))
     ranges = found.ranges.set_index("parameter")
     print(json.dumps(ranges.reset_index().to_dict("records"), indent=1))
     for path, true in truth.items():

@@ -6,7 +6,7 @@ import pandas as pd
 import pytest
 
 from snowshed import Scene
-from snowshed.analysis import read_stored
+from snowshed.analysis import read_study_runs
 from snowshed.cli.main import main
 from snowshed.results.folder import WORDS
 from snowshed.study import Study
@@ -123,8 +123,8 @@ def test_a_second_design_in_the_same_folder_is_evaluated_too(tmp_path):
 def test_bodies_instead_of_stacks_and_one_of_several_studies(tmp_path):
     for name in ("one", "other"):
         fill(tmp_path / "store", grid(name))
-    stack = read_stored(tmp_path / "store", "one")
-    body = read_stored(tmp_path / "store", "other", "body")
+    stack = read_study_runs(tmp_path / "store", "one")
+    body = read_study_runs(tmp_path / "store", "other", "body")
     assert (body.rows["height"] == 2 * stack.rows["height"]).all()
     assert stack.parameters == [SLOPE, COHESION] and stack.events == [1, 2]
 

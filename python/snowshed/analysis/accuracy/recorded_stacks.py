@@ -10,7 +10,7 @@ from collections.abc import Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Optional
 
-from snowshed.analysis.accuracy.measurements import MeasuredSolution, Settings, Value, to_table
+from snowshed.analysis.accuracy.measurements import CaseSettings, MeasuredSolution, Value, to_table
 from snowshed.analysis.accuracy.solutions import (
     SAMPLING,
     assured_errors,
@@ -45,7 +45,7 @@ class RecordedStack:
         Processor on which it was measured.
     """
 
-    settings: Settings
+    settings: CaseSettings
     errors: Sequence[float]
     biases: Sequence[float]
     spreads: Sequence[float]

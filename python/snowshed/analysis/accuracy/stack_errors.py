@@ -12,7 +12,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Optional, Union
 
-from snowshed.analysis.accuracy.measurements import MeasuredSolution, Settings
+from snowshed.analysis.accuracy.measurements import CaseSettings, MeasuredSolution
 from snowshed.analysis.accuracy.mechanisms import DECIDED, SCHEME, Mechanisms
 from snowshed.analysis.accuracy.recorded import load_recorded
 from snowshed.analysis.accuracy.recorded_stacks import (
@@ -68,7 +68,7 @@ class StackError:
     scatter: Mapping[str, float]
     cells: float
     recorded_cells: float
-    settings: Settings
+    settings: CaseSettings
     thickness: float = PRESET_THICKNESS
 
     @property
@@ -214,7 +214,7 @@ def _plain_stacks(
     ]
 
 
-def _where(settings: Settings) -> str:
+def _where(settings: CaseSettings) -> str:
     """Return the recorded scene of settings, with its scheme."""
     scene = f"{PRESET} in {settings['dimension']}D, event {settings['events']}"
     return f"{scene}, {Mechanisms.of_settings(settings).label}"

@@ -187,7 +187,7 @@ class _Row:
 
     def measurements(self, seen: dict[tuple[float, int, int], int]) -> list[Measurement]:
         """Return the measurements of the line; `seen` holds the line of every stack so far."""
-        key = self._tilt(), self._whole("event"), self._whole(ROUND, 1)
+        key = self._tilt(), self._whole_number("event"), self._whole_number(ROUND, 1)
         values = {quantity: self._value(quantity) for quantity in QUANTITIES}
         measurements = [
             Measurement(*key, quantity, *value, self.row.number)
@@ -243,7 +243,7 @@ class _Row:
             raise self._error(f"tilt_deg: {tilt:g} is outside the allowed range (0 to 90 degrees)")
         return tilt
 
-    def _whole(self, column: str, default: int = 0) -> int:
+    def _whole_number(self, column: str, default: int = 0) -> int:
         if default and not self.cells.get(column):
             return default
         number = self._number(column)

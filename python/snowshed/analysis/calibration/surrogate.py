@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from snowshed._core import InputError
-from snowshed.analysis.calibration.comparison import SET, Simulated
+from snowshed.analysis.calibration.comparison import SET, SimulatedStacks
 from snowshed.base.arrays import Floats
 from snowshed.base.extras import require
 
@@ -123,7 +123,7 @@ class Surrogate:
     processes: Sequence[Process]
 
     @classmethod
-    def fitted(cls, stacks: Simulated, outputs: Sequence[Output]) -> Surrogate:
+    def fitted(cls, stacks: SimulatedStacks, outputs: Sequence[Output]) -> Surrogate:
         """Fit a surrogate to simulated stacks.
 
         Raises

@@ -13,7 +13,7 @@ from snowshed._core import InputError
 from snowshed.analysis.tomography.downscaling import downscaled
 from snowshed.analysis.tomography.ice_image import IceImage
 from snowshed.base.arrays import AnyIntegers, Labels, positive
-from snowshed.base.notes import tell
+from snowshed.base.notes import issue_note
 from snowshed.base.paths import PathLike
 from snowshed.io.atomic import replacing
 from snowshed.io.voxels.array_files import open_npy
@@ -123,7 +123,7 @@ class LabelledSample:
         divisible = self.labels[: nz * factor, : ny * factor, : nx * factor]
         blocks = divisible.reshape(nz, factor, ny, factor, nx, factor).transpose(0, 2, 4, 1, 3, 5)
         labels = np.zeros(image.ice.shape, dtype=self.labels.dtype)
-        labels[image.ice] = _most_frequent(blocks[image.ice].reshape(-1, factor**3))
+        labels[image.ice] = _modal_label(blocks[image.ice].reshape(-1, factor**3))
         name = f"{self.name}-coarser{factor}"
         return LabelledSample(name, labels, image.voxel_size, self.source)
 
@@ -190,7 +190,7 @@ def _checked_labels(file: Path, labels: AnyIntegers, split: bool) -> Labels:
     except InputError as error:
         raise InputError(f"{file}: {error}") from None
     if note:
-        tell(f"{file}: {note}")
+        issue_note(f"{file}: {note}")
     return _core.split_labels(labelled) if split else labelled
 
 
@@ -206,7 +206,7 @@ def _check_voxel_size(file: Path, labels: AnyIntegers, voxel_size: float) -> Non
         raise InputError(f"{file}: {error}") from None
 
 
-def _most_frequent(blocks: AnyIntegers) -> AnyIntegers:
+def _modal_label(blocks: AnyIntegers) -> AnyIntegers:
     """Return the label other than 0 that each row has most often; the smaller of equals."""
     rows = np.sort(blocks, axis=1)
     best = np.zeros(len(rows), dtype=rows.dtype)

@@ -92,7 +92,7 @@ class StackRows:
 
         Examples
         --------
-        >>> rows = rows_of([[1, 2, 4, 40]] * 2, np.array([1.0, 3.0]), np.array([4.0, 4.0]))
+        >>> rows = stack_rows([[1, 2, 4, 40]] * 2, np.array([1.0, 3.0]), np.array([4.0, 4.0]))
         >>> rows.targets["height"].tolist(), rows.of_one_seed().targets["height"].tolist()
         ([2.0], [1.0])
         """
@@ -171,7 +171,7 @@ def read_rows(
         raise InputError(f"{file}: {error}") from None
 
 
-def rows_of(inputs: Floats, height: Floats, length: Floats) -> StackRows:
+def stack_rows(inputs: Floats, height: Floats, length: Floats) -> StackRows:
     """Return rows from arrays; stacks with the same inputs make one row.
 
     Parameters
@@ -184,7 +184,7 @@ def rows_of(inputs: Floats, height: Floats, length: Floats) -> StackRows:
     Examples
     --------
     >>> inputs = np.array([[1, 2, 4, 40], [2, 2, 4, 40], [2, 2, 4, 40]])
-    >>> rows = rows_of(inputs, np.array([1, 2, 3]), np.array([4, 5, 5]))
+    >>> rows = stack_rows(inputs, np.array([1, 2, 3]), np.array([4, 5, 5]))
     >>> rows.targets["ratio"].tolist(), rows.panels.tolist()
     ([0.25, 0.5], [0, 0])
     """
@@ -232,7 +232,7 @@ def _rows(table: StackTable, measure: Measure, names: Sequence[str]) -> StackRow
     events = inputs[:, 0]
     _check_seeds(table, inputs)
     table.refuse(INPUTS[0], (events < 1) | (events % 1 != 0), "a whole number, 1 or more")
-    selected = rows_of(inputs, height, length)
+    selected = stack_rows(inputs, height, length)
     _check_enough(len(selected), left_out)
     if len(selected) > MAX_ROWS:
         raise InputError(f"{len(selected)} rows; at most {MAX_ROWS} are allowed")

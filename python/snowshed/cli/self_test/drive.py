@@ -12,7 +12,7 @@ from snowshed.scene.scene import Scene
 MAX_STEPS = 200
 
 
-class Drive:
+class EventDriver:
     """The first event of a scene, run to given times.
 
     Parameters
@@ -31,7 +31,7 @@ class Drive:
     --------
     >>> from snowshed import Body, Shape
     >>> scene = Scene(dimension=2, bodies=[Body(shape=Shape.sphere((0, 1), 0.05))])
-    >>> drive = Drive(scene.update({"numerics.dx": 0.02, "numerics.precision": "double"}))
+    >>> drive = EventDriver(scene.update({"numerics.dx": 0.02, "numerics.precision": "double"}))
     >>> drive.run_to(0.1)
     >>> print(f"{drive.mean(drive.core.velocities())[2] / drive.core.time_s:.6f}")
     -9.810000

@@ -12,7 +12,7 @@ import numpy as np
 
 import snowshed._core as _core
 from snowshed.base.arrays import Floats
-from snowshed.cli.self_test.drive import Drive
+from snowshed.cli.self_test.drive import EventDriver
 from snowshed.io.vtk.vtp import read_particles
 from snowshed.scene.scene import Scene
 
@@ -32,7 +32,7 @@ def panel_scene(dx: float, threads: int) -> Scene:
 
 def threads_error() -> float:
     """Return the share of particles that differ between one and two threads."""
-    single, two = (Drive(panel_scene(FINE, threads)) for threads in (1, 2))
+    single, two = (EventDriver(panel_scene(FINE, threads)) for threads in (1, 2))
     for drive in (single, two):
         drive.step(STEPS)
     return different(single.core, two.core)
@@ -40,7 +40,9 @@ def threads_error() -> float:
 
 def checkpoint_error() -> float:
     """Return the share of particles that differ between a run and its continuation."""
-    uninterrupted, interrupted = (Drive(panel_scene(COARSE, threads=1)).core for _ in range(2))
+    uninterrupted, interrupted = (
+        EventDriver(panel_scene(COARSE, threads=1)).core for _ in range(2)
+    )
     uninterrupted.run(_continue)
     interrupted.run(lambda report: bool(report["steps"] < STEPS), 0.0)
     with TemporaryDirectory() as folder:
@@ -72,7 +74,7 @@ def executable_error() -> float:
         if done.returncode != 0:
             raise _core.SimulationError(f"exit code {done.returncode}: {done.stderr.strip()}")
         particles = read_particles(out / "particles" / "event_001.vtp")
-    here = Drive(panel_scene(COARSE, threads=1)).core
+    here = EventDriver(panel_scene(COARSE, threads=1)).core
     here.run(_continue)
     return _different_rows(particles["position"], here.positions().astype(np.float32))
 

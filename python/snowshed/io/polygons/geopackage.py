@@ -25,7 +25,7 @@ from snowshed.base.limits import (
     SQL_STEPS,
 )
 from snowshed.base.messages import quoted
-from snowshed.base.notes import tell
+from snowshed.base.notes import issue_note
 from snowshed.io.atomic import replacing
 from snowshed.io.coordinates.plain_systems import plain_system
 from snowshed.io.coordinates.systems import system_of
@@ -172,7 +172,7 @@ class _Package:
                 f"{self.path}: has {len(every)} layers: {names}; choose one ({option} NAME)"
             )
         if len(every) > 1:
-            tell(
+            issue_note(
                 f"{self.path}: of its layers {names} the one that may hold polygons is read, "
                 f"{quoted(str(of_polygons[0][0]))}"
             )

@@ -15,7 +15,7 @@ import numpy as np
 from snowshed._core import InputError
 from snowshed.base.extras import require
 from snowshed.base.messages import shortened
-from snowshed.base.notes import tell
+from snowshed.base.notes import issue_note
 from snowshed.base.paths import PathLike
 from snowshed.io.coordinates.systems import is_in_degrees
 from snowshed.io.polygons import read_layer
@@ -96,7 +96,7 @@ def read_areas(
     if not areas:
         raise InputError(f"{path}: holds no polygon")
     if not features.crs:
-        tell(f"{path}: has no coordinate system; that of the terrain is assumed")
+        issue_note(f"{path}: has no coordinate system; that of the terrain is assumed")
     return areas
 
 

@@ -89,7 +89,7 @@ class HeaderFields:
             raise self.wrong(name, "True or False is needed")
         return truth
 
-    def whole(self, name: str, default: int) -> int:
+    def whole_number(self, name: str, default: int) -> int:
         """Return a field that is a whole number from 0."""
         if name not in self.values:
             return default

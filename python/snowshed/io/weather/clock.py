@@ -46,7 +46,7 @@ def on_one_clock(station: Station, source: str) -> Station:
     step = usual_step([row.time for row in rows])
     _check_order(rows, source, step)
     if not aware and step <= 1.0:
-        notes += _of_missing_hours(rows, step)
+        notes += _missing_hour_notes(rows, step)
     return replace(station, rows=rows, utc_offset=offset, notes=notes)
 
 
@@ -106,7 +106,7 @@ def repeated_hour(earlier: datetime, later: datetime, step: float) -> str:
     return ""
 
 
-def _of_missing_hours(rows: Sequence[Observation], step: float) -> list[str]:
+def _missing_hour_notes(rows: Sequence[Observation], step: float) -> list[str]:
     missing = [
         earlier.time
         for earlier, later in zip(rows, rows[1:])

@@ -134,10 +134,10 @@ class Days:
             if own is not None or total is not None:
                 last = day
         amounts, notes = without_overlap(totals, DAY, names.unit)
-        made: dict[datetime, tuple[float, float]] = {}
+        by_day: dict[datetime, tuple[float, float]] = {}
         for day, total, amount in zip(days, totals, amounts):
-            before, hours = made.get(day, (0.0, 0.0))
-            made[day] = (before + amount, max(hours, total.hours))
+            before, hours = by_day.get(day, (0.0, 0.0))
+            by_day[day] = (before + amount, max(hours, total.hours))
         if several:
             gathered = math.fsum(values.get(names.days) or 0.0 for values in self.values.values())
             notes.insert(
@@ -148,7 +148,7 @@ class Days:
                     f"; {counted} do not tell how many, and count since the last" if counted else ""
                 ),
             )
-        return made, notes
+        return by_day, notes
 
 
 NO_VALUES = ("line", *COUNTS)

@@ -41,7 +41,7 @@ def with_plausible_units(station: Station, source: str) -> Station:
     """
     for check in (_check_depths, _check_new_snow, _check_rain, _check_temperatures, _check_density):
         check(station, source)
-    notes = _of_shallow_snow(station)
+    notes = _shallow_snow_notes(station)
     return replace(station, notes=[*station.notes, *notes]) if notes else station
 
 
@@ -52,13 +52,13 @@ def _refused(station: Station, source: str, name: str, what: str) -> InputError:
 
 def _changes(rows: Sequence[Observation]) -> list[tuple[date, float]]:
     """Return the changes of the depth from day to day, without spikes: medians of three days."""
-    told: dict[date, list[float]] = {}
+    by_day: dict[date, list[float]] = {}
     for row in rows:
         if row.snow_depth is not None:
-            told.setdefault(row.time.date(), []).append(row.snow_depth)
+            by_day.setdefault(row.time.date(), []).append(row.snow_depth)
     joints = {row.time.date() for row in rows if row.seam}
-    days = sorted(told)
-    raw = [median(told[day]) for day in days]
+    days = sorted(by_day)
+    raw = [median(by_day[day]) for day in days]
     depths = [median(raw[max(n - 1, 0) : n + 2]) for n in range(len(raw))]
     return [
         (days[n], depths[n] - depths[n - 1])
@@ -113,16 +113,16 @@ def _check_rain(station: Station, source: str) -> None:
 
 def _check_temperatures(station: Station, source: str) -> None:
     rises = {day for day, change in _changes(station.rows) if change >= MIN_RISE}
-    told: dict[date, list[float]] = {}
+    by_day: dict[date, list[float]] = {}
     snowy = []
     for row in station.rows:
         if row.temperature is None:
             continue
         if row.time.date() in rises:
-            told.setdefault(row.time.date(), []).append(row.temperature)
+            by_day.setdefault(row.time.date(), []).append(row.temperature)
         elif (row.snowfall or 0.0) >= MIN_SNOWFALL:
             snowy.append(row.temperature)
-    snowy += [fmean(own) for own in told.values()]
+    snowy += [fmean(own) for own in by_day.values()]
     if len(snowy) < MIN_VALUES or COLDEST <= median(snowy) <= WARMEST:
         return
     unit = "degrees F" if median(snowy) > WARMEST else "tenths of degrees C"
@@ -153,7 +153,7 @@ def _check_density(station: Station, source: str) -> None:
         )  # fmt: skip
 
 
-def _of_shallow_snow(station: Station) -> list[str]:
+def _shallow_snow_notes(station: Station) -> list[str]:
     depths = [row.snow_depth for row in station.rows if row.snow_depth]
     broken = [depth for depth in depths if abs(1000.0 * depth - round(1000.0 * depth)) > 1e-3]
     if len(depths) < MIN_VALUES or max(depths) > SHALLOW or 2 * len(broken) < len(depths):

@@ -139,8 +139,8 @@ def mean_stress(strain: Floats, stress: Floats, low: float, high: float) -> Opti
 def _elastic(
     strain: Floats, stress: Floats, broken: Floats
 ) -> tuple[Optional[float], Optional[float], Optional[float]]:
-    whole = np.flatnonzero(broken > broken[0])
-    rows = slice(0, int(whole[0]) if whole.size else len(strain))
+    breaking = np.flatnonzero(broken > broken[0])
+    rows = slice(0, int(breaking[0]) if breaking.size else len(strain))
     x, y = strain[rows], stress[rows]
     limit = float(x[-1])
     if len(x) < MIN_ROWS or x[-1] <= x[0]:

@@ -121,13 +121,13 @@ def _map(frame: FilmFrame, thickness: Singles, ground: Raster, edge: int) -> Fra
         at = (np.minimum(south + row, rows - 1), np.minimum(west + column, columns - 1))
         np.add.at(weight, at, share)
         np.add.at(sums, at, share * thickness)
-    whole = np.divide(sums, weight, out=np.zeros_like(sums), where=weight > 0.0)
-    whole = np.kron(whole, np.ones((edge, edge)))[tuple(map(slice, ground.heights.shape))]
-    snow = whole > 0.0
+    thickness = np.divide(sums, weight, out=np.zeros_like(sums), where=weight > 0.0)
+    thickness = np.kron(thickness, np.ones((edge, edge)))[tuple(map(slice, ground.heights.shape))]
+    snow = thickness > 0.0
     down, across = (np.flatnonzero(snow.any(axis=axis)) for axis in (1, 0))
     if not down.size:
         down = across = np.array([0])
-    cut = whole[down[0] : down[-1] + 1, across[0] : across[-1] + 1].astype(np.float32)
+    cut = thickness[down[0] : down[-1] + 1, across[0] : across[-1] + 1].astype(np.float32)
     return Frame(frame.time, cut, int(down[0]), int(across[0]))
 
 

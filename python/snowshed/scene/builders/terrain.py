@@ -112,9 +112,9 @@ def on_terrain(
         np.save(stream, samples.astype(np.float32))
     corner = (xs[0], bottom) if flat else (xs[0], ys[0], bottom)
     shape = Shape.grid(str(Path(file).absolute()), origin=corner, spacing=spacing)
-    made = copy.deepcopy(scene)
-    made.ground = None
-    return made.append(
+    built = copy.deepcopy(scene)
+    built.ground = None
+    return built.append(
         "obstacles",
         Obstacle(name="terrain", shape=shape, condition=condition, friction=friction),
     )

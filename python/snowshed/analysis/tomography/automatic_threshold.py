@@ -22,7 +22,7 @@ MIN_LABELS, MAX_SHARE_OF_LABEL, SAME_NEIGHBOURS = 8, 0.5, 0.75
 Parts = Callable[[], Iterable[NDArray[Any]]]
 
 
-def found_threshold(name: str, parts: Parts) -> tuple[float, str]:
+def automatic_threshold(name: str, parts: Parts) -> tuple[float, str]:
     """Return the threshold between ice and air, and its origin: "two values" or "Otsu".
 
     Parameters
@@ -39,7 +39,7 @@ def found_threshold(name: str, parts: Parts) -> tuple[float, str]:
 
     Examples
     --------
-    >>> found_threshold("a", lambda: [np.array([[[0, 200], [200, 0]]], dtype=np.uint8)])
+    >>> automatic_threshold("a", lambda: [np.array([[[0, 200], [200, 0]]], dtype=np.uint8)])
     (100.0, 'two values')
     """
     ends = [(part.min().item(), part.max().item()) for part in parts()]
@@ -75,7 +75,7 @@ class _Histogram:
     lowest: Union[int, float]
     width: float  # of a bin
     bins: int
-    whole: bool
+    is_integer: bool
     counts: NDArray[np.int64]
 
     @classmethod
@@ -95,7 +95,7 @@ class _Histogram:
         return cls(lowest, width, BINS, False, np.zeros(BINS, dtype=np.int64))
 
     def add(self, part: NDArray[Any]) -> None:
-        if self.whole:
+        if self.is_integer:
             # Differences of 8 bytes fit, those of fewer bytes may overflow.
             wide = part if part.dtype.itemsize == 8 else part.astype(np.int64)
             bins = (wide - wide.dtype.type(self.lowest)).astype(np.int64)
@@ -107,7 +107,7 @@ class _Histogram:
     @property
     def has_many_values(self) -> bool:
         """Whether many values occur above 0, and none of them dominates."""
-        above = self.counts[1:] if self.whole else self.counts
+        above = self.counts[1:] if self.is_integer else self.counts
         seen = int(np.count_nonzero(above))
         return seen >= MIN_LABELS and above.max() < MAX_SHARE_OF_LABEL * above.sum()
 
@@ -115,7 +115,7 @@ class _Histogram:
         """Return Otsu's threshold; it is found in bins, where values may be of any size."""
         filters = require("skimage.filters", "images", "Otsu's threshold")
         place = float(filters.threshold_otsu(hist=(self.counts, np.arange(float(self.bins)))))
-        return float(self.lowest) + self.width * (place + (0.0 if self.whole else 0.5))
+        return float(self.lowest) + self.width * (place + (0.0 if self.is_integer else 0.5))
 
 
 @dataclass
