@@ -1,6 +1,6 @@
 """Compare the speed of snow slides with AvaFrame's com5SnowSlide, side by side in one run.
 
-Usage: python benchmarks/beside_avaframe.py AVAFRAME_PYTHON [--particles 360 1100 100000]
+Usage: python -m benchmarks.beside_avaframe AVAFRAME_PYTHON [--particles 360 1100 100000]
 [--projects FOLDER ...]
 
 AVAFRAME_PYTHON is the interpreter of an environment with AvaFrame 2.1 (``pip install

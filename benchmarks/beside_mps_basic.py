@@ -1,6 +1,6 @@
 """Compare the speed of fluids of particles with MPS-Basic, side by side in one run.
 
-Usage: python benchmarks/beside_mps_basic.py PROGRAM [--radius 2.1 3.1]
+Usage: python -m benchmarks.beside_mps_basic PROGRAM [--radius 2.1 3.1]
 [--particles2d 1458 9800] [--particles3d 19652] [--threads 1 2]
 
 PROGRAM is the program of MPS-Basic (Koshizuka and Shibata laboratory, MIT licence), compiled with
@@ -18,22 +18,18 @@ import argparse
 import itertools
 import os
 import subprocess
-import sys
 import tempfile
 import time
 from dataclasses import dataclass
 from pathlib import Path
 
-ROOT = Path(__file__).parent.parent
-sys.path.insert(0, str(ROOT))
+from benchmarks.keeping import keep_cases
 
-from benchmarks.keeping import keep_cases  # noqa: E402
-
-from snowshed.methods.mps.settings import MpsSettings  # noqa: E402
-from snowshed.running.simulation import Simulation  # noqa: E402
-from snowshed.scene.components import Body, Events, Obstacle  # noqa: E402
-from snowshed.scene.scene import Scene  # noqa: E402
-from snowshed.scene.shape import Shape  # noqa: E402
+from snowshed.methods.mps.settings import MpsSettings
+from snowshed.running.simulation import Simulation
+from snowshed.scene.components import Body, Events, Obstacle
+from snowshed.scene.scene import Scene
+from snowshed.scene.shape import Shape
 
 SPACING = 0.01  # m
 GRADIENT_RADIUS = 2.1  # of MPS-Basic, in spacings, by default

@@ -1,6 +1,6 @@
 """Compare snow slides without bonds with the avalanche models of ISeeSnow.
 
-Usage: python benchmarks/iseesnow.py FOLDER [CASE ...]
+Usage: python -m benchmarks.iseesnow FOLDER [CASE ...]
 
 ISeeSnow is an intercomparison of avalanche models (doi:10.5194/egusphere-2025-6053), whose data are
 under EUPL-1.2 and not part of snowshed. FOLDER has one folder per case with the elevations

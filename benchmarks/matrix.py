@@ -1,6 +1,6 @@
 """Measure every kernel with every instruction set, and name the cells that are out of line.
 
-Usage: python benchmarks/matrix.py path/to/snowshed_bench
+Usage: python -m benchmarks.matrix path/to/snowshed_bench
 
 Prints nanoseconds of processor time for each particle update, on one thread, and writes
 benchmarks/results/DATE-matrix-COMPILER.json. A cell is out of line if it takes more than twice

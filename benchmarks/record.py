@@ -1,6 +1,6 @@
 """Measure the solver and whole problems, and keep the numbers.
 
-Usage: python benchmarks/record.py path/to/snowshed_bench
+Usage: python -m benchmarks.record path/to/snowshed_bench
 
 Writes benchmarks/results/DATE.json (machine, date, every case) and prints the tables that
 docs/trust/performance.md shows. Nothing else should run on the machine meanwhile.
@@ -17,8 +17,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from keeping import keep_cases
-from tables import print_tables
+from benchmarks.keeping import keep_cases
+from benchmarks.tables import print_tables
 
 from snowshed.base.machine import cpu_name
 from snowshed.running.run import run_events

@@ -1,6 +1,6 @@
 """Compress samples with Yade and with snowshed, and compare their stresses.
 
-Usage: python benchmarks/strength_beside_yade.py FOLDER/samples/field-318-*-coarser2.npy
+Usage: python -m benchmarks.strength_beside_yade FOLDER/samples/field-318-*-coarser2.npy
 [--strain 0.15]
 
 The files are those of `snowshed reproduce hagenmuller2015 --quick -o FOLDER`: labels on voxels of
@@ -13,23 +13,18 @@ benchmarks/results/DATE-yade-strength.json. Yade takes some five minutes a sampl
 from __future__ import annotations
 
 import argparse
-import sys
 import tempfile
 from pathlib import Path
 
 import numpy as np
+from benchmarks.engines.press import Press
+from benchmarks.engines.run import press_with_yade, yade_program
+from benchmarks.engines.voxel_sample import VoxelSample
+from benchmarks.keeping import keep_cases
 
-ROOT = Path(__file__).parent.parent
-sys.path.insert(0, str(ROOT))
-
-from benchmarks.engines.press import Press  # noqa: E402
-from benchmarks.engines.run import press_with_yade, yade_program  # noqa: E402
-from benchmarks.engines.voxel_sample import VoxelSample  # noqa: E402
-from benchmarks.keeping import keep_cases  # noqa: E402
-
-from snowshed import GrainsSettings, LoadingStage  # noqa: E402
-from snowshed.running.run import run  # noqa: E402
-from snowshed.scene import grains_scene  # noqa: E402
+from snowshed import GrainsSettings, LoadingStage
+from snowshed.running.run import run
+from snowshed.scene import grains_scene
 
 VOXEL = 1e-4  # m
 SPEED = 0.02 * 10**0.5  # m/s, with ice of its own density

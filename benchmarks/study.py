@@ -1,6 +1,6 @@
 """Measure what the study engine costs, and how two workers share equal runs.
 
-Usage: python benchmarks/study.py
+Usage: python -m benchmarks.study
 
 Prints the overhead (wall time beyond the runs' own) and the gain of two workers, and keeps both in
 benchmarks/results/DATE-study.json. Nothing else should run on the machine meanwhile.

@@ -1,6 +1,6 @@
 """The tables of docs/trust/performance.md, from the cases that benchmarks/record.py measured.
 
-Usage: python benchmarks/tables.py benchmarks/results/DATE.json
+Usage: python -m benchmarks.tables benchmarks/results/DATE.json
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """The slab of cpp/bench/solver_bench.cpp, side by side in snowshed and in Taichi.
 
-Usage: python benchmarks/taichi_slab.py [--steps 50] [--threads 2] [--atomic] [--json FILE]
+Usage: python -m benchmarks.taichi_slab [--steps 50] [--threads 2] [--atomic] [--json FILE]
 
 Needs Taichi (pip install taichi). 262 144 particles of reference snow on sticky ground, float,
 quadratic splines, FLIP 0.99. Taichi takes the time steps that snowshed chose, free of charge, and

@@ -32,7 +32,7 @@ class Recovery:
     Attributes
     ----------
     ranked
-        From `snowshed.analysis.calibration.rank`: one row per parameter set, the best first.
+        From `snowshed.analysis.rank_sets`: one row per parameter set, the best first.
     ranges
         From `snowshed.analysis.calibration.Posterior.ranges`.
     """

@@ -37,7 +37,7 @@ def relative_error_figure(ranked: pd.DataFrame, parameters: Sequence[str]) -> Fi
     Parameters
     ----------
     ranked
-        From `rank`.
+        From `rank_sets`.
     parameters
         Dotted paths of the parameters.
     """
@@ -61,7 +61,7 @@ def rmse_figure(ranked: pd.DataFrame, parameters: Sequence[str]) -> Figure:
     Parameters
     ----------
     ranked
-        From `rank`.
+        From `rank_sets`.
     parameters
         Dotted paths of the parameters.
     """
@@ -129,7 +129,7 @@ def fit_figure(
     Parameters
     ----------
     comparison
-        From `compare`.
+        From `compare_stacks`.
     best
         Number of the best parameter set.
     posterior

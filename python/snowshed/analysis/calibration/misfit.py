@@ -26,7 +26,7 @@ def rank_sets(stacks: SimulatedStacks, comparison: pd.DataFrame) -> pd.DataFrame
     stacks
         The simulated stacks.
     comparison
-        From `compare`.
+        From `compare_stacks`.
 
     Returns
     -------

@@ -6,10 +6,8 @@ import math
 
 import snowshed._core as _core
 from snowshed.base.arrays import Floats
+from snowshed.running.simulation import MAX_STEPS
 from snowshed.scene.scene import Scene
-
-#: The most steps between two readings of the clock.
-MAX_STEPS = 200
 
 
 class EventDriver:
