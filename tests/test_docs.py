@@ -11,7 +11,7 @@ from pathlib import Path
 
 import click
 import pytest
-from paths import DOCS, ROOT
+from helpers.paths import DOCS, ROOT
 from validation.framework.command import validate
 
 from snowshed import Scene

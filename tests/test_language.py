@@ -8,7 +8,7 @@ import tokenize
 
 import click
 import pytest
-from paths import DOCS, ROOT
+from helpers.paths import DOCS, ROOT
 
 from snowshed.cli.deferred import Deferred
 from snowshed.cli.main import cli

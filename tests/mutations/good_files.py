@@ -7,13 +7,13 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import film_files
 import numpy as np
 import pandas as pd
 from conftest import tiny_mps, tiny_scene
-from grain_files import write_labels
-from slide_files import plane, write_polygons
-from voxel_files import VOXELS, save_metaimage, save_slices
+from helpers import film_files
+from helpers.grain_files import write_labels
+from helpers.slide_files import plane, write_polygons
+from helpers.voxel_files import VOXELS, save_metaimage, save_slices
 
 from snowshed import Scene, _core, run_events
 from snowshed.io.raster.raster import write_ascii_grid

@@ -3,7 +3,7 @@
 import re
 
 import pytest
-from paths import ROOT
+from helpers.paths import ROOT
 from plot.browser import faults_of
 
 TEMPLATES = sorted(

@@ -1,7 +1,7 @@
 """Moving views of many particles: how large their pages are, and that they open."""
 
 import pytest
-from pages import Page
+from helpers.pages import Page
 from plot.browser import open_page
 
 from snowshed import Results, Scene, run_events

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from conftest import tiny_scene
-from interrupted_runs import interrupt_at
+from helpers.interrupted_runs import interrupt_at
 
 from snowshed import InputError, Interrupted, Results, run_events
 from snowshed.plot.energy_figure import energy_figure

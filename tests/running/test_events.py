@@ -3,7 +3,7 @@ import signal
 
 import pandas as pd
 import pytest
-from interrupted_runs import compare_tables, interrupt_at
+from helpers.interrupted_runs import compare_tables, interrupt_at
 
 from snowshed import InputError, Interrupted, SimulationError, _core, run_events
 from snowshed.cli import run_output

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pandas as pd
 import pytest
-from processes import modules_after
+from helpers.processes import modules_after
 
 from snowshed import InputError, Scene, _core
 from snowshed.cli.commands.season import print_season

@@ -5,7 +5,7 @@ from datetime import date, datetime, timedelta
 
 import numpy as np
 import pytest
-from station_files import days, elements, ghcn, smet, snows, warmth
+from helpers.station_files import days, elements, ghcn, smet, snows, warmth
 
 from snowshed import InputError
 from snowshed.io import Observation, Station

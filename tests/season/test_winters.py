@@ -3,7 +3,7 @@
 from datetime import date
 
 import pytest
-from station_files import days, elements, ghcn, warmth
+from helpers.station_files import days, elements, ghcn, warmth
 
 from snowshed import InputError, SnowshedNote
 from snowshed.analysis import split_winters

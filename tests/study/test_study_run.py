@@ -13,7 +13,7 @@ import numpy as np
 import pandas as pd
 import pytest
 import study_helpers
-from processes import children_of, snowshed_command, wait_for
+from helpers.processes import children_of, snowshed_command, wait_for
 from study_helpers import ALONE, contents, tiny_scene, tiny_study
 
 from snowshed import Obstacle, ResolvedScene, Shape, _core, read_events, run_events

@@ -5,7 +5,7 @@ import subprocess
 import sys
 
 import pytest
-from paths import ROOT
+from helpers.paths import ROOT
 from tools.mutants import trial
 from tools.mutants.__main__ import PAGES
 from tools.mutants.faults import Fault, FaultError, check_places, read_faults

@@ -14,7 +14,7 @@ def test_a_tipping_slab_without_friction_keeps_its_energy():
     state = slab._leave()
     x, z = slab._slope(state.position)
     tilt = math.radians(35)
-    # It started `distance` up the slope from the edge, half its thickness above the face.
+    # It started `sliding_distance` up the slope from the edge, half its thickness above the face.
     start = 0.6 * math.sin(tilt) + 0.025 * math.cos(tilt)
     kinetic = (state.velocity @ state.velocity + slab._inertia * state.spin**2) / 2
     assert kinetic == pytest.approx(slab.gravity * (start - z), rel=1e-9)

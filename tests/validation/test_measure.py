@@ -9,8 +9,8 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from helpers.paths import ROOT
 from made_up import MEGABYTES, made_up_case
-from paths import ROOT
 from validation.framework import cases as listing
 from validation.framework import measure
 from validation.framework.folder import ValidationFolder

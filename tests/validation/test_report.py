@@ -5,8 +5,8 @@ from dataclasses import replace
 
 import pandas as pd
 import pytest
+from helpers.pages import Page
 from made_up import DRIFT, HEIGHT, made_up_case
-from pages import Page
 from plot.browser import check_page
 from validation.framework import sections
 from validation.framework.case import Quantity

@@ -88,7 +88,7 @@ def test_without_a_library_nothing_is_computed(
     assert f"needs {library}" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
     if library != "xarray":  # the cost is told without it
-        assert run("calibrate", evaluated / "stacks.csv", *options, "--plan") == 0
+        assert run("calibrate", evaluated / "stacks.csv", *options, "--dry-run") == 0
 
 
 def test_what_it_prints(evaluated, capsys):
@@ -124,7 +124,7 @@ def test_the_template_is_written(tmp_path, capsys):
 def test_plan_and_errors(tmp_path, capsys):
     write_measurements(measured(TRUTH), tmp_path / "stacks.csv")
     options = (tmp_path / "stacks.csv", "-o", tmp_path / "out")
-    assert run("calibrate", *options, "--quick", "--plan") == 0
+    assert run("calibrate", *options, "--quick", "--dry-run") == 0
     assert "calibration-quick: 48 runs" in capsys.readouterr().out
     bad = tmp_path / "bad.csv"
     bad.write_text("tilt_deg,event,height_m,height_std_m\n40,one,0.1,0.01\n")
@@ -134,7 +134,7 @@ def test_plan_and_errors(tmp_path, capsys):
         ((tmp_path / "none.csv", "-o", tmp_path), "none.csv: No such file"),
         ((bad, "-o", tmp_path), "bad.csv, line 2: event: 'one' is not a number"),
         ((*options, "--stored", tmp_path / "nowhere"), "nowhere"),
-        ((*options, "--stored", tmp_path, "--plan"), "--dry-run has no effect with --stored"),
+        ((*options, "--stored", tmp_path, "--dry-run"), "--dry-run has no effect with --stored"),
         ((*options, "--study", tmp_path / "x", "--seeds", 3), "--seeds has no effect with --study"),
         ((*options, "--name", "grid"), "--name needs --stored"),
         ((*options, "--quantity", "width", "--study", tmp_path / "no.toml"), "no.toml"),

@@ -8,8 +8,8 @@ from datetime import date
 
 import numpy as np
 import pytest
+from helpers.station_files import days, elements, ghcn
 from plot.browser import check_page
-from station_files import days, elements, ghcn
 
 from snowshed import InputError
 from snowshed.analysis import Design, Ranges, required_clearance, split_winters

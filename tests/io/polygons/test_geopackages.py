@@ -5,8 +5,8 @@ import struct
 
 import numpy as np
 import pytest
-from polygon_files import SQUARE, polygon, pyogrio, shapely, write
-from slide_files import write_polygons
+from helpers.polygon_files import SQUARE, polygon, pyogrio, shapely, write
+from helpers.slide_files import write_polygons
 
 from snowshed import InputError
 from snowshed.base.notes import recorded

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from raster_files import CELL, SIDE, SLOPE, WEST, grid_text
+from helpers.raster_files import CELL, SIDE, SLOPE, WEST, grid_text
 
 from snowshed import InputError
 from snowshed.base.limits import RASTER_CELLS

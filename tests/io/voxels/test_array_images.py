@@ -6,8 +6,8 @@ import warnings
 
 import numpy as np
 import pytest
+from helpers.voxel_files import VOXELS, of_type, save_metaimage, save_slices
 from PIL import Image
-from voxel_files import VOXELS, of_type, save_metaimage, save_slices
 
 from snowshed import InputError
 from snowshed.base.notes import recorded

@@ -5,7 +5,7 @@ import itertools
 
 import numpy as np
 import pytest
-from voxel_files import TYPES, VOXELS, of_type, save_metaimage
+from helpers.voxel_files import TYPES, VOXELS, of_type, save_metaimage
 
 from snowshed import InputError
 from snowshed.base.notes import recorded

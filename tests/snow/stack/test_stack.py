@@ -1,7 +1,7 @@
 import numpy as np
 import pandas as pd
 import pytest
-from piles import ball, cone, triangle
+from helpers.piles import ball, cone, triangle
 
 from snowshed import InputError, levelled_positions, measure_stack
 from snowshed.snow.stack.trimming import TRIMMINGS
