@@ -122,11 +122,11 @@ class StudyStage:
         names = self._registered()
         for number, name in enumerate(names):
 
-            def report(progress: Progress, name: str = name, number: int = number) -> None:
+            def report_runs(progress: Progress, name: str = name, number: int = number) -> None:
                 text = f"{name}: {progress.done}/{progress.count} simulations"
                 report((number + progress.fraction) / len(names), text)
 
-            resume(self.runs, name, jobs=jobs, progress=report)
+            resume(self.runs, name, jobs=jobs, progress=report_runs)
 
     def failure(self) -> str:
         """Return the number of failed simulations, and the place of their errors."""
