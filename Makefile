@@ -15,6 +15,7 @@ DEMO := demo-results
 FUZZ_SECONDS ?= 60
 KERNELS ?= native
 CLANG_FORMAT := 23.1.5
+CLANG_TIDY := 23.1.4
 VALIDATION ?= --quick
 THESIS ?= --quick
 MUTANTS ?=
@@ -102,6 +103,8 @@ thesis: build $(VENV)/.dev-tools
 
 # --- test ----------------------------------------------------------------------------------
 
+provide_gtest = sh tools/provide_header.sh gtest/gtest.h libgtest-dev || echo "Fetching GoogleTest instead."
+
 # Turns an option of the tree on. If that fails, turns it off again, so that `make build` still
 # works.
 enable = cmake -S . -B $(TREE) -D$(1)=ON > build/configure.log \
@@ -113,7 +116,7 @@ test: test-cpp test-py
 test-cpp test-py sanitize-address sanitize-thread: export OMP_WAIT_POLICY := passive
 
 test-cpp: build
-	@sh tools/provide_header.sh gtest/gtest.h libgtest-dev || echo "Fetching GoogleTest instead."
+	@$(provide_gtest)
 	@$(call enable,SNOWSHED_BUILD_TESTS)
 	cmake --build $(TREE) --target snowshed_tests
 	ctest --test-dir $(TREE) -j 2 --output-on-failure
@@ -130,6 +133,12 @@ test-slow: build $(VENV)/.dev-tools
 # minutes and runs only code that shorter tests run, too. ThreadSanitizer's threads are those of the
 # standard library, which allocate where OpenMP's do not: no place for tests in which every
 # allocation fails. Lua's memory limit leaves no room for AddressSanitizer.
+#
+# The Python tests are those of all rooms but these, which run no other code of the core.
+UNSANITIZED := analysis base faults plot reproductions results season study tools validation
+SANITIZED_TESTS := $(filter-out $(UNSANITIZED:%=tests/%/%),$(wildcard tests/test_*.py tests/*/test_*.py)) \
+  $(wildcard tests/snow/*/test_*.py)
+
 build_sanitized = cmake -S . -B $(SANITIZE_TREE)-$(1) -G Ninja -DSNOWSHED_SANITIZE=$(1) \
     -DSNOWSHED_BUILD_TESTS=ON -DSNOWSHED_BUILD_PYTHON=ON \
     -DPython_EXECUTABLE=$(CURDIR)/$(BIN)/python \
@@ -140,13 +149,13 @@ build_sanitized = cmake -S . -B $(SANITIZE_TREE)-$(1) -G Ninja -DSNOWSHED_SANITI
 sanitize: sanitize-address sanitize-thread
 
 sanitize-address: $(VENV)/.dev-tools
-	@sh tools/provide_header.sh gtest/gtest.h libgtest-dev || echo "Fetching GoogleTest instead."
+	@$(provide_gtest)
 	$(call build_sanitized,address,LongSlab)
 	sh tools/sanitized_pytest.sh $(SANITIZE_TREE)-address $(VENV) "asan ubsan" \
-	  tests/test_*.py tests/{cli,io,methods,running,scene,snow/stack}/test_*.py -k "not lua"
+	  $(SANITIZED_TESTS) -k "not lua"
 
 sanitize-thread: $(VENV)/.dev-tools
-	@sh tools/provide_header.sh gtest/gtest.h libgtest-dev || echo "Fetching GoogleTest instead."
+	@$(provide_gtest)
 	$(call build_sanitized,thread,LongSlab|Faults)
 	sh tools/sanitized_pytest.sh $(SANITIZE_TREE)-thread $(VENV) tsan tests/running/test_executable.py \
 	  tests/running/test_simulation.py -k "test_executable or thread"
@@ -160,14 +169,14 @@ fuzz: $(VENV)/.build-tools
 
 # In a tree of its own, with one job, so that the machine can be used meanwhile.
 mutants: $(VENV)/.dev-tools
-	@sh tools/provide_header.sh gtest/gtest.h libgtest-dev || echo "Fetching GoogleTest instead."
+	@$(provide_gtest)
 	nice -n 10 $(BIN)/python -m tools.mutants $(MUTANTS)
 
 bench: build
 	@sh tools/provide_header.sh benchmark/benchmark.h libbenchmark-dev || echo "Fetching Google Benchmark instead."
 	@$(call enable,SNOWSHED_BUILD_BENCH)
 	cmake --build $(TREE) --target snowshed_bench
-	$(BIN)/python benchmarks/record.py $(TREE)/snowshed_bench
+	$(BIN)/python -m benchmarks.record $(TREE)/snowshed_bench
 
 # --- documentation and style ---------------------------------------------------------------
 
@@ -203,9 +212,9 @@ $(VENV)/.dev-tools: $(VENV)/.installed pyproject.toml
 	$(PIP) --quiet "snowshed[dev]"
 	touch $@
 
-# Another version of clang-format would change the format of many files.
+# Another version of clang-format would change the format of many files, one of clang-tidy its checks.
 $(VENV)/.cpp-tools: $(VENV)/.created
-	$(PIP) --quiet "clang-format==$(CLANG_FORMAT)" clang-tidy
+	$(PIP) --quiet "clang-format==$(CLANG_FORMAT)" "clang-tidy==$(CLANG_TIDY)"
 	touch $@
 
 # The pages name estimators, which are classes of scikit-learn.

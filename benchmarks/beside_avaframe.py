@@ -1,6 +1,6 @@
 """Compare the speed of snow slides with AvaFrame's com5SnowSlide, side by side in one run.
 
-Usage: python benchmarks/beside_avaframe.py AVAFRAME_PYTHON [--particles 360 1100 100000]
+Usage: python -m benchmarks.beside_avaframe AVAFRAME_PYTHON [--particles 360 1100 100000]
 [--projects FOLDER ...]
 
 AVAFRAME_PYTHON is the interpreter of an environment with AvaFrame 2.1 (``pip install
@@ -149,7 +149,7 @@ def main() -> None:
     options = parser.parse_args()
     print(f"{os.cpu_count()} cores; microseconds for a particle step")
     print(f"{'':>23} {'AvaFrame':>21} {'':>10} {'ratio':>15}")
-    units = [f"{one:>10}" for one in ("particles", "loop", "step", "snowshed")]
+    units = [f"{unit:>10}" for unit in ("particles", "loop", "step", "snowshed")]
     print(f"{'':>12}", *units, f"{'loop':>8} {'step':>6}")
     for wanted in options.particles:
         with tempfile.TemporaryDirectory() as name:

@@ -1,14 +1,14 @@
 """Compare the speed of fluids of particles with MPS-Basic, side by side in one run.
 
-Usage: python benchmarks/beside_mps_basic.py PROGRAM [--radius 2.1 3.1]
+Usage: python -m benchmarks.beside_mps_basic PROGRAM [--radius 2.1 3.1]
 [--particles2d 1458 9800] [--particles3d 19652] [--threads 1 2]
 
-PROGRAM is that of MPS-Basic (Koshizuka and Shibata laboratory, MIT licence), compiled with
-optimisation and OpenMP. Both let a column of water collapse that is twice as high as wide, in a
-basin twice as long as it, with the same distance between particles and the same radius of the
-pressure's weights. A step of a particle of water is the unit, and the best of three runs counts.
+PROGRAM is the program of MPS-Basic (Koshizuka and Shibata laboratory, MIT licence), compiled with
+optimisation and OpenMP. In both programs a column of water, twice as high as wide, collapses in a
+basin twice as long as the column, with the same distance between particles and the same radius of
+the pressure's weights. The unit is a step of one water particle, and the best of three runs counts.
 MPS-Basic's walls are particles, too, and ours are mirrors: its speed with its walls among the
-particles is told as well. Writes benchmarks/results/DATE-mps.json. Nothing else should run on the
+particles is printed, too. Writes benchmarks/results/DATE-mps.json. Nothing else should run on the
 machine meanwhile.
 """
 
@@ -18,25 +18,21 @@ import argparse
 import itertools
 import os
 import subprocess
-import sys
 import tempfile
 import time
 from dataclasses import dataclass
 from pathlib import Path
 
-ROOT = Path(__file__).parent.parent
-sys.path.insert(0, str(ROOT))
+from benchmarks.keeping import keep_cases
 
-from benchmarks.keeping import keep_cases  # noqa: E402
-
-from snowshed.methods.mps.settings import MpsSettings  # noqa: E402
-from snowshed.running.simulation import Simulation  # noqa: E402
-from snowshed.scene.components import Body, Events, Obstacle  # noqa: E402
-from snowshed.scene.scene import Scene  # noqa: E402
-from snowshed.scene.shape import Shape  # noqa: E402
+from snowshed.methods.mps.settings import MpsSettings
+from snowshed.running.simulation import Simulation
+from snowshed.scene.components import Body, Events, Obstacle
+from snowshed.scene.scene import Scene
+from snowshed.scene.shape import Shape
 
 SPACING = 0.01  # m
-GRADIENT_RADIUS = 2.1  # of MPS-Basic, in spacings, as it comes
+GRADIENT_RADIUS = 2.1  # of MPS-Basic, in spacings, by default
 BASIN = 2  # its length, in widths of the column
 LAYERS = 4  # of its wall: two whose pressure is known, and two behind them
 STEP = 4e-4  # s, of MPS-Basic, in its own proportion to the spacing
@@ -88,7 +84,7 @@ class Column:
     across
         Particles along its width. It is twice as high, and as deep as wide.
     radius
-        Of the weights, in spacings.
+        Radius of the weights, in spacings.
     """
 
     dimension: int
@@ -102,12 +98,12 @@ class Column:
 
     @property
     def particles(self) -> int:
-        """How many there are, without walls."""
+        """Number of water particles."""
         return 2 * self.across**self.dimension
 
     @property
     def width(self) -> float:
-        """Of the column, m."""
+        """Width of the column, m."""
         return self.across * SPACING
 
 
@@ -117,8 +113,8 @@ def our_scene(column: Column, threads: int) -> Scene:
     faces = [((0, 0, 0), (0, 0, 1)), ((0, 0, 0), (1, 0, 0)), ((BASIN * width, 0, 0), (-1, 0, 0))]
     if not plane:
         faces += [((0, 0, 0), (0, 1, 0)), ((0, width, 0), (0, -1, 0))]
-    kept = [0, 2] if plane else [0, 1, 2]
-    walls = [Shape.plane(*([vector[d] for d in kept] for vector in face)) for face in faces]
+    axes = [0, 2] if plane else [0, 1, 2]
+    walls = [Shape.plane(*([vector[d] for d in axes] for vector in face)) for face in faces]
     size = (width, 2 * width) if plane else (width, width, 2 * width)
     return Scene(
         dimension=column.dimension,
@@ -175,7 +171,7 @@ def write_basin(column: Column, folder: Path) -> int:
 
 
 def their_seconds(program: Path, column: Column, steps: int, threads: int, folder: Path) -> float:
-    """Return the time MPS-Basic takes for so many steps, with its start, s."""
+    """Return the time of MPS-Basic for a number of steps, including its start, s."""
     far = (BASIN + 1) * column.width + 2 * LAYERS * SPACING
     text = SETTINGS.format(
         dimension=column.dimension,
@@ -236,17 +232,18 @@ def compare(program: Path, column: Column, threads: int) -> dict[str, float]:
 def main() -> None:
     """Print a table of speeds and their ratios, and keep it."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("program", type=Path, help="that of MPS-Basic")
+    parser.add_argument("program", type=Path, help="program of MPS-Basic")
     parser.add_argument("--radius", type=float, nargs="*", default=[2.1, 3.1])
     parser.add_argument("--particles2d", type=int, nargs="*", default=[1458, 9800])
     parser.add_argument("--particles3d", type=int, nargs="*", default=[19652])
     parser.add_argument("--threads", type=int, nargs="*", default=[1, 2])
     options = parser.parse_args()
-    sizes = [(2, one) for one in options.particles2d] + [(3, one) for one in options.particles3d]
+    sizes = [(2, count) for count in options.particles2d]
+    sizes += [(3, count) for count in options.particles3d]
     columns = [Column.of(*size, radius) for size in sizes for radius in options.radius]
     heads = ("", "radius", "threads", "water", "+ walls", "ours/s", "its/s", "+ walls/s")
     print(*(f"{head:>9}" for head in (*heads, "ratio", "+ walls", "our step", "its step")))
-    cases = [compare(options.program, one, n) for one in columns for n in options.threads]
+    cases = [compare(options.program, column, n) for column in columns for n in options.threads]
     keep_cases(cases, "mps")
 
 

@@ -1,6 +1,6 @@
 """Compare the speed of grains with Yade, side by side in one run.
 
-Usage: python benchmarks/beside_yade.py [--size 40] [--threads 2]
+Usage: python -m benchmarks.beside_yade [--size 40] [--threads 2]
 
 Both take steps of the same length in the same confined compression of the same clumps, bonds and
 plates (see benchmarks/engines); the best of two runs counts. A step of one sphere on the surface
@@ -11,25 +11,20 @@ machine meanwhile.
 from __future__ import annotations
 
 import argparse
-import sys
 import tempfile
 import time
 from pathlib import Path
 
 import numpy as np
+from benchmarks.engines.press import Press
+from benchmarks.engines.random_snow import random_snow
+from benchmarks.engines.run import press_with_yade, yade_program
+from benchmarks.engines.voxel_sample import VoxelSample
+from benchmarks.keeping import keep_cases
 
-ROOT = Path(__file__).parent.parent
-sys.path.insert(0, str(ROOT))
-
-from benchmarks.engines.press import Press  # noqa: E402
-from benchmarks.engines.random_snow import random_snow  # noqa: E402
-from benchmarks.engines.run import press_with_yade, yade_program  # noqa: E402
-from benchmarks.engines.voxel_sample import VoxelSample  # noqa: E402
-from benchmarks.keeping import keep_cases  # noqa: E402
-
-from snowshed import GrainsSettings, LoadingStage  # noqa: E402
-from snowshed.running.simulation import Simulation  # noqa: E402
-from snowshed.scene import grains_scene  # noqa: E402
+from snowshed import GrainsSettings, LoadingStage
+from snowshed.running.simulation import Simulation
+from snowshed.scene import grains_scene
 
 VOXEL = 5e-5  # m
 GRAIN = 8  # voxels

@@ -1,22 +1,22 @@
 """Compare snow slides without bonds with the avalanche models of ISeeSnow.
 
-Usage: python benchmarks/iseesnow.py FOLDER [CASE ...]
+Usage: python -m benchmarks.iseesnow FOLDER [CASE ...]
 
 ISeeSnow is an intercomparison of avalanche models (doi:10.5194/egusphere-2025-6053), whose data are
 under EUPL-1.2 and not part of snowshed. FOLDER has one folder per case with the elevations
 (``DEM_*.asc``), the release (``*.shp``) and the peak rasters of a model (``*_pft.asc``, thickness
 in m, and ``*_pfv.asc``, speed in m/s); rasters may be packed (``.xz``). The release is 1.5 m thick
-and mu is 0.4; xi is 2000 m/s2, but for cases with Coulomb in their name, which have none. All else
-is the default mode's default, without bonds.
+and mu is 0.4; xi is 2000 m/s2, except in cases with Coulomb in their name, which have none. All
+other settings are the defaults, without bonds.
 
-Printed are, for both and as a ratio,
+The program prints, for both and as a ratio:
 
 - peak speed and peak thickness: the largest values of the rasters;
 - area: the number of cells whose peak thickness exceeds 0.1 m, times the area of a cell;
 - farthest x: the largest coordinate among these cells;
 
 and cell by cell, over the cells where either exceeds 0.1 m: the mean absolute difference over the
-mean of the model's values, and which share of these cells both have in common.
+mean of the model's values, and the share of these cells that both have in common.
 """
 
 from __future__ import annotations
@@ -42,13 +42,13 @@ REACHED = 0.1  # m
 
 def unpacked(folder: Path, pattern: str, to: Path) -> Path:
     """Return the file that matches a pattern in a folder, or a copy without ``.xz``."""
-    found = sorted([*folder.glob(pattern), *folder.glob(pattern + ".xz")])
-    if not found:
+    files = sorted([*folder.glob(pattern), *folder.glob(pattern + ".xz")])
+    if not files:
         raise SystemExit(f"{folder}: there is no {pattern}")
-    if found[0].suffix != ".xz":
-        return found[0]
-    copy = to / found[0].stem
-    with lzma.open(found[0]) as packed, copy.open("wb") as plain:
+    if files[0].suffix != ".xz":
+        return files[0]
+    copy = to / files[0].stem
+    with lzma.open(files[0]) as packed, copy.open("wb") as plain:
         shutil.copyfileobj(packed, plain)
     return copy
 

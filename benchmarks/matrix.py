@@ -1,11 +1,11 @@
 """Measure every kernel with every instruction set, and name the cells that are out of line.
 
-Usage: python benchmarks/matrix.py path/to/snowshed_bench
+Usage: python -m benchmarks.matrix path/to/snowshed_bench
 
 Prints nanoseconds of processor time for each particle update, on one thread, and writes
 benchmarks/results/DATE-matrix-COMPILER.json. A cell is out of line if it takes more than twice
 what its neighbours predict: those that differ from it in one choice only, such as the transfer,
-scaled by what this choice costs elsewhere.
+scaled by the price of this choice elsewhere.
 """
 
 from __future__ import annotations
@@ -47,27 +47,27 @@ def measure(program: str, variant: str, repetitions: int = 3) -> tuple[Times, st
     environment = {**os.environ, "SNOWSHED_KERNELS": variant}
     done = subprocess.run(command, check=True, capture_output=True, env=environment)
     report = json.loads(done.stdout)
-    found: Times = {}
+    times: Times = {}
     for row in report["benchmarks"]:
         if row["run_type"] != "iteration":
             continue
         cell = tuple(row["name"].split("/")[1 : 1 + len(CHOICES)])
         updates = row["items_per_second"] * row["real_time"] * 1e-3  # in a step
-        found[cell] = min(found.get(cell, np.inf), row["cpu_time"] * 1e6 / updates)
-    return found, report["context"]["compiler"].strip()
+        times[cell] = min(times.get(cell, np.inf), row["cpu_time"] * 1e6 / updates)
+    return times, report["context"]["compiler"].strip()
 
 
 def predicted(times: Times, cell: Cell) -> float:
-    """Return what the other cells predict: additive in the logarithms, by least squares."""
-    others = [one for one in times if one != cell]
-    values = [sorted({one[i] for one in times}) for i in range(len(CHOICES))]
+    """Return the prediction of the other cells: additive in the logarithms, by least squares."""
+    others = [other for other in times if other != cell]
+    values = [sorted({other[i] for other in times}) for i in range(len(CHOICES))]
 
-    def features(one: Cell) -> list[float]:
-        chosen = [float(one[i] == v) for i in range(len(CHOICES)) for v in values[i][1:]]
+    def features(kernel: Cell) -> list[float]:
+        chosen = [float(kernel[i] == v) for i in range(len(CHOICES)) for v in values[i][1:]]
         return [1.0, *chosen]
 
-    matrix = np.array([features(one) for one in others])
-    logarithms = np.log([times[one] for one in others])
+    matrix = np.array([features(other) for other in others])
+    logarithms = np.log([times[other] for other in others])
     weights, *_ = np.linalg.lstsq(matrix, logarithms, rcond=None)
     return float(np.exp(np.array(features(cell)) @ weights))
 
@@ -84,15 +84,15 @@ def findings(times: Times) -> Iterator[str]:
                 yield f"{'/'.join(cell)}: {ratio:.2f} times as long as in single precision"
 
 
-def table(found: dict[str, Times]) -> str:
+def table(matrix: dict[str, Times]) -> str:
     """Return the matrix as a table in Markdown: float and double of each set of instructions."""
-    head = [f"{v}, {p}" for v in found for p in ("float", "double")]
+    head = [f"{v}, {p}" for v in matrix for p in ("float", "double")]
     lines = ["| kernel | " + " | ".join(head) + " |", "| --- |" + " ---: |" * len(head)]
-    cells = sorted(one for one in next(iter(found.values())) if one[1] == "float")
+    cells = sorted(cell for cell in next(iter(matrix.values())) if cell[1] == "float")
     for cell in cells:
         numbers = [
             f"{times[(cell[0], precision, *cell[2:])]:.0f}"
-            for times in found.values()
+            for times in matrix.values()
             for precision in ("float", "double")
         ]
         name = " ".join([cell[0], *cell[2:]])
@@ -115,22 +115,22 @@ def main() -> None:
     if len(sys.argv) != 2:
         raise SystemExit(__doc__)
     measured = {variant: measure(sys.argv[1], variant) for variant in VARIANTS}
-    found = {variant: times for variant, (times, _) in measured.items()}
+    matrix = {variant: times for variant, (times, _) in measured.items()}
     [compiler] = {name for _, name in measured.values()}
-    print(table(found))
-    for variant, times in found.items():
+    print(table(matrix))
+    for variant, times in matrix.items():
         least, most = double_over_float(times)
         print(f"{variant}: double takes {least:.2f} to {most:.2f} times as long as float")
         for finding in findings(times):
             print(f"{variant}: {finding}")
     today = datetime.date.today().isoformat()
-    kept = {
+    rounded = {
         variant: {"/".join(cell): round(time, 2) for cell, time in sorted(times.items())}
-        for variant, times in found.items()
+        for variant, times in matrix.items()
     }
     facts = {
         **{"date": today, "machine": cpu_name(), "compiler": compiler},
-        **{"unit": "ns of processor time", "kernels": kept},
+        **{"unit": "ns of processor time", "kernels": rounded},
     }
     file = RESULTS / f"{today}-matrix-{compiler.split()[0].lower()}.json"
     file.write_text(json.dumps(facts, indent=1) + "\n")

@@ -1,6 +1,6 @@
 """Measure the solver and whole problems, and keep the numbers.
 
-Usage: python benchmarks/record.py path/to/snowshed_bench
+Usage: python -m benchmarks.record path/to/snowshed_bench
 
 Writes benchmarks/results/DATE.json (machine, date, every case) and prints the tables that
 docs/trust/performance.md shows. Nothing else should run on the machine meanwhile.
@@ -17,8 +17,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from keeping import keep_cases
-from tables import print_tables
+from benchmarks.keeping import keep_cases
+from benchmarks.tables import print_tables
 
 from snowshed.base.machine import cpu_name
 from snowshed.running.run import run_events
@@ -73,7 +73,7 @@ def whole_run(name: str, scene: Scene) -> Case:
     with tempfile.TemporaryDirectory() as folder:
         table = run_events(scene, folder, pictures=False)
         run = json.loads((Path(folder) / "run.json").read_text(encoding="utf-8"))
-    kept = (
+    stored = (
         "updates_per_s",
         "particle_updates",
         "slept_updates",
@@ -83,7 +83,7 @@ def whole_run(name: str, scene: Scene) -> Case:
     )
     return {
         "case": name,
-        **{key: run[key] for key in kept},
+        **{key: run[key] for key in stored},
         "height_m": table.height_m.round(3).tolist(),
         "length_m": table.length_m.round(3).tolist(),
     }

@@ -1,9 +1,9 @@
 """Compress samples with Yade and with snowshed, and compare their stresses.
 
-Usage: python benchmarks/strength_beside_yade.py FOLDER/samples/field-318-*-coarser2.npy
+Usage: python -m benchmarks.strength_beside_yade FOLDER/samples/field-318-*-coarser2.npy
 [--strain 0.15]
 
-The files are those of `snowshed reproduce hagenmuller --quick -o FOLDER`: labels on voxels of
+The files are those of `snowshed reproduce hagenmuller2015 --quick -o FOLDER`: labels on voxels of
 100 um. Both engines press the same clumps, bonds and plates with the same law. Ice has its own
 density, and the plate is so fast that density times speed squared is that of the reproduction.
 Prints the peak below 5 % of strain and the means from 5 to 10 and from 10 to 15 %, kPa, and writes
@@ -13,23 +13,18 @@ benchmarks/results/DATE-yade-strength.json. Yade takes some five minutes a sampl
 from __future__ import annotations
 
 import argparse
-import sys
 import tempfile
 from pathlib import Path
 
 import numpy as np
+from benchmarks.engines.press import Press
+from benchmarks.engines.run import press_with_yade, yade_program
+from benchmarks.engines.voxel_sample import VoxelSample
+from benchmarks.keeping import keep_cases
 
-ROOT = Path(__file__).parent.parent
-sys.path.insert(0, str(ROOT))
-
-from benchmarks.engines.press import Press  # noqa: E402
-from benchmarks.engines.run import press_with_yade, yade_program  # noqa: E402
-from benchmarks.engines.voxel_sample import VoxelSample  # noqa: E402
-from benchmarks.keeping import keep_cases  # noqa: E402
-
-from snowshed import GrainsSettings, LoadingStage  # noqa: E402
-from snowshed.running.run import run  # noqa: E402
-from snowshed.scene import grains_scene  # noqa: E402
+from snowshed import GrainsSettings, LoadingStage
+from snowshed.running.run import run
+from snowshed.scene import grains_scene
 
 VOXEL = 1e-4  # m
 SPEED = 0.02 * 10**0.5  # m/s, with ice of its own density
@@ -42,9 +37,9 @@ def ours(file: Path, strain: float) -> list[float]:
     stage = LoadingStage(kind="compress", speed=SPEED, strain=strain)
     scene = grains_scene(file, VOXEL, [stage], settings=GrainsSettings(damping=0.2, threads=1))
     with tempfile.TemporaryDirectory() as name:
-        found = run(scene.update({"gravity": 0}), Path(name) / "out", pictures=False).summary
-    stresses = (found.strength_pa, found.mean_stress_5_10_pa, found.mean_stress_10_15_pa)
-    return [float("nan") if one is None else one / 1e3 for one in stresses]
+        summary = run(scene.update({"gravity": 0}), Path(name) / "out", pictures=False).summary
+    stresses = (summary.strength_pa, summary.mean_stress_5_10_pa, summary.mean_stress_10_15_pa)
+    return [float("nan") if value is None else value / 1e3 for value in stresses]
 
 
 def theirs(file: Path, strain: float) -> list[float]:
@@ -56,7 +51,7 @@ def theirs(file: Path, strain: float) -> list[float]:
     strains = record.time * SPEED / sample.height
     stress = np.abs(record.force) / (sample.box[0] * sample.box[1]) / 1e3
     within = [stress[(strains > low) & (strains <= high)] for low, high in RANGES]
-    means = [float(one.mean()) if len(one) else float("nan") for one in within]
+    means = [float(part.mean()) if len(part) else float("nan") for part in within]
     return [float(stress[strains <= RANGES[0][0]].max()), *means]
 
 
@@ -73,7 +68,7 @@ def main() -> None:
     for file in options.samples:
         for engine, press in (("snowshed", ours), ("Yade", theirs)):
             stresses = press(file, options.strain)
-            print(f"{file.stem[-20:]:>20} {engine:>9}", *(f"{one:>8.3g}" for one in stresses))
+            print(f"{file.stem[-20:]:>20} {engine:>9}", *(f"{value:>8.3g}" for value in stresses))
             cases.append({"sample": file.stem, "engine": engine, "kpa": stresses})
     keep_cases(cases, "yade-strength")
 

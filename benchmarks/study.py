@@ -1,6 +1,6 @@
 """Measure what the study engine costs, and how two workers share equal runs.
 
-Usage: python benchmarks/study.py
+Usage: python -m benchmarks.study
 
 Prints the overhead (wall time beyond the runs' own) and the gain of two workers, and keeps both in
 benchmarks/results/DATE-study.json. Nothing else should run on the machine meanwhile.
@@ -41,19 +41,20 @@ def measure(jobs: int) -> dict[str, float]:
 
 def main() -> None:
     """Measure one worker and two, and keep the numbers."""
-    one, two = measure(1), measure(2)
+    single, double = measure(1), measure(2)
     result = {
         "machine": cpu_name(),
         "date": datetime.date.today().isoformat(),
         "runs": RUNS,
-        "measured": [one, two],
-        "overhead": one["wall_s"] / one["runs_s"] - 1,
-        "gain_of_two": one["wall_s"] / two["wall_s"],
+        "measured": [single, double],
+        "overhead": single["wall_s"] / single["runs_s"] - 1,
+        "gain_of_two": single["wall_s"] / double["wall_s"],
     }
     file = RESULTS / f"{result['date']}-study.json"
     file.write_text(json.dumps(result, indent=1) + "\n")
     print(
-        f"{RUNS} runs of {one['runs_s'] / RUNS:.1f} s: overhead {result['overhead']:.1%}, ", end=""
+        f"{RUNS} runs of {single['runs_s'] / RUNS:.1f} s: overhead {result['overhead']:.1%}, ",
+        end="",
     )
     print(f"two workers {result['gain_of_two']:.2f} times as fast as one")
 

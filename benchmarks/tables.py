@@ -1,6 +1,6 @@
 """The tables of docs/trust/performance.md, from the cases that benchmarks/record.py measured.
 
-Usage: python benchmarks/tables.py benchmarks/results/DATE.json
+Usage: python -m benchmarks.tables benchmarks/results/DATE.json
 """
 
 from __future__ import annotations
@@ -35,14 +35,14 @@ PRICES = {
 
 def speeds(cases: list[Case]) -> None:
     """Print the speed of whole steps, and their share of the bare kernel's."""
-    found = {case["case"]: case for case in cases}
+    by_name = {case["case"]: case for case in cases}
     print("| case | threads | M updates/s | over the bare kernel | bytes per particle |")
     print("| --- | --- | --- | --- | --- |")
-    for name, case in found.items():
+    for name, case in by_name.items():
         if not name.startswith(("slab_", "bare_")):
             continue
         what, threads = name.rsplit("/", 1)
-        bare = found[f"bare_kernel_3d/float/{threads}"]["updates_per_s"]
+        bare = by_name[f"bare_kernel_3d/float/{threads}"]["updates_per_s"]
         share = f"{case['updates_per_s'] / bare:.2f}" if name.startswith("slab_3d/float") else ""
         memory = f"{case['bytes_per_particle']:.0f}" if case["bytes_per_particle"] else ""
         speed = case["updates_per_s"] / 1e6
@@ -52,13 +52,13 @@ def speeds(cases: list[Case]) -> None:
 def prices(cases: list[Case]) -> None:
     """Print what each feature adds to an update, in ns and in bytes per particle."""
     prefix = "price/"
-    found = {
+    features = {
         case["case"][len(prefix) :].rsplit("/", 1)[0]: case
         for case in cases
         if case["case"].startswith(prefix)
     }
-    ns = {name: 1e9 / case["updates_per_s"] for name, case in found.items()}
-    size = {name: case["bytes_per_particle"] for name, case in found.items()}
+    ns = {name: 1e9 / case["updates_per_s"] for name, case in features.items()}
+    size = {name: case["bytes_per_particle"] for name, case in features.items()}
     print("| feature | ns per update | bytes per particle |\n| --- | --- | --- |")
     print(f"| plain elastic snow in 3D | {ns['base_3d']:.1f} | {size['base_3d']:.0f} |")
     for feature, (with_it, without) in PRICES.items():
@@ -68,9 +68,9 @@ def prices(cases: list[Case]) -> None:
 
 def exponent(cases: list[Case]) -> float:
     """Return the power of the particle number that the time of a step follows."""
-    found = [case for case in cases if case["case"].startswith("scaling_")]
-    particles = np.array([float(case["case"].split("/")[1]) for case in found])
-    seconds = particles / np.array([case["updates_per_s"] for case in found])
+    scaled = [case for case in cases if case["case"].startswith("scaling_")]
+    particles = np.array([float(case["case"].split("/")[1]) for case in scaled])
+    seconds = particles / np.array([case["updates_per_s"] for case in scaled])
     return float(np.polyfit(np.log(particles), np.log(seconds), 1)[0])
 
 
@@ -82,11 +82,11 @@ def scaling(cases: list[Case]) -> None:
         if not case["case"].startswith("scaling_"):
             continue
         particles = int(case["case"].split("/")[1])
-        whole = (
+        process = (
             f"{1e6 * case['peak_memory_mb'] / particles:.0f}" if "peak_memory_mb" in case else ""
         )
         speed, memory = case["updates_per_s"] / 1e6, case["bytes_per_particle"]
-        print(f"| {particles:,} | {speed:.1f} | {memory:.0f} | {whole} |")
+        print(f"| {particles:,} | {speed:.1f} | {memory:.0f} | {process} |")
     print(
         f"\nThe time of a step grows with the particle number to the power {exponent(cases):.3f}."
     )

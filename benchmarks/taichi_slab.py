@@ -1,6 +1,6 @@
 """The slab of cpp/bench/solver_bench.cpp, side by side in snowshed and in Taichi.
 
-Usage: python benchmarks/taichi_slab.py [--steps 50] [--threads 2] [--atomic] [--json FILE]
+Usage: python -m benchmarks.taichi_slab [--steps 50] [--threads 2] [--atomic] [--json FILE]
 
 Needs Taichi (pip install taichi). 262 144 particles of reference snow on sticky ground, float,
 quadratic splines, FLIP 0.99. Taichi takes the time steps that snowshed chose, free of charge, and
@@ -122,16 +122,16 @@ class CamClay:
     @ti.func
     def stress(self, b, ev):
         """Kirchhoff stress, elastic b - I and plastic strain from the trial b - I."""
-        one = ti.Matrix.identity(ti.f32, 3)
+        identity = ti.Matrix.identity(ti.f32, 3)
         strain = 0.5 * power_series(LOG1P, b)
-        shear = strain - strain.trace() / 3 * one
+        shear = strain - strain.trace() / 3 * identity
         q_trial = self.root6_mu * shear.norm()
         p, q, ev_new = self.return_map(-self.bulk * strain.trace(), q_trial, ev)
         b_new = b
         if q != q_trial or ev_new != ev:
             shear *= q / ti.max(q_trial, 1e-30)
-            b_new = power_series(EXPM1, 2 * (shear - p / (3 * self.bulk) * one))
-        return 2 * self.mu * shear - p * one, b_new, ev_new
+            b_new = power_series(EXPM1, 2 * (shear - p / (3 * self.bulk) * identity))
+        return 2 * self.mu * shear - p * identity, b_new, ev_new
 
 
 @ti.data_oriented

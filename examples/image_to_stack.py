@@ -1,10 +1,11 @@
-"""From an image of snow to the stack below a panel, by way of loading tests of its grains.
+"""From an image of snow, through loading tests of its grains, to the stack below a panel.
 
     python examples/image_to_stack.py [FOLDER [VOXELS [COARSER [DX]]]]
 
-The image is synthetic (318 kg/m3, voxels of 50 um), since none comes with snowshed: give
-``segment`` your own instead. COARSER is how many voxels make a sphere, DX the grid of the scene in
-m. Half a minute on two free cores. Draws ``image_to_stack.png`` into the folder.
+The image is synthetic (318 kg/m3, voxels of 50 um), because snowshed ships none; pass your own to
+``segment``. COARSER is the number of voxels along the edge of a sphere, DX the grid of the scene in
+m. The example takes half a minute on two free cores, and draws ``image_to_stack.png`` into the
+folder.
 """
 
 import json
@@ -35,7 +36,7 @@ def main(folder: Path, voxels: int = 40, coarser: int = 2, dx: float = 0.01) -> 
     (snow,) = material.glob("snow-*.json")
     command(f"panel --preset lab-50 --dim 2 --dx {dx} --snow {snow} -o {stack}")
     draw(folder, material, snow)
-    tell(snow, stack)
+    print_results(snow, stack)
 
 
 def stages() -> list[str]:
@@ -70,7 +71,7 @@ def draw(folder: Path, material: Path, snow: Path) -> None:
     save_figure(figure, folder / "image_to_stack.png")
 
 
-def tell(snow: Path, stack: Path) -> None:
+def print_results(snow: Path, stack: Path) -> None:
     """Print the fitted snow and the table of events."""
     data = json.loads(snow.read_text(encoding="utf-8"))
     provenance = data.pop("provenance")

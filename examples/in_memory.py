@@ -19,7 +19,7 @@ def main(folder: str = "in-memory", dx: float = 0.01) -> None:
     simulation = Simulation(scene)
     simulation.begin_event()
 
-    speed = simulation.fields["velocity"]  # read anew each time it is asked for
+    speed = simulation.fields["velocity"]  # each access reads the present values
     print(f"{simulation.particle_count} particles; velocity in {speed.unit}")
     for time in (0.1, 0.2, 0.3):
         simulation.run(until=time)

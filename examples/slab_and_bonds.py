@@ -43,7 +43,7 @@ def main(folder: Path, seconds: float) -> None:
         for name, strain in STRAINS.items()
     }
     for name, states in slabs.items():
-        counts = ", ".join(f"{len(one.bonds)} at {one.time:.1f} s" for one in states)
+        counts = ", ".join(f"{len(state.bonds)} at {state.time:.1f} s" for state in states)
         print(f"bonds in the event with {name}: {counts}")
     draw(ground, outlines, slabs, folder / "slab_and_bonds.png")
 
@@ -51,7 +51,7 @@ def main(folder: Path, seconds: float) -> None:
 def draw(ground: Raster, outlines: list, slabs: dict, file: Path) -> None:
     """Draw a row for each slab and a column for each time."""
     origin = (ground.east, ground.north)
-    snow = [one.positions[:, :2] + origin for states in slabs.values() for one in states]
+    snow = [state.positions[:, :2] + origin for states in slabs.values() for state in states]
     part = focus(ground, np.zeros(ground.heights.shape, dtype=bool), [*outlines, *snow])
     with rc_context(STYLE):
         ratio = (part[3] - part[2]) / (part[1] - part[0])
@@ -59,11 +59,11 @@ def draw(ground: Raster, outlines: list, slabs: dict, file: Path) -> None:
         panels = figure.subplots(len(slabs), len(SHARES), squeeze=False)
         for row, (name, states) in zip(panels, slabs.items()):
             for axes, state in zip(row, states):
-                places = state.positions[:, :2] + origin
+                positions = state.positions[:, :2] + origin
                 draw_terrain(axes, ground, part, labels=False)
-                bonds = LineCollection(places[state.bonds], colors=STACK, lw=0.8, zorder=4)
+                bonds = LineCollection(positions[state.bonds], colors=STACK, lw=0.8, zorder=4)
                 axes.add_collection(bonds)
-                axes.plot(*places.T, ".", ms=2.4, mew=0, color=INK, zorder=5)
+                axes.plot(*positions.T, ".", ms=2.4, mew=0, color=INK, zorder=5)
                 draw_outlines(axes, outlines)
                 axes.set(xticks=[], yticks=[])
                 axes.set_title(f"{name}, {state.time:.0f} s: {len(state.bonds):,} bonds")

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import pytest
-from paths import ROOT
+from helpers.paths import ROOT
 from test_language import CONSTRUCTIONS, OPENINGS
 
 FOLDERS = ("snowshed", "bindings", "apps", "vdb")

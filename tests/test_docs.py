@@ -11,7 +11,7 @@ from pathlib import Path
 
 import click
 import pytest
-from paths import DOCS, ROOT
+from helpers.paths import DOCS, ROOT
 from validation.framework.command import validate
 
 from snowshed import Scene
@@ -26,7 +26,7 @@ GENERATED = {
     "reference/api.md",
 }
 WRITTEN = [page for page in PAGES if page.relative_to(ROOT).as_posix()[5:] not in GENERATED]
-LONGEST, LONGEST_README = 250, 120
+MAX_LINES, MAX_LINES_README = 250, 120
 #: Programs that the documentation starts, and the command behind each.
 PROGRAMS = {
     "snowshed": cli,
@@ -125,7 +125,7 @@ def test_every_page_is_in_the_table_of_contents():
 @pytest.mark.parametrize("page", WRITTEN, ids=name_of)
 def test_no_written_page_is_long(page):
     lines = len(page.read_text(encoding="utf-8").splitlines())
-    assert lines <= (LONGEST_README if page.name == "README.md" else LONGEST)
+    assert lines <= (MAX_LINES_README if page.name == "README.md" else MAX_LINES)
 
 
 @pytest.mark.parametrize("page", PAGES, ids=name_of)

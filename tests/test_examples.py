@@ -5,7 +5,7 @@ import subprocess
 import sys
 
 import pytest
-from paths import ROOT
+from helpers.paths import ROOT
 
 from snowshed import Scene, read_events, run_events
 from snowshed.cli.main import main

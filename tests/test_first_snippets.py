@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from conftest import tiny_scene
-from slide_files import plane, write_polygons
+from helpers.slide_files import plane, write_polygons
 
 import snowshed
 from snowshed import InputError, Panel, Results, Scene, Simulation, Slab, Study

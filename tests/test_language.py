@@ -2,11 +2,13 @@
 
 import ast
 import inspect
+import io
 import re
+import tokenize
 
 import click
 import pytest
-from paths import DOCS, ROOT
+from helpers.paths import DOCS, ROOT
 
 from snowshed.cli.deferred import Deferred
 from snowshed.cli.main import cli
@@ -14,11 +16,20 @@ from snowshed.cli.main import cli
 PACKAGE = ROOT / "python" / "snowshed"
 #: Rooms whose names and texts follow the rules; others join when they do.
 CLEAN = ("base", "io", "methods", "scene", "snow", "plot", "results", "running", "season", "study")
-CLEAN += ("analysis", "cli", "reproductions", "validation")
+CLEAN += ("analysis", "cli", "reproductions", "validation", "benchmarks", "examples", "tools")
 #: Those of them that stand beside the package.
-OUTSIDE = ("reproductions", "validation")
+OUTSIDE = ("reproductions", "validation", "benchmarks", "examples", "tools")
 #: Names that say nothing about their values.
 EMPTY_NAMES = {"found", "one", "way", "kept", "places"}
+EMPTY_NAMES |= {"ready", "told", "said", "lies", "whole", "made"}
+
+#: Names of limits that are not `max_` or `min_`.
+SUPERLATIVES = re.compile(
+    r"_?(MOST|LEAST|LARGEST|LONGEST|SMALLEST|SHORTEST|HIGHEST|LOWEST|DEEPEST|WIDEST|FEWEST)(_|$)"
+    r"|_?(most|least)_"
+)
+#: Names of columns in stored tables.
+STORED_NAMES = {"most_seeds"}
 
 #: First words of descriptions that begin with their object or a relative clause.
 OPENINGS = re.compile(r"(Of|What|By|That|How|Which|Whose|Where to) ")
@@ -49,14 +60,24 @@ CONSTRUCTIONS = re.compile(
             r"\bhangs? on\b",
             r"\btells? nobody\b",
             r"\bit says so\b",
+            r"\b(?-i:Compared|Printed|Measured|Shown|Told|Read) (are|is)\b",
+            r", for (there|it|they|we)\b",
+            r"\botherwise than\b",
+            r"\bas far as .* tells?\b",
+            r"\ball this if\b",
         )
     ),
     re.IGNORECASE,
 )
+#: Those that the C++ sources do not avoid yet.
+IN_PYTHON = re.compile(
+    r"\bstays? what (it|they) (was|is|were|are)\b|\ba(fresh|new)\b", re.IGNORECASE
+)
 #: The same for pages, most of which describe methods.
 IN_PAGES = re.compile(
     r"\bfor want of\b|\bnobody knows\b|\bso-manieth\b|\blets? go\b|\bwhoever\b|\bif it likes\b"
-    r"|\b(is|are) to be\b|\bRead are\b|\bTold are\b|\bby what\b"
+    r"|\b(is|are) to be\b|\b(Compared|Printed|Measured|Shown|Told|Read) are\b|\bby what\b"
+    r"|\bstays? what (it|they) (was|is|were|are)\b|\botherwise than\b|\ba(fresh|new)\b"
 )
 SECTION = re.compile(r"^(Parameters|Attributes|Returns|Yields|Raises|Examples|Notes)\n-+$", re.M)
 
@@ -83,6 +104,17 @@ def bound_names(tree):
             yield node.lineno, node.arg
         elif isinstance(node, ast.FunctionDef):
             yield node.lineno, node.name.strip("_")
+
+
+@pytest.mark.parametrize("room", CLEAN)
+def test_limits_are_named_max_and_min(room):
+    wrong = [
+        f"{name_of(path)}:{line}: {name}"
+        for path in sources([room])
+        for line, name in bound_names(ast.parse(path.read_text(encoding="utf-8")))
+        if SUPERLATIVES.match(name) and name not in STORED_NAMES
+    ]
+    assert wrong == []
 
 
 @pytest.mark.parametrize("room", CLEAN)
@@ -125,6 +157,28 @@ def literals(tree):
             yield node.lineno, " ".join(node.value.split())
 
 
+def comments(source):
+    """Yield line and text of every comment; adjacent lines are one text."""
+    text, begin, last = "", 0, -1
+    for token in tokenize.generate_tokens(io.StringIO(source).readline):
+        if token.type == tokenize.COMMENT:
+            line, words = token.start[0], token.string.lstrip("#:").strip()
+            if line == last + 1:
+                text = f"{text} {words}"
+            else:
+                if text:
+                    yield begin, text
+                text, begin = words, line
+            last = line
+    if text:
+        yield begin, text
+
+
+def test_adjacent_comments_are_one_text():
+    source = "#: The stack is seeded\n#: anew.\na = 1\nb = 2  # m\n"
+    assert list(comments(source)) == [(1, "The stack is seeded anew."), (4, "m")]
+
+
 def help_texts(command, name):
     """Yield the name and the help of every option and command that is listed."""
     command = command.load() if isinstance(command, Deferred) else command
@@ -154,8 +208,11 @@ def test_texts_need_no_second_reading(room):
     wrong = [
         f"{name_of(path)}:{line}: …{match[0]}…"
         for path in sources([room])
-        for line, text in literals(ast.parse(path.read_text(encoding="utf-8")))
-        if (match := CONSTRUCTIONS.search(text)) and " " in text
+        for line, text in [
+            *literals(ast.parse(path.read_text(encoding="utf-8"))),
+            *comments(path.read_text(encoding="utf-8")),
+        ]
+        if (match := CONSTRUCTIONS.search(text) or IN_PYTHON.search(text)) and " " in text
     ]
     assert wrong == []
 
@@ -180,7 +237,7 @@ def prose(page):
     return [re.sub(r"`[^`]*`", "`…`", part) for part in re.split(r"\n\s*\n", text)]
 
 
-PAGES = [ROOT / "README.md", *sorted(DOCS.rglob("*.md"))]
+PAGES = [ROOT / "README.md", *sorted(DOCS.rglob("*.md")), *sorted(ROOT.glob("lua_compat/*.md"))]
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
@@ -196,34 +253,36 @@ def former_words():
     return {word: term for term, cell in rows for word in re.findall(r"`([^`]+)`", cell)}
 
 
-def test_one_concept_has_one_word():
+def in_former_words(texts):
+    """Return the former words in texts, each with the name of its text and the present term."""
     former = former_words()
-    assert former["snowshed verify"] == "self-test" and former["--plan"] == "dry run"
-    texts = [(name, text) for name, text in help_texts(cli, "snowshed")]
-    texts += [
-        (f"{name_of(path)}:{line}", text)
-        for path in sources()
-        if path.name not in ("common_options.py", "main.py")  # they define the former spellings
-        for line, text in literals(ast.parse(path.read_text(encoding="utf-8")))
-    ]
-    wrong = [
+    return [
         f"{name}: {word} (write: {term})"
         for name, text in texts
         for word, term in former.items()
         if re.search(rf"(?<![\w-]){re.escape(word)}(?![\w-])", text)
     ]
-    assert wrong == []
+
+
+def test_one_concept_has_one_word():
+    former = former_words()
+    assert former["snowshed verify"] == "self-test" and former["--plan"] == "dry run"
+    assert in_former_words([("page", "Then\nthe stack is seeded anew.")])
+    texts = [(name, text) for name, text in help_texts(cli, "snowshed")]
+    texts += [
+        (f"{name_of(path)}:{line}", text)
+        for path in sources()
+        if path.name not in ("common_options.py", "main.py")  # they define the former spellings
+        for line, text in [
+            *literals(ast.parse(path.read_text(encoding="utf-8"))),
+            *comments(path.read_text(encoding="utf-8")),
+        ]
+    ]
+    assert in_former_words(texts) == []
 
 
 def test_pages_use_the_words_of_the_glossary():
-    former = {
-        word: term for word, term in former_words().items() if word[0] == "-" or "snow" in word
-    }
-    wrong = [
-        f"{page.name}: {word} (write: {term})"
-        for page in PAGES
-        if page.name != "glossary.md"
-        for word, term in former.items()
-        if re.search(rf"(?<![\w-]){re.escape(word)}(?![\w-])", page.read_text(encoding="utf-8"))
-    ]
-    assert wrong == []
+    pages = [page for page in PAGES if page.name != "glossary.md"]
+    pages += sorted(ROOT.glob("lua_compat/*/*.lua"))
+    texts = [(page.name, " ".join(page.read_text(encoding="utf-8").split())) for page in pages]
+    assert in_former_words(texts) == []

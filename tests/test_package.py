@@ -5,8 +5,8 @@ import subprocess
 import sys
 
 import pytest
-from processes import modules_after
-from requirements import MODULES_OF, required
+from helpers.processes import modules_after
+from helpers.requirements import MODULES_OF, required
 
 import snowshed
 

@@ -13,7 +13,7 @@ from types import GenericAlias
 import numpy as np
 import pandas as pd
 import pytest
-from paths import ROOT
+from helpers.paths import ROOT
 
 import snowshed
 

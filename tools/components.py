@@ -71,8 +71,8 @@ def _class_lines(lines: list[str], node: ast.ClassDef, record: type[Record], des
     inside = lines[node.lineno - 1 : node.end_lineno]
     start = node.lineno - 1
     doc = node.body[0]
-    fields = [one for one in node.body if isinstance(one, ast.AnnAssign) and _is_field(one)]
-    texts = {one.target.id: lines[one.lineno - 1 : one.end_lineno] for one in fields}
+    fields = [item for item in node.body if isinstance(item, ast.AnnAssign) and _is_field(item)]
+    texts = {item.target.id: lines[item.lineno - 1 : item.end_lineno] for item in fields}
     head = "\n".join(inside[: doc.end_lineno - start])
     body_start = fields[-1].end_lineno - start if fields else doc.end_lineno - start
     names = {
@@ -92,8 +92,8 @@ def _is_field(node: ast.AnnAssign) -> bool:
 
 def _with_section(head: str, record: type[Record], described: dict) -> str:
     section = attributes_section(record, scene_schema(), described)
-    before, found, rest = head.partition(SECTION)
-    if not found:
+    before, heading, rest = head.partition(SECTION)
+    if not heading:
         raise SystemExit(f"{record.__name__}: its docstring has no section Attributes")
     after = rest.find("\n\n")
     tail = rest[after:] if after >= 0 else '\n    """'
@@ -104,7 +104,7 @@ def _annotation(key: str, child: Mapping) -> str:
     """Return the type of a field that is new in the description."""
     full = resolve(scene_schema(), child)
     if "enum" in full:
-        return f"Optional[Literal[{', '.join(repr(one) for one in full['enum'])}]]".replace(
+        return f"Optional[Literal[{', '.join(repr(value) for value in full['enum'])}]]".replace(
             "'", '"'
         )
     if full.get("type") in TYPES:

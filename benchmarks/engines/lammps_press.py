@@ -35,21 +35,21 @@ def plate(sample: VoxelSample, z: float) -> np.ndarray:
 
 
 def write_data(sample: VoxelSample, file: Path) -> None:
-    """Write spheres and bonds as LAMMPS reads them."""
+    """Write atoms and bonds as LAMMPS reads them."""
     number = np.cumsum(sample.surface)  # from 1
     grains = sample.centres[sample.surface]
     plates = [plate(sample, -sample.radius), plate(sample, sample.height + sample.radius)]
-    places = np.concatenate([grains, *plates])
-    body = np.zeros(len(places), dtype=int)
+    atoms = np.concatenate([grains, *plates])
+    body = np.zeros(len(atoms), dtype=int)
     body[: len(grains)] = sample.grain[sample.surface] + 1
     kind = np.repeat([GRAIN, BOTTOM, TOP], [len(grains), len(plates[0]), len(plates[1])])
     margin = 10 * sample.radius
-    bounds = [(places[:, axis].min() - margin, places[:, axis].max() + margin) for axis in range(3)]
-    lines = ["Voxels of snow", "", f"{len(places)} atoms", f"{len(sample.bonds)} bonds"]
+    bounds = [(atoms[:, axis].min() - margin, atoms[:, axis].max() + margin) for axis in range(3)]
+    lines = ["Voxels of snow", "", f"{len(atoms)} atoms", f"{len(sample.bonds)} bonds"]
     lines += ["3 atom types", "1 bond types", ""]
     lines += [f"{low} {high} {x}lo {x}hi" for (low, high), x in zip(bounds, "xyz")]
     lines += ["", "Atoms # bpm/sphere", ""]
-    for i, (x, b, k) in enumerate(zip(places, body, kind), start=1):
+    for i, (x, b, k) in enumerate(zip(atoms, body, kind), start=1):
         lines.append(f"{i} {b} {k} {2 * sample.radius} {ICE_DENSITY} {x[0]!r} {x[1]!r} {x[2]!r}")
     lines += ["", "Bonds", ""]
     for i, (a, b) in enumerate(number[sample.bonds], start=1):

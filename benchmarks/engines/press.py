@@ -1,4 +1,4 @@
-"""What all engines are asked to do: press a sample between plates, confined by smooth walls."""
+"""The test that all engines run: a sample is compressed between plates and smooth walls."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ class Press:
     Attributes
     ----------
     strain
-        Of the sample's height, at which the test ends.
+        Strain at which the test ends, relative to the sample's height.
     every
         Steps between two records of the force.
     """

@@ -26,8 +26,8 @@ def random_snow(size: int, grain: float, ice: float = 0.45, seed: int = 1) -> np
     pieces, _ = ndimage.label(solid)
     solid = pieces == np.argmax(np.bincount(pieces.ravel())[1:]) + 1
     seeds = random.uniform(0, size, (round((size / grain) ** 3), 3))
-    places = np.argwhere(np.ones((size,) * 3)) + 0.5
-    distance = ((places[:, None, :] - seeds[None, :, :]) ** 2).sum(axis=2)
+    positions = np.argwhere(np.ones((size,) * 3)) + 0.5
+    distance = ((positions[:, None, :] - seeds[None, :, :]) ** 2).sum(axis=2)
     cells = 1 + distance.argmin(axis=1).reshape((size,) * 3)
     labels = np.where(solid, cells, 0)
     small = np.bincount(labels.ravel()) < 8

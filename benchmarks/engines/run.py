@@ -19,7 +19,7 @@ LAMMPS_PYTHON = "SNOWSHED_LAMMPS_PYTHON"  # names the interpreter that has LAMMP
 
 @dataclass(frozen=True)
 class Record:
-    """What an engine measured, over time."""
+    """Measurements of an engine over time."""
 
     time: np.ndarray  # s
     force: np.ndarray  # N, on the top plate
@@ -75,5 +75,5 @@ def _run(
     )
     if done.returncode or not files[2].exists():
         raise RuntimeError(f"{program[0]} failed:\n{done.stdout[-2000:]}\n{done.stderr[-2000:]}")
-    with np.load(files[2]) as found:
-        return Record(found["time_s"], found["top_n"], found["bonds"], float(found["wall_s"]))
+    with np.load(files[2]) as data:
+        return Record(data["time_s"], data["top_n"], data["bonds"], float(data["wall_s"]))

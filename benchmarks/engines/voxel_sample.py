@@ -1,7 +1,7 @@
-"""Voxels of snow as clumps of spheres, for engines that know nothing of images.
+"""Spheres and bonds from voxels, for engines without images.
 
-Written apart from the solver, of which it is a witness: both make the same spheres, bonds, masses
-and moments of inertia of an image. Needs NumPy only, since engines bring their own Python.
+The module is independent of the solver and checks it: both make the same spheres, bonds, masses and
+moments of inertia from an image. It needs only NumPy, because engines bring their own Python.
 """
 
 from __future__ import annotations
@@ -22,17 +22,18 @@ class VoxelSample:
     Attributes
     ----------
     centres, grain
-        Of all voxels of ice, (n, 3) in m, and the grain that each belongs to, (n,).
+        Centres of all voxels of ice, (n, 3) in m, and the grain of each, (n,).
     surface
-        Which voxels meet air or another grain, and are spheres, (n,).
+        Whether a voxel meets air or another grain, and is a sphere, (n,).
     bonds
         Pairs of voxels of two grains that share a face, (m, 2).
     mass, centre, inertia
-        Of each grain, kg, m and kg m2: (g,), (g, 3), (g, 3, 3). Each voxel is a cube.
+        Mass, centre of mass and moments of inertia of each grain, kg, m and kg m2: (g,), (g, 3),
+        (g, 3, 3). Each voxel is a cube.
     box
-        Edges, m.
+        Edges of the box, m.
     radius
-        Of the spheres, m.
+        Radius of the spheres, m.
     """
 
     centres: np.ndarray
@@ -49,11 +50,11 @@ class VoxelSample:
     def of_labels(cls, labels: np.ndarray, voxel: float) -> VoxelSample:
         """Return the sample of an image (nz, ny, nx): 0 is air, any other number a grain."""
         image = np.ascontiguousarray(labels.transpose(2, 1, 0))
-        places = np.argwhere(image)
-        _, grain = np.unique(image[tuple(places.T)], return_inverse=True)
+        voxels = np.argwhere(image)
+        _, grain = np.unique(image[tuple(voxels.T)], return_inverse=True)
         grain = grain.reshape(-1)
         number = np.full(image.shape, -1)
-        number[tuple(places.T)] = np.arange(len(places))
+        number[tuple(voxels.T)] = np.arange(len(voxels))
         padded = np.pad(image, 1)
         inner = np.ones(image.shape, dtype=bool)
         bonds = []
@@ -67,12 +68,12 @@ class VoxelSample:
             bonds.append(
                 np.stack([number[tuple(joined.T)], number[tuple((joined + face).T)]], axis=1)
             )
-        centres = voxel * (places + 0.5)
+        centres = voxel * (voxels + 0.5)
         mass, centre, inertia = _weigh(centres, grain, voxel)
         return cls(
             centres=centres,
             grain=grain,
-            surface=~inner[tuple(places.T)],
+            surface=~inner[tuple(voxels.T)],
             bonds=np.concatenate(bonds),
             mass=mass,
             centre=centre,
@@ -83,7 +84,7 @@ class VoxelSample:
 
     @property
     def height(self) -> float:
-        """Between the plates, m."""
+        """Distance between the plates, m."""
         return float(self.box[2])
 
     def save(self, file: Path) -> None:
@@ -92,10 +93,10 @@ class VoxelSample:
 
     @classmethod
     def load(cls, file: Path) -> VoxelSample:
-        """Read what `save` wrote."""
+        """Read a file that `save` wrote."""
         with np.load(file) as data:
-            found = {field.name: data[field.name] for field in fields(cls)}
-        return cls(**{**found, "radius": float(found["radius"])})
+            arrays = {field.name: data[field.name] for field in fields(cls)}
+        return cls(**{**arrays, "radius": float(arrays["radius"])})
 
 
 def _weigh(

@@ -1,11 +1,11 @@
 """Confined compression of a sample with Yade: yade -n -x yade_press.py SAMPLE PRESS OUT [steps].
 
-SAMPLE is what `VoxelSample.save` writes, PRESS what `Press.save` writes, OUT an NPZ file with
-time_s, top_n (force on the top plate), bonds, and wall_s of the steps.
+SAMPLE is a file of `VoxelSample.save`, PRESS a file of `Press.save`, OUT an NPZ file with time_s,
+top_n (force on the top plate), bonds, and wall_s of the steps.
 
 Yade weighs a clump by its spheres. So all voxels become spheres here, also the inner ones, with the
-mass of a voxel. What is left of the inertia, that of a cube and not of a ball, is isotropic and is
-added. For measurements of speed, with a number of steps, only the surface is made, with that mass.
+mass of a voxel. The difference in inertia between a cube and a ball is isotropic and is added. For
+measurements of speed, with a number of steps, only the surface is made, with that mass.
 
 The folder of this file must be in PYTHONPATH.
 """
@@ -49,10 +49,10 @@ class Pressed:
         self._set_engines()
         self.bonds = self._bond(sample)
 
-    def _add_grains(self, sample: VoxelSample, rough: int, made: np.ndarray) -> np.ndarray:
+    def _add_grains(self, sample: VoxelSample, rough: int, is_sphere: np.ndarray) -> np.ndarray:
         ids = np.full(len(sample.grain), -1)
         for grain in range(len(sample.mass)):
-            members = np.flatnonzero((sample.grain == grain) & made)
+            members = np.flatnonzero((sample.grain == grain) & is_sphere)
             spheres = [
                 utils.sphere(tuple(sample.centres[m]), sample.radius, material=rough)
                 for m in members

@@ -49,7 +49,7 @@ from .scene.scene import Scene as Scene
 from .scene.shape import Shape as Shape
 from .snow.stack.measure import Extent as Extent
 from .snow.stack.measure import StackMeasure as StackMeasure
-from .snow.stack.measure import level as level
+from .snow.stack.measure import levelled_positions as levelled_positions
 from .snow.stack.measure import measure_stack as measure_stack
 from .study.definition import Study as Study
 

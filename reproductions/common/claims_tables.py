@@ -16,26 +16,26 @@ from reproductions.common.hypothesis_tests import (
 )
 from snowshed._core import InputError
 from snowshed.io.csv_table import csv_text, read_csv
-from snowshed.plot.html_page import Grid
+from snowshed.plot.html_page import HtmlTable
 
 VERDICTS = (CONTRADICTED, CONFIRMED, UNDECIDED)
 COLUMNS = ("source", "claim", "confirmed_if", "verdict", "finding")
 
 
-def claims_grid(claims: Sequence[Judged], author: str) -> Grid:
+def claims_grid(claims: Sequence[Judged], author: str) -> HtmlTable:
     """Return claims and findings, contradictions first; `author` is the heading of the claims."""
     ordered = sorted(claims, key=lambda claim: VERDICTS.index(claim.finding.verdict))
     rows = [
         [claim.finding.verdict, claim.source, claim.text, claim.finding.sentence]
         for claim in ordered
     ]
-    return Grid(["verdict", "section", author, "here"], rows, "llll")
+    return HtmlTable(["verdict", "section", author, "here"], rows, "llll")
 
 
-def rules_grid(claims: Sequence[Claim[Any]]) -> Grid:
+def rules_grid(claims: Sequence[Claim[Any]]) -> HtmlTable:
     """Return the rule of each claim."""
     rows = [[claim.source, claim.text, claim.rule] for claim in claims]
-    return Grid(["section", "claim", "confirmed if"], rows, "lll")
+    return HtmlTable(["section", "claim", "confirmed if"], rows, "lll")
 
 
 def claims_csv(claims: Sequence[Judged]) -> str:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
-from snowshed.base.formatting import NOTHING, number, percent
+from snowshed.base.formatting import MISSING, number, percent
 
 CONFIRMED, CONTRADICTED, UNDECIDED = "confirmed", "contradicted", "undecided"
 #: Number of standard deviations of its noise from which a difference counts.
@@ -46,7 +46,7 @@ class Estimate:
         """
         if unit == "%":
             return f"{percent(self.value)} ± {percent(self.noise, 2)}"
-        known = NOTHING if math.isnan(self.noise) else number(self.noise, 2)
+        known = MISSING if math.isnan(self.noise) else number(self.noise, 2)
         return f"{number(self.value)} ± {known} {unit}".rstrip()
 
 

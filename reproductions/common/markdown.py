@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from snowshed.plot.html_page import Grid
+from snowshed.plot.html_page import HtmlTable
 
 
-def markdown_table(grid: Grid) -> str:
+def markdown_table(grid: HtmlTable) -> str:
     """Return a table in Markdown.
 
     Examples
     --------
-    >>> print(markdown_table(Grid(["name", "m"], [["a", "1"]], "lr")))
+    >>> print(markdown_table(HtmlTable(["name", "m"], [["a", "1"]], "lr")))
     | name | m |
     | --- | ---: |
     | a | 1 |

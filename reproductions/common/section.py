@@ -9,7 +9,7 @@ from typing import Generic, Literal, TypeVar
 from reproductions.common.hypothesis_tests import UNDECIDED, Finding, Judged
 from reproductions.common.stage import State
 from snowshed._core import InputError
-from snowshed.plot.html_page import Grid, Picture
+from snowshed.plot.html_page import HtmlTable, Picture
 
 Work = TypeVar("Work")
 
@@ -31,7 +31,7 @@ class Content:
     """
 
     paragraphs: Sequence[str] = ()
-    tables: Sequence[tuple[str, Grid]] = ()
+    tables: Sequence[tuple[str, HtmlTable]] = ()
     pictures: Sequence[Picture] = ()
     claims: Sequence[Judged] = ()
     missing: Sequence[str] = ()

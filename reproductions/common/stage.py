@@ -122,11 +122,11 @@ class StudyStage:
         names = self._registered()
         for number, name in enumerate(names):
 
-            def tell(progress: Progress, name: str = name, number: int = number) -> None:
+            def report_runs(progress: Progress, name: str = name, number: int = number) -> None:
                 text = f"{name}: {progress.done}/{progress.count} simulations"
                 report((number + progress.fraction) / len(names), text)
 
-            resume(self.runs, name, jobs=jobs, progress=tell)
+            resume(self.runs, name, jobs=jobs, progress=report_runs)
 
     def failure(self) -> str:
         """Return the number of failed simulations, and the place of their errors."""
@@ -195,14 +195,16 @@ def compute(
         If a stage cannot be computed.
     """
     expected = [stage.expected_s(jobs) for stage in stages]
-    whole = sum(expected) or 1.0
+    total_s = sum(expected) or 1.0
     for number, stage in enumerate(stages):
         before = sum(expected[:number])
 
-        def tell(fraction: float, doing: str, number: int = number, before: float = before) -> None:
+        def report(
+            fraction: float, doing: str, number: int = number, before: float = before
+        ) -> None:
             if progress is not None:
-                done = (before + fraction * expected[number]) / whole
+                done = (before + fraction * expected[number]) / total_s
                 count = len(stages)
-                progress(Progress(done, number, count, "stages", doing, expected_s=whole))
+                progress(Progress(done, number, count, "stages", doing, expected_s=total_s))
 
-        stage.compute(jobs, tell)
+        stage.compute(jobs, report)

@@ -1,8 +1,8 @@
 """The page ``docs/trust/thesis-claims.md``: every claim of the thesis with our verdict.
 
 Its numbers come from the folder ``data``, which holds the claims of the last ``--middle``; ``python
--m reproductions.frischholz2023.claims_page`` writes it anew. Likely causes of contradictions are in
-`reproductions.frischholz2023.claims.causes`.
+-m reproductions.frischholz2023.claims_page`` writes it again. Likely causes of contradictions are
+in `reproductions.frischholz2023.claims.causes`.
 """
 
 from __future__ import annotations

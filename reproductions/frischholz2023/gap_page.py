@@ -1,7 +1,7 @@
 """The page ``docs/trust/thesis-gap.md``: how our stacks differ from the thesis's, and why.
 
 Every number on it comes from the files in the folder ``data``, which hold results of longer runs;
-``python -m reproductions.frischholz2023.gap_page`` writes it anew.
+``python -m reproductions.frischholz2023.gap_page`` writes it again.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ from snowshed.analysis.regression.summary import QUARTILES
 from snowshed.base.formatting import percent
 from snowshed.io.atomic import write_text
 from snowshed.io.csv_table import write_csv
-from snowshed.plot.html_page import Grid
+from snowshed.plot.html_page import HtmlTable
 from snowshed.snow.stack.trimming import DEFAULT_TRIMMING, TRIMMINGS
 
 if TYPE_CHECKING:
@@ -87,13 +87,13 @@ def _scatter_part(stacks: pd.DataFrame) -> list[str]:
         ]
         for name in TRIMMINGS
     ]
-    grid = Grid(["trimming rule", *names.values(), *QUARTILES], rows, "l" + "r" * 7)
+    grid = HtmlTable(["trimming rule", *names.values(), *QUARTILES], rows, "l" + "r" * 7)
     other = next(name for name in TRIMMINGS if name != DEFAULT_TRIMMING)
     ours, theirs = (scatter(stacks, name, "length") for name in (DEFAULT_TRIMMING, other))
     return [
         "## The two trimming rules of A.4.2",
         "The table measures the same stacks by [two trimming rules]"
-        f"(../methods/stack.md#two-readings-of-a42): {panels} panels up to "
+        f"(../methods/stack.md#two-trimming-rules-in-a42): {panels} panels up to "
         f"{stacks['panel.length'].max():g} m long, {seeds} seedings each, cells of {cells}. The "
         "columns are the deviation between seedings relative to the mean (root mean square over "
         "panels and events), and the quartiles of H/L of the rows.",

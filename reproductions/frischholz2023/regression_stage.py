@@ -156,7 +156,7 @@ class RegressionStage:
         from snowshed.analysis.regression.pipeline import regress
 
         parts = self.parts()
-        whole = sum(part.count for part in parts)
+        total = sum(part.count for part in parts)
         for number, part in enumerate(parts):
             if part.done == part.count:
                 continue
@@ -168,7 +168,7 @@ class RegressionStage:
                 models=KINDS,
                 scheme=part.scheme,
                 jobs=jobs,
-                progress=_told(report, before, part.count, whole),
+                progress=_folds_reporter(report, before, part.count, total),
             )
 
     def failure(self) -> str:
@@ -181,9 +181,9 @@ class RegressionStage:
         return Part(rows, self._folder.of_stage(name), scheme)
 
 
-def _told(report: StageReporter, before: int, count: int, whole: int) -> Reporter:
-    def tell(progress: Progress) -> None:
+def _folds_reporter(report: StageReporter, before: int, count: int, total: int) -> Reporter:
+    def report_folds(progress: Progress) -> None:
         done = before + progress.done
-        report((before + progress.fraction * count) / whole, f"{NAME}: {done}/{whole} folds")
+        report((before + progress.fraction * count) / total, f"{NAME}: {done}/{total} folds")
 
-    return tell
+    return report_folds

@@ -9,7 +9,7 @@ from snowshed.analysis.calibration.parameter_ranges import COHESION, GRID, PRESS
 from snowshed.analysis.regression.folds import CrossValidation
 from snowshed.scene.components import Condition
 
-#: Of the panel where there is one value: the least static coefficient that the thesis measured.
+#: Friction of the panel where a single value is used: the smallest static one in the thesis.
 MEASURED_FRICTION = 0.6
 
 

@@ -12,8 +12,8 @@ from reproductions.common.hypothesis_tests import widening
 from reproductions.frischholz2023.printed import Printed
 from reproductions.frischholz2023.settings import MEASURED_FRICTION
 from snowshed.base.arrays import Floats
-from snowshed.base.formatting import NOTHING
-from snowshed.plot.html_page import Grid
+from snowshed.base.formatting import MISSING
+from snowshed.plot.html_page import HtmlTable
 from snowshed.plot.labels import label
 from snowshed.study.table import value_at
 
@@ -29,7 +29,7 @@ PANEL_FRICTION = (
 )
 
 
-def settings_grid(printed: Sequence[Printed], scenes: Sequence[str]) -> Grid:
+def settings_grid(printed: Sequence[Printed], scenes: Sequence[str]) -> HtmlTable:
     """Return a table of parameters: printed values of the thesis, and values of the scenes.
 
     Parameters
@@ -49,10 +49,10 @@ def settings_grid(printed: Sequence[Printed], scenes: Sequence[str]) -> Grid:
     rows = []
     for row in printed:
         values = {value_at(scene, row.path) for scene in data} - {None}
-        ours = ", ".join(_printed_value(value, row) for value in sorted(values)) or NOTHING
+        ours = ", ".join(_printed_value(value, row) for value in sorted(values)) or MISSING
         ours += "D" if row.path == "dimension" else ""
         rows.append([row.title, row.text, ours, label(row.path).unit])
-    return Grid(["parameter", "thesis", "here", "unit"], rows, "llll")
+    return HtmlTable(["parameter", "thesis", "here", "unit"], rows, "llll")
 
 
 def _printed_value(value: Any, row: Printed) -> str:

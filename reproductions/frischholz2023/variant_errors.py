@@ -24,7 +24,7 @@ from reproductions.frischholz2023.variants import (
 from snowshed._core import InputError
 from snowshed.analysis.regression.folds import CrossValidation
 from snowshed.analysis.regression.pipeline import regress
-from snowshed.analysis.regression.rows import rows_of
+from snowshed.analysis.regression.rows import stack_rows
 from snowshed.analysis.regression.summary import QUARTILES
 from snowshed.io.csv_table import read_csv, write_csv
 from snowshed.snow.stack.trimming import TRIMMINGS
@@ -64,20 +64,20 @@ def variant_errors(
     import pandas as pd
 
     tables = [
-        _of_one(of_variant, trimming, scheme, jobs).assign(variant=name, trimming=trimming)
+        _stack_errors(of_variant, trimming, scheme, jobs).assign(variant=name, trimming=trimming)
         for name, of_variant in with_runs_of_its_own(stacks)
         for trimming in TRIMMINGS
     ]
     return pd.concat(tables, ignore_index=True)[list(COLUMNS)]
 
 
-def _of_one(
+def _stack_errors(
     stacks: pd.DataFrame, trimming: str, scheme: CrossValidation, jobs: Optional[int]
 ) -> pd.DataFrame:
     height, length = (
         measured_as(stacks, trimming, quantity).to_numpy(float) for quantity in ("height", "length")
     )
-    rows = rows_of(stacks[list(INPUTS)].to_numpy(float), height, length).of_one_seed()
+    rows = stack_rows(stacks[list(INPUTS)].to_numpy(float), height, length).of_one_seed()
     with tempfile.TemporaryDirectory() as folder:
         regress(
             rows, folder, targets=[TARGET], models=KINDS, scheme=scheme, jobs=jobs, figures=False

@@ -141,8 +141,8 @@ def hardens(tests: LoadingTests) -> Finding:
     onset = rows["hardening_onset_strain"].astype(float)
     seen = int(onset.notna().sum())
     begins = f"exponential from {percent(onset.mean(), 2)} in {seen} of {len(rows)}"
-    whole = seen == len(rows) or finding.verdict != CONFIRMED
-    return Finding(finding.verdict if whole else UNDECIDED, f"{finding.sentence}; {begins}")
+    is_complete = seen == len(rows) or finding.verdict != CONFIRMED
+    return Finding(finding.verdict if is_complete else UNDECIDED, f"{finding.sentence}; {begins}")
 
 
 def rises(variant: str, base: str, stresses: Sequence[str], tests: LoadingTests) -> Finding:

@@ -15,8 +15,8 @@ from reproductions.hagenmuller2015.studies import MAKERS
 from snowshed.analysis.grains.ratios import STRESSES, compare_variants
 from snowshed.analysis.grains.sensitivity import FIGURE, evaluate_variants
 from snowshed.analysis.grains.variants import BASE
-from snowshed.base.formatting import NOTHING
-from snowshed.plot.html_page import Grid, Picture
+from snowshed.base.formatting import MISSING
+from snowshed.plot.html_page import HtmlTable, Picture
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -53,7 +53,7 @@ def sensitivity(work: GrainsComputation) -> Content:
     return Content(pictures=[Picture.read(folder / FIGURE, "Sensitivity", caption, dpi=160)])
 
 
-def sample_grid(tables: Sequence[pd.DataFrame]) -> Grid:
+def sample_grid(tables: Sequence[pd.DataFrame]) -> HtmlTable:
     """Return the samples of each variant."""
     import pandas as pd
 
@@ -62,7 +62,7 @@ def sample_grid(tables: Sequence[pd.DataFrame]) -> Grid:
     for variant, own in tests.drop_duplicates(["variant", "sample"]).groupby("variant", sort=False):
         numbers = [_span(own[name]) for name in ("final_particles", "spheres", "density_kg_m3")]
         rows.append([str(variant), str(len(own)), *numbers])
-    return Grid(["variant", "samples", "grains", "spheres", "kg/m3"], rows, "lrrrr")
+    return HtmlTable(["variant", "samples", "grains", "spheres", "kg/m3"], rows, "lrrrr")
 
 
 def _span(values: pd.Series) -> str:
@@ -70,7 +70,7 @@ def _span(values: pd.Series) -> str:
     return f"{low:,.0f}" if round(low) == round(high) else f"{low:,.0f} to {high:,.0f}"
 
 
-def stress_grid(comparison: pd.DataFrame) -> Grid:
+def stress_grid(comparison: pd.DataFrame) -> HtmlTable:
     """Return the stresses of each variant beside those of Yade."""
     known = set(comparison["stress"][np.isfinite(comparison["value_pa"])])
     stresses = [name for name in STRESSES if name in known]  # that the tests reach
@@ -80,11 +80,11 @@ def stress_grid(comparison: pd.DataFrame) -> Grid:
         printed = dict(zip(STRESSES, YADE.get(str(variant), (None,) * len(STRESSES))))
         rows.append([str(variant), *(_stress(own.loc[name], printed[name]) for name in stresses)])
     titles = [STRESSES[name] for name in stresses]
-    return Grid(["variant", *titles], rows, "l" + "r" * len(stresses))
+    return HtmlTable(["variant", *titles], rows, "l" + "r" * len(stresses))
 
 
 def _stress(row: pd.Series, printed: object) -> str:
     value, scatter = float(row["value_pa"]), float(row["scatter"])
-    text = f"{value / 1e3:.3g}" if np.isfinite(value) else NOTHING
+    text = f"{value / 1e3:.3g}" if np.isfinite(value) else MISSING
     text += f" x/ {np.exp(scatter):.2f}" if np.isfinite(scatter) else ""
     return text if printed is None else f"{text} [{printed:g}]"

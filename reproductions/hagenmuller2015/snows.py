@@ -21,7 +21,7 @@ COARSER = 2  # voxels along the edge of a sphere
 DENSITY, LIGHT, HEAVY = 318.0, 192.0, 427.0  # kg/m3
 #: Sphere packs of equal density: their density, diameter, and radius of the necks.
 PACK_DENSITY, PACK_DIAMETER, THIN, WIDE = 250.0, 4.5e-4, 0.3, 0.6
-MOST_FIELDS = 20  # that are tried
+MAX_FIELDS = 20  # that are tried
 #: Least depth of a neck, which gives fewer grains than the default (0.75 voxels).
 FEWER_GRAINS = SegmentationSettings(depth=1.25)
 
@@ -61,14 +61,14 @@ def field_snow(
 
 
 def _field(edge: int, seed: int, density: float) -> IceImage:
-    for another in range(MOST_FIELDS):
+    for another in range(MAX_FIELDS):
         try:
             return gaussian_snow(
                 (edge, edge, edge), VOXEL, density=density, correlation_length=WAVELENGTH,
                 seed=seed + 1000 * another,
             )  # fmt: skip
         except InputError:
-            if another == MOST_FIELDS - 1:
+            if another == MAX_FIELDS - 1:
                 raise
     raise AssertionError("unreachable")
 

@@ -70,12 +70,12 @@ class Comparisons:
         self.edge = samples.edge
         self._count = samples.count
         self.folder = folder
-        self._made: dict[str, Comparison] = {}
+        self._comparisons: dict[str, Comparison] = {}
 
     def __getitem__(self, stage: str) -> Comparison:
-        if stage not in self._made:
-            self._made[stage] = MAKERS[stage](self)
-        return self._made[stage]
+        if stage not in self._comparisons:
+            self._comparisons[stage] = MAKERS[stage](self)
+        return self._comparisons[stage]
 
     def base_snow(self) -> list[LabelledSample]:
         """Return the samples of the base before they are made coarser."""
@@ -92,10 +92,10 @@ class Comparisons:
         return Variant(name, varied, files, coarse[0].voxel_size)
 
 
-def dense(made: Comparisons) -> Comparison:
+def dense(comparisons: Comparisons) -> Comparison:
     """Return the tests up to 30 %: other settings, densities and necks."""
-    edge = made.edge
-    base = made.variant(BASE, BASE, lambda seed: field_snow(edge, seed, DENSITY))
+    edge = comparisons.edge
+    base = comparisons.variant(BASE, BASE, lambda seed: field_snow(edge, seed, DENSITY))
     settings = [
         Variant(
             name,
@@ -107,24 +107,29 @@ def dense(made: Comparisons) -> Comparison:
         for name, (varied, changes) in DENSE_SETTINGS.items()
     ]
     snows = [
-        made.variant(LIGHT_SNOW, "density", lambda seed: field_snow(edge, seed, LIGHT)),
-        made.variant(HEAVY_SNOW, "density", lambda seed: field_snow(edge, seed, HEAVY)),
-        made.variant(THIN_NECKS, "necks", lambda seed: pack_snow(edge, seed, THIN)),
-        made.variant(WIDE_NECKS, "necks", lambda seed: pack_snow(edge, seed, WIDE)),
+        comparisons.variant(LIGHT_SNOW, "density", lambda seed: field_snow(edge, seed, LIGHT)),
+        comparisons.variant(HEAVY_SNOW, "density", lambda seed: field_snow(edge, seed, HEAVY)),
+        comparisons.variant(THIN_NECKS, "necks", lambda seed: pack_snow(edge, seed, THIN)),
+        comparisons.variant(WIDE_NECKS, "necks", lambda seed: pack_snow(edge, seed, WIDE)),
     ]
     return Comparison(_scene(base, [STAGE]), [base, *settings, *snows], "hagenmuller-dense")
 
 
-def brittle(made: Comparisons) -> Comparison:
+def brittle(comparisons: Comparisons) -> Comparison:
     """Return the variants of `snowshed grains sensitivity`, fewer grains, and the trap of inertia.
 
     With spheres half as large, which take ten times as long.
     """
     comparison = sensitivity_variants(
-        made.base_snow(), made.folder, BRITTLE_STAGE, SETTINGS, coarser=COARSER, finer=True
+        comparisons.base_snow(),
+        comparisons.folder,
+        BRITTLE_STAGE,
+        SETTINGS,
+        coarser=COARSER,
+        finer=True,
     )
-    edge, base = made.edge, comparison.variants[0]
-    fewer = made.variant(
+    edge, base = comparisons.edge, comparison.variants[0]
+    fewer = comparisons.variant(
         FEWER, "segmentation", lambda seed: field_snow(edge, seed, DENSITY, FEWER_GRAINS)
     )
     scaling = {"numerics.density_scaling": TOO_DENSE}
@@ -132,10 +137,10 @@ def brittle(made: Comparisons) -> Comparison:
     return Comparison(comparison.scene, [*comparison.variants, fewer, trap], "hagenmuller-brittle")
 
 
-def elastic(made: Comparisons) -> Comparison:
+def elastic(comparisons: Comparisons) -> Comparison:
     """Return loading within the elastic phase, and back until the plate is free."""
-    edge = made.edge
-    base = made.variant(ELASTIC, ELASTIC, lambda seed: field_snow(edge, seed, DENSITY))
+    edge = comparisons.edge
+    base = comparisons.variant(ELASTIC, ELASTIC, lambda seed: field_snow(edge, seed, DENSITY))
     there = LoadingStage(kind="compress", speed=ELASTIC_SPEED, strain=ELASTIC_STRAIN)
     back = LoadingStage(kind="unload", speed=ELASTIC_SPEED, strain=2 * ELASTIC_STRAIN)
     return Comparison(_scene(base, [there, back]), [base], "hagenmuller-elastic")

@@ -76,7 +76,7 @@ QUICK, FULL = Resolution(0.02, 0.24, 2), Resolution(0.01, 0.4, 3)
 
 
 @dataclass(frozen=True)
-class Path:
+class GroundProfile:
     """A piecewise plane ground, from above to the level ground at x > 0, z = 0.
 
     Attributes
@@ -88,12 +88,12 @@ class Path:
     corners: Sequence[tuple[float, float]]
 
     @classmethod
-    def of(cls, planes: Sequence[tuple[float, float]]) -> Path:
+    def of(cls, planes: Sequence[tuple[float, float]]) -> GroundProfile:
         """Return the path of planes with tilts in degrees and lengths in m, from above.
 
         Examples
         --------
-        >>> path = Path.of([(30.0, 2.0)])
+        >>> path = GroundProfile.of([(30.0, 2.0)])
         >>> path.along(np.array([[-1.7320508, 0, 1.0], [1, 0, 0]])).round(3).tolist()
         [-2.0, 1.0]
         """
@@ -183,7 +183,7 @@ class Case:
     """
 
     name: str
-    path: Path
+    path: GroundProfile
     scene: Scene
     end: float
     every: float
@@ -202,7 +202,7 @@ class Case:
 
 def wooden(obstacle: str, resolution: Resolution) -> Case:
     """Return the wooden slope with an obstacle at its foot."""
-    path = Path.of([(WOOD_TILT, WOOD_LENGTH)])
+    path = GroundProfile.of([(WOOD_TILT, WOOD_LENGTH)])
     width = resolution.wooden_width
     obstacles = path.ground()
     for side in (-1, 1):
@@ -231,7 +231,7 @@ def wooden(obstacle: str, resolution: Resolution) -> Case:
 
 def slope(number: int, model: str, resolution: Resolution) -> Case:
     """Return slope 1 or 2 with the Bingham or the combined model."""
-    path = Path.of(SLOPES[number])
+    path = GroundProfile.of(SLOPES[number])
     spacing = SLOPE_SNOW.spacing
     assert spacing is not None
     top = sum(length for _, length in SLOPES[number])
@@ -272,14 +272,14 @@ def _solid(name: str, shape: Shape) -> Obstacle:
     return Obstacle(name=name, shape=shape, condition="sticky")
 
 
-def _stakes(path: Path, width: float, gap: float) -> list[Shape]:
+def _stakes(path: GroundProfile, width: float, gap: float) -> list[Shape]:
     count = int((width + 1e-9) // (STAKE + gap))
     first = -0.5 * (count - 1) * (STAKE + gap)
     size = (STAKE, STAKE, STAKE_HEIGHT)
     return [path.box(-OBSTACLE_AT, size, across=first + k * (STAKE + gap)) for k in range(count)]
 
 
-def _board(path: Path, width: float) -> Shape:
+def _board(path: GroundProfile, width: float) -> Shape:
     """Return a board that leaves gaps at its ends and has a notch in the middle of its top."""
     board = path.box(-OBSTACLE_AT, (STAKE, width - 2 * BOARD_GAP, BOARD_HEIGHT))
     cut = (3 * STAKE, NOTCH[0], NOTCH[1] + 0.02)  # beyond the board's faces

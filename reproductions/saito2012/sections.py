@@ -11,7 +11,7 @@ from reproductions.saito2012.cases import BINGHAM, COMBINED, OBSTACLES
 from reproductions.saito2012.claims import SLOPE_CLAIMS, WOODEN_CLAIMS, Courses
 from reproductions.saito2012.measures import Course
 from reproductions.saito2012.stages import AvalancheComputation
-from snowshed.plot.html_page import Grid, Picture
+from snowshed.plot.html_page import HtmlTable, Picture
 
 WOODEN_TIMES = (1.0, 2.0, 3.0, 4.0)
 SLOPE_TIMES = (2.0, 5.0, 10.0, 20.0)
@@ -67,7 +67,7 @@ def _pictures(courses: Sequence[Course], times: Sequence[float], name: str) -> l
     return pictures
 
 
-def _tables(courses: Sequence[Course], times: Sequence[float]) -> list[tuple[str, Grid]]:
+def _tables(courses: Sequence[Course], times: Sequence[float]) -> list[tuple[str, HtmlTable]]:
     rows = []
     for course in courses:
         for time in times:
@@ -80,4 +80,4 @@ def _tables(courses: Sequence[Course], times: Sequence[float]) -> list[tuple[str
     titles = ["case", "s", "front, m", "mean speed, m/s", "width, m"]
     if courses and courses[0].case.obstacle is not None:
         titles += ["passed, %", "held, %"]
-    return [("Measures", Grid(titles, rows, "l" + "r" * (len(titles) - 1)))] if rows else []
+    return [("Measures", HtmlTable(titles, rows, "l" + "r" * (len(titles) - 1)))] if rows else []

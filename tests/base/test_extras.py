@@ -5,8 +5,8 @@ import importlib
 from pathlib import Path
 
 import pytest
-from paths import ROOT
-from requirements import MODULES_OF, required
+from helpers.paths import ROOT
+from helpers.requirements import MODULES_OF, required
 
 from snowshed import InputError
 from snowshed.base import extras

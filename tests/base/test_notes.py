@@ -6,7 +6,7 @@ import click
 import pytest
 
 from snowshed import SnowshedNote
-from snowshed.base.notes import recorded, tell
+from snowshed.base.notes import issue_note, recorded
 from snowshed.cli.common_options import quiet_option
 from snowshed.cli.main import main
 
@@ -14,7 +14,7 @@ from snowshed.cli.main import main
 @click.command()
 @quiet_option
 def reading(quiet):
-    tell("feet became metres")
+    issue_note("feet became metres")
 
 
 def test_the_command_line_prints_a_note_unless_quiet(capsys):
@@ -28,18 +28,18 @@ def test_the_command_line_prints_a_note_unless_quiet(capsys):
 
 def test_recorded_notes_are_said_again_and_stay_errors_where_these_are_wanted():
     with pytest.warns(SnowshedNote, match="feet became metres"), recorded() as notes:
-        tell("feet became metres")
-        tell("feet became metres")
+        issue_note("feet became metres")
+        issue_note("feet became metres")
     assert notes == ["feet became metres"]
     with warnings.catch_warnings():
         warnings.simplefilter("error", SnowshedNote)
         with pytest.raises(SnowshedNote), recorded():
-            tell("feet became metres")
+            issue_note("feet became metres")
 
 
 def test_notes_before_an_error_are_recorded():
     raises = pytest.raises(ValueError, match="too far")
     with pytest.warns(SnowshedNote), raises, recorded() as notes:
-        tell("feet became metres")
+        issue_note("feet became metres")
         raise ValueError("too far")
     assert notes == ["feet became metres"]

@@ -3,7 +3,7 @@
 import re
 
 import pytest
-from paths import ROOT
+from helpers.paths import ROOT
 
 FOLDERS = ("python", "validation", "reproductions")
 FILES = [file for name in FOLDERS for file in (ROOT / name).rglob("*.py") if file.is_file()]

@@ -6,8 +6,8 @@ import sys
 
 import click
 import pytest
-from bad_scenes import bad_scene  # noqa: F401
-from processes import modules_after
+from helpers.bad_scenes import bad_scene  # noqa: F401
+from helpers.processes import modules_after
 
 from snowshed import _core, read_events
 from snowshed.cli import main as cli
@@ -284,6 +284,15 @@ def test_former_names_of_commands_work_and_are_not_listed(former, now, capsys):
     assert main([*former[:-1], "--help"]) == 0
     listed = re.findall(r"^  ([a-z-]+) ", capsys.readouterr().out, re.MULTILINE)
     assert former[-1] not in listed and now[len(former) - 1] in listed
+
+
+def test_the_former_spelling_of_a_dry_run_works(tmp_path, capsys):
+    shown = []
+    for option in ("--dry-run", "--plan"):
+        assert main(["panel", *TINY, "-o", str(tmp_path / "out"), option]) == 0
+        lines = capsys.readouterr().out.splitlines()
+        shown.append([line[:20] for line in lines])  # without the measured speed
+    assert shown[0] == shown[1] and not (tmp_path / "out").exists()
 
 
 def test_a_dry_run_prints_the_cost_and_needs_no_folder(tmp_path, capsys, monkeypatch):

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from grain_files import VOXEL, column_of_grains, write_labels
+from helpers.grain_files import VOXEL, column_of_grains, write_labels
 
 from snowshed.cli.main import main
 

@@ -4,7 +4,7 @@ import json
 
 import numpy as np
 import pytest
-from grain_files import VOXEL, column_of_grains
+from helpers.grain_files import VOXEL, column_of_grains
 
 from snowshed.cli.main import main
 
@@ -26,14 +26,14 @@ def run(*arguments):
 
 @pytest.mark.parametrize(("command", "tests"), [("sensitivity", 26), ("material", 8)])
 def test_a_plan_tells_how_many_tests_there_are(samples, tmp_path, capsys, command, tests):
-    assert run(command, *samples, "--voxel", VOXEL, "-o", tmp_path / "out", "--plan") == 0
+    assert run(command, *samples, "--voxel", VOXEL, "-o", tmp_path / "out", "--dry-run") == 0
     shown = capsys.readouterr().out
     assert f"{tests} runs" in shown
     assert not (tmp_path / "out/runs").exists()
 
 
 def test_turned_samples_are_three_of_each(samples, tmp_path, capsys):
-    options = ("--voxel", VOXEL, "-o", tmp_path / "out", "--plan", "--turned")
+    options = ("--voxel", VOXEL, "-o", tmp_path / "out", "--dry-run", "--turned")
     assert run("material", *samples, *options) == 0
     assert "20 runs" in capsys.readouterr().out
     assert len(list((tmp_path / "out/samples").glob("*.npy"))) == 6
@@ -53,7 +53,7 @@ def test_turned_samples_are_three_of_each(samples, tmp_path, capsys):
 )
 def test_bad_input_ends_with_2_and_is_named(samples, tmp_path, capsys, arguments, message):
     given = [one.format(a=samples[0]) for one in arguments]
-    assert run(*given, "-o", tmp_path / "out", "--plan") == 2
+    assert run(*given, "-o", tmp_path / "out", "--dry-run") == 2
     assert message in capsys.readouterr().err
 
 

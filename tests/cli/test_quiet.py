@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 import click
 import pytest
-from slide_files import plane
+from helpers.slide_files import plane
 
 from snowshed.cli.deferred import Deferred
 from snowshed.cli.main import cli, main

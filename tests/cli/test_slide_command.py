@@ -3,7 +3,7 @@
 import json
 
 import pytest
-from pages import Page
+from helpers.pages import Page
 from plot.browser import check_page
 
 from snowshed.cli.main import main
@@ -18,7 +18,7 @@ def test_ranges_give_maps_a_page_and_numbers_and_go_on(tmp_path, capsys):
     command = ("slide", "--example", "--max-time", 1.0, "--range", "mu=0.3:0.5",
                "--range", "thickness=0.4:0.6", "--runs", 2, "--jobs", 1,
                "-o", tmp_path / "maps")  # fmt: skip
-    assert snowshed(*command, "--plan") == 0
+    assert snowshed(*command, "--dry-run") == 0
     assert "2 runs" in capsys.readouterr().out and not (tmp_path / "maps").exists()
     assert snowshed(*command) == 0
     facts = json.loads((tmp_path / "maps/hazard.json").read_text())

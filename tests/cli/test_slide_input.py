@@ -5,7 +5,7 @@ import os
 
 import numpy as np
 import pytest
-from slide_files import box, plane, write_features, write_polygons, write_project
+from helpers.slide_files import box, plane, write_features, write_polygons, write_project
 
 from snowshed.cli.main import main
 from snowshed.io.raster.raster import Raster, read_raster, write_ascii_grid

@@ -9,7 +9,7 @@ import sys
 import time
 
 import pytest
-from slide_files import box, write_polygons, write_project
+from helpers.slide_files import box, write_polygons, write_project
 
 from snowshed.cli.main import main
 from snowshed.methods.slide.run import SlideRun

@@ -4,8 +4,8 @@ import json
 
 import numpy as np
 import pytest
-from raster_files import CELL, SIDE, in_unit, scaled, write_geotiff
-from slide_files import box, plane, write_polygons
+from helpers.raster_files import CELL, SIDE, in_unit, scaled, write_geotiff
+from helpers.slide_files import box, plane, write_polygons
 
 from snowshed import Scene
 from snowshed.cli.main import main

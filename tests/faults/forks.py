@@ -15,7 +15,7 @@ import sys
 from contextlib import suppress
 from pathlib import Path
 
-LONGEST_S = 300
+TIME_LIMIT_S = 300
 
 
 class Forks:
@@ -69,7 +69,7 @@ def serve() -> None:
 
 def answer(request: dict) -> None:
     """Run a request and end as its program would."""
-    signal.alarm(LONGEST_S)
+    signal.alarm(TIME_LIMIT_S)
     os.environ.update(request["environment"])
     with Path(request["output"]).open("w") as output, Path(os.devnull).open() as nothing:
         os.dup2(nothing.fileno(), 0)

@@ -4,9 +4,9 @@ import json
 import struct
 import zlib
 
-import film_files
 import numpy as np
 import pytest
+from helpers import film_files
 
 from snowshed import InputError
 from snowshed.io.film import Film

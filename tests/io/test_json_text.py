@@ -25,7 +25,7 @@ def test_a_repeated_key_is_refused_with_path_and_line(text, path, line):
     for given in (text, text.encode(), text.encode("utf-16")):
         with pytest.raises(ValueError, match="appears twice") as error:
             loads(given)
-        assert str(error.value) == f"{path}: this key appears twice, in line {line} again"
+        assert str(error.value) == f"{path}: this key appears twice, the second time in line {line}"
 
 
 def test_what_is_there_once_is_read_as_json_reads_it():
@@ -47,7 +47,7 @@ def test_files_with_a_repeated_key_are_refused(tmp_path, read):
         scene = tiny_scene().resolve().json.replace(text, "")
         file.write_text(scene.replace('"density":', '"density": 1,\n "density":', 1))
         where = "/snow/density"
-    with pytest.raises(InputError, match=rf"{where}: this key appears twice, in line \d+ again"):
+    with pytest.raises(InputError, match=rf"{where}: this key appears twice, .*line \d+"):
         read(file)
 
 

@@ -5,7 +5,7 @@ import socket
 
 import pytest
 from conftest import tiny_scene
-from processes import EXECUTABLE, snowshed_command
+from helpers.processes import EXECUTABLE, snowshed_command
 
 from snowshed import InputError, ResolvedScene, Scene, _core
 from snowshed.io.csv_table import read_csv

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 from conftest import tiny_mps, tiny_scene
-from grain_files import VOXEL, write_labels
-from paths import ROOT
+from helpers.grain_files import VOXEL, write_labels
+from helpers.paths import ROOT
 
 import snowshed
 from snowshed import InputError, Results, Simulation

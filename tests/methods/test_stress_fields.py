@@ -1,4 +1,4 @@
-"""The stresses of the particles, computed anew from their elastic strains."""
+"""The stresses of the particles, computed again from their elastic strains."""
 
 import numpy as np
 import pytest

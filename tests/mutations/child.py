@@ -15,7 +15,7 @@ import warnings
 from pathlib import Path
 
 HANG_S = 10.0  # of processor time, which a busy machine does not change
-LONGEST = 20_000  # characters of a message, which the command line cuts
+MAX_LENGTH = 20_000  # characters of a message, which the command line cuts
 
 
 def main() -> None:
@@ -67,7 +67,7 @@ class Good:
         try:
             found = self.reader.read(self.file)
         except REFUSED as error:
-            return "refused" if len(str(error)) <= LONGEST else "LONG MESSAGE"
+            return "refused" if len(str(error)) <= MAX_LENGTH else "LONG MESSAGE"
         except MemoryError:
             return "MEMORY"
         except BaseException as error:

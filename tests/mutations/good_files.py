@@ -7,13 +7,13 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import film_files
 import numpy as np
 import pandas as pd
 from conftest import tiny_mps, tiny_scene
-from grain_files import write_labels
-from slide_files import plane, write_polygons
-from voxel_files import VOXELS, save_metaimage, save_slices
+from helpers import film_files
+from helpers.grain_files import write_labels
+from helpers.slide_files import plane, write_polygons
+from helpers.voxel_files import VOXELS, save_metaimage, save_slices
 
 from snowshed import Scene, _core, run_events
 from snowshed.io.raster.raster import write_ascii_grid
@@ -160,10 +160,10 @@ def mps_checkpoint(folder: Path) -> Path:
 
 def store(folder: Path) -> Path:
     from snowshed.study.outcome import RunOutcome
-    from snowshed.study.scene_hash import Run
+    from snowshed.study.scene_hash import RunKey
     from snowshed.study.store import Store
 
-    runs = [Run.of(tiny_scene(**{"panel.friction": mu}).resolve()) for mu in (0.1, 0.2)]
+    runs = [RunKey.of(tiny_scene(**{"panel.friction": mu}).resolve()) for mu in (0.1, 0.2)]
     with Store.create(folder / "store") as store:
         store.register("tiny", ["panel.friction"], runs)
         rows = [{"event": 1, "wall_s": 0.5, "height_m": 0.25, "ended": "rest"}]

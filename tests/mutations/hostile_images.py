@@ -1,7 +1,7 @@
 """Images whose headers are sound in form and lie: sizes, places, types and packings of all kinds.
 
-Each function changes a good file of a format, the same for the same seed. Checksums are made anew,
-so that readers meet the lie and not a wrong sum.
+Each function changes a good file of a format, the same for the same seed. Checksums are computed
+again, so that readers meet the lie and not a wrong sum.
 """
 
 from __future__ import annotations

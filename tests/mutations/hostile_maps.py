@@ -14,8 +14,8 @@ from pathlib import Path
 from typing import Any
 
 import good_files
+from helpers.slide_files import box, plane, write_project
 from mutate import mutated
-from slide_files import box, plane, write_project
 
 from snowshed.io.raster.raster import write_ascii_grid
 

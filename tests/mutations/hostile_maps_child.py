@@ -16,9 +16,9 @@ import warnings
 from pathlib import Path
 
 sys.path[:0] = [str(Path(__file__).parent), str(Path(__file__).parents[1])]
-from child import HANG_S, LONGEST, limit_memory, tell, used  # noqa: E402
+from child import HANG_S, MAX_LENGTH, limit_memory, tell, used  # noqa: E402
+from helpers.slide_files import write_project  # noqa: E402
 from hostile_maps import MAKERS, SECRET, Chance, Try  # noqa: E402
-from slide_files import write_project  # noqa: E402
 
 from snowshed import InputError, SimulationError, _core  # noqa: E402
 from snowshed.io.raster.areas import read_areas  # noqa: E402
@@ -53,7 +53,7 @@ def outcome(t: Try, name: str) -> str:
         read(file, results)
         found = "accepted"
     except (InputError, SimulationError, OSError) as error:
-        found = "refused" if len(str(error)) <= LONGEST else "LONG MESSAGE"
+        found = "refused" if len(str(error)) <= MAX_LENGTH else "LONG MESSAGE"
     except MemoryError:
         found = "MEMORY"
     except BaseException as error:

@@ -23,11 +23,11 @@ import click
 import good_files as good
 import hostile_images as hostile
 import numpy as np
-import weather_files
-from bad_scenes import CLOSED_MESH
 from conftest import tiny_scene
-from grain_files import write_labels
-from voxel_files import save_metaimage, save_pages
+from helpers import weather_files
+from helpers.bad_scenes import CLOSED_MESH
+from helpers.grain_files import write_labels
+from helpers.voxel_files import save_metaimage, save_pages
 
 from snowshed import InputError, Results, Scene, SimulationError, Snow, _core, run_events
 from snowshed.cli.scene_options import json_object

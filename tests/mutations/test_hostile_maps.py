@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
-from listener import silence
+from helpers.listener import silence
 from mutations.hostile_maps import MAKERS, SECRET
 
 pytest.importorskip("pyogrio")

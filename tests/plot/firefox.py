@@ -18,7 +18,7 @@ import time
 import pytest
 
 PROGRAMS = ("firefox", "firefox-esr")
-LONGEST = 120.0  # s, for an answer
+TIME_LIMIT_S = 120.0  # s, for an answer
 
 
 @contextlib.contextmanager
@@ -77,7 +77,7 @@ class FirefoxPage:
         number = next(self.numbers)
         self.socket.send(json.dumps({"id": number, "method": method, "params": params}))
         while True:
-            message = json.loads(self.socket.recv(timeout=LONGEST))
+            message = json.loads(self.socket.recv(timeout=TIME_LIMIT_S))
             if message.get("id") == number:
                 assert message["type"] == "success", message
                 return message["result"]

@@ -3,7 +3,7 @@
 import re
 
 import pytest
-from paths import ROOT
+from helpers.paths import ROOT
 from plot.browser import faults_of
 
 TEMPLATES = sorted(
@@ -14,7 +14,7 @@ TEMPLATES = sorted(
 )  # fmt: skip
 SHARED = ROOT / "python/snowshed/plot/templates/page.html.j2"
 VIEWER = ROOT / "python/snowshed/plot/viewer"
-LEAST_CONTRAST = 4.5  # WCAG 2.2, success criterion 1.4.3
+MIN_CONTRAST = 4.5  # WCAG 2.2, success criterion 1.4.3
 
 
 def luminance(colour):
@@ -46,14 +46,14 @@ def test_text_stands_out(colours):
     text = [name for name in ("--ink", "--faint", "--good", "--bad", "--link") if name in colours]
     for ground in ("--paper", "--back"):
         for name in text:
-            assert contrast(colours[name], colours[ground]) >= LEAST_CONTRAST, (name, ground)
+            assert contrast(colours[name], colours[ground]) >= MIN_CONTRAST, (name, ground)
 
 
 def test_measures_stand_out_from_the_picture():
     sheet = (VIEWER / "view.css").read_text(encoding="utf-8")
     for block in re.findall(r"\{([^{}]*--measure:[^{}]*)\}", sheet):
         colours = dict(re.findall(r"(--[\w-]+):\s*(#[0-9a-fA-F]{6})", block))
-        assert contrast(colours["--measure"], colours["--sky"]) >= LEAST_CONTRAST
+        assert contrast(colours["--measure"], colours["--sky"]) >= MIN_CONTRAST
 
 
 def test_the_dark_colours_are_used():

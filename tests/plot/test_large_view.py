@@ -1,13 +1,13 @@
 """Moving views of many particles: how large their pages are, and that they open."""
 
 import pytest
-from pages import Page
+from helpers.pages import Page
 from plot.browser import open_page
 
 from snowshed import Results, Scene, run_events
 from snowshed.results.view import write_view
 
-LARGEST_PAGE = 20e6  # bytes, of 30 000 particles in 300 frames
+MAX_PAGE = 20e6  # bytes, of 30 000 particles in 300 frames
 READY = "document.body.dataset.ready === 'true'"
 
 
@@ -44,7 +44,7 @@ def test_thirty_thousand_particles_in_three_hundred_frames(length, dx, interval,
     page = write_view(tmp_path)
     size = page.stat().st_size
     print(f"{film.frames[-1].particles} particles, {len(film.frames)} frames: {size / 1e6:.1f} MB")
-    assert size < LARGEST_PAGE
+    assert size < MAX_PAGE
     first, last, wrong = opened(page)
     assert first != last and wrong == []
 

@@ -5,7 +5,7 @@ import pytest
 
 from snowshed.methods.grains.contacts import GrainContacts
 from snowshed.methods.grains.curve import COLUMNS, LoadingCurve
-from snowshed.plot.force_chains import WIDEST, force_figure
+from snowshed.plot.force_chains import MAX_LINE_WIDTH, force_figure
 from snowshed.plot.loading_figure import loading_figure
 
 
@@ -64,7 +64,7 @@ def test_lines_are_as_wide_as_forces_are_large_and_do_not_cross_the_picture():
     figure = force_figure(contacts([(-4, 0, 0), (-1, 0, 0)]), voxel_size=0.1)
     drawn = [one for one in figure.axes[0].collections if isinstance(one, LineCollection)]
     widths = np.concatenate([lines.get_linewidths() for lines in drawn if len(lines.get_paths())])
-    assert sorted(widths) == pytest.approx([WIDEST / 4, WIDEST, WIDEST])
+    assert sorted(widths) == pytest.approx([MAX_LINE_WIDTH / 4, MAX_LINE_WIDTH, MAX_LINE_WIDTH])
     segments = [s for lines in drawn for s in lines.get_segments()]
     assert max(np.ptp(s[:, 0]) for s in segments) < 1e3 * 3.9 / 2
 

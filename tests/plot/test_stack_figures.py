@@ -3,8 +3,8 @@ import re
 
 import numpy as np
 import pytest
+from helpers.piles import triangle
 from matplotlib.image import imread
-from piles import triangle
 
 from snowshed import (
     Body,

@@ -5,10 +5,10 @@ import json
 import re
 import shutil
 
-import film_files
 import numpy as np
 import pytest
-from pages import Page
+from helpers import film_files
+from helpers.pages import Page
 from plot.browser import check_page, open_page
 from plot.firefox import open_in_firefox
 

@@ -6,7 +6,7 @@ import pkgutil
 
 import pytest
 import reproductions
-from pages import Page
+from helpers.pages import Page
 from reproductions.common.command import command_of
 from reproductions.common.report import write_report
 from reproductions.hagenmuller2015.snows import Samples

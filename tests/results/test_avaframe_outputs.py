@@ -13,7 +13,7 @@ import subprocess
 
 import numpy as np
 import pytest
-from slide_files import box, plane, write_polygons, write_project
+from helpers.slide_files import box, plane, write_polygons, write_project
 
 from snowshed.cli.main import main
 from snowshed.io.raster.raster import read_raster

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from conftest import tiny_scene
-from interrupted_runs import interrupt_at
+from helpers.interrupted_runs import interrupt_at
 
 from snowshed import InputError, Interrupted, Results, run_events
 from snowshed.plot.energy_figure import energy_figure
@@ -67,7 +67,7 @@ def test_the_picture_has_units_and_a_legend(finished):
     assert named[:2] == ["kinetic", "elastic"] and "plastic" in named and "friction" in named
     drawn = {line.get_label(): line.get_ydata() for line in below.lines}
     scale = 1.0 if "mJ" not in below.get_ylabel() else 1e-3
-    released = drawn["released by height, and brought"][-1] * scale
+    released = drawn["released from height and added"][-1] * scale
     last = results.energy_history.iloc[-1]
     assert released == pytest.approx(last.added_j - last.gravitational_j, rel=1e-6)
     figure.draw_without_rendering()

@@ -2,10 +2,10 @@
 
 import struct
 
-import film_files
 import numpy as np
 import pytest
 from conftest import tiny_scene
+from helpers import film_files
 
 from snowshed import InputError, Results, run_events
 from snowshed.analysis.tomography.example import example_grains

@@ -8,7 +8,7 @@ import shutil
 from pathlib import Path
 
 import pytest
-from processes import snowshed_run
+from helpers.processes import snowshed_run
 
 from snowshed import InputError, ResolvedScene, read_events, run_events
 

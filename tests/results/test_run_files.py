@@ -6,12 +6,12 @@ import shutil
 import zlib
 from pathlib import Path
 
-import film_files
 import pytest
 from conftest import tiny_mps, tiny_scene
-from grain_files import write_labels
+from helpers import film_files
+from helpers.grain_files import write_labels
+from helpers.processes import snowshed_run
 from mutations.mutate import mutated
-from processes import snowshed_run
 
 from snowshed import InputError, ResolvedScene, Results, run_events
 from snowshed.base.interrupt import Interrupted

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from conftest import tiny_scene
-from interrupted_runs import compare_tables, interrupt_at
+from helpers.interrupted_runs import compare_tables, interrupt_at
 
 from snowshed import Body, InputError, Interrupted, Shape, _core, run_events
 from snowshed.results.folder import CONVERSION_COLUMNS

@@ -3,7 +3,7 @@ import signal
 
 import pandas as pd
 import pytest
-from interrupted_runs import compare_tables, interrupt_at
+from helpers.interrupted_runs import compare_tables, interrupt_at
 
 from snowshed import InputError, Interrupted, SimulationError, _core, run_events
 from snowshed.cli import run_output
@@ -53,7 +53,7 @@ def test_the_residual_of_the_energy_balance_is_told_and_warned_of(
     largest = energy.drop("residual_j").abs().max()
     assert last["energy_residual"] == pytest.approx(abs(energy["residual_j"]) / largest)
     assert last["energy_residual"] == run_output.energy_residual(finished) < 0.01
-    monkeypatch.setattr(stack_run, "LARGEST_RESIDUAL", 0.0)
+    monkeypatch.setattr(stack_run, "MAX_RESIDUAL", 0.0)
     with pytest.warns(FutureWarning, match=r"event 1: the energy balance has a residual of"):
         run_events(tiny.set("output.energy", True), tmp_path / "out", pictures=False)
 

@@ -10,10 +10,10 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
-from bad_scenes import CLOSED_MESH, bad_scene  # noqa: F401
 from conftest import tiny_scene
-from interrupted_runs import interrupt_at
-from processes import EXECUTABLE, snowshed_run
+from helpers.bad_scenes import CLOSED_MESH, bad_scene  # noqa: F401
+from helpers.interrupted_runs import interrupt_at
+from helpers.processes import EXECUTABLE, snowshed_run
 
 from snowshed import Interrupted, ResolvedScene, _core, run_events
 from snowshed.cli.main import main
@@ -123,7 +123,7 @@ def test_resuming_a_finished_run_changes_nothing(results, scene):
 
 def test_a_scene_runs_from_the_results_of_another_folder(tmp_path):
     """Meshes are found beside the scene file, from wherever the results are."""
-    from bad_scenes import CLOSED_MESH
+    from helpers.bad_scenes import CLOSED_MESH
 
     (tmp_path / "post.obj").write_text(CLOSED_MESH)
     post = {"shape": {"type": "mesh", "file": "post.obj", "scale": 0.05}}
@@ -281,7 +281,7 @@ def test_the_executable_goes_on_with_what_python_began(
 
 
 def assert_same_results(out, measured):
-    """The same bits of particles; tables as far as single precision tells."""
+    """The same bits of particles; tables agree to single precision."""
     assert particle_files(out) == particle_files(measured)
     for name in ("particles.pvd", "snapshots/snapshots.pvd"):
         assert (out / name).read_bytes() == (measured / name).read_bytes()

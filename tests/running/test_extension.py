@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from conftest import tiny_scene
-from interrupted_runs import compare_tables, interrupt_at
+from helpers.interrupted_runs import compare_tables, interrupt_at
 
 from snowshed import InputError, Interrupted, Results, Simulation, Snow, _core, run_events
 from snowshed.cli.main import main

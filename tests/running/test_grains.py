@@ -5,7 +5,7 @@ import json
 
 import numpy as np
 import pytest
-from grain_files import VOXEL, column_of_grains, write_labels
+from helpers.grain_files import VOXEL, column_of_grains, write_labels
 
 from snowshed import GrainsSettings, InputError, LoadingStage
 from snowshed.analysis.tomography.example import example_grains

@@ -6,8 +6,8 @@ import warnings
 import numpy as np
 import pytest
 from conftest import tiny_mps, tiny_scene
-from grain_files import VOXEL, write_labels
-from slide_files import plane
+from helpers.grain_files import VOXEL, write_labels
+from helpers.slide_files import plane
 
 from snowshed import InputError, Scene, Simulation, SnowshedNote, run_events
 from snowshed.base.notes import recorded

@@ -4,8 +4,8 @@ import json
 
 import pytest
 from conftest import tiny_mps, tiny_scene
-from grain_files import write_labels
-from processes import snowshed_run
+from helpers.grain_files import write_labels
+from helpers.processes import snowshed_run
 
 from snowshed import InputError, Simulation, run_events
 from snowshed.running.run import run

@@ -1,6 +1,6 @@
 """Settings that decide how accurate a run is."""
 
-from processes import modules_after
+from helpers.processes import modules_after
 
 from snowshed.scene.accuracy_settings import ACCURACY, FORMER_NAMES
 from snowshed.scene.schema import scene_parameters

@@ -5,7 +5,7 @@ import sys
 import typing
 
 import pytest
-from paths import ROOT
+from helpers.paths import ROOT
 from tools.components import components, exporting, written
 
 from snowshed.base.field_type import alternatives_of

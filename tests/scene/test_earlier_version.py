@@ -9,7 +9,7 @@ from snowshed import MpmSettings, Obstacle, Scene, Shape, _core
 from snowshed.cli.main import main
 from snowshed.scene.scene import ResolvedScene
 from snowshed.scene.schema import with_current_names
-from snowshed.study.scene_hash import Run, content_hash
+from snowshed.study.scene_hash import RunKey, content_hash
 
 OLD = {
     "snowshed": 1,
@@ -56,7 +56,7 @@ def test_slip_of_version_2_is_slip_and_its_new_meaning_is_said(tmp_path):
 
 
 def test_runs_stored_with_version_1_are_found():
-    now = Run.of(tiny_scene().resolve())
+    now = RunKey.of(tiny_scene().resolve())
     data = json.loads(now.scene)
     assert data["panel"]["condition"] == "separate"
     old = {**data, "snowshed": 1, "panel": {**data["panel"], "condition": "slip"}}

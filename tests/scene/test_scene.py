@@ -116,7 +116,7 @@ def test_the_method_decides_what_the_settings_are(tiny):
     ):
         tiny.set("method", "mpmm")
     with pytest.raises(
-        InputError, match=r"^/method: the method 'slide' takes SlideSettings, and these are Mpm"
+        InputError, match=r"^/method: the method 'slide' takes SlideSettings, not Mpm"
     ):
         tiny.set("method", "slide")
     assert isinstance(Scene(method="slide").set("numerics.friction", 0.3).numerics, SlideSettings)

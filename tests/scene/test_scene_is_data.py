@@ -7,7 +7,7 @@ import pickle
 
 import pytest
 from conftest import tiny_scene
-from paths import ROOT
+from helpers.paths import ROOT
 
 import snowshed._core as core
 from snowshed import ResolvedScene

@@ -3,7 +3,7 @@
 import pytest
 
 from snowshed import Scene, _core
-from snowshed.season import balance
+from snowshed.season import snow_balance
 
 
 @pytest.mark.parametrize("friction", [0.5, 0.55, 0.6, 0.7, 0.8])
@@ -17,5 +17,5 @@ def test_the_lab_panel_at_30_degrees_clears_as_the_criterion_says(friction):
     assert simulation.run(lambda _: True) == "rest"
     masses = simulation.masses()
     left = masses[simulation.on_panel()].sum() / masses.sum()
-    goes = balance(210.0 * 0.02, 30.0, friction, 0.0).releases
+    goes = snow_balance(210.0 * 0.02, 30.0, friction, 0.0).releases
     assert (left < 0.02) if goes else (left > 0.9)

@@ -8,7 +8,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from snowshed import InputError
-from snowshed.season import SeasonSettings, Weather, accumulate, balance
+from snowshed.season import SeasonSettings, Weather, accumulate, snow_balance
 from snowshed.season.accumulation import pauses
 from snowshed.season.settling_column import SnowColumn
 from snowshed.season.stack_settling import SettlingStack
@@ -30,15 +30,15 @@ def season(*snowfalls, density=100.0, temperature=-5.0, days=1):
 def test_without_adhesion_the_tangent_of_the_tilt_decides(tilt):
     limit = math.tan(math.radians(tilt))
     for load in (0.1, 100.0):
-        assert balance(load, tilt, limit * 0.999, 0.0).releases
-        assert not balance(load, tilt, limit * 1.001, 0.0).releases
+        assert snow_balance(load, tilt, limit * 0.999, 0.0).releases
+        assert not snow_balance(load, tilt, limit * 1.001, 0.0).releases
 
 
 def test_the_lab_panel_at_30_degrees_stops_over_the_measured_friction_and_goes_below():
     load = 210.0 * 0.02
-    assert not any(balance(load, 30.0, friction, 0.0).releases for friction in (0.6, 0.7, 0.8))
-    assert balance(load, 30.0, 0.57, 0.0).releases
-    assert all(balance(load, 40.0, friction, 0.0).releases for friction in (0.6, 0.7, 0.8))
+    assert not any(snow_balance(load, 30.0, friction, 0.0).releases for friction in (0.6, 0.7, 0.8))
+    assert snow_balance(load, 30.0, 0.57, 0.0).releases
+    assert all(snow_balance(load, 40.0, friction, 0.0).releases for friction in (0.6, 0.7, 0.8))
 
 
 def test_with_adhesion_snow_gathers_up_to_the_closed_form():

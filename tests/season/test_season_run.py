@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pandas as pd
 import pytest
-from processes import modules_after
+from helpers.processes import modules_after
 
 from snowshed import InputError, Scene, _core
 from snowshed.cli.commands.season import print_season
@@ -15,7 +15,7 @@ from snowshed.cli.main import main
 from snowshed.scene.panel_edge import panel_edge
 from snowshed.season import SeasonSettings, accumulate, read_season, run_season
 from snowshed.season.clearance import (
-    Contact,
+    PanelContact,
     below_panel,
     clearance,
     first_reached,
@@ -83,7 +83,7 @@ def test_the_figure_names_the_event_that_buries_the_panel(finished):
     result, folder = finished
     scene = json.loads((folder / "run" / "scene.json").read_text())
     outlines = pd.read_csv(folder / "run" / "outline.csv")
-    buried = dataclasses.replace(result, contact=Contact("2024-12-24", 2, "crest"))
+    buried = dataclasses.replace(result, contact=PanelContact("2024-12-24", 2, "crest"))
     figure = drawn(buried, outlines, scene)
     texts = [text.get_text() for text in figure.axes[1].texts]
     assert "first contact: crest, event 2" in texts

@@ -5,12 +5,12 @@ from datetime import date, datetime, timedelta
 
 import numpy as np
 import pytest
-from station_files import days, elements, ghcn, smet, snows, warmth
+from helpers.station_files import days, elements, ghcn, smet, snows, warmth
 
 from snowshed import InputError
 from snowshed.io import Observation, Station
 from snowshed.season.daily_means import days_of_station
-from snowshed.season.source import Source
+from snowshed.season.source import SnowSource
 from snowshed.season.weather import read_record
 
 WINTER = (date(2023, 11, 1), date(2024, 4, 30))
@@ -58,7 +58,7 @@ def test_noise_of_a_sensor_is_no_snow(tmp_path):
     chance = random.Random(1)
     record = hourly(tmp_path, lambda t: (max(depth(t) + chance.gauss(0.0, 0.03), 0.0),))
     assert total(record) == pytest.approx(0.2 * STEPS, rel=0.06)
-    assert {row.source for row in record.rows} == {Source.DEPTH}
+    assert {row.source for row in record.rows} == {SnowSource.DEPTH}
 
 
 def test_a_rise_over_a_gap_is_no_snowfall_of_a_day(tmp_path):
@@ -66,7 +66,7 @@ def test_a_rise_over_a_gap_is_no_snowfall_of_a_day(tmp_path):
     assert max(row.snowfall for row in record.rows) < 0.03
     assert total(record) == pytest.approx(0.9, abs=0.01)
     within = on(record, date(2024, 1, 5))
-    assert within.source is Source.FILLED and "rise of 0.90 m over 37 days" in within.reason
+    assert within.source is SnowSource.FILLED and "rise of 0.90 m over 37 days" in within.reason
     assert told(record, "rises by 0.90 m in the 37 days to 2024-01-25", "not snowfall of a day")
     assert not record.winters().counted
 
@@ -98,7 +98,7 @@ def test_the_depth_of_weekdays_tells_of_the_weekend(tmp_path):
     record = daily_depths(tmp_path, depths)
     assert total(record) == pytest.approx(2.6, abs=0.11)
     (winter,) = record.winters().winters
-    assert winter.counts and winter.sources[Source.MISSING] == 0
+    assert winter.counts and winter.sources[SnowSource.MISSING] == 0
 
 
 @pytest.mark.parametrize("size", [0.8, 2.5, 9.0])
@@ -158,23 +158,23 @@ def test_a_gauge_that_catches_no_snow_gives_way_to_the_depth(tmp_path, water):
     fall = lambda t: water * ((t - HOURS[0]).days % 14 == 0 and t.hour == 3)  # noqa: E731
     record = hourly(tmp_path, lambda t: (depth(t), fall(t)), "TA HS PSUM")
     assert total(record) == pytest.approx(0.2 * STEPS)
-    assert {row.source for row in record.rows} == {Source.DEPTH}
+    assert {row.source for row in record.rows} == {SnowSource.DEPTH}
     assert told(record, "contradict each other", "snow depth 2.4 m", "the snow depth is used")
 
 
 def test_a_gauge_that_agrees_with_the_depth_is_used(tmp_path):
     fall = lambda t: 13.7 * ((t - HOURS[0]).days % 14 == 0 and t.hour == 3)  # noqa: E731
     record = hourly(tmp_path, lambda t: (depth(t), fall(t)), "TA HS PSUM")
-    assert {row.source for row in record.rows} == {Source.GAUGE}
+    assert {row.source for row in record.rows} == {SnowSource.GAUGE}
     assert not told(record, "contradict")
     record = read_record(tmp_path / "x.smet", "depth")
-    assert {row.source for row in record.rows} == {Source.DEPTH}
+    assert {row.source for row in record.rows} == {SnowSource.DEPTH}
 
 
 def test_a_depth_that_stands_still_gives_way_to_the_gauge(tmp_path):
     fall = lambda t: 13.7 * ((t - HOURS[0]).days % 14 == 0 and t.hour == 3)  # noqa: E731
     record = hourly(tmp_path, lambda t: (1.0, fall(t)), "TA HS PSUM")
-    assert {row.source for row in record.rows} == {Source.GAUGE}
+    assert {row.source for row in record.rows} == {SnowSource.GAUGE}
     assert told(record, "contradict each other", "snow depth 0 m", "the precipitation is used")
 
 
@@ -205,7 +205,7 @@ def test_new_snow_that_nobody_entered_gives_way(tmp_path):
 def test_new_snow_is_not_filled_up_with_rain(tmp_path):
     """More by the gauge than by hand is told, but what was measured stands."""
     record = several_winters(tmp_path, PRCP=lambda day, _: 300.0 if snows(day) else 0.0)
-    assert {row.source for row in record.rows} == {Source.HAND}
+    assert {row.source for row in record.rows} == {SnowSource.HAND}
     assert told(record, "contradict each other", "the new snow is used, not the precipitation")
 
 
@@ -248,7 +248,7 @@ def test_new_snow_beyond_the_record_is_left_out(tmp_path):
         for day in days(*WINTER)
     ]
     record = read_record(ghcn(tmp_path / "x.csv", rows))
-    assert on(record, date(2024, 1, 20)).source is Source.MISSING
+    assert on(record, date(2024, 1, 20)).source is SnowSource.MISSING
     assert told(record, "new snow of 2.50 m on 2024-01-20 is left out", "1.93 m")
 
 
@@ -262,7 +262,7 @@ def test_rain_without_a_thermometer_is_no_observed_snow(tmp_path):
     wet = [
         row for row in record.rows if row.snowfall and row.date.month == 1 and 4 < row.date.day < 27
     ]
-    assert {row.source for row in wet} == {Source.FILLED}
+    assert {row.source for row in wet} == {SnowSource.FILLED}
 
 
 def test_a_column_that_is_asked_for_must_be_there(tmp_path):

@@ -3,10 +3,10 @@
 from datetime import date
 
 import pytest
-from station_files import days, elements, ghcn, warmth
+from helpers.station_files import days, elements, ghcn, warmth
 
 from snowshed import InputError, SnowshedNote
-from snowshed.analysis import winters_of
+from snowshed.analysis import split_winters
 from snowshed.cli.main import main
 from snowshed.cli.weather_options import ShareType
 from snowshed.season import SeasonSettings, accumulate, read_season
@@ -88,9 +88,9 @@ def test_a_calendar_year_is_no_two_winters(tmp_path):
     with pytest.warns(SnowshedNote):
         rows = read_season(file)
     with pytest.raises(InputError, match=r"no winter .*: 2001/02 \(7. %\), 2002/03 \(2. %"):
-        winters_of(rows)
+        split_winters(rows)
     with pytest.warns(SnowshedNote, match="left out are the winters"):
-        assert [winter.name for winter in winters_of(rows, 0.7)] == ["2001/02"]
+        assert [winter.name for winter in split_winters(rows, 0.7)] == ["2001/02"]
 
 
 def test_the_coverage_decides(tmp_path):

@@ -11,12 +11,12 @@ from study_helpers import tiny_scene
 
 from snowshed import InputError, Obstacle, Scene, Shape, _core
 from snowshed.scene.schema import scene_parameters
-from snowshed.study import Run
+from snowshed.study import RunKey
 from snowshed.study.scene_hash import SETTINGS_WITHOUT_EFFECT, content_hash
 
 
-def run_of(scene: Scene) -> Run:
-    return Run.of(scene.resolve())
+def run_of(scene: Scene) -> RunKey:
+    return RunKey.of(scene.resolve())
 
 
 def test_what_does_not_change_a_result_does_not_change_the_hash():

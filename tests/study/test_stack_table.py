@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 
 from snowshed import InputError, Scene, run_events
-from snowshed.analysis.sensitivity.stored import read_stored
+from snowshed.analysis.sensitivity.stored import read_study_runs
 from snowshed.study import Study, export
 from snowshed.study.stack_table import StackTable
 
@@ -35,7 +35,7 @@ def test_a_file_holds_the_stacks_of_its_store(store, tmp_path, ending):
         for name in ("panel.tilt", "seed", "event", "height", "length"):
             np.testing.assert_array_equal(one[name].to_numpy(float), other[name].to_numpy(float))
     assert ours.varying(ours.axes, "this") == theirs.varying(theirs.axes, "this") == ["panel.tilt"]
-    stored, exported = read_stored(store), read_stored(tmp_path / f"table.{ending}")
+    stored, exported = read_study_runs(store), read_study_runs(tmp_path / f"table.{ending}")
     assert stored.parameters == exported.parameters == ["panel.tilt"]
     assert stored.rows["height"].tolist() == exported.rows["height"].tolist()
 

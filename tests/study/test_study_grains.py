@@ -3,7 +3,7 @@
 import json
 
 import pytest
-from grain_files import VOXEL, write_labels
+from helpers.grain_files import VOXEL, write_labels
 
 from snowshed import GrainsSettings, LoadingStage
 from snowshed.running.run import run

@@ -3,7 +3,7 @@
 import re
 
 import pytest
-from paths import ROOT
+from helpers.paths import ROOT
 
 import snowshed.study
 from snowshed.study import Study

@@ -13,11 +13,11 @@ import numpy as np
 import pandas as pd
 import pytest
 import study_helpers
-from processes import children_of, snowshed_command, wait_for
+from helpers.processes import children_of, snowshed_command, wait_for
 from study_helpers import ALONE, contents, tiny_scene, tiny_study
 
 from snowshed import Obstacle, ResolvedScene, Shape, _core, read_events, run_events
-from snowshed.study import Run, Study, StudyError, read_table, resume
+from snowshed.study import RunKey, Study, StudyError, read_table, resume
 from snowshed.study.compute import compute
 from snowshed.study.database import MEASURED_TYPES
 from snowshed.study.local import LocalWorkers
@@ -63,7 +63,7 @@ def whole(tmp_path_factory):
 
 
 def task_of(scene, folder: Path) -> RunTask:
-    run = Run.of(scene.resolve())
+    run = RunKey.of(scene.resolve())
     return RunTask(run.hash, run.scene, str(folder), 1)
 
 

@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 import study_helpers
 import xarray
-from paths import ROOT
+from helpers.paths import ROOT
 from study_helpers import outcome, tiny_scene, tiny_study
 
 from snowshed import InputError, Shape

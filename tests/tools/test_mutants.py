@@ -5,7 +5,7 @@ import subprocess
 import sys
 
 import pytest
-from paths import ROOT
+from helpers.paths import ROOT
 from tools.mutants import trial
 from tools.mutants.__main__ import PAGES
 from tools.mutants.faults import Fault, FaultError, check_places, read_faults
@@ -234,7 +234,7 @@ def test_all_that_pass_say_nothing(workshop):
 def test_a_crash_and_a_hang_are_failures(workshop, monkeypatch):
     crashed = workshop(code=139)
     assert crashed.first_failure(["cpp:Sum*"]) == "cpp:Sum* (exit code 139)"
-    monkeypatch.setattr(trial, "LONGEST", 0.5)
+    monkeypatch.setattr(trial, "TIME_LIMIT", 0.5)
     assert workshop().first_failure(["tests/a.py"], 9) == "tests/a.py (hangs)"
 
 

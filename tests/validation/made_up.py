@@ -53,7 +53,7 @@ def matrix(full):
 HEIGHT = Quantity(
     "height", "height, m", bar=0.06, bar_for={"transfer": "apic", "dx": 0.1}, order_in="dx"
 )
-DRIFT = Quantity("drift", "drift, kg m2/s", relative=False, order_in="dx", least_order=1.9)
+DRIFT = Quantity("drift", "drift, kg m2/s", relative=False, order_in="dx", min_order=1.9)
 
 
 def made_up_case(*, entries=None, quantities=(HEIGHT, DRIFT), remarks="PIC damps."):

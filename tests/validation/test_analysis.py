@@ -193,7 +193,7 @@ def test_a_bar_may_be_for_several_values_of_a_setting():
 @pytest.mark.parametrize("error", [nan, inf])
 def test_a_failed_measurement_holds_no_bar(error):
     table = table_of(({"dx": 0.2}, 0.04, 1.0), ({"dx": 0.1}, error, 0.0), ({"dx": 0.4}, 0.1, 1.0))
-    facts = {"bar": 9.0, "order_in": "dx", "least_order": 0.1}
+    facts = {"bar": 9.0, "order_in": "dx", "min_order": 0.1}
     assert [bar.holds for bar in compare(table, [case_with(**facts)])] == [False, False]
 
 
@@ -203,7 +203,7 @@ def test_every_series_must_converge_fast_enough():
         *(({"dx": dx, "transfer": "pic"}, dx, 1.0) for dx in (0.4, 0.2, 0.1)),
         ({"dx": 0.4, "transfer": "flip"}, 0.1, 1.0),
     )
-    facts = {"order_in": "dx", "least_order": 1.8}
+    facts = {"order_in": "dx", "min_order": 1.8}
     (bar,) = compare(table, [case_with(**facts)])
     assert (bar.kind, bar.worst, bar.count) == ("order", pytest.approx(1.0), 2)
     assert bar.settings == {"transfer": "pic"}

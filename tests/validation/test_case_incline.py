@@ -50,7 +50,7 @@ def test_matrices_list_no_entry_twice(case, full):
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_the_slab_lies_on_the_plane(dimension):
     settings = {**COARSE, "friction": 0.3, "dimension": dimension, "speed": 2.0}
-    drive = incline.Drive(incline.slab_scene(settings, 25.0))
+    drive = incline.TimedEventDriver(incline.slab_scene(settings, 25.0))
     plane = Incline(25.0, dimension)
     normal = np.array([plane.normal[0], 0.0, plane.normal[-1]])
     heights = drive.core.positions() @ normal
@@ -107,7 +107,7 @@ def test_the_angle_is_found_between_those_that_were_tried(monkeypatch):
     outcome = ANGLE.measure({**COARSE, "friction": 0.7})
     (angle,) = outcome.measured
     assert angle.exact == pytest.approx(np.degrees(np.arctan(0.7)))
-    assert abs(angle.error) < incline.NEAR
+    assert abs(angle.error) < incline.ANGLE_TOLERANCE
     tried = outcome.wall_s / 0.5
     assert (outcome.updates, outcome.steps) == (6 * tried, 3 * tried)
 

@@ -14,7 +14,7 @@ from validation.manufactured.motions import (
 )
 
 MOTIONS = [AxialWaves(0.04), Vortex(1.0)]
-LARGEST = 0.4 / WAVE_SPEED  # a time near that of the largest displacement
+TIME_OF_MAXIMUM = 0.4 / WAVE_SPEED  # a time near that of the largest displacement
 NEAR = 1e-4  # m, for differences in space
 
 
@@ -49,19 +49,19 @@ def first_piola_kirchhoff(motion, points, time):
 @pytest.mark.parametrize("motion", MOTIONS, ids=["waves", "vortex"])
 def test_body_forces_obey_newtons_law(motion):
     points = np.random.default_rng(1).uniform(0.05, 0.95, (100, 2))
-    stress = gradient(lambda x: first_piola_kirchhoff(motion, x, LARGEST), points)
+    stress = gradient(lambda x: first_piola_kirchhoff(motion, x, TIME_OF_MAXIMUM), points)
     inner = np.einsum("nijj->ni", stress) / DENSITY
     step = 1e-3 / WAVE_SPEED
-    acceleration = difference(lambda t: motion.velocity(points, t), LARGEST, step)
-    force = motion.body_force(points, LARGEST)
+    acceleration = difference(lambda t: motion.velocity(points, t), TIME_OF_MAXIMUM, step)
+    force = motion.body_force(points, TIME_OF_MAXIMUM)
     assert np.abs(acceleration - inner - force).max() < 1e-6 * np.abs(force).max()
 
 
 @pytest.mark.parametrize("motion", MOTIONS, ids=["waves", "vortex"])
 def test_velocities_are_the_rate_of_displacements(motion):
     points = np.random.default_rng(2).uniform(0, 1, (50, 2))
-    rate = difference(lambda t: motion.displacement(points, t), LARGEST, 1e-3 / WAVE_SPEED)
-    assert motion.velocity(points, LARGEST) == pytest.approx(rate, rel=1e-8, abs=1e-8)
+    rate = difference(lambda t: motion.displacement(points, t), TIME_OF_MAXIMUM, 1e-3 / WAVE_SPEED)
+    assert motion.velocity(points, TIME_OF_MAXIMUM) == pytest.approx(rate, rel=1e-8, abs=1e-8)
 
 
 @pytest.mark.parametrize("motion", MOTIONS, ids=["waves", "vortex"])
@@ -70,7 +70,7 @@ def test_the_sides_of_the_square_carry_nothing(motion):
     for side in (0.0, 1.0):
         for axis in range(2):
             points = np.insert(along[:, np.newaxis], axis, side, axis=1)
-            traction = first_piola_kirchhoff(motion, points, LARGEST)[:, :, axis]
+            traction = first_piola_kirchhoff(motion, points, TIME_OF_MAXIMUM)[:, :, axis]
             assert np.abs(traction).max() < 1e-5 * YOUNGS_MODULUS
 
 
@@ -130,7 +130,7 @@ def test_finer_cells_follow_better(start, transfer):
 
 
 def test_smaller_steps_come_nearer_to_smallest(monkeypatch):
-    monkeypatch.setattr(manufactured, "SMALLEST", 0.9 / 16)
+    monkeypatch.setattr(manufactured, "MIN_COURANT_FACTOR", 0.9 / 16)
     settings = manufactured.steps_matrix(False)[0]
     found = [
         manufactured.measure_steps({**settings, "courant_factor": factor}).measured

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 from validation.material_paths import case as material_paths
-from validation.material_paths.case import CASES, Path
+from validation.material_paths.case import CASES, StrainPath
 from validation.material_paths.rate_equations import RateEquations, evenly
 
 from snowshed._core import CamClay
@@ -110,7 +110,7 @@ def test_without_cohesion_the_critical_state_is_on_q_equal_m_p(monkeypatch):
     monkeypatch.setattr(material_paths, "calibrated", lambda: (loose, STRENGTH))
     p, q = material_paths.critical_state(0.8)
     assert q == pytest.approx(loose.critical_state_slope * p)
-    states, _ = Path(-0.16, lateral=-0.5, pressure=0.8).mapped(1e-4)
+    states, _ = StrainPath(-0.16, lateral=-0.5, pressure=0.8).mapped(1e-4)
     assert states[-1, :2] == pytest.approx([p, q], rel=1e-6)
 
 
@@ -150,9 +150,9 @@ def test_entries_measure_what_the_case_lists(case):
 def test_another_law_would_be_noticed(monkeypatch):
     """A core with a slightly different slope is not within the bar, however small the steps."""
     changed = CONSTANTS._replace(critical_state_slope=CONSTANTS.critical_state_slope * 1.0001)
-    reference = Path(-0.06, lateral=0.0).reference()
+    reference = StrainPath(-0.06, lateral=0.0).reference()
     monkeypatch.setattr(material_paths, "calibrated", lambda: (changed, STRENGTH))
-    monkeypatch.setattr(Path, "reference", lambda self: reference)
+    monkeypatch.setattr(StrainPath, "reference", lambda self: reference)
     settings = {"dimension": 3, "increment": 1e-5, "method": "extrapolated"}
     error = measured(material_paths.measure_oedometer(settings))["extrapolated_stress"].error
     assert error > 10 * material_paths.BAR

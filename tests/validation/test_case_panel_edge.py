@@ -14,7 +14,7 @@ def test_a_tipping_slab_without_friction_keeps_its_energy():
     state = slab._leave()
     x, z = slab._slope(state.position)
     tilt = math.radians(35)
-    # It started `way` up the slope from the edge, half its thickness above the face.
+    # It started `sliding_distance` up the slope from the edge, half its thickness above the face.
     start = 0.6 * math.sin(tilt) + 0.025 * math.cos(tilt)
     kinetic = (state.velocity @ state.velocity + slab._inertia * state.spin**2) / 2
     assert kinetic == pytest.approx(slab.gravity * (start - z), rel=1e-9)
@@ -47,8 +47,8 @@ def parabola(wind):
 def test_deviation_from_the_parabola():
     assert panel_edge.off_parabola(parabola(0.0)) < 1e-12
     flight = parabola(0.1)
-    way = np.linalg.norm(flight[-1].position - flight[0].position)
-    assert panel_edge.off_parabola(flight) == pytest.approx(0.1 * 0.5**2 / 2 / way)
+    distance = np.linalg.norm(flight[-1].position - flight[0].position)
+    assert panel_edge.off_parabola(flight) == pytest.approx(0.1 * 0.5**2 / 2 / distance)
 
 
 def test_landing_is_where_the_drop_is_crossed():

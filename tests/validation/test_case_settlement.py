@@ -100,7 +100,7 @@ def test_every_entry_makes_a_scene_and_none_comes_twice(case):
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_the_column_stands_between_its_walls(dimension):
     settings = {**COARSE, "dimension": dimension, "particles_per_voxel": 8, "floor_offset": 0.5}
-    drive = settlement.Drive(settlement.column_scene(settings))
+    drive = settlement.TimedEventDriver(settlement.column_scene(settings))
     low, high = drive.core.positions().min(axis=0), drive.core.positions().max(axis=0)
     assert 0.02 < low[2] < 0.04
     assert 0.40 < high[2] < 0.42
@@ -118,7 +118,7 @@ def test_coarse_columns_settle_and_finer_ones_better(case):
 
 
 def test_the_column_rests_when_it_is_measured():
-    drive = settlement.Drive(settlement.column_scene({**COARSE, "model": "elastic"}))
+    drive = settlement.TimedEventDriver(settlement.column_scene({**COARSE, "model": "elastic"}))
     settlement.settle(drive, periods=4)
     assert np.abs(drive.core.velocities()).max() < 1e-4
     weight = drive.masses.sum() * settlement.GRAVITY

@@ -125,11 +125,11 @@ def test_every_entry_makes_a_scene_and_none_comes_twice(case):
 @pytest.mark.parametrize("offset", [0.0, 0.3])
 def test_where_the_bodies_are(offset):
     settings = {**BAR_DEFAULTS, **APIC, "grid_offset": offset}
-    x = vibration.Drive(vibration.bar_scene(settings)).core.positions()[:, 0]
+    x = vibration.TimedEventDriver(vibration.bar_scene(settings)).core.positions()[:, 0]
     assert x.min() == pytest.approx((offset + 0.25) * 0.05)
     assert x.max() == pytest.approx(1 + (offset - 0.25) * 0.05)
     settings = {**CANTILEVER_DEFAULTS, **APIC, "grid_offset": offset}
-    drive = vibration.Drive(vibration.cantilever_scene(settings))
+    drive = vibration.TimedEventDriver(vibration.cantilever_scene(settings))
     x = drive.core.positions()[:, 0]
     assert x.min() == pytest.approx((offset - 4 + 0.25) * 0.025)
     assert x.max() == pytest.approx(1 + (offset - 0.25) * 0.025)

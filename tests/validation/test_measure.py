@@ -9,8 +9,8 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from helpers.paths import ROOT
 from made_up import MEGABYTES, made_up_case
-from paths import ROOT
 from validation.framework import cases as listing
 from validation.framework import measure
 from validation.framework.folder import ValidationFolder
@@ -74,7 +74,7 @@ def test_processes_start_quickly(file):
         [made_up_case(entries=[{"dx": 1.0 / i} for i in range(1, 41)])], file
     )
     elapsed = time.perf_counter() - started
-    assert elapsed < 10.0  # of Python starting anew each time: about a minute on a busy machine
+    assert elapsed < 10.0  # of Python starting each time: about a minute on a busy machine
     assert sum(one.elapsed_s for one in measurements) < elapsed
 
 

@@ -5,8 +5,8 @@ from dataclasses import replace
 
 import pandas as pd
 import pytest
+from helpers.pages import Page
 from made_up import DRIFT, HEIGHT, made_up_case
-from pages import Page
 from plot.browser import check_page
 from validation.framework import sections
 from validation.framework.case import Quantity
@@ -211,7 +211,7 @@ def test_quantities_that_were_not_measured_have_no_column(tmp_path):
 
 def test_settings_that_are_not_given_are_named():
     assert sections._cell({"dx": 0.1}, "flip_ratio") == "default"
-    assert sections._cell({"dx": 0.1}, "aspect") == formatting.NOTHING
+    assert sections._cell({"dx": 0.1}, "aspect") == formatting.MISSING
     assert sections._cell({"dimension": 3}, "dimension") == "3D"
 
 
@@ -221,7 +221,7 @@ def test_tables_of_texts_are_as_wide_as_their_heads():
     assert grid.head == ["a b", "c", "d"]
     assert grid.align == "rlr"
     million = f"1.23{formatting.TIMES}10⁶"
-    assert grid.rows == [["1.23", "x", million], [formatting.NOTHING, "y", "12,345"]]
+    assert grid.rows == [["1.23", "x", million], [formatting.MISSING, "y", "12,345"]]
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from validation.stress.design import trials
-from validation.stress.scenes import build, longest_event
+from validation.stress.scenes import build, max_event_duration
 from validation.stress.space import KINDS, PARAMETERS, Range, reference
 
 from snowshed import InputError, _core
@@ -79,7 +79,7 @@ def test_scenes_hold_what_they_are_to_show(kind: str, dimension: int) -> None:
 
 def test_free_flight_ends_before_snow_is_scattered_wide() -> None:
     point = {**reference(), "kind": "collide", "speed": 100.0}
-    assert longest_event(point) == pytest.approx(50 * 0.06 / 100)
+    assert max_event_duration(point) == pytest.approx(50 * 0.06 / 100)
 
 
 def test_without_allpairspy_the_error_says_what_to_install(

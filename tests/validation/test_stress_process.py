@@ -6,7 +6,7 @@ import time
 from pathlib import Path
 
 from validation.stress import process
-from validation.stress.process import Run, record, stress_pool
+from validation.stress.process import ProcessRun, record, stress_pool
 from validation.stress.space import reference
 
 
@@ -25,25 +25,28 @@ def test_crashes_and_hangs_are_records_and_the_next_run_goes_on(monkeypatch):
     monkeypatch.syspath_prepend(str(Path(__file__).parent))
     monkeypatch.setattr(process, "compute", clumsy)
     with stress_pool(limit_s=10.0) as pool:
-        assert record(pool, Run({}, 7)) == {"ended": "7", "message": "1"}
-        crash = record(pool, Run({}, 1))
+        assert record(pool, ProcessRun({}, 7)) == {"ended": "7", "message": "1"}
+        crash = record(pool, ProcessRun({}, 1))
         assert crash["ended"] == "crashed"
         assert crash["message"] == "was killed by signal 6 (Aborted) last words"
-        assert record(pool, Run({}, 8))["ended"] == "8"
-        assert record(pool, Run({}, 2)) == {"ended": "hung", "message": "took more than 10 s"}
-        assert record(pool, Run({}, 9))["ended"] == "9"
+        assert record(pool, ProcessRun({}, 8))["ended"] == "8"
+        assert record(pool, ProcessRun({}, 2)) == {
+            "ended": "hung",
+            "message": "took more than 10 s",
+        }
+        assert record(pool, ProcessRun({}, 9))["ended"] == "9"
 
 
 def test_the_record_says_what_solve_found():
     with stress_pool() as pool:
-        found = record(pool, Run({**reference(), "kind": "collide"}, 30))
+        found = record(pool, ProcessRun({**reference(), "kind": "collide"}, 30))
         assert found["ended"] == "time_limit"
         assert found["finite"] and found["checkpoint"]
-        raised = record(pool, Run({"kind": "no such kind"}, 30))
+        raised = record(pool, ProcessRun({"kind": "no such kind"}, 30))
         assert raised["ended"] == "raised"
         assert "KeyError" in raised["message"]
         refused = record(
-            pool, Run({**reference(), "ground_tilt": 45.0, "tilt": 1.0, "cells": 1}, 30)
+            pool, ProcessRun({**reference(), "ground_tilt": 45.0, "tilt": 1.0, "cells": 1}, 30)
         )
         assert refused["ended"] == "refused"
         assert refused["message"].startswith("/panel/tilt")

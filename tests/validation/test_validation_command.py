@@ -4,9 +4,9 @@ import subprocess
 import sys
 
 import pytest
+from helpers.paths import ROOT
+from helpers.processes import modules_after
 from made_up import made_up_case, program
-from paths import ROOT
-from processes import modules_after
 from validation.framework import cases as listing
 from validation.framework import measure
 from validation.framework.case import Quantity

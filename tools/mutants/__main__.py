@@ -90,7 +90,7 @@ def _run(chosen: Sequence[Fault], faults: Sequence[Fault]) -> None:
             workshop.build(*TARGETS)  # the sound program again
         if caught_by:
             _require_sound(workshop, caught_by, sound)
-        results = Results.read()  # anew, for another run may have gone on meanwhile
+        results = Results.read()  # again, because another run may have continued meanwhile
         results.enter(fault.name, caught_by)
         results.write(FILE, faults)
         print(f"{number}/{len(ordered)} {fault.name}: {caught_by or 'SURVIVES'}", flush=True)

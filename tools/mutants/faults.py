@@ -18,7 +18,7 @@ TEXTS = ("name", "file", "old", "new", "why")
 
 
 class FaultError(ValueError):
-    """A fault that cannot be injected: what is wrong, and in which file."""
+    """A fault that cannot be injected, with the reason and the file."""
 
 
 @dataclass(frozen=True)
@@ -28,20 +28,20 @@ class Fault:
     Attributes
     ----------
     name, area
-        What the fault is called, and the part of the program that it is in.
+        Name of the fault, and the part of the program that it is in.
     file
         The source that it changes, from the root of the project.
     old, new
         The text that occurs once in the source, and what replaces it.
     why
-        What the program does wrong with it.
+        The wrong behaviour of the program.
     tests
         Tests that should catch it: ``cpp:FILTER`` of GoogleTest, or a path for pytest.
     switch
         Whether both texts are C++ expressions. Such faults are compiled together and one of them is
         turned on when the tests start.
     survives
-        Why no test can catch it; empty where one should.
+        Reason why no test can catch it; empty if one should.
     """
 
     name: str
@@ -69,8 +69,8 @@ class Fault:
         """
         count = text.count(self.old)
         if count != 1:
-            found = "no longer there" if count == 0 else f"there {count} times"
-            raise FaultError(f"{self.name}: the old text is {found} in {self.file}: {self.old!r}")
+            times = "no longer there" if count == 0 else f"there {count} times"
+            raise FaultError(f"{self.name}: the old text is {times} in {self.file}: {self.old!r}")
         start = text.index(self.old)
         return start, start + len(self.old)
 

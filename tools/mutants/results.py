@@ -16,14 +16,14 @@ BEGIN, END = "<!-- faults: begin -->", "<!-- faults: end -->"
 
 @dataclass
 class Results:
-    """Which test caught which fault.
+    """The test that caught each fault.
 
     Attributes
     ----------
     caught_by
         The first test that failed, by the name of the fault; empty if none did.
     date
-        On which day each fault was tried.
+        Day on which each fault was tried.
     """
 
     caught_by: dict[str, str] = field(default_factory=dict)
@@ -31,13 +31,13 @@ class Results:
 
     @classmethod
     def read(cls, path: Path = FILE) -> Results:
-        """Return what is in a file; nothing if there is none."""
+        """Return the results in a file; none if there is no file."""
         if not path.is_file():
             return cls()
         data = json.loads(path.read_text(encoding="utf-8"))["faults"]
         return cls(
-            {name: one["caught_by"] for name, one in data.items()},
-            {name: one["date"] for name, one in data.items()},
+            {name: fault["caught_by"] for name, fault in data.items()},
+            {name: fault["date"] for name, fault in data.items()},
         )
 
     def write(self, path: Path, faults: Sequence[Fault]) -> None:
@@ -86,8 +86,8 @@ def fault_list(faults: Sequence[Fault], caught_by: Mapping[str, str]) -> str:
     lines = ["| area | fault | caught by |", "| --- | --- | --- |"]
     for fault in (fault for fault in faults if fault.name in caught_by):
         test = caught_by[fault.name]
-        found = f"`{_short(test)}`" if test else f"survives. {fault.survives}".strip()
-        lines.append(f"| {fault.area} | {fault.why} | {found} |")
+        outcome = f"`{_short(test)}`" if test else f"survives. {fault.survives}".strip()
+        lines.append(f"| {fault.area} | {fault.why} | {outcome} |")
     return "\n".join(lines)
 
 

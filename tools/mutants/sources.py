@@ -26,7 +26,9 @@ inline const int snowshed_fault = snowshed_fault_from_environment();
 """
 
 
-def with_faults(text: str, switched: Sequence[tuple[int, Fault]], one: Fault | None = None) -> str:
+def with_faults(
+    text: str, switched: Sequence[tuple[int, Fault]], fixed: Fault | None = None
+) -> str:
     """Return a source with switched faults in it, which are off, and perhaps one that is not.
 
     Parameters
@@ -35,28 +37,28 @@ def with_faults(text: str, switched: Sequence[tuple[int, Fault]], one: Fault | N
         The source.
     switched
         Faults of this source that have a switch, with their numbers from 1. Those that overlap
-        `one` are left out.
-    one
-        A fault whose new text stands for the old one.
+        `fixed` are left out.
+    fixed
+        A fault whose new text replaces the old one.
 
     Raises
     ------
     FaultError
         If two faults overlap without being in the same place.
     """
-    places: dict[tuple[int, int], list[tuple[int, Fault]]] = {}
-    taken = one.place(text) if one else (0, 0)
+    spans: dict[tuple[int, int], list[tuple[int, Fault]]] = {}
+    taken = fixed.place(text) if fixed else (0, 0)
     for number, fault in switched:
         start, end = fault.place(text)
         if end <= taken[0] or start >= taken[1]:
-            places.setdefault((start, end), []).append((number, fault))
-    edits = [(start, end, _switch(group)) for (start, end), group in places.items()]
-    if one:
-        edits.append((*taken, one.new))
+            spans.setdefault((start, end), []).append((number, fault))
+    edits = [(start, end, _switch(group)) for (start, end), group in spans.items()]
+    if fixed:
+        edits.append((*taken, fixed.new))
     edits.sort()
     for before, after in zip(edits, edits[1:]):
         if before[1] > after[0]:
-            names = [fault.name for group in places.values() for _, fault in group]
+            names = [fault.name for group in spans.values() for _, fault in group]
             raise FaultError(f"faults overlap: {text[after[0] : after[1]]!r}; {', '.join(names)}")
     parts, at = [], 0
     for start, end, new in edits:
@@ -98,7 +100,7 @@ class SourceCopy:
         Parameters
         ----------
         files
-            What to copy, from the root; by default all that Git knows or would add.
+            Files to copy, from the root; by default all that Git knows or would add.
         """
         wanted = set(self.project_files() if files is None else files)
         for name in wanted:
@@ -137,9 +139,9 @@ class SourceCopy:
     def _restore(self, name: str) -> None:
         self._write(name, None)
 
-    def _write(self, name: str, one: Fault | None) -> None:
+    def _write(self, name: str, fixed: Fault | None) -> None:
         original = (self.root / name).read_text(encoding="utf-8")
-        text = with_faults(original, self._switched.get(name, []), one)
+        text = with_faults(original, self._switched.get(name, []), fixed)
         target = self.folder / name
         if not target.is_file() or target.read_text(encoding="utf-8") != text:
             target.parent.mkdir(parents=True, exist_ok=True)

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from tools.mutants.sources import SWITCH_HEADER
 
-LONGEST = 900  # s; tests that take longer hang
+TIME_LIMIT = 900  # s; tests that take longer hang
 CPP_FAILED = re.compile(r"^\[  FAILED  \] ([\w/]+\.[\w/]+)", re.M)
 PYTHON_FAILED = re.compile(r"^(?:FAILED|ERROR) (\S+)", re.M)
 
@@ -69,7 +69,7 @@ class Workshop:
         tests
             ``cpp:FILTER`` or paths for pytest, in the order in which they run.
         number
-            Of the fault that is turned on; 0: none.
+            Number of the fault that is turned on; 0: none.
         """
         for test in tests:
             failed = self._cpp(test[4:], number) if test.startswith("cpp:") else ""
@@ -84,16 +84,16 @@ class Workshop:
         code, text = self._try(words, number)
         if "Running 0 tests" in text or "0 tests from 0 test" in text:
             raise BuildError(f"no test matches cpp:{pattern}")
-        found = CPP_FAILED.findall(text)
-        return f"cpp:{found[0]}" if found else self._ended(code, f"cpp:{pattern}")
+        failures = CPP_FAILED.findall(text)
+        return f"cpp:{failures[0]}" if failures else self._ended(code, f"cpp:{pattern}")
 
     def _python(self, path: str, number: int) -> str:
         words = [self.venv / "bin/python", "-m", "pytest", "-x", "-q", "-rfE", "--no-header"]
         code, text = self._try([*words, "-p", "no:cacheprovider", path], number)
         if code in (4, 5):
             raise BuildError(f"pytest finds no test in {path}:\n{text[-2000:]}")
-        found = PYTHON_FAILED.findall(text)
-        return found[0] if found else self._ended(code, path)
+        failures = PYTHON_FAILED.findall(text)
+        return failures[0] if failures else self._ended(code, path)
 
     @staticmethod
     def _ended(code: int | None, test: str) -> str:
@@ -109,7 +109,11 @@ class Workshop:
         options = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True}
         try:
             ended = subprocess.run(
-                list(map(str, words)), cwd=self.source, env=environment, timeout=LONGEST, **options
+                list(map(str, words)),
+                cwd=self.source,
+                env=environment,
+                timeout=TIME_LIMIT,
+                **options,
             )
         except subprocess.TimeoutExpired as late:
             return None, str(late.stdout or "")

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from snowshed import _core
-from snowshed.analysis.accuracy.measurements import Measured, Settings
+from snowshed.analysis.accuracy.measurements import CaseSettings, Measured
 from snowshed.scene.components import Body, Events, Ground, Snow
 from snowshed.scene.scene import Scene
 from snowshed.scene.shape import Shape
@@ -54,7 +54,7 @@ class Deposit:
     particles: int
 
 
-def column_scene(settings: Settings, aspect: float) -> Scene:
+def column_scene(settings: CaseSettings, aspect: float) -> Scene:
     """Return the scene: the column on rough ground, released at once.
 
     Parameters
@@ -90,7 +90,7 @@ def column_scene(settings: Settings, aspect: float) -> Scene:
     return apply_settings(scene, settings, own=OWN)
 
 
-def collapse(settings: Settings, aspect: float) -> Deposit:
+def collapse(settings: CaseSettings, aspect: float) -> Deposit:
     """Let a column collapse and measure what lies there at the end.
 
     Examples
@@ -116,7 +116,7 @@ def collapse(settings: Settings, aspect: float) -> Deposit:
     )
 
 
-def measure(settings: Settings) -> Outcome:
+def measure(settings: CaseSettings) -> Outcome:
     """Let one column collapse, or the tall ones for their exponent."""
     dimension = int(settings["dimension"])
     if settings["aspect"] == "tall":
@@ -133,7 +133,7 @@ def measure(settings: Settings) -> Outcome:
     return _outcome([deposit], measured)
 
 
-def _measure_exponent(settings: Settings, aspects: Sequence[float]) -> Outcome:
+def _measure_exponent(settings: CaseSettings, aspects: Sequence[float]) -> Outcome:
     deposits = [collapse(settings, aspect) for aspect in aspects]
     runouts = [deposit.runout for deposit in deposits]
     exponent = float(np.polyfit(np.log(aspects), np.log(runouts), 1)[0])
@@ -151,24 +151,24 @@ def _outcome(deposits: Sequence[Deposit], measured: Sequence[Measured]) -> Outco
     )
 
 
-def matrix(full: bool) -> list[Settings]:
+def matrix(full: bool) -> list[CaseSettings]:
     """Return the settings to solve with."""
-    plane: Settings = {"dimension": 2, "dx": 0.01, "friction_angle": SAND, "transfer": "flip"}
-    space: Settings = {**plane, "dimension": 3, "dx": 1 / 60}
+    plane: CaseSettings = {"dimension": 2, "dx": 0.01, "friction_angle": SAND, "transfer": "flip"}
+    space: CaseSettings = {**plane, "dimension": 3, "dx": 1 / 60}
     if not full:
-        coarse: list[Settings] = [{**plane, "dx": 0.02, "aspect": a} for a in (1.0, 3.0)]
+        coarse: list[CaseSettings] = [{**plane, "dx": 0.02, "aspect": a} for a in (1.0, 3.0)]
         return [*coarse, {**plane, "aspect": 1.0}, {**space, "dx": 0.02, "aspect": 1.0}]
-    columns: list[Settings] = [
+    columns: list[CaseSettings] = [
         {**plane, "transfer": transfer, "aspect": aspect}
         for transfer in ("flip", "apic")
         for aspect in (0.5, 1.0, 1.5, 3.0, 5.0, "tall")
     ]
-    grids: list[Settings] = [
+    grids: list[CaseSettings] = [
         {**plane, "transfer": transfer, "aspect": 1.5, "dx": dx}
         for transfer in ("flip", "apic")
         for dx in (0.02, 0.005)
     ]
-    damping: list[Settings] = [
+    damping: list[CaseSettings] = [
         {**plane, "aspect": 1.5, **scheme}
         for scheme in (
             {"flip_ratio": 0.95},
@@ -180,11 +180,11 @@ def matrix(full: bool) -> list[Settings]:
             {"sleep_speed": 0.02},
         )
     ]
-    glass: list[Settings] = [
+    glass: list[CaseSettings] = [
         {**plane, "transfer": transfer, "aspect": 1.5, "friction_angle": GLASS}
         for transfer in ("flip", "apic")
     ]
-    round_columns: list[Settings] = [
+    round_columns: list[CaseSettings] = [
         {**space, "aspect": aspect} for aspect in (0.5, 1.0, 2.0, 4.0, "tall")
     ]
     round_columns += [{**space, "aspect": 1.0, "dx": 0.01}, {**space, "aspect": 1.0, "dx": 0.02}]
@@ -193,7 +193,7 @@ def matrix(full: bool) -> list[Settings]:
     return [*columns, *grids, *damping, *glass, *round_columns]
 
 
-def _without_angle(settings: Settings) -> Settings:
+def _without_angle(settings: CaseSettings) -> CaseSettings:
     return {name: value for name, value in settings.items() if name != "friction_angle"}
 
 

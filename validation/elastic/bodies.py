@@ -6,7 +6,7 @@ from collections.abc import Collection, Sequence
 
 import numpy as np
 
-from snowshed.analysis.accuracy.measurements import Settings
+from snowshed.analysis.accuracy.measurements import CaseSettings
 from snowshed.base.arrays import Floats
 from snowshed.scene.components import Body, Obstacle
 from snowshed.scene.scene import Scene
@@ -14,7 +14,7 @@ from snowshed.scene.shape import Shape
 from validation.framework.drive import apply_settings
 
 #: The transfers that cases compare; flip_ratio 0 is PIC.
-TRANSFERS: Sequence[Settings] = (
+TRANSFERS: Sequence[CaseSettings] = (
     {"transfer": "flip", "flip_ratio": 1.0},
     {"transfer": "flip", "flip_ratio": 0.99},
     {"transfer": "flip", "flip_ratio": 0.95},
@@ -24,7 +24,10 @@ TRANSFERS: Sequence[Settings] = (
 
 
 def elastic_scene(
-    shape: Shape, settings: Settings, own: Collection[str] = (), obstacles: Sequence[Obstacle] = ()
+    shape: Shape,
+    settings: CaseSettings,
+    own: Collection[str] = (),
+    obstacles: Sequence[Obstacle] = (),
 ) -> Scene:
     """Return a scene of one elastic body without gravity; 2D unless the settings say otherwise.
 

@@ -6,28 +6,28 @@ import math
 
 import numpy as np
 
-from snowshed.analysis.accuracy.measurements import Measured, Settings
+from snowshed.analysis.accuracy.measurements import CaseSettings, Measured
 from snowshed.base.arrays import Floats
 from snowshed.scene.scene import Scene
 from snowshed.scene.shape import Shape
 from validation.elastic.bodies import TRANSFERS, elastic_scene, from_plane, in_plane
 from validation.framework.case import Case, Outcome, Quantity
-from validation.framework.drive import Drive, relative
+from validation.framework.drive import TimedEventDriver, relative
 
 RADIUS, HEIGHT = 1.0, 0.5  # m; the height of the cylinder, in 3D
 YOUNGS_MODULUS, POISSONS_RATIO, DENSITY = 1e6, 0.3, 210.0  # Pa, 1, kg/m3
 #: The rim turns at a fifth of the speed of waves in a rod, sqrt(E/rho).
 RATE = 0.2 * math.sqrt(YOUNGS_MODULUS / DENSITY) / RADIUS  # rad/s
 TURN = 2 * math.pi / RATE  # s
-#: Settings that are the case's own.
+#: Settings of this case that scenes do not have.
 OWN = frozenset({"begins", "turns"})
 #: Steps between two samples, or between two damped velocities.
 STEPS = 4
-#: If a body is to begin in equilibrium: for how many turns its breathing is damped, and what part
-#: of the radial velocities is taken away each time.
+#: For bodies that begin in equilibrium: the number of turns in which the radial oscillation is
+#: damped, and the share of the radial velocities that is removed each time.
 SETTLING, DAMPED = 1.0, 0.1
 
-DISC: Settings = {
+DISC: CaseSettings = {
     "dimension": 2,
     "dx": 0.1,
     "begins": "undeformed",
@@ -37,17 +37,17 @@ DISC: Settings = {
     "pattern": "regular",
     "particles_per_voxel": 9,
 }
-CYLINDER: Settings = {**DISC, "dimension": 3, "dx": 0.2, "particles_per_voxel": 8}
+CYLINDER: CaseSettings = {**DISC, "dimension": 3, "dx": 0.2, "particles_per_voxel": 8}
 FLIP, APIC = TRANSFERS[0], TRANSFERS[3]
 
 
-def spin_scene(settings: Settings) -> Scene:
+def spin_scene(settings: CaseSettings) -> Scene:
     """Return a disc, or a cylinder about the y axis, still at rest."""
     if settings["dimension"] == 2:
         shape = Shape.sphere((0.0, 0.0), RADIUS)
     else:
         shape = Shape.cylinder((0.0, -HEIGHT / 2, 0.0), (0.0, HEIGHT / 2, 0.0), RADIUS)
-    material: Settings = {
+    material: CaseSettings = {
         "youngs_modulus": YOUNGS_MODULUS,
         "poissons_ratio": POISSONS_RATIO,
         "density": DENSITY,
@@ -82,15 +82,15 @@ def expansion(radius: Floats) -> Floats:
 class Spinning:
     """A body that has been set spinning about the y axis."""
 
-    def __init__(self, settings: Settings) -> None:
-        self.drive = Drive(spin_scene(settings))
+    def __init__(self, settings: CaseSettings) -> None:
+        self.drive = TimedEventDriver(spin_scene(settings))
         x, z = in_plane(self.drive.core.positions()).T
         self.radii = np.hypot(x, z)
         self._inertia = self._moment_of_inertia_in_cell(settings)
         self.drive.core.add_velocity(from_plane(RATE * np.stack([z, -x], axis=1)))
 
     @staticmethod
-    def _moment_of_inertia_in_cell(settings: Settings) -> float:
+    def _moment_of_inertia_in_cell(settings: CaseSettings) -> float:
         """Return what an affine velocity field carries, over its mass: dx^2/4 or dx^2/3."""
         return float(settings["dx"]) ** 2 / (4 if settings["basis"] == "quadratic" else 3)
 
@@ -118,7 +118,7 @@ class Spinning:
         return float(self.drive.mean(np.hypot(x, z) - self.radii))
 
     def settle(self) -> None:
-        """Damp the breathing away: forces along the radius leave the angular momentum alone."""
+        """Damp the radial oscillation; radial forces do not change the angular momentum."""
         core = self.drive.core
         while core.time_s < SETTLING * TURN:
             self.drive.step(STEPS)
@@ -141,7 +141,7 @@ def per_turn(ratio: float, time: float) -> float:
     return math.expm1(math.log(abs(ratio)) * TURN / time)
 
 
-def measure(settings: Settings) -> Outcome:
+def measure(settings: CaseSettings) -> Outcome:
     """Let a body spin for some turns and see what it keeps."""
     body = Spinning(settings)
     drive, turns = body.drive, float(settings["turns"])
@@ -165,10 +165,10 @@ def measure(settings: Settings) -> Outcome:
     return drive.outcome(measured)
 
 
-def matrix(full: bool) -> list[Settings]:
+def matrix(full: bool) -> list[CaseSettings]:
     """Return transfers in 2D and 3D, and in full resolutions, precisions and other variations."""
     sizes = (0.2, 0.1, 0.05) if full else (0.1,)
-    listed: list[Settings] = [
+    listed: list[CaseSettings] = [
         {**DISC, "dx": dx, **transfer} for transfer in TRANSFERS for dx in sizes
     ]
     listed += [{**DISC, **APIC, "precision": "float"}]
@@ -181,7 +181,7 @@ def matrix(full: bool) -> list[Settings]:
     listed += [{**DISC, **FLIP, "dx": dx, "begins": "equilibrium"} for dx in sizes]
     listed += [{**DISC, **transfer, "basis": "cubic"} for transfer in (FLIP, APIC)]
     listed += [{**DISC, **APIC, "begins": "equilibrium", "basis": "cubic"}]
-    seedings: list[Settings] = [{"particles_per_voxel": 4}, {"pattern": "poisson", "seed": 1}]
+    seedings: list[CaseSettings] = [{"particles_per_voxel": 4}, {"pattern": "poisson", "seed": 1}]
     listed += [{**DISC, **transfer, **seeding} for seeding in seedings for transfer in (FLIP, APIC)]
     listed += [{**DISC, **APIC, "begins": "equilibrium", "particles_per_voxel": 4}]
     listed += [{**CYLINDER, **transfer} for transfer in TRANSFERS[1:3]]
@@ -198,11 +198,11 @@ CASE = Case(
     ),
     description="""
     An elastic disc (2D) of 1 m radius, or a cylinder half as high (3D), spins without gravity; its
-    rim moves at a fifth of the speed of waves in a rod. Set spinning undeformed, it breathes about
-    its centrifugal equilibrium; if it is to begin in equilibrium, its breathing is damped during a
-    first turn by forces along the radius, which leave the angular momentum alone. Angular momentum,
-    with that of the affine fields of APIC, and energy should not change. Its mean expansion over
-    time, half a percent of the radius, is compared with that of the equilibrium.
+    rim moves at a fifth of the speed of waves in a rod. From an undeformed start its radius
+    oscillates about the centrifugal equilibrium; for a start in equilibrium, this oscillation is
+    damped during a first turn by radial forces, which do not change the angular momentum. Angular
+    momentum, with that of the affine fields of APIC, and energy should not change. Its mean
+    expansion over time, half a percent of the radius, is compared with that of the equilibrium.
     """,
     quantities=(
         Quantity(
@@ -235,23 +235,23 @@ CASE = Case(
     matrix=matrix,
     measure=measure,
     remarks="""
-    APIC keeps angular momentum to rounding, in single precision too (some 1e-7 per turn). FLIP does
-    not. Particles that take their velocities from the grid keep nothing of how they turn within
-    their cells: a step of PIC loses the part (dx/R)² of a disc's angular momentum, just what the
-    affine fields of APIC carry, and one of FLIP with the ratio a loses 1 - a of that. There are a
-    thousand steps in a turn of a disc ten cells in radius, so that PIC stops it within a fraction
-    of a turn, FLIP with 0.95 takes 40 % per turn, with 0.99 11 % (5 % at twenty cells: first order
-    in dx, as steps become more). Snowballs a few cells large turn far too little with the default.
+    APIC conserves angular momentum to rounding, also in single precision (about 1e-7 per turn).
+    FLIP does not. Particles that take their velocities from the grid lose the rotation within a
+    cell. A step of PIC loses the share (dx/R)² of a disc's angular momentum, which the affine
+    fields of APIC keep. A step of FLIP with ratio a loses (1 - a)(dx/R)². A disc ten cells in
+    radius takes a thousand steps per turn, so PIC stops it within a fraction of a turn. FLIP with
+    0.95 loses 40 % per turn, with 0.99 11 % (5 % at twenty cells: first order in dx, because there
+    are more steps). Snowballs of a few cells rotate far too slowly with the default.
 
     Pure FLIP loses only what its interpolated changes of velocity miss: 2.6 % per turn at five
-    cells, 0.4 % at ten, 0.05 % at twenty. The cylinder does like the disc.
+    cells, 0.4 % at ten, 0.05 % at twenty. The cylinder behaves like the disc.
 
-    Energy goes with the square of the momentum. APIC loses less than 0.1 % per turn at ten
-    cells, that of the breathing; a disc in equilibrium 0.003 %.
+    The energy loss follows the square of the momentum. APIC loses less than 0.1 % per turn at ten
+    cells, through the radial oscillation; a disc in equilibrium loses 0.003 %.
 
-    The expansion is 2 % too small at ten cells and 0.7 % at twenty (cubic splines: 3 % at ten);
-    the closed form is for small strains and leaves out that the disc slows down by a percent as it
-    expands. With 4 particles per cell it is 4 % larger, with random seeding 15 %: what is unevenly
-    filled with particles is softer.
+    The expansion is 2 % too small at ten cells and 0.7 % at twenty (cubic splines: 3 % at ten).
+    The closed form holds for small strains, and assumes that the disc does not slow down as it
+    expands, although it does by a percent. With 4 particles per cell the expansion is 4 % larger,
+    with random seeding 15 %, because unevenly filled cells are softer.
     """,
 )

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from snowshed.analysis.accuracy.measurements import Measured, Settings
+from snowshed.analysis.accuracy.measurements import CaseSettings, Measured
 from snowshed.base.arrays import Floats
 from snowshed.scene.components import Obstacle
 from snowshed.scene.scene import Scene
@@ -17,13 +17,13 @@ from validation.elastic.cantilever import Cantilever
 from validation.elastic.smoothing import Smoothing
 from validation.elastic.swing import Swing
 from validation.framework.case import Case, Outcome, Quantity
-from validation.framework.drive import Drive, relative
+from validation.framework.drive import TimedEventDriver, relative
 
 YOUNGS_MODULUS, DENSITY = 1e6, 210.0  # Pa, kg/m3
 LENGTH = 1.0  # m, of the bar; of the cantilever unless the settings say otherwise
 #: Settings that are the case's own: where a grid node lies from the body's end, in cells; length.
 OWN = frozenset({"grid_offset", "length"})
-DEFAULTS: Settings = {
+DEFAULTS: CaseSettings = {
     "grid_offset": 0.0,
     "basis": "quadratic",
     "precision": "double",
@@ -31,7 +31,7 @@ DEFAULTS: Settings = {
     "particles_per_voxel": 4,
 }
 #: Variants besides resolutions and transfers, with APIC.
-VARIANTS: Sequence[Settings] = (
+VARIANTS: Sequence[CaseSettings] = (
     {"basis": "cubic"},
     {"precision": "float"},
     {"particles_per_voxel": 9},
@@ -55,7 +55,9 @@ class Vibrating:
         Factor of `mode` at the largest displacement.
     """
 
-    def __init__(self, drive: Drive, mode: Floats, frequency: float, height: float) -> None:
+    def __init__(
+        self, drive: TimedEventDriver, mode: Floats, frequency: float, height: float
+    ) -> None:
         self.drive, self._mode, self._frequency = drive, mode, frequency
         self._start = in_plane(drive.core.positions())
         self._norm = float(drive.masses @ np.sum(mode**2, axis=1))
@@ -83,10 +85,10 @@ BAR_CELLS = 4
 #: Largest strain, and for how many periods the bar vibrates.
 BAR_STRAIN, BAR_PERIODS = 1e-3, 6
 BAR_FREQUENCY = math.sqrt(YOUNGS_MODULUS / DENSITY) / (2 * LENGTH)
-BAR_DEFAULTS: Settings = {**DEFAULTS, "dx": 0.05}
+BAR_DEFAULTS: CaseSettings = {**DEFAULTS, "dx": 0.05}
 
 
-def bar_scene(settings: Settings) -> Scene:
+def bar_scene(settings: CaseSettings) -> Scene:
     """Return a bar along x that nothing holds."""
     dx = float(settings["dx"])
     corner = np.full(2, float(settings["grid_offset"]) * dx)
@@ -95,9 +97,9 @@ def bar_scene(settings: Settings) -> Scene:
     return elastic_scene(shape, _material(settings, poissons_ratio=0.0), OWN)
 
 
-def measure_bar(settings: Settings) -> Outcome:
+def measure_bar(settings: CaseSettings) -> Outcome:
     """Let the bar vibrate along its length, its ends against each other."""
-    drive = Drive(bar_scene(settings))
+    drive = TimedEventDriver(bar_scene(settings))
     wavenumber = math.pi / LENGTH
     along = in_plane(drive.core.positions())[:, 0]
     along = along - float(settings["grid_offset"]) * float(settings["dx"])
@@ -116,10 +118,10 @@ def measure_bar(settings: Settings) -> Outcome:
     )
 
 
-def bar_matrix(full: bool) -> list[Settings]:
+def bar_matrix(full: bool) -> list[CaseSettings]:
     """Return transfers and resolutions, and in full other variations."""
     sizes = (0.1, 0.05, 0.025, 0.0125) if full else (0.1, 0.05)
-    listed: list[Settings] = [
+    listed: list[CaseSettings] = [
         {**BAR_DEFAULTS, "dx": dx, **transfer} for transfer in TRANSFERS for dx in sizes
     ]
     if full:
@@ -148,7 +150,7 @@ BAR = Case(
             bar=0.01,
             bar_for={"dx": 0.05, "basis": "quadratic", "pattern": "regular"},
             order_in="dx",
-            least_order=1.8,
+            min_order=1.8,
         ),
         Quantity("lost", "part of the amplitude lost per period", order_in="dx"),
         Quantity(
@@ -179,10 +181,10 @@ CANTILEVER_HEIGHT, POISSONS_RATIO = 0.2, 0.3  # m
 HELD_CELLS = 4
 #: Largest deflection over the length, periods, and steps between two samples.
 DEFLECTION, CANTILEVER_PERIODS, STEPS = 2e-3, 1.5, 10
-CANTILEVER_DEFAULTS: Settings = {**DEFAULTS, "dx": 0.025, "length": LENGTH}
+CANTILEVER_DEFAULTS: CaseSettings = {**DEFAULTS, "dx": 0.025, "length": LENGTH}
 
 
-def cantilever_scene(settings: Settings) -> Scene:
+def cantilever_scene(settings: CaseSettings) -> Scene:
     """Return a beam along x that sticks in a clamp, whose face is at `grid_offset` cells."""
     dx, length = float(settings["dx"]), float(settings["length"])
     face = float(settings["grid_offset"]) * dx
@@ -203,9 +205,9 @@ def bending_mode(beam: Cantilever, points: Floats) -> Floats:
     return np.stack([-(points[:, 1] - beam.height / 2) * rotation, deflection], axis=1)
 
 
-def measure_cantilever(settings: Settings) -> Outcome:
+def measure_cantilever(settings: CaseSettings) -> Outcome:
     """Let the beam bend up and down."""
-    drive = Drive(cantilever_scene(settings))
+    drive = TimedEventDriver(cantilever_scene(settings))
     face = float(settings["grid_offset"]) * float(settings["dx"])
     length = float(settings["length"])
     beam = Cantilever(length, CANTILEVER_HEIGHT, YOUNGS_MODULUS, POISSONS_RATIO, DENSITY)
@@ -220,13 +222,13 @@ def measure_cantilever(settings: Settings) -> Outcome:
     )
 
 
-def cantilever_matrix(full: bool) -> list[Settings]:
+def cantilever_matrix(full: bool) -> list[CaseSettings]:
     """Return transfers and resolutions, and in full other variations."""
     sizes = (0.05, 0.025, 0.0125) if full else (0.05,)
-    listed: list[Settings] = [
+    listed: list[CaseSettings] = [
         {**CANTILEVER_DEFAULTS, "dx": dx, **transfer} for transfer in TRANSFERS for dx in sizes
     ]
-    apic: Settings = {**CANTILEVER_DEFAULTS, "transfer": "apic"}
+    apic: CaseSettings = {**CANTILEVER_DEFAULTS, "transfer": "apic"}
     if not full:
         return [*listed, {**CANTILEVER_DEFAULTS, **TRANSFERS[0]}, apic]
     listed += [{**apic, **variant} for variant in VARIANTS]
@@ -272,7 +274,7 @@ CANTILEVER = Case(
 )
 
 
-def _material(settings: Settings, poissons_ratio: float) -> Settings:
+def _material(settings: CaseSettings, poissons_ratio: float) -> CaseSettings:
     return {
         "youngs_modulus": YOUNGS_MODULUS,
         "poissons_ratio": poissons_ratio,

@@ -23,7 +23,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from snowshed.analysis.accuracy.measurements import Settings
+from snowshed.analysis.accuracy.measurements import CaseSettings
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ class Smoothing:
     felt: float
 
     @classmethod
-    def of(cls, settings: Settings, wavenumber: float) -> Smoothing:
+    def of(cls, settings: CaseSettings, wavenumber: float) -> Smoothing:
         """Return the smoothing of a wave.
 
         Parameters

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from math import inf, isnan, nan
 from typing import TYPE_CHECKING, Optional
 
-from snowshed.analysis.accuracy.measurements import Settings
+from snowshed.analysis.accuracy.measurements import CaseSettings
 from snowshed.analysis.accuracy.solutions import records, rows_of, solutions
 from validation.framework.case import Case, Quantity, Wanted, alternatives
 from validation.framework.convergence import convergences
@@ -37,7 +37,7 @@ class Bar:
     kind: str
     demanded: float
     worst: Optional[float]
-    settings: Settings
+    settings: CaseSettings
     count: int
 
     @property
@@ -62,8 +62,8 @@ def compare(table: pd.DataFrame, cases: Iterable[Case]) -> list[Bar]:
             rows = rows_of(table, case.name, quantity.name)
             if quantity.bar is not None:
                 bars.append(_error_bar(case.name, quantity, quantity.bar, rows))
-            if quantity.least_order is not None and quantity.order_in is not None:
-                bars.append(_order_bar(case.name, quantity, quantity.least_order, rows))
+            if quantity.min_order is not None and quantity.order_in is not None:
+                bars.append(_order_bar(case.name, quantity, quantity.min_order, rows))
     return bars
 
 
@@ -92,5 +92,5 @@ def _order_bar(case: str, quantity: Quantity, demanded: float, rows: pd.DataFram
     return Bar(case, quantity, "order", demanded, order, settings, len(meant))
 
 
-def _matches(settings: Settings, wanted: Wanted) -> bool:
+def _matches(settings: CaseSettings, wanted: Wanted) -> bool:
     return all(settings.get(name) in alternatives(value) for name, value in wanted.items())

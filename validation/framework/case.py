@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Optional, Union
 
-from snowshed.analysis.accuracy.measurements import Measured, Settings, Value
+from snowshed.analysis.accuracy.measurements import CaseSettings, Measured, Value
 from snowshed.base.formatting import number, percent
 
 #: Settings that are asked for; None: not given. Of several values in a tuple any will do.
@@ -47,7 +47,7 @@ class Quantity:
         not be given.
     order_in:
         The setting whose power law the error follows (``"dx"``, ``"courant_factor"``), if any.
-    least_order:
+    min_order:
         The smallest order of convergence allowed.
     relative:
         Whether the error is relative to the exact value (shown in %) or in the quantity's unit.
@@ -58,7 +58,7 @@ class Quantity:
     bar: Optional[float] = None
     bar_for: Wanted = field(default_factory=dict)
     order_in: Optional[str] = None
-    least_order: Optional[float] = None
+    min_order: Optional[float] = None
     relative: bool = True
 
     def error_text(self, error: Optional[float]) -> str:
@@ -108,6 +108,6 @@ class Case:
     source: str
     description: str
     quantities: Sequence[Quantity]
-    matrix: Callable[[bool], list[Settings]]
-    measure: Callable[[Settings], Outcome]
+    matrix: Callable[[bool], list[CaseSettings]]
+    measure: Callable[[CaseSettings], Outcome]
     remarks: str = ""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from snowshed.analysis.accuracy.measurements import Settings
+from snowshed.analysis.accuracy.measurements import CaseSettings
 from snowshed.analysis.accuracy.solutions import (
     Solution,
     assured_errors,
@@ -42,7 +42,7 @@ class Cheapest:
 
     case: str
     quantity: str
-    problem: Settings
+    problem: CaseSettings
     wanted: float
     reached: bool
     error: float
@@ -65,9 +65,9 @@ def pareto_front(costs: Sequence[float], errors: Sequence[float]) -> Booleans:
     return front
 
 
-def by_problem(case: Case, listed: Iterable[Solution]) -> list[tuple[Settings, list[Solution]]]:
+def by_problem(case: Case, listed: Iterable[Solution]) -> list[tuple[CaseSettings, list[Solution]]]:
     """Return the problems among solutions, each with all ways in which it was solved."""
-    groups: dict[Hashable, tuple[Settings, list[Solution]]] = {}
+    groups: dict[Hashable, tuple[CaseSettings, list[Solution]]] = {}
     for solution in listed:
         problem = problem_of(case, solution.settings)
         groups.setdefault(settings_key(problem), (problem, []))[1].append(solution)
@@ -93,7 +93,7 @@ def cheapest(
 
 
 def _cheapest(
-    case: str, quantity: Quantity, problem: Settings, group: Sequence[Solution], wanted: float
+    case: str, quantity: Quantity, problem: CaseSettings, group: Sequence[Solution], wanted: float
 ) -> Cheapest:
     errors = assured_errors(group, quantity.order_in)
     i = quickest([solution.wall_s for solution in group], errors, wanted)

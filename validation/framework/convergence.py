@@ -8,7 +8,7 @@ from math import nan
 
 import numpy as np
 
-from snowshed.analysis.accuracy.measurements import Settings
+from snowshed.analysis.accuracy.measurements import CaseSettings
 from snowshed.analysis.accuracy.solutions import Solution, alike
 from snowshed.base.arrays import Floats
 
@@ -29,7 +29,7 @@ class Convergence:
         Slope between neighbours, one fewer than the sizes.
     """
 
-    settings: Settings
+    settings: CaseSettings
     sizes: Floats
     errors: Floats
     order: float

@@ -6,7 +6,7 @@ import time
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 
-from snowshed.analysis.accuracy.measurements import Measured, Settings
+from snowshed.analysis.accuracy.measurements import CaseSettings, Measured
 from snowshed.base.record import Record
 from snowshed.cli.self_test import drive
 from snowshed.methods.mpm.settings import MpmSettings
@@ -19,7 +19,7 @@ SECTIONS: Mapping[str, type[Record]] = {"numerics": MpmSettings, "seeding": Seed
 
 
 def apply_settings(
-    scene: Scene, settings: Settings, own: Collection[str] = (), *, sleeping: bool = False
+    scene: Scene, settings: CaseSettings, own: Collection[str] = (), *, sleeping: bool = False
 ) -> Scene:
     """Set a scene's parameters from a case's settings, and one thread.
 
@@ -63,7 +63,7 @@ def _path(name: str) -> str:
     return name
 
 
-class Drive(drive.Drive):
+class TimedEventDriver(drive.EventDriver):
     """The first event of a scene, run to the given times; only its steps count as run time.
 
     Parameters

@@ -16,7 +16,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from snowshed.analysis.accuracy import setting_labels
-from snowshed.analysis.accuracy.measurements import Settings, Value
+from snowshed.analysis.accuracy.measurements import CaseSettings, Value
 from snowshed.analysis.accuracy.solutions import Solution, settings_key
 from snowshed.base import formatting
 from snowshed.plot.figure_style import BODY, COLOURS, FAINT, INK, STYLE, blank_figure
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 StylesOfValues = Mapping[str, Mapping[Optional[Value], Any]]
 
 #: The settings that make a problem, and the ways in which it was solved.
-Problem = Tuple[Settings, Sequence[Solution]]
+Problem = Tuple[CaseSettings, Sequence[Solution]]
 
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
 DASHES = ("-", (0, (5, 2)), (0, (1, 1.4)), (0, (6, 1.5, 1, 1.5)), (0, (9, 3)))
@@ -43,9 +43,9 @@ FIRST = ("transfer", "law", "between", "dimension", "events", "basis", "precisio
 #: Points on a Pareto front closer than this part are not both named.
 NEARLY = 0.1
 #: Problems of a quantity that get a Pareto front, at most.
-MOST_FRONTS = 3
+MAX_FRONTS = 3
 #: Times too short to be measured lie here, s.
-SHORTEST = 1e-6
+MIN_TIME = 1e-6
 #: Errors of exact answers are zero; on a logarithmic axis they lie here.
 ZERO = 1e-17
 
@@ -74,7 +74,10 @@ class LineStyles:
 
     @classmethod
     def of(
-        cls, choices: Sequence[Settings], drawn: Sequence[Settings], along: Collection[str] = ()
+        cls,
+        choices: Sequence[CaseSettings],
+        drawn: Sequence[CaseSettings],
+        along: Collection[str] = (),
     ) -> LineStyles:
         """Return the styles of the lines.
 
@@ -96,7 +99,7 @@ class LineStyles:
             of_name[name] = dict(zip(values, cycle(of_values)))
         return cls(*of_names)
 
-    def for_line(self, settings: Settings) -> dict[str, Any]:
+    def for_line(self, settings: CaseSettings) -> dict[str, Any]:
         """Return the arguments that draw the line of some settings."""
         return {
             "color": _pick(self.colours, settings, COLOURS[0]),
@@ -104,7 +107,7 @@ class LineStyles:
             "linestyle": _pick(self.dashes, settings, DASHES[0]),
         }
 
-    def key(self, drawn: Sequence[Settings]) -> list[Line2D]:
+    def key(self, drawn: Sequence[CaseSettings]) -> list[Line2D]:
         """Return the entries of a legend: every value that is drawn."""
         kinds = (("color", self.colours), ("marker", self.markers), ("linestyle", self.dashes))
         return [
@@ -117,7 +120,7 @@ class LineStyles:
 
 
 def convergence_figure(
-    panels: Sequence[tuple[Quantity, Sequence[Convergence]]], choices: Sequence[Settings]
+    panels: Sequence[tuple[Quantity, Sequence[Convergence]]], choices: Sequence[CaseSettings]
 ) -> Figure:
     """Draw errors against the setting they fall with, both axes logarithmic.
 
@@ -137,14 +140,14 @@ def convergence_figure(
 
 
 def work_precision_figure(
-    panels: Sequence[tuple[Quantity, Sequence[Problem]]], choices: Sequence[Settings]
+    panels: Sequence[tuple[Quantity, Sequence[Problem]]], choices: Sequence[CaseSettings]
 ) -> Figure:
     """Draw errors against the time of the solution, with Pareto fronts and the names on them.
 
     Parameters
     ----------
     panels
-        Quantities, and the problems they were solved for in. No more than `MOST_FRONTS` of these
+        Quantities, and the problems they were solved for in. No more than `MAX_FRONTS` of these
         get a front: those that were solved in most ways.
     choices
         All choices of settings of the case.
@@ -179,7 +182,7 @@ def _entry(keyword: str, shape: Any, label: str) -> Line2D:
 
 
 @contextmanager
-def _figure(styles: LineStyles, drawn: Sequence[Settings], *, rows: int) -> Iterator[Figure]:
+def _figure(styles: LineStyles, drawn: Sequence[CaseSettings], *, rows: int) -> Iterator[Figure]:
     """Yield a figure for some rows of panels, with a legend of the styles that are drawn."""
     with matplotlib.rc_context(STYLE):
         figure = blank_figure(8.2, 2.9 * rows + 0.6)
@@ -214,7 +217,7 @@ def _draw_convergence(
     sizes = sorted({size for convergence in series for size in convergence.sizes})
     axes.set_xticks(sizes, [formatting.number(size) for size in sizes])
     axes.minorticks_off()
-    _draw_slope(axes, series, quantity.least_order)
+    _draw_slope(axes, series, quantity.min_order)
     _errors_on(axes, quantity)
 
 
@@ -256,7 +259,7 @@ def _draw_work_precision(
 def _with_fronts(problems: Sequence[Problem]) -> list[Problem]:
     """Return the problems that were solved in most ways; one way alone makes no front."""
     several = [problem for problem in problems if len(problem[1]) > 1]
-    return sorted(several, key=lambda problem: -len(problem[1]))[:MOST_FRONTS]
+    return sorted(several, key=lambda problem: -len(problem[1]))[:MAX_FRONTS]
 
 
 def _draw_points(
@@ -291,7 +294,7 @@ def _draw_front(
 
 
 def _time(solution: Solution) -> float:
-    return max(solution.wall_s, SHORTEST)
+    return max(solution.wall_s, MIN_TIME)
 
 
 def _size(solution: Solution) -> float:
@@ -397,7 +400,7 @@ def _widened(low: float, high: float) -> tuple[float, float]:
     return low / factor, high * factor
 
 
-def _pick(styles: StylesOfValues, settings: Settings, plain: Any) -> Any:
+def _pick(styles: StylesOfValues, settings: CaseSettings, plain: Any) -> Any:
     for name, shapes in styles.items():
         return shapes.get(settings.get(name), plain)
     return plain

@@ -15,9 +15,9 @@ from typing import NamedTuple, Optional
 from snowshed import _core
 from snowshed.analysis.accuracy import setting_labels
 from snowshed.analysis.accuracy.measurements import (
+    CaseSettings,
     Measured,
     MeasuredSolution,
-    Settings,
     measurement_key,
 )
 from snowshed.base.machine import cpu_name
@@ -26,14 +26,14 @@ from validation.framework.case import Case, Outcome
 from validation.framework.measurement_file import MeasurementFile
 from validation.framework.process import Answer, measure_once, measuring_pool
 
-LONGEST = 60  # characters of what a progress bar says is being measured
+MAX_LABEL_LENGTH = 60  # characters of the label of a progress bar
 
 
 class Task(NamedTuple):
     """One entry of a case's matrix."""
 
     case: Case
-    settings: Settings
+    settings: CaseSettings
 
     @property
     def key(self) -> str:
@@ -88,11 +88,12 @@ def measure_cases(
             if progress is not None:
                 fraction, left_s = estimate.after(done)
                 before = len(tasks) - len(due)
-                doing = f"{task.case.name}: {setting_labels.settings(task.settings)}"[:LONGEST]
-                told = Progress(
+                label = f"{task.case.name}: {setting_labels.settings(task.settings)}"
+                doing = label[:MAX_LABEL_LENGTH]
+                report = Progress(
                     fraction, before + done, len(tasks), "measured", doing, left_s=left_s
                 )
-                progress(told)
+                progress(report)
             answer = measure_once(pool, task.case.measure, task.settings)
             held[task.key] = _measurement(task, answer)
             file.append(held[task.key])

@@ -14,12 +14,12 @@ from pathlib import Path
 from typing import NamedTuple, Optional
 
 from snowshed._core import SimulationError
-from snowshed.analysis.accuracy.measurements import Settings
+from snowshed.analysis.accuracy.measurements import CaseSettings
 from snowshed.base.machine import peak_memory_mb
 from snowshed.base.pool.pool import Isolation, Pool
 from validation.framework.case import Outcome
 
-Measure = Callable[[Settings], Outcome]
+Measure = Callable[[CaseSettings], Outcome]
 
 WAIT_S = 3600.0  # between two checks of a measurement that has no limit
 
@@ -28,7 +28,7 @@ class Request(NamedTuple):
     """A measurement: a function of a module, and its settings."""
 
     measure: Measure
-    settings: Settings
+    settings: CaseSettings
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ def measuring_pool() -> Pool[Request, Answer]:
     return Pool(1, answer, Isolation(forked=True))
 
 
-def measure_once(pool: Pool[Request, Answer], measure: Measure, settings: Settings) -> Answer:
+def measure_once(pool: Pool[Request, Answer], measure: Measure, settings: CaseSettings) -> Answer:
     """Measure once in `measuring_pool()`, and return the outcome or what went wrong.
 
     Raises

@@ -195,4 +195,4 @@ def _plain(value: Any) -> Any:
 
 
 def _all(values: set[str]) -> str:
-    return ", ".join(sorted(values)) or formatting.NOTHING
+    return ", ".join(sorted(values)) or formatting.MISSING

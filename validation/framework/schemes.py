@@ -8,13 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from snowshed.analysis.accuracy.measurements import Settings
+from snowshed.analysis.accuracy.measurements import CaseSettings
 from snowshed.analysis.accuracy.solutions import SAMPLING
 from snowshed.scene.accuracy_settings import ACCURACY
 from validation.framework.case import Case
 
 
-def problem_of(case: Case, settings: Settings) -> Settings:
+def problem_of(case: Case, settings: CaseSettings) -> CaseSettings:
     """Return the settings that make the problem.
 
     Examples
@@ -25,11 +25,11 @@ def problem_of(case: Case, settings: Settings) -> Settings:
     {'friction': 0.3}
     """
     sizes = {quantity.order_in for quantity in case.quantities}
-    ways = {*ACCURACY, *SAMPLING, *sizes}
-    return {name: value for name, value in settings.items() if name not in ways}
+    solution_settings = {*ACCURACY, *SAMPLING, *sizes}
+    return {name: value for name, value in settings.items() if name not in solution_settings}
 
 
-def varying(settings: Iterable[Settings]) -> list[str]:
+def varying(settings: Iterable[CaseSettings]) -> list[str]:
     """Return the names of the settings in which several choices differ, in order of appearance.
 
     Examples

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any, Optional
 import numpy as np
 
 from snowshed.analysis.accuracy import setting_labels
-from snowshed.analysis.accuracy.measurements import MeasuredSolution, Settings
+from snowshed.analysis.accuracy.measurements import CaseSettings, MeasuredSolution
 from snowshed.analysis.accuracy.solutions import Solution, rows_of, settings_key, solutions
 from snowshed.base import formatting
-from snowshed.plot.html_page import Grid, Picture
+from snowshed.plot.html_page import HtmlTable, Picture
 from validation.framework import figures
 from validation.framework.bars import Bar
 from validation.framework.case import Case, Quantity, alternatives
@@ -35,12 +35,10 @@ COSTS: Mapping[str, Callable[[MeasuredSolution], str]] = {
 }
 #: Stands for what the cell to the left says.
 SAME = "←"
-CONVERGENCE = (
-    "Dashed: the slope of the order named. Red, where there is one: the largest error allowed."
-)
+CONVERGENCE = "Dashed: the slope of the order named. Red line, if any: the largest allowed error."
 WORK_PRECISION = (
-    "Left is quick, low is accurate; no other way of solving the same problem beats the points "
-    "with letters in both. Red, where there is one: the largest error allowed."
+    "Points on the left are fast, points at the bottom are accurate. No other settings for the "
+    "same problem beat the points with letters. Red line, if any: the largest allowed error."
 )
 
 
@@ -60,9 +58,9 @@ class Section:
     paragraphs: Sequence[str]
     remarks: Sequence[str]
     common: str
-    results: Grid
-    orders: Grid
-    extremes: Grid
+    results: HtmlTable
+    orders: HtmlTable
+    extremes: HtmlTable
     pictures: Sequence[Picture]
 
 
@@ -101,7 +99,7 @@ def section(case: Case, measurements: Sequence[MeasuredSolution], table: pd.Data
     )
 
 
-def results_grid(case: Case, measurements: Sequence[MeasuredSolution]) -> Grid:
+def results_grid(case: Case, measurements: Sequence[MeasuredSolution]) -> HtmlTable:
     """Return all measurements of a case: what varies, every quantity, the cost."""
     solved = [measurement for measurement in measurements if not measurement.failure]
     names = varying([measurement.settings for measurement in measurements])
@@ -110,7 +108,7 @@ def results_grid(case: Case, measurements: Sequence[MeasuredSolution]) -> Grid:
         _Columns.of(quantity, solved) for quantity in case.quantities if quantity.name in given
     ]
     costs = {name: [words(measurement) for measurement in solved] for name, words in COSTS.items()}
-    costs = {name: texts for name, texts in costs.items() if set(texts) != {formatting.NOTHING}}
+    costs = {name: texts for name, texts in costs.items() if set(texts) != {formatting.MISSING}}
     rows = [
         [
             *(_cell(measurement.settings, name) for name in names),
@@ -126,10 +124,10 @@ def results_grid(case: Case, measurements: Sequence[MeasuredSolution]) -> Grid:
         *costs,
     ]
     align = "l" * len(names) + "r" * (len(head) - len(names))
-    return Grid(head, rows, align, [group for group in groups if group[1]])
+    return HtmlTable(head, rows, align, [group for group in groups if group[1]])
 
 
-def orders_grid(case: Case, series: Mapping[str, Sequence[Convergence]]) -> Grid:
+def orders_grid(case: Case, series: Mapping[str, Sequence[Convergence]]) -> HtmlTable:
     """Return the observed orders of convergence."""
     titles = {quantity.name: quantity.title for quantity in case.quantities}
     settings_in = {quantity.name: quantity.order_in or "" for quantity in case.quantities}
@@ -149,10 +147,10 @@ def orders_grid(case: Case, series: Mapping[str, Sequence[Convergence]]) -> Grid
         for convergence in listed
     ]
     head = ("quantity", "settings", "in", "from … to", "between neighbours", "order")
-    return Grid(head, rows, "lllllr")
+    return HtmlTable(head, rows, "lllllr")
 
 
-def extremes_grid(case: Case, solution_lists: Mapping[str, Sequence[Solution]]) -> Grid:
+def extremes_grid(case: Case, solution_lists: Mapping[str, Sequence[Solution]]) -> HtmlTable:
     """Return the smallest, the median and the largest error of every quantity, and where."""
     rows = []
     for quantity in case.quantities:
@@ -171,10 +169,10 @@ def extremes_grid(case: Case, solution_lists: Mapping[str, Sequence[Solution]]) 
         median = quantity.error_text(middle)
         rows.append([quantity.title, *ends[0], median, *ends[1]])
     head = ("quantity", "smallest error", "with", "median", "largest error", "with")
-    return Grid(head, rows, "lrlrrl")
+    return HtmlTable(head, rows, "lrlrrl")
 
 
-def bars_grid(bars: Sequence[Bar], cases: Sequence[Case]) -> Grid:
+def bars_grid(bars: Sequence[Bar], cases: Sequence[Case]) -> HtmlTable:
     """Return the demands and their results, those that do not hold first."""
     titles = {case.name: case.title for case in cases}
     rank = {False: 0, True: 1, None: 2}
@@ -191,7 +189,7 @@ def bars_grid(bars: Sequence[Bar], cases: Sequence[Case]) -> Grid:
         for bar in sorted(bars, key=lambda bar: rank[bar.holds])
     ]
     head = ("", "case", "quantity", "for", "demanded", "worst", "with")
-    return Grid(head, rows, "llllrrl")
+    return HtmlTable(head, rows, "llllrrl")
 
 
 def meant(bar: Bar) -> str:
@@ -215,7 +213,7 @@ def demanded(bar: Bar) -> str:
 def worst_error(bar: Bar) -> str:
     """Return the text for the worst result."""
     if bar.worst is None:
-        return formatting.NOTHING
+        return formatting.MISSING
     if np.isnan(bar.worst):
         return "failed"
     if bar.kind == "order":
@@ -225,21 +223,21 @@ def worst_error(bar: Bar) -> str:
 
 def cheapest_grid(
     answers: Sequence[Cheapest], cases: Sequence[Case], measurements: Sequence[MeasuredSolution]
-) -> Grid:
+) -> HtmlTable:
     """Return the quickest settings for every wanted accuracy, a row for each problem."""
     wanted = sorted({answer.wanted for answer in answers}, reverse=True)
     head = ("case", "quantity", "problem", *(formatting.percent(share) for share in wanted))
     rows = [row for case in cases for row in _cheapest_rows(case, answers, measurements)]
-    return Grid(head, rows, "l" * len(head))
+    return HtmlTable(head, rows, "l" * len(head))
 
 
-def frame_grid(frame: pd.DataFrame) -> Grid:
+def frame_grid(frame: pd.DataFrame) -> HtmlTable:
     """Return a table of numbers and words as one of texts."""
     from pandas.api.types import is_numeric_dtype
 
     rows = [[_text(value) for value in row] for row in frame.itertuples(index=False)]
     align = "".join("r" if is_numeric_dtype(frame[name]) else "l" for name in frame)
-    return Grid([str(name).replace("_", " ") for name in frame], rows, align)
+    return HtmlTable([str(name).replace("_", " ") for name in frame], rows, align)
 
 
 @dataclass(frozen=True)
@@ -274,7 +272,7 @@ class _Columns:
                 cells = [formatting.number(measured.value, 4), formatting.number(measured.exact, 4)]
                 error = self.quantity.error_text(measured.error)
                 return [*cells[: len(self.head) - 1], error]
-        return [formatting.NOTHING] * len(self.head)
+        return [formatting.MISSING] * len(self.head)
 
 
 def _pictures(
@@ -301,7 +299,9 @@ def _pictures(
     return pictures
 
 
-def _compared(quantity: Quantity, problems: Sequence[tuple[Settings, Sequence[Solution]]]) -> bool:
+def _compared(
+    quantity: Quantity, problems: Sequence[tuple[CaseSettings, Sequence[Solution]]]
+) -> bool:
     """Return whether errors show which solution is better.
 
     There must be several solutions of one problem, and a measure of a small error.
@@ -325,7 +325,7 @@ def _cheapest_rows(
             groups.setdefault((answer.quantity, settings_key(answer.problem)), []).append(answer)
     titles = {quantity.name: quantity.title for quantity in case.quantities}
     problems = varying(group[0].problem for group in groups.values())
-    ways = varying(
+    solution_settings = varying(
         {
             k: v
             for k, v in measurement.settings.items()
@@ -337,7 +337,7 @@ def _cheapest_rows(
     rows: list[list[str]] = []
     for group in groups.values():
         texts = [
-            _cheapest_cell(answer, ways)
+            _cheapest_cell(answer, solution_settings)
             for answer in sorted(group, key=lambda answer: -answer.wanted)
         ]
         rows.append(
@@ -351,14 +351,14 @@ def _cheapest_rows(
     return rows
 
 
-def _cheapest_cell(answer: Cheapest, ways: Sequence[str]) -> str:
+def _cheapest_cell(answer: Cheapest, solution_settings: Sequence[str]) -> str:
     if not answer.reached:
         return f"not reached; best {formatting.percent(answer.error)}"
-    with_what = setting_labels.settings(answer.solution.settings, ways)
+    with_what = setting_labels.settings(answer.solution.settings, solution_settings)
     return f"{formatting.duration(answer.solution.wall_s)}: {with_what}".rstrip(": ")
 
 
-def _cell(settings: Settings, name: str) -> str:
+def _cell(settings: CaseSettings, name: str) -> str:
     value: Optional[Any] = settings.get(name)
     if value is None:
         return setting_labels.unset(name)
@@ -378,7 +378,7 @@ def _text(value: Any) -> str:
 
 
 def _order(slope: float) -> str:
-    return f"{slope:.2f}" if np.isfinite(slope) else formatting.NOTHING
+    return f"{slope:.2f}" if np.isfinite(slope) else formatting.MISSING
 
 
 def _paragraphs(text: str) -> list[str]:

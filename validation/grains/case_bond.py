@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from snowshed.analysis.accuracy.measurements import Measured, Settings
+from snowshed.analysis.accuracy.measurements import CaseSettings, Measured
 from snowshed.scene.loading import LoadingStage
 from validation.framework.case import Case, Outcome, Quantity
 from validation.framework.drive import relative
@@ -14,7 +14,7 @@ VOXEL = 5e-5  # m
 WIDE, HIGH = 5, 6  # voxels; the bond lies in the middle
 MODULUS, RATIO, STRENGTH = 1e9, 0.3, 1e6  # Pa, 1, Pa
 OWN = frozenset({"test", "speed"})
-DEFAULTS: Settings = {
+DEFAULTS: CaseSettings = {
     "test": "pull",
     "speed": 0.005,
     "courant_factor": 0.3,
@@ -40,7 +40,7 @@ def stage_of(test: str, speed: float) -> LoadingStage:
     return LoadingStage(kind="compress", speed=speed, strain=to_break)
 
 
-def measure(settings: Settings) -> Outcome:
+def measure(settings: CaseSettings) -> Outcome:
     """Load two blocks that fill the box, frozen to the plates."""
     test = str(settings["test"])
     labels = np.ones((HIGH, WIDE, WIDE), dtype=np.int64)
@@ -64,11 +64,11 @@ def measure(settings: Settings) -> Outcome:
     return drive.outcome(measured)
 
 
-def matrix(full: bool) -> list[Settings]:
+def matrix(full: bool) -> list[CaseSettings]:
     """Return tests over speeds, steps and scaled inertia."""
-    listed: list[Settings] = []
+    listed: list[CaseSettings] = []
     for test in ("pull", "shear", "press"):
-        base: Settings = {**DEFAULTS, "test": test}
+        base: CaseSettings = {**DEFAULTS, "test": test}
         speeds = (0.1, 0.03, 0.01, 0.005, 0.002) if full else (0.02, 0.005)
         listed += [{**base, "speed": speed} for speed in speeds]
         factors = (1.0, 0.6, 0.15) if full else (0.6,)
@@ -84,10 +84,9 @@ CASE = Case(
     source="springs in a row, and strength times area, in closed form",
     description="""
     Two blocks of 5 x 5 x 3 voxels fill the box and are frozen to each other and to both plates. The
-    top plate moves until the bond breaks, or presses. Strength times area is what the bond bears,
-    and three layers of springs of stiffness E r give the modulus. Compared are the largest stress
-    and the slope of the stress; and the energy that is missing at the end, over the work of the
-    plate.
+    top plate moves until the bond breaks, or presses. The bond bears strength times area, and three
+    layers of springs of stiffness E r give the modulus. The largest stress and the slope of the
+    stress are compared, and the energy residual at the end relative to the work of the plate.
     """,
     quantities=(
         Quantity("strength", "strength, Pa", bar=0.02, bar_for={"speed": 0.005}),

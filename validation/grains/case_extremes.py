@@ -8,7 +8,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from snowshed._core import SimulationError
-from snowshed.analysis.accuracy.measurements import Measured, Settings
+from snowshed.analysis.accuracy.measurements import CaseSettings, Measured
 from snowshed.base.arrays import Integers
 from snowshed.scene.loading import LoadingStage
 from validation.framework.case import Case, Outcome, Quantity
@@ -40,7 +40,7 @@ SAMPLES: Mapping[str, Integers] = {
     "plate of a voxel": np.ones((1, 8, 8), dtype=np.int64),
 }
 KINDS = ("compress", "stretch", "shear", "isotropic", "penetrate")
-DEFAULTS: Settings = {
+DEFAULTS: CaseSettings = {
     "sample": "snow",
     "kind": "compress",
     "speed": 1.0,
@@ -49,7 +49,7 @@ DEFAULTS: Settings = {
     "bonded_plates": True,
 }
 #: Variations of the snow, one at a time.
-EXTREMES: tuple[Settings, ...] = (
+EXTREMES: tuple[CaseSettings, ...] = (
     {"elastic_modulus": 1.0},
     {"elastic_modulus": 1e12},
     {"stiffness_ratio": 1e-9},
@@ -77,7 +77,7 @@ EXTREMES: tuple[Settings, ...] = (
 )
 
 
-def measure(settings: Settings) -> Outcome:
+def measure(settings: CaseSettings) -> Outcome:
     """Take some steps, and count numbers that are not finite."""
     kind, strain = str(settings["kind"]), float(settings["strain"])
     stage = LoadingStage(kind=kind, speed=float(settings["speed"]), strain=strain)  # type: ignore[arg-type]
@@ -100,10 +100,10 @@ def measure(settings: Settings) -> Outcome:
     )
 
 
-def matrix(full: bool) -> list[Settings]:
+def matrix(full: bool) -> list[CaseSettings]:
     """Return samples with kinds of stages, and settings at their extremes."""
-    base: Settings = {**DEFAULTS, "steps_to_take": 5000 if full else STEPS}
-    listed: list[Settings] = [
+    base: CaseSettings = {**DEFAULTS, "steps_to_take": 5000 if full else STEPS}
+    listed: list[CaseSettings] = [
         {**base, "sample": sample, "kind": kind, **({"speed": 50.0} if full else {})}
         for sample in SAMPLES
         for kind in KINDS

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from snowshed.analysis.accuracy.measurements import Measured, Settings
+from snowshed.analysis.accuracy.measurements import CaseSettings, Measured
 from snowshed.scene.loading import LoadingStage
 from validation.framework.case import Case, Outcome, Quantity
 from validation.framework.drive import relative
@@ -17,7 +17,7 @@ from validation.grains.loading import (
 
 STRAIN = 0.05
 OWN = frozenset({"across", "voxels", "speed", "seed"})
-DEFAULTS: Settings = {
+DEFAULTS: CaseSettings = {
     "across": 3,
     "voxels": 5,
     "seed": 1,
@@ -31,7 +31,7 @@ SCALINGS = (1e4, 1e3, 100.0, 10.0, 1.0)
 REFERENCE = 2250477.8267052164
 
 
-def measure(settings: Settings) -> Outcome:
+def measure(settings: CaseSettings) -> Outcome:
     """Compress a cube by 5 %."""
     across, voxels = int(settings["across"]), int(settings["voxels"])
     labels = snow_labels(across, voxels, int(settings["seed"]))
@@ -51,18 +51,18 @@ def measure(settings: Settings) -> Outcome:
     )
 
 
-def matrix(full: bool) -> list[Settings]:
+def matrix(full: bool) -> list[CaseSettings]:
     """Return time steps, scaled inertia with speed, sizes of spheres and volumes."""
     if not full:
-        fast: Settings = {**DEFAULTS, "density_scaling": 100.0}
+        fast: CaseSettings = {**DEFAULTS, "density_scaling": 100.0}
         return [fast, {**fast, "courant_factor": 0.6}, {**fast, "voxels": 4}]
     fast = {**DEFAULTS, "density_scaling": 100.0}
-    listed: list[Settings] = [{**DEFAULTS, "density_scaling": s} for s in SCALINGS]
+    listed: list[CaseSettings] = [{**DEFAULTS, "density_scaling": s} for s in SCALINGS]
     listed += [{**DEFAULTS, "speed": speed} for speed in (0.3, 1.0)]
     listed += [{**fast, "courant_factor": factor} for factor in (0.05, 0.1, 0.6, 1.0)]
     listed += [{**fast, "voxels": voxels} for voxels in (3, 4, 6, 8)]
     listed += [{**fast, "across": across, "seed": s} for across in (3, 4, 6) for s in (1, 2, 3)]
-    slow: Settings = {**DEFAULTS, "speed": 0.02}
+    slow: CaseSettings = {**DEFAULTS, "speed": 0.02}
     return [*listed, slow]
 
 
@@ -72,12 +72,12 @@ CASE = Case(
     source="itself, with the slowest plate and without scaled density; the balance of energy",
     description="""
     Synthetic snow, a random field of waves that is cut at a level and into cells, is compressed by
-    5 % between plates and smooth walls. Compared is the mean stress from 4 to 5 %: over the time
-    step, over the scaled density and the speed, over the size of the spheres with the snow kept,
-    and over the volume, each with three samples. There is no exact answer. The error is the
-    departure from the snow of 27 cells on 5 voxels a cell, loaded at 0.02 m/s without scaled
-    density; for volumes it is mostly the scatter between samples. What has an exact answer is the
-    balance of energy, and that of the forces on the two plates, which holds at rest.
+    5 % between plates and smooth walls. The mean stress from 4 to 5 % is compared for
+    several time steps, scaled densities, speeds, sphere sizes (of the same snow) and volumes, each
+    with three samples. There is no exact answer. The reference is the snow of 27 cells on 5 voxels
+    per cell, loaded at 0.02 m/s without scaled density; for volumes the error is mostly the scatter
+    between samples. The energy balance and the balance of the forces on the two plates at rest have
+    exact answers.
     """,
     quantities=(
         Quantity("stress", "mean stress from 4 to 5 % strain, Pa"),

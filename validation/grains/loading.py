@@ -8,14 +8,14 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from snowshed.analysis.accuracy.measurements import Settings
+from snowshed.analysis.accuracy.measurements import CaseSettings
 from snowshed.base.arrays import Integers
 from snowshed.methods.grains import phases
 from snowshed.methods.grains.curve import LoadingCurve
 from snowshed.methods.grains.settings import GrainsSettings
 from snowshed.scene import grains_scene
 from snowshed.scene.loading import Cone, LoadingStage
-from validation.framework.drive import Drive
+from validation.framework.drive import TimedEventDriver
 
 GRAIN = 3e-4  # m, edge of the cells that cut the ice into grains
 WAVES, WAVELENGTH = 80, 1.4  # number in the random field; wavelength over GRAIN
@@ -64,10 +64,10 @@ def grains_drive(
     labels: Integers,
     voxel: float,
     stages: Sequence[LoadingStage],
-    settings: Settings,
+    settings: CaseSettings,
     own: Collection[str] = (),
     cone_radius: float = GRAIN,
-) -> Drive:
+) -> TimedEventDriver:
     """Return a loading test that is ready to go, with its energy balance and without gravity.
 
     Parameters
@@ -89,10 +89,12 @@ def grains_drive(
         pushed = any(stage.kind == "penetrate" for stage in stages)
         cone = Cone(radius=cone_radius, half_angle=30.0) if pushed else None
         scene = grains_scene(file, voxel, stages, settings=chosen, cone=cone)
-        return Drive(scene.update({"gravity": 0, "output.energy": True}))
+        return TimedEventDriver(scene.update({"gravity": 0, "output.energy": True}))
 
 
-def load_all(drive: Drive, stages: Sequence[LoadingStage], height: float) -> LoadingCurve:
+def load_all(
+    drive: TimedEventDriver, stages: Sequence[LoadingStage], height: float
+) -> LoadingCurve:
     """Take steps until all stages must have ended; return the measured curve.
 
     Parameters

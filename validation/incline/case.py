@@ -6,19 +6,19 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import cast
 
-from snowshed.analysis.accuracy.measurements import Measured, Settings
+from snowshed.analysis.accuracy.measurements import CaseSettings, Measured
 from snowshed.cli.self_test.incline import GRAVITY, Incline
 from snowshed.scene.components import Condition
 from snowshed.scene.scene import Scene
 from validation.framework.case import Case, Outcome, Quantity
-from validation.framework.drive import Drive, absolute, apply_settings, relative
+from validation.framework.drive import TimedEventDriver, absolute, apply_settings, relative
 
 TILT = 40.0  # degrees
 THICKNESS, WIDTH = 0.05, 0.1  # m; the width in 3D only
 #: Settings of a slab that are no parameters of the scene.
 OWN = frozenset({"friction", "condition", "length", "speed"})
 
-DEFAULTS: Settings = {
+DEFAULTS: CaseSettings = {
     "dimension": 2,
     "dx": 0.01,
     "transfer": "flip",
@@ -27,7 +27,7 @@ DEFAULTS: Settings = {
     "condition": "separate",
     "model": "cam_clay",
 }
-METHODS: Sequence[Settings] = (
+METHODS: Sequence[CaseSettings] = (
     {"transfer": "apic"},
     {"flip_ratio": 1.0},
     {"condition": "slip"},
@@ -37,7 +37,7 @@ METHODS: Sequence[Settings] = (
     {"seed": 3},
 )
 #: Variations of a slab that is thrown and stops.
-STOPS: Sequence[Settings] = (
+STOPS: Sequence[CaseSettings] = (
     {"friction": 0.9},
     {"dx": 0.02},
     {"dx": 0.005},
@@ -48,7 +48,7 @@ STOPS: Sequence[Settings] = (
 )
 
 
-def slab_scene(settings: Settings, tilt: float) -> Scene:
+def slab_scene(settings: CaseSettings, tilt: float) -> Scene:
     """Return a slab that lies on an incline, at rest or with a ``speed`` down the slope."""
     dimension, length = int(settings["dimension"]), float(settings["length"])
     scene = Incline(tilt, dimension).scene(
@@ -63,8 +63,8 @@ def slab_scene(settings: Settings, tilt: float) -> Scene:
 class Sliding:
     """A slab on its way down; its mean motion along the slope."""
 
-    def __init__(self, settings: Settings, tilt: float) -> None:
-        self.drive = Drive(slab_scene(settings, tilt))
+    def __init__(self, settings: CaseSettings, tilt: float) -> None:
+        self.drive = TimedEventDriver(slab_scene(settings, tilt))
         self.incline = Incline(tilt, self.drive.core.dimension)
 
     @property
@@ -93,7 +93,7 @@ WINDOW = (0.1, 0.3)
 CONTACT = 0.05
 
 
-def measure_slab(settings: Settings) -> Outcome:
+def measure_slab(settings: CaseSettings) -> Outcome:
     """Let a slab slide where friction cannot hold it; elsewhere watch it stop, and stay."""
     friction = float(settings["friction"])
     sliding = Sliding(settings, TILT)
@@ -112,7 +112,7 @@ def _slide(sliding: Sliding, friction: float) -> Iterator[Measured]:
         yield relative("effective_friction", missing / pressed, friction)
 
 
-def _stop(sliding: Sliding, deceleration: float, settings: Settings) -> Iterator[Measured]:
+def _stop(sliding: Sliding, deceleration: float, settings: CaseSettings) -> Iterator[Measured]:
     """Contact takes some time to set in, so counting starts a little later than the throw."""
     sliding.drive.run_to(CONTACT)
     speed, place = sliding.speed, sliding.place
@@ -123,13 +123,13 @@ def _stop(sliding: Sliding, deceleration: float, settings: Settings) -> Iterator
     yield absolute("creep", sliding.speed, 0.0)
 
 
-def slab_matrix(full: bool) -> list[Settings]:
+def slab_matrix(full: bool) -> list[CaseSettings]:
     """Return the trap of the usual nodal rule, and in full variations of method and resolution."""
     slides = (0.0, 0.3, 0.6, 0.8)
-    trap: Settings = {**DEFAULTS, "length": 2.0, "speed": 0.0}
-    short: Settings = {**trap, "length": 0.25}
-    thrown: Settings = {**short, "model": "elastic", "friction": 1.2, "speed": 1.0}
-    listed: list[Settings] = [{**trap, "dx": 0.02, "friction": mu} for mu in slides]
+    trap: CaseSettings = {**DEFAULTS, "length": 2.0, "speed": 0.0}
+    short: CaseSettings = {**trap, "length": 0.25}
+    thrown: CaseSettings = {**short, "model": "elastic", "friction": 1.2, "speed": 1.0}
+    listed: list[CaseSettings] = [{**trap, "dx": 0.02, "friction": mu} for mu in slides]
     listed += [{**trap, "friction": mu} for mu in (slides if full else (0.6,))]
     listed += [thrown, {**short, "friction": 0.9}]
     if full:
@@ -189,17 +189,17 @@ SLAB = Case(
 # --- the stopping angle -----------------------------------------------------------------------
 
 #: Half the range of tilts that is searched, and how near the answer is brought, degrees.
-SEARCHED, NEAR = 4.0, 0.02
+SEARCHED, ANGLE_TOLERANCE = 4.0, 0.02
 #: A slab slides if its speed grows by more than this, m/s2: a ten-thousandth of g.
 GROWING = 1e-4 * GRAVITY
 
 
-def measure_angle(settings: Settings) -> Outcome:
+def measure_angle(settings: CaseSettings) -> Outcome:
     """Find by bisection the tilt at which a slab begins to slide."""
     exact = math.degrees(math.atan(float(settings["friction"])))
     holds, slides = exact - SEARCHED, exact + SEARCHED
     wall_s, updates, steps, particles = 0.0, 0, 0, 0
-    while slides - holds > NEAR:
+    while slides - holds > ANGLE_TOLERANCE:
         tilt = (holds + slides) / 2
         sliding = Sliding(settings, tilt)
         if sliding.acceleration(*WINDOW) > GROWING:
@@ -215,14 +215,14 @@ def measure_angle(settings: Settings) -> Outcome:
     return Outcome([angle], wall_s, updates, steps, particles)
 
 
-def angle_matrix(full: bool) -> list[Settings]:
+def angle_matrix(full: bool) -> list[CaseSettings]:
     """Return frictions and resolutions, and in full methods and seedings."""
-    slab: Settings = {**DEFAULTS, "length": 0.25, "friction": 0.6}
+    slab: CaseSettings = {**DEFAULTS, "length": 0.25, "friction": 0.6}
     if not full:
         return [{**slab, "dx": 0.02}]
     resolutions = [{**slab, "dx": dx, "friction": mu} for dx in (0.02, 0.01) for mu in (0.3, 0.9)]
     fine = [{**slab, "dx": dx} for dx in (0.02, 0.01, 0.005)]
-    steep: Settings = {**slab, "friction": 0.9, "seed": 2}
+    steep: CaseSettings = {**slab, "friction": 0.9, "seed": 2}
     return [*fine, *resolutions, *({**slab, **method} for method in METHODS), steep]
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from snowshed.analysis.accuracy.measurements import Measured, Settings
+from snowshed.analysis.accuracy.measurements import CaseSettings, Measured
 from validation.framework.case import Case, Outcome, Quantity
 from validation.framework.drive import absolute, relative
 from validation.laboratory.lab_records import AWAKE, noise, recorded
@@ -21,7 +21,7 @@ from validation.laboratory.lab_stack import (
 #: Seeds begin here, so that none is one of the reference's.
 FIRST_SEED = 101
 
-BASE: Settings = {
+BASE: CaseSettings = {
     **AWAKE,  # as the recorded stacks are
     "dimension": 2,
     "dx": 0.01,
@@ -31,17 +31,17 @@ BASE: Settings = {
 }
 
 
-def matrix(full: bool) -> list[Settings]:
+def matrix(full: bool) -> list[CaseSettings]:
     """Return the settings to solve with."""
     if full:
-        grids: list[Settings] = [{**BASE, "dx": dx} for dx in (0.02, 0.01, 0.005)]
+        grids: list[CaseSettings] = [{**BASE, "dx": dx} for dx in (0.02, 0.01, 0.005)]
         grids.append({**BASE, "dimension": 3, "dx": 0.02})
     else:
         grids = [{**BASE, "dx": 0.02, "events": 3, "seedings": 3}, {**BASE, "events": 2}]
     return [{**grid, "between": between} for grid in grids for between in ("carry", "reseed")]
 
 
-def measure(settings: Settings) -> Outcome:
+def measure(settings: CaseSettings) -> Outcome:
     """Run every seeding; compare the conversions' two sides, and the last stacks with the noise."""
     runs = run_seedings(settings)
     measured = [_mass(runs)]
@@ -95,7 +95,7 @@ def _mass(runs: Sequence[LabRun]) -> Measured:
     return relative("mass", value, exact)
 
 
-def _against_carried(name: str, runs: Sequence[LabRun], settings: Settings) -> Measured:
+def _against_carried(name: str, runs: Sequence[LabRun], settings: CaseSettings) -> Measured:
     """Compare the mean of the last stacks with the recorded ones, whose snow was carried over."""
     carried = recorded(int(settings["dimension"]), float(settings["dx"]))
     value = float(np.mean([run.series(name)[-1] for run in runs]))
@@ -103,9 +103,8 @@ def _against_carried(name: str, runs: Sequence[LabRun], settings: Settings) -> M
 
 
 DESCRIPTION = """
-Between two slabs the snow either goes on as it is (carry), or it is turned into a solid, which is
-filled with new particles at rest (reseed, the thesis's way). Mass must be the same to round-off,
-with either.
+Between two slabs the stack is either kept as it is (carry), or converted to a solid and reseeded at
+rest (reseed, as in the thesis). Both must conserve mass to round-off.
 
 For reseeding, the stack just before and just after each conversion is compared: height and length
 by the rule that leaves out the outermost 3 % of the mass, those of the largest connected body

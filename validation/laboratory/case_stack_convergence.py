@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from snowshed.analysis.accuracy.measurements import Measured, Settings
+from snowshed.analysis.accuracy.measurements import CaseSettings, Measured
 from snowshed.analysis.accuracy.mechanisms import scheme_of
 from validation.framework.case import Case, Outcome, Quantity, Wanted
 from validation.framework.drive import relative
@@ -16,23 +16,23 @@ from validation.laboratory.lab_stack import COMPARED, Solved, outcome_of, run_se
 #: 3D over 2D stack height where height and width are comparable (thesis, 5.1.1).
 RULE_OF_THUMB = 2 / 3
 
-BASE: Settings = {"dimension": 2, "dx": 0.01, "transfer": "flip", "events": 5, "seedings": 4}
+BASE: CaseSettings = {"dimension": 2, "dx": 0.01, "transfer": "flip", "events": 5, "seedings": 4}
 
 #: Grids of the plane, with the seeds of the recorded runs.
-GRIDS: Sequence[Settings] = (
+GRIDS: Sequence[CaseSettings] = (
     {"dx": 0.02, "seedings": 12},
     {"dx": 0.01, "seedings": 12},
     {"dx": 0.005, "seedings": 6},
 )
-#: The same in space, as far as they are affordable.
-GRIDS_3D: Sequence[Settings] = (
+#: The same in space, on the affordable grids.
+GRIDS_3D: Sequence[CaseSettings] = (
     {"dimension": 3, "dx": 0.02, "seedings": 8},
     {"dimension": 3, "dx": 0.01, "seedings": 1},
 )
 
 #: Grids of the scheme objective, with the seeds of its recorded runs.
-OBJECTIVE: Settings = {"scheme": "objective", "dimension": 2}
-OBJECTIVE_GRIDS: Sequence[Settings] = (
+OBJECTIVE: CaseSettings = {"scheme": "objective", "dimension": 2}
+OBJECTIVE_GRIDS: Sequence[CaseSettings] = (
     {**OBJECTIVE, "dx": 0.02, "seedings": 12},
     {**OBJECTIVE, "dx": 0.01, "seedings": 12},
     {**OBJECTIVE, "dx": 0.005, "seedings": 12},
@@ -41,7 +41,7 @@ OBJECTIVE_GRIDS: Sequence[Settings] = (
 )
 
 #: Variants of the default scheme, on the grid that the laboratory's stacks use.
-SCHEMES: Sequence[Settings] = (
+SCHEMES: Sequence[CaseSettings] = (
     {"transfer": "apic"},
     {"flip_ratio": 0.95},
     {"flip_ratio": 0.999},
@@ -70,7 +70,7 @@ NOISE_BAR = 3.0
 #: Below which speed snow may sleep, m/s; 0: never.
 SLEEP_SPEEDS = (0.0, 0.002, 0.005, 0.02)
 #: Stacks that are made with each of them.
-SLEEPERS: Sequence[Settings] = (
+SLEEPERS: Sequence[CaseSettings] = (
     {"seedings": 12},
     {"seedings": 12, "transfer": "apic"},
     {"seedings": 12, "transfer": "apic", "events": 1},
@@ -78,7 +78,7 @@ SLEEPERS: Sequence[Settings] = (
 )
 
 
-def matrix(full: bool) -> list[Settings]:
+def matrix(full: bool) -> list[CaseSettings]:
     """Return the settings to solve with."""
     if not full:
         quick = {**BASE, "events": 2, "seedings": 2}
@@ -90,20 +90,22 @@ def matrix(full: bool) -> list[Settings]:
             {**quick, "dimension": 3, "dx": 0.02, "events": 1},
             {**OBJECTIVE, "dx": 0.02, "events": 2, "seedings": 2},
         ]
-    grids: list[Settings] = [
+    grids: list[CaseSettings] = [
         {**BASE, **grid, "events": events}
         for events in (1, 2, 3, 5)
         for grid in (*GRIDS, *GRIDS_3D)
     ]
-    affine: list[Settings] = [
+    affine: list[CaseSettings] = [
         {**entry, "transfer": "apic"} for entry in grids if entry["dimension"] == 2
     ]
-    awake: list[Settings] = [{**BASE, **grid, "sleep_speed": 0.0} for grid in (*GRIDS, *GRIDS_3D)]
-    sleeping: list[Settings] = [
+    awake: list[CaseSettings] = [
+        {**BASE, **grid, "sleep_speed": 0.0} for grid in (*GRIDS, *GRIDS_3D)
+    ]
+    sleeping: list[CaseSettings] = [
         {**BASE, **sleeper, "sleep_speed": speed} for sleeper in SLEEPERS for speed in SLEEP_SPEEDS
     ]
-    schemes: list[Settings] = [{**BASE, **scheme} for scheme in SCHEMES]
-    objective: list[Settings] = [
+    schemes: list[CaseSettings] = [{**BASE, **scheme} for scheme in SCHEMES]
+    objective: list[CaseSettings] = [
         {**grid, "events": events}
         for events in (1, 2, 3, 5)
         for grid in OBJECTIVE_GRIDS
@@ -112,12 +114,12 @@ def matrix(full: bool) -> list[Settings]:
     return [*grids, *affine, *schemes, *awake, *sleeping, *objective]
 
 
-def measure(settings: Settings) -> Outcome:
+def measure(settings: CaseSettings) -> Outcome:
     """Run every seeding and compare the stacks after the last event with the reference."""
     return compared(run_seedings(settings), settings)
 
 
-def compared(runs: Sequence[Solved], settings: Settings) -> Outcome:
+def compared(runs: Sequence[Solved], settings: CaseSettings) -> Outcome:
     """Compare the last stacks of runs, one for each seeding, with the reference of their scheme."""
     measured = [_against_reference(name, runs, settings) for name in COMPARED]
     if len(runs) > 1:
@@ -136,7 +138,7 @@ def _last(name: str, runs: Sequence[Solved]) -> np.ndarray:
     return np.array([run.series(name)[-1] for run in runs])
 
 
-def _against_reference(name: str, runs: Sequence[Solved], settings: Settings) -> Measured:
+def _against_reference(name: str, runs: Sequence[Solved], settings: CaseSettings) -> Measured:
     """Return the mean over seedings, and by how much a single run errs: root mean square.
 
     Both the exact value and the error are NaN after an event that the reference has not.
@@ -195,8 +197,8 @@ The damping of FLIP is the second large error. The share of PIC, 1 - flip_ratio,
 step, so the damping per second depends on the time step. At dx 0.01 m after five slabs a flip_ratio
 of 0.95, 0.99 or 0.999 gives heights of 0.20, 0.14 and 0.11 m, and lengths of 0.31, 0.41 and 0.72 m.
 A third of the time step (courant_factor 0.3) does almost what 0.95 does: 0.20 and 0.33 m. With
-flip_ratio raised to 0.9967 along with it, the same share per second, the stack is what it was. APIC
-is not so sensitive: 0.14 and 0.44 m, and with a third of the step 0.15 and 0.39 m. Stacks can be
+flip_ratio raised to 0.9967, too, the same share per second, the stack does not change. APIC is less
+sensitive: 0.14 and 0.44 m, and with a third of the step 0.15 and 0.39 m. Stacks can be
 compared only at equal flip_ratio and equal time step.
 
 Random seeding moves the height by 2 to 5 % and the length by 2 to 11 % (one standard deviation, 2D)

@@ -17,12 +17,12 @@ from typing import Any
 import click
 
 from snowshed._core import InputError
-from snowshed.analysis.accuracy.measurements import Settings
+from snowshed.analysis.accuracy.measurements import CaseSettings
 from snowshed.results.event_particles import EventParticles, read_event_particles
 from snowshed.results.folder import RunFolder
 from snowshed.scene.scene import ResolvedScene
 from snowshed.snow.stack.measure import StackMeasure
-from snowshed.study.scene_hash import Run
+from snowshed.study.scene_hash import RunKey
 from validation.laboratory.lab_records import (
     FILE,
     REFERENCES,
@@ -68,7 +68,7 @@ def imported(folder: Path, machine: str, date: str) -> dict[str, Any]:
     return entry(settings, run, [event["ended"] for event in events], costs, origin)
 
 
-def settings_of(scene: ResolvedScene, where: str) -> Settings:
+def settings_of(scene: ResolvedScene, where: str) -> CaseSettings:
     """Return the settings under which `record` makes the run of a scene.
 
     Raises
@@ -82,7 +82,7 @@ def settings_of(scene: ResolvedScene, where: str) -> Settings:
     for grid in reference.grids:
         for key in keys_of(grid, reference.settings):
             if place == (key["dimension"], key["dx"], key["seed"]) and (
-                Run.of(lab_scene(key).resolve()).hash == Run.of(scene).hash
+                RunKey.of(lab_scene(key).resolve()).hash == RunKey.of(scene).hash
             ):
                 return key
     raise InputError(f"{where}: the scene is that of no recorded run")

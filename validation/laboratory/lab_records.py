@@ -19,7 +19,7 @@ from typing import Any, Optional
 import numpy as np
 
 from snowshed import _core
-from snowshed.analysis.accuracy.measurements import Measured, Settings, Value
+from snowshed.analysis.accuracy.measurements import CaseSettings, Measured, Value
 from snowshed.analysis.accuracy.mechanisms import FIRST_SCHEME, scheme_of
 from snowshed.base.arrays import Floats
 from snowshed.base.machine import cpu_name
@@ -32,7 +32,7 @@ FILE = Path(__file__).with_name("lab_stack.json")
 EVENTS = 5
 
 #: The reference of `FIRST_SCHEME` is made with this besides the defaults: no snow sleeps.
-AWAKE: Settings = {"sleep_speed": 0.0}
+AWAKE: CaseSettings = {"sleep_speed": 0.0}
 
 
 @dataclass(frozen=True)
@@ -57,7 +57,7 @@ class Reference:
         The grids; the finest of each dimension is what stacks are compared with.
     """
 
-    settings: Settings
+    settings: CaseSettings
     grids: Sequence[Grid]
 
 
@@ -170,7 +170,7 @@ class Recorded:
         return float(self.runs[name][:, event - 1].std(ddof=1)) if event <= self.events else nan
 
 
-def noise(name: str, runs: Sequence[Solved], settings: Settings) -> Measured:
+def noise(name: str, runs: Sequence[Solved], settings: CaseSettings) -> Measured:
     """Compare the mean of the last stacks with the recorded ones of its scheme on the same grid.
 
     Parameters
@@ -269,7 +269,7 @@ def record(
     grids: Optional[Iterable[Grid]] = None,
     **settings: Value,
 ) -> None:
-    """Make the reference of a scheme anew, hours in all.
+    """Compute the reference of a scheme again; this takes hours.
 
     The file is written after each run. Runs that it holds already, of the same version, are kept.
 
@@ -291,11 +291,11 @@ def record(
             held = [run for run in runs if is_of(run, key)]
             if any(run["version"] == _core.version for run in held):
                 continue
-            runs = [run for run in runs if run not in held] + [_made(key)]
+            runs = [run for run in runs if run not in held] + [_computed(key)]
             write_entries(runs, path)
 
 
-def keys_of(grid: Grid, settings: Settings) -> list[Settings]:
+def keys_of(grid: Grid, settings: CaseSettings) -> list[CaseSettings]:
     """Return the settings of each run on a grid, as they stand in its entry.
 
     Examples
@@ -303,26 +303,26 @@ def keys_of(grid: Grid, settings: Settings) -> list[Settings]:
     >>> keys_of(Grid(3, 0.01, 1, events=2), {"scheme": "objective"})
     [{'dimension': 3, 'dx': 0.01, 'seed': 1, 'events': 2, 'scheme': 'objective'}]
     """
-    events: Settings = {} if grid.events == EVENTS else {"events": grid.events}
+    events: CaseSettings = {} if grid.events == EVENTS else {"events": grid.events}
     return [
         {"dimension": grid.dimension, "dx": grid.dx, "seed": seed, **events, **settings}
         for seed in range(1, grid.seedings + 1)
     ]
 
 
-def is_of(run: Mapping[str, Any], key: Settings) -> bool:
+def is_of(run: Mapping[str, Any], key: CaseSettings) -> bool:
     """Return whether an entry is of a run with these settings."""
     return scheme_of(run) == scheme_of(key) and key.items() <= run.items()
 
 
-def _made(settings: Settings) -> dict[str, Any]:
+def _computed(settings: CaseSettings) -> dict[str, Any]:
     run = run_lab(settings)
     date = datetime.date.today().isoformat()
     return entry(settings, run, run.ended, run.costs, (_core.version, date, cpu_name()))
 
 
 def entry(
-    settings: Settings,
+    settings: CaseSettings,
     run: Solved,
     ended: Iterable[str],
     costs: Sequence[Cost],

@@ -10,7 +10,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from snowshed import _core
-from snowshed.analysis.accuracy.measurements import Measured, Settings
+from snowshed.analysis.accuracy.measurements import CaseSettings, Measured
 from snowshed.base.arrays import Booleans, Floats
 from snowshed.results.folder import measured_columns
 from snowshed.running.conversion import outline_difference
@@ -20,7 +20,7 @@ from snowshed.snow.stack.quantities import MEASURES
 from validation.framework.case import Outcome
 from validation.framework.drive import apply_settings
 
-#: The reading of A.4.2 by which the recorded stacks were measured; others are compared with them.
+#: The trimming rule by which the recorded stacks were measured; others are compared with them.
 TRIMMING = "equal_pace"
 #: Columns of events.csv that are compared, by the names they have here.
 COMPARED: Mapping[str, str] = {
@@ -143,7 +143,7 @@ def measure_of(stack: StackMeasure, name: str) -> float:
     return float(measured_columns(stack)[COMPARED[name]])
 
 
-def lab_scene(settings: Settings) -> Scene:
+def lab_scene(settings: CaseSettings) -> Scene:
     """Return the scene: preset lab-50 in 2D, panel friction 0.3, one thread, and the settings.
 
     Snow at rest sleeps as it does by default, because stacks are what users run.
@@ -158,7 +158,7 @@ def lab_scene(settings: Settings) -> Scene:
     return apply_settings(scene, settings, own=EVENTS, sleeping=True)
 
 
-def run_lab(settings: Settings) -> LabRun:
+def run_lab(settings: CaseSettings) -> LabRun:
     """Let the slabs slide off one after the other and measure the stack after each.
 
     Parameters
@@ -171,9 +171,9 @@ def run_lab(settings: Settings) -> LabRun:
     >>> run_lab({"dx": 0.02, "events": 1}).ended
     ['rest']
     """
-    ready = lab_scene(settings).resolve()
-    simulation = _core.Simulation(ready.json)
-    data: dict[str, Any] = ready.data
+    resolved = lab_scene(settings).resolve()
+    simulation = _core.Simulation(resolved.json)
+    data: dict[str, Any] = resolved.data
     tape = _Tape(simulation, data)
     run = LabRun(brought_mass=_brought_mass(data), particle_mass=_particle_mass(data))
     wall_s = 0.0
@@ -197,7 +197,7 @@ def run_lab(settings: Settings) -> LabRun:
     return run
 
 
-def run_seedings(settings: Settings) -> list[LabRun]:
+def run_seedings(settings: CaseSettings) -> list[LabRun]:
     """Run the scene with each of ``seedings`` seeds from ``seed`` on (one, from 1)."""
     rest = {name: value for name, value in settings.items() if name not in ("seedings", "seed")}
     first, count = int(settings.get("seed", 1)), int(settings.get("seedings", 1))

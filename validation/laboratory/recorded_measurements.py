@@ -2,7 +2,7 @@
 
 ``python -m validation.laboratory.recorded_measurements`` writes those of the scheme objective among
 the package's recorded measurements, from which ``--accuracy`` and the error of a stack come. The
-full suite measures the same anew.
+full suite measures the same again.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from snowshed._core import InputError
-from snowshed.analysis.accuracy.measurements import MeasuredSolution, Settings
+from snowshed.analysis.accuracy.measurements import CaseSettings, MeasuredSolution
 from snowshed.analysis.accuracy.mechanisms import scheme_of
 from snowshed.analysis.accuracy.recorded import PACKAGED, load_recorded, record
 from validation.laboratory.case_stack_convergence import CASE, compared, matrix
@@ -23,7 +23,7 @@ SCHEME = "objective"
 
 
 def measurements_of(scheme: str) -> list[MeasuredSolution]:
-    """Return the measurements of the full matrix with a scheme, as far as its runs tell them.
+    """Return the measurements of the full matrix with a scheme, that its runs provide.
 
     Raises
     ------
@@ -36,7 +36,7 @@ def measurements_of(scheme: str) -> list[MeasuredSolution]:
     return [_measured(entry) for entry in matrix(True) if scheme_of(entry) == scheme]
 
 
-def _measured(settings: Settings) -> MeasuredSolution:
+def _measured(settings: CaseSettings) -> MeasuredSolution:
     dimension, dx = int(settings["dimension"]), float(settings["dx"])
     runs = recorded_runs(dimension, dx, scheme_of(settings))
     if len(runs) != settings["seedings"]:
@@ -60,10 +60,10 @@ def _measured(settings: Settings) -> MeasuredSolution:
 
 
 def undisturbed(runs: Sequence[RecordedRun]) -> list[RecordedRun]:
-    """Return runs of one grid with the times that they take at the pace of the quickest.
+    """Return the runs of one grid with wall times scaled to the speed of the fastest run.
 
     Recorded runs are made several at once, on machines with other work, which only adds to their
-    times. The pace is the number of updates of particles in a second, over all events of a run.
+    times. The speed is the number of particle updates per second, over all events of a run.
 
     Raises
     ------

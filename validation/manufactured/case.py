@@ -6,26 +6,29 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from snowshed.analysis.accuracy.measurements import Measured, Settings
+from snowshed.analysis.accuracy.measurements import CaseSettings, Measured
 from snowshed.base.arrays import Floats
 from validation.elastic.bodies import TRANSFERS
 from validation.framework.case import Case, Outcome, Quantity
 from validation.manufactured.forced_body import ForcedBody, root_mean_square
-from validation.manufactured.motions import WAVE_SPEED, AxialWaves, Motion, Vortex
+from validation.manufactured.motions import WAVE_SPEED, AxialWaves, ManufacturedMotion, Vortex
 
 #: From rest through the largest displacement and back to the largest one the other way, s.
 DURATION = 1.5 / WAVE_SPEED
 #: Steps between two samples of the error.
 STEPS = 4
 #: The motions by name, made from their amplitude.
-MOTIONS: Mapping[str, Callable[[float], Motion]] = {"waves": AxialWaves, "vortex": Vortex}
+MOTIONS: Mapping[str, Callable[[float], ManufacturedMotion]] = {
+    "waves": AxialWaves,
+    "vortex": Vortex,
+}
 FLIP, FLIP_99, _, APIC, PIC = TRANSFERS
-SCHEME: Settings = {"basis": "quadratic", "precision": "double", "pattern": "regular"}
+SCHEME: CaseSettings = {"basis": "quadratic", "precision": "double", "pattern": "regular"}
 
 # --- in space ---------------------------------------------------------------------------------
 
 
-def measure(settings: Settings) -> Outcome:
+def measure(settings: CaseSettings) -> Outcome:
     """Follow a motion; its error is the rms over particles and times, over that of the motion."""
     body = ForcedBody(motion_of(settings), settings)
     off, moved = [], []
@@ -38,26 +41,26 @@ def measure(settings: Settings) -> Outcome:
     return body.drive.outcome([Measured("displacement", error, 0.0, error)])
 
 
-def motion_of(settings: Settings) -> Motion:
+def motion_of(settings: CaseSettings) -> ManufacturedMotion:
     """Return the motion that a case's settings name."""
     return MOTIONS[str(settings["motion"])](float(settings["amplitude"]))
 
 
-def _series(cells: Sequence[int], *variants: Settings) -> list[Settings]:
+def _series(cells: Sequence[int], *variants: CaseSettings) -> list[CaseSettings]:
     """Return every variant at every resolution, given as cells along the square's side."""
     # The variant's names come first, so that figures tell its settings apart.
     return [{**variant, **SCHEME, **variant, "dx": 1 / n} for variant in variants for n in cells]
 
 
-WAVES: Settings = {"motion": "waves", "amplitude": 0.04, "particles_per_voxel": 64}
-VORTEX: Settings = {"motion": "vortex", "amplitude": 1.0, "particles_per_voxel": 9}
+WAVES: CaseSettings = {"motion": "waves", "amplitude": 0.04, "particles_per_voxel": 64}
+VORTEX: CaseSettings = {"motion": "vortex", "amplitude": 1.0, "particles_per_voxel": 9}
 
 
-def waves_matrix(full: bool) -> list[Settings]:
+def waves_matrix(full: bool) -> list[CaseSettings]:
     """Return FLIP and APIC, and in full less stretch, fewer particles, and other schemes."""
     if not full:
         return _series((16, 24), {**WAVES, **FLIP}, {**WAVES, **APIC})
-    few: Settings = {**WAVES, "amplitude": 0.02, "particles_per_voxel": 9}
+    few: CaseSettings = {**WAVES, "amplitude": 0.02, "particles_per_voxel": 9}
     listed = [
         *({**WAVES, **transfer} for transfer in (FLIP, APIC)),
         *(
@@ -74,7 +77,7 @@ def waves_matrix(full: bool) -> list[Settings]:
     return _series((16, 24, 32, 48), *listed)
 
 
-def vortex_matrix(full: bool) -> list[Settings]:
+def vortex_matrix(full: bool) -> list[CaseSettings]:
     """Return FLIP and APIC, and in full more rotation, fewer particles, and other schemes."""
     if not full:
         return _series((16, 24, 32), {**VORTEX, **FLIP}, {**VORTEX, **APIC})
@@ -93,14 +96,14 @@ def vortex_matrix(full: bool) -> list[Settings]:
 # --- in time ----------------------------------------------------------------------------------
 
 #: Where the effect of the step's size is studied, and the step of the reference.
-STEP_STUDY: Settings = {"dx": 1 / 16, "particles_per_voxel": 9}
-SMALLEST = 0.9 / 32
+STEP_STUDY: CaseSettings = {"dx": 1 / 16, "particles_per_voxel": 9}
+MIN_COURANT_FACTOR = 0.9 / 32
 
 
-def measure_steps(settings: Settings) -> Outcome:
+def measure_steps(settings: CaseSettings) -> Outcome:
     """Compare the displacements at the end with those of a very small step, and with the motion."""
     body, off, exact = _end(settings)
-    _, limit, _ = _end({**settings, "courant_factor": SMALLEST})
+    _, limit, _ = _end({**settings, "courant_factor": MIN_COURANT_FACTOR})
     step = root_mean_square(off - limit) / root_mean_square(exact)
     error = root_mean_square(off) / root_mean_square(exact)
     return body.drive.outcome(
@@ -108,7 +111,7 @@ def measure_steps(settings: Settings) -> Outcome:
     )
 
 
-def _end(settings: Settings) -> tuple[ForcedBody, Floats, Floats]:
+def _end(settings: CaseSettings) -> tuple[ForcedBody, Floats, Floats]:
     """Return the body, its residual and its displacement at the end of the duration.
 
     The end lies between two steps. The residual changes little from one to the other, so it is
@@ -124,9 +127,9 @@ def _end(settings: Settings) -> tuple[ForcedBody, Floats, Floats]:
     return body, (1 - part) * left + part * body.residual(), body.displacement(DURATION)
 
 
-def steps_matrix(full: bool) -> list[Settings]:
+def steps_matrix(full: bool) -> list[CaseSettings]:
     """Return step factors for pure FLIP, and in full for other transfers and small motions."""
-    variants: list[Settings] = [{"motion": "vortex", "amplitude": 1.0, **FLIP}]
+    variants: list[CaseSettings] = [{"motion": "vortex", "amplitude": 1.0, **FLIP}]
     factors: Sequence[float] = (0.45, 0.225)
     if full:
         variants += [{"motion": "vortex", "amplitude": 0.1, **FLIP}]
@@ -156,10 +159,10 @@ FORCED = """
 """
 
 
-def _displacement(bar_for: Settings) -> Quantity:
-    scheme: Settings = {"basis": "quadratic", "precision": "double", **bar_for}
+def _displacement(bar_for: CaseSettings) -> Quantity:
+    scheme: CaseSettings = {"basis": "quadratic", "precision": "double", **bar_for}
     title = "rms error of displacement over its rms"
-    return Quantity("displacement", title, bar_for=scheme, order_in="dx", least_order=1.8)
+    return Quantity("displacement", title, bar_for=scheme, order_in="dx", min_order=1.8)
 
 
 IN_WAVES = Case(
@@ -230,7 +233,7 @@ IN_TIME = Case(
             "rms effect of the time step on the displacement",
             bar_for={"motion": "vortex", "amplitude": 1.0, "transfer": "flip", "flip_ratio": 1.0},
             order_in="courant_factor",
-            least_order=0.9,
+            min_order=0.9,
         ),
         Quantity(
             "displacement", "rms error of displacement over its rms", order_in="courant_factor"

@@ -7,12 +7,12 @@ from typing import Optional
 
 import numpy as np
 
-from snowshed.analysis.accuracy.measurements import Settings
+from snowshed.analysis.accuracy.measurements import CaseSettings
 from snowshed.base.arrays import Floats
 from snowshed.scene.shape import Shape
 from validation.elastic.bodies import elastic_scene, from_plane, in_plane
-from validation.framework.drive import Drive
-from validation.manufactured.motions import DENSITY, YOUNGS_MODULUS, Motion
+from validation.framework.drive import TimedEventDriver
+from validation.manufactured.motions import DENSITY, YOUNGS_MODULUS, ManufacturedMotion
 
 #: Settings that are the cases' own.
 OWN = frozenset({"motion", "amplitude"})
@@ -51,7 +51,7 @@ class ForcedBody:
     True
     """
 
-    def __init__(self, motion: Motion, settings: Settings) -> None:
+    def __init__(self, motion: ManufacturedMotion, settings: CaseSettings) -> None:
         self.motion = motion
         self._settings = settings
         trial, _ = self._start(0.0)
@@ -60,15 +60,15 @@ class ForcedBody:
         self.drive, self._points = self._start(-self._last_step / 2)
         self._owed = np.zeros_like(self._points)
 
-    def _start(self, time: float) -> tuple[Drive, Floats]:
+    def _start(self, time: float) -> tuple[TimedEventDriver, Floats]:
         """Return the body with the velocities of a time, and where its particles are at first."""
         motion, square = self.motion, Shape.box((0.5, 0.5), (1.0, 1.0))
-        material: Settings = {
+        material: CaseSettings = {
             "youngs_modulus": YOUNGS_MODULUS,
             "poissons_ratio": motion.poissons_ratio,
             "density": DENSITY,
         }
-        drive = Drive(elastic_scene(square, {**material, **self._settings}, OWN))
+        drive = TimedEventDriver(elastic_scene(square, {**material, **self._settings}, OWN))
         points = in_plane(drive.core.positions())
         drive.core.add_velocity(from_plane(motion.velocity(points, time)))
         return drive, points

@@ -27,7 +27,7 @@ YOUNGS_MODULUS, DENSITY = 1e6, 210.0  # Pa, kg/m3
 WAVE_SPEED = math.sqrt(YOUNGS_MODULUS / DENSITY)
 
 
-class Motion(ABC):
+class ManufacturedMotion(ABC):
     """A chosen motion that swings with sin(omega t), omega = pi c."""
 
     #: Poisson's ratio of the moving body.
@@ -49,7 +49,7 @@ class Motion(ABC):
 
 
 @dataclass(frozen=True)
-class AxialWaves(Motion):
+class AxialWaves(ManufacturedMotion):
     """Stretching and squeezing along the axes, by turns: u_x = g(t) f(X), u_z = -g(t) f(Z).
 
     With g = A sin(omega t) and f(X) = sin kX - sin(2 kX)/2, k = 2 pi. f, f' and f'' vanish at the
@@ -104,7 +104,7 @@ class AxialWaves(Motion):
 
 
 @dataclass(frozen=True)
-class Vortex(Motion):
+class Vortex(ManufacturedMotion):
     """Rings that turn about the square's centre, each by its own angle.
 
     A particle at the radius R turns by alpha = A sin(omega t) (1 - (R/R1)^2)^4, R < R1 = 0.45 m;

@@ -10,7 +10,7 @@ from typing import Callable, NamedTuple
 import numpy as np
 
 from snowshed import _core
-from snowshed.analysis.accuracy.measurements import Measured, Settings
+from snowshed.analysis.accuracy.measurements import CaseSettings, Measured
 from snowshed.base.arrays import Floats
 from snowshed.cli.self_test.return_mapping import calibrated
 from validation.framework.case import Case, Outcome, Quantity
@@ -30,7 +30,7 @@ BAR, BAR_AT, EXTRAPOLATED_BAR_AT = 1e-6, 2.5e-8, 1e-5
 
 
 @dataclass(frozen=True)
-class Path:
+class StrainPath:
     """A straight strain path of the calibrated snow, from an isotropic state.
 
     Attributes
@@ -103,7 +103,7 @@ class Solved(NamedTuple):
         return Outcome(measured, self.wall_s, updates=self.increments)
 
 
-def solve(path: Path, settings: Settings) -> Solved:
+def solve(path: StrainPath, settings: CaseSettings) -> Solved:
     """Follow a path in the increments of the settings, extrapolated if they say so."""
     increment = float(settings["increment"])
     reference = path.reference()
@@ -115,7 +115,7 @@ def solve(path: Path, settings: Settings) -> Solved:
     return Solved(states, reference, time.perf_counter() - started, count)
 
 
-def stress_error(solved: Solved, settings: Settings) -> Measured:
+def stress_error(solved: Solved, settings: CaseSettings) -> Measured:
     """Return the deviation under the name that belongs to the settings."""
     name = "extrapolated_stress" if settings["method"] == "extrapolated" else "stress"
     return Measured(name, solved.deviation, 0.0, solved.deviation)
@@ -124,32 +124,32 @@ def stress_error(solved: Solved, settings: Settings) -> Measured:
 # --- the paths --------------------------------------------------------------------------------
 
 
-def measure_isotropic(settings: Settings) -> Outcome:
+def measure_isotropic(settings: CaseSettings) -> Outcome:
     """Compress or pull alike in all directions."""
     strain = 0.1 if settings["sense"] == "tension" else -0.1
-    path = Path(strain, lateral=1.0, dimension=int(settings["dimension"]))
+    path = StrainPath(strain, lateral=1.0, dimension=int(settings["dimension"]))
     solved = solve(path, settings)
     return solved.outcome(stress_error(solved, settings))
 
 
-def measure_oedometer(settings: Settings) -> Outcome:
+def measure_oedometer(settings: CaseSettings) -> Outcome:
     """Compress in one direction and hold the others."""
-    solved = solve(Path(-0.06, lateral=0.0, dimension=int(settings["dimension"])), settings)
+    solved = solve(StrainPath(-0.06, lateral=0.0, dimension=int(settings["dimension"])), settings)
     return solved.outcome(stress_error(solved, settings))
 
 
-def measure_triaxial(settings: Settings) -> Outcome:
+def measure_triaxial(settings: CaseSettings) -> Outcome:
     """Consolidate, then compress in one direction and let the others give as much."""
-    path = Path(-0.16, lateral=-0.5, pressure=float(settings["consolidation"]))
+    path = StrainPath(-0.16, lateral=-0.5, pressure=float(settings["consolidation"]))
     solved = solve(path, settings)
     q = float(solved.states[-1, 1])
     critical = relative("critical_state", q, critical_state(path.pressure)[1])
     return solved.outcome(stress_error(solved, settings), critical)
 
 
-def measure_tension(settings: Settings) -> Outcome:
+def measure_tension(settings: CaseSettings) -> Outcome:
     """Pull in one direction, hold the others, until no strength is left and beyond."""
-    path = Path(0.1, lateral=0.0, dimension=int(settings["dimension"]))
+    path = StrainPath(0.1, lateral=0.0, dimension=int(settings["dimension"]))
     solved = solve(path, settings)
     constants, strength = calibrated()
     law = _core.CamClay(*constants, path.dimension)
@@ -203,7 +203,7 @@ STRESS = Quantity(
     bar=BAR,
     bar_for={"increment": BAR_AT},
     order_in="increment",
-    least_order=0.9,
+    min_order=0.9,
 )
 EXTRAPOLATED = Quantity(
     "extrapolated_stress",
@@ -211,7 +211,7 @@ EXTRAPOLATED = Quantity(
     bar=BAR,
     bar_for={"increment": EXTRAPOLATED_BAR_AT},
     order_in="increment",
-    least_order=1.5,
+    min_order=1.5,
 )
 REMARKS = """
 Backward Euler is of first order: an increment ten times smaller brings one more digit, and no more.
@@ -223,11 +223,11 @@ best, so all this is far below what they leave open.
 """
 
 
-def _matrix(full: bool, variants: list[Settings]) -> list[Settings]:
+def _matrix(full: bool, variants: list[CaseSettings]) -> list[CaseSettings]:
     """Return every increment for every variant; the finest only where everything is asked for."""
-    listed: list[Settings] = []
+    listed: list[CaseSettings] = []
     for variant in variants if full else variants[:1]:
-        plain: Settings = {**variant, "method": "backward Euler"}
+        plain: CaseSettings = {**variant, "method": "backward Euler"}
         increments = (*COARSE, *FINE) if full else COARSE
         listed += [{**plain, "increment": increment} for increment in increments]
         listed += [
@@ -236,7 +236,7 @@ def _matrix(full: bool, variants: list[Settings]) -> list[Settings]:
     return listed
 
 
-def isotropic_matrix(full: bool) -> list[Settings]:
+def isotropic_matrix(full: bool) -> list[CaseSettings]:
     """Return senses and dimensions; the answer does not depend on the increment."""
     return [
         {
@@ -251,12 +251,12 @@ def isotropic_matrix(full: bool) -> list[Settings]:
     ]
 
 
-def plane_and_space_matrix(full: bool) -> list[Settings]:
+def plane_and_space_matrix(full: bool) -> list[CaseSettings]:
     """Return increments in 3D, and in full in 2D."""
     return _matrix(full, [{"dimension": 3}, {"dimension": 2}])
 
 
-def triaxial_matrix(full: bool) -> list[Settings]:
+def triaxial_matrix(full: bool) -> list[CaseSettings]:
     """Return increments from a stress on the wet side, and in full from none and the dry side."""
     return _matrix(full, [{"consolidation": 0.8}, {"consolidation": 0.0}])
 
@@ -266,8 +266,8 @@ def _case(
     title: str,
     description: str,
     *more: Quantity,
-    matrix: Callable[[bool], list[Settings]],
-    measure: Callable[[Settings], Outcome],
+    matrix: Callable[[bool], list[CaseSettings]],
+    measure: Callable[[CaseSettings], Outcome],
 ) -> Case:
     quantities = (STRESS, EXTRAPOLATED, *more)
     return Case(name, title, SOURCE, description, quantities, matrix, measure, REMARKS)

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 
-from snowshed.analysis.accuracy.measurements import Settings
+from snowshed.analysis.accuracy.measurements import CaseSettings
 from snowshed.methods.mps.settings import MpsSettings
 from snowshed.scene.components import Body, Events, Obstacle
 from snowshed.scene.scene import Scene
 from snowshed.scene.shape import Shape
-from validation.framework.drive import Drive
+from validation.framework.drive import TimedEventDriver
 
 GRAVITY = 9.81  # m/s2
 WATER = MpsSettings(density=1000.0, viscosity=1e-3, rheology="newtonian")
 #: Variants in the cases besides distances: walls, and the forms of Koshizuka and Oka.
-VARIANTS: Sequence[Settings] = (
+VARIANTS: Sequence[CaseSettings] = (
     {"walls": "particles"},
     {"gradient": "conservative", "walls": "particles"},
     {"gradient": "published", "spacing_law": "collision"},
@@ -41,9 +41,9 @@ def mps_drive(
     fluid: MpsSettings,
     obstacles: Sequence[Obstacle],
     bodies: Sequence[Body],
-    settings: Settings,
+    settings: CaseSettings,
     own: Collection[str] = (),
-) -> Drive:
+) -> TimedEventDriver:
     """Return a drive of a fluid with a case's settings, on one thread."""
     scene = Scene(
         dimension=2, method="mps", numerics=MpsSettings(**vars(fluid)), obstacles=list(obstacles),
@@ -53,4 +53,4 @@ def mps_drive(
     for name, value in settings.items():
         if name not in own:
             scene.set(f"numerics.{name}", value)
-    return Drive(scene)
+    return TimedEventDriver(scene)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from snowshed.analysis.accuracy.measurements import Settings
+from snowshed.analysis.accuracy.measurements import CaseSettings
 from snowshed.base.arrays import Floats
 from snowshed.methods.mps.settings import MpsSettings
 from snowshed.scene.components import Body, Obstacle
@@ -63,7 +63,7 @@ def middle_flow(positions: Floats, fall: Floats) -> tuple[float, float, float]:
     return plug, float(speeds.mean()), plug_width(positions_x, speeds)
 
 
-def measure(settings: Settings) -> Outcome:
+def measure(settings: CaseSettings) -> Outcome:
     """Let a long slug fall until its flow is steady, and compare its middle."""
     spacing = 2 * HALF_GAP / int(settings["across"])
     plates = [
@@ -89,10 +89,10 @@ def measure(settings: Settings) -> Outcome:
     )
 
 
-def matrix(full: bool) -> list[Settings]:
+def matrix(full: bool) -> list[CaseSettings]:
     """Return distances between particles, with both kinds of walls."""
     across, beside = (ACROSS, ACROSS[:2]) if full else (ACROSS[:2], ACROSS[:1])
-    listed: list[Settings] = [{"across": count} for count in across]
+    listed: list[CaseSettings] = [{"across": count} for count in across]
     return listed + [{"across": count, "walls": "particles"} for count in beside]
 
 
@@ -102,10 +102,9 @@ CASE = Case(
     source="Bird, Dai & Yarusso (1983), Reviews in Chemical Engineering 1, 1-70",
     description="""
     A slug of a Bingham fluid, twelve times as long as wide, falls between two upright plates, to
-    which it sticks. Its middle moves as a fluid between plates does that its weight drives: a plug,
-    half as wide as the gap, between two sheared layers. Compared are, as means over 0.2 s of the
-    steady flow, the plug's speed and width, and the mean speed, which is the discharge over the
-    gap.
+    which it sticks. Its middle moves like a fluid between plates under its own weight: a plug, half
+    as wide as the gap, between two sheared layers. The plug's speed and width and the mean speed
+    (the discharge over the gap) are compared, as means over 0.2 s of the steady flow.
     """,
     remarks="""
     The slug's ends add 0.4 % to the speed of its middle: with 10 particles across it was 9.3 % too

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from snowshed._core import SimulationError
-from snowshed.analysis.accuracy.measurements import Measured, Settings
+from snowshed.analysis.accuracy.measurements import CaseSettings, Measured
 from snowshed.methods.mps.settings import MpsSettings
 from snowshed.scene.components import Body, Obstacle
 from snowshed.scene.shape import Shape
@@ -20,11 +20,11 @@ STEPS = 60
 EDGE = 0.2  # m, of a block of snow that falls by a quarter of it onto a tilted plane
 BOARD_AT, BOARD_HEIGHT = 0.25, 0.3  # m, down the plane from the block's middle; above the plane
 
-DEFAULTS: Settings = {"spacing": 0.02, "tilt": 35.0, "board": 0.0}
+DEFAULTS: CaseSettings = {"spacing": 0.02, "tilt": 35.0, "board": 0.0}
 VALUES = (0.0, 1.0, 1e2, 1e4)
 
 
-def measure(settings: Settings) -> Outcome:
+def measure(settings: CaseSettings) -> Outcome:
     """Let a block slide against a board; count numbers that are not finite, and find its place."""
     tilt, board = float(settings["tilt"]), float(settings["board"])
     angle = math.radians(tilt)
@@ -73,10 +73,10 @@ def _box(centre: np.ndarray, size: tuple[float, float], tilt: float) -> Shape:
     return Shape.transform(box, angle=tilt, translate=(float(centre[0]), float(centre[2])))
 
 
-def matrix(full: bool) -> list[Settings]:
+def matrix(full: bool) -> list[CaseSettings]:
     """Return viscosities with yield stresses; spacings, tilts and boards; each with both walls."""
     values = VALUES if full else VALUES[::3]
-    listed: list[Settings] = [{"viscosity": v, "cohesion": c} for v in values for c in values]
+    listed: list[CaseSettings] = [{"viscosity": v, "cohesion": c} for v in values for c in values]
     listed += [{"tilt": tilt} for tilt in ((0.0, 20.0, 60.0, 85.0) if full else (0.0, 85.0))]
     listed += [
         {"board": board} for board in ((0.05, 0.2, 0.5, 1.0, 2.0, 4.0) if full else (0.2, 2.0))
@@ -84,7 +84,7 @@ def matrix(full: bool) -> list[Settings]:
     listed += [{"spacing": spacing} for spacing in ((0.1, 0.05, 0.005) if full else (0.05,))]
     listed += [{"radius": radius} for radius in ((1.5, 3.1, 4.5) if full else (3.1,))]
     listed += [{"viscosity": 1e4, "cohesion": 1e4, "board": 0.2}]
-    walls: list[Settings] = [{}, {"walls": "particles"}]
+    walls: list[CaseSettings] = [{}, {"walls": "particles"}]
     return [{**DEFAULTS, **variant, **wall} for variant in listed for wall in walls]
 
 

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from snowshed.analysis.accuracy.measurements import Settings
+from snowshed.analysis.accuracy.measurements import CaseSettings
 from snowshed.base.arrays import Floats
 from snowshed.methods.mps.settings import MpsSettings
 from snowshed.scene.components import Body, Obstacle
@@ -36,7 +36,7 @@ def coulomb(tilt: float) -> float:
     return GRAVITY * (math.sin(angle) - math.cos(angle) * math.tan(math.radians(24.0)))
 
 
-def measure_slab(settings: Settings) -> Outcome:
+def measure_slab(settings: CaseSettings) -> Outcome:
     """Let a long slab slide, and take the mean speed of its middle."""
     tilt = float(settings["tilt"])
     angle = math.radians(tilt)
@@ -53,10 +53,10 @@ def measure_slab(settings: Settings) -> Outcome:
     return drive.outcome([relative("speed", speed, coulomb(tilt) * drive.core.time_s)])
 
 
-def slab_matrix(full: bool) -> list[Settings]:
+def slab_matrix(full: bool) -> list[CaseSettings]:
     """Return tilts, distances between particles, and walls of particles."""
     spacings = (0.02, 0.01, 0.005) if full else (0.02, 0.01)
-    listed: list[Settings] = [{"tilt": t, "spacing": s} for t in TILTS for s in spacings]
+    listed: list[CaseSettings] = [{"tilt": t, "spacing": s} for t in TILTS for s in spacings]
     return listed + [{"tilt": t, "spacing": 0.01, "walls": "particles"} for t in TILTS]
 
 
@@ -80,7 +80,7 @@ def resting_heap(positions: Floats) -> Floats:
     return np.asarray(np.sqrt(SCALE * np.maximum(resting_front() - positions, 0.0)))
 
 
-def measure_heap(settings: Settings) -> Outcome:
+def measure_heap(settings: CaseSettings) -> Outcome:
     """Let a heap slump until it rests, and compare its height over four particles."""
     drive = mps_drive(MUD, floor_and_sides(), [block(*HEAP)], settings)
     drive.run_to(2.0)
@@ -101,10 +101,10 @@ def measure_heap(settings: Settings) -> Outcome:
     )
 
 
-def heap_matrix(full: bool) -> list[Settings]:
+def heap_matrix(full: bool) -> list[CaseSettings]:
     """Return distances between particles, and walls of particles."""
     spacings = (0.03, 0.02, 0.015) if full else (0.03, 0.02)
-    listed: list[Settings] = [{"spacing": spacing} for spacing in spacings]
+    listed: list[CaseSettings] = [{"spacing": spacing} for spacing in spacings]
     return [*listed, {"spacing": 0.02, "walls": "particles"}]
 
 
@@ -115,7 +115,8 @@ CASES = (
         source="Newton's law with Coulomb's friction, g (sin a - cos a tan phi)",
         description="""
         Snow without cohesion, 0.1 m thick and 2.4 m long, with a friction angle of 24 degrees,
-        slides down a plane for 0.2 s. Compared is the mean speed of its middle sixth.
+        slides down a plane for 0.2 s. The mean speed of its middle sixth is
+        compared.
         """,
         quantities=(
             Quantity("speed", "speed, m/s", bar=0.02, bar_for={"spacing": 0.01}),

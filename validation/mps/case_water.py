@@ -7,9 +7,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from snowshed.analysis.accuracy.measurements import Measured, Settings
+from snowshed.analysis.accuracy.measurements import CaseSettings, Measured
 from validation.framework.case import Case, Outcome, Quantity
-from validation.framework.drive import Drive, absolute, relative
+from validation.framework.drive import TimedEventDriver, absolute, relative
 from validation.mps.bodies import GRAVITY, VARIANTS, WATER, block, floor_and_sides, mps_drive
 
 HEIGHT = 0.2  # m, of the column at rest, which is as wide
@@ -21,12 +21,12 @@ MARTIN_MOYCE = ((0.832, 1.217), (1.219, 1.474), (1.997, 2.292), (2.547, 2.995), 
 KOSHIZUKA_OKA = ((0.381, 1.111), (0.769, 1.252), (1.153, 1.505), (1.537, 1.892), (1.935, 2.241), (2.323, 2.615), (2.719, 3.003), (3.096, 3.624))  # fmt: skip # noqa: E501
 #: Front of such water, released suddenly, as a volume of fluid (benchmarks/engines/gerris_dam.gfs).
 GERRIS = ((0.5, 1.16), (1.0, 1.53), (1.5, 2.03), (2.0, 2.64), (2.5, 3.32), (3.0, 4.07), (3.5, 4.85))
-#: Martin and Moyce's tables, as others print them, do not count the time from when water was let
-#: go: fronts of both columns twice as high as wide, 1 1/8 and 2 1/4 inches, are here.
+#: Martin and Moyce's tables, as others print them, do not count the time from the release of the
+#: water: fronts of both columns twice as high as wide, 1 1/8 and 2 1/4 inches, are here.
 ORIGIN = (1.19, 1.44)  # T*, X*
 
 
-def pressure_slope(drive: Drive, spacing: float) -> float:
+def pressure_slope(drive: TimedEventDriver, spacing: float) -> float:
     """Return the slope of the pressure over the specific weight, away from floor and surface."""
     height = drive.core.positions()[:, 2]
     inside = (height > 2 * spacing) & (height < HEIGHT - 2 * spacing)
@@ -35,7 +35,7 @@ def pressure_slope(drive: Drive, spacing: float) -> float:
     return float(-slope / (1000.0 * GRAVITY))
 
 
-def measure_column(settings: Settings) -> Outcome:
+def measure_column(settings: CaseSettings) -> Outcome:
     """Let a column of water stand."""
     drive = mps_drive(WATER, floor_and_sides(HEIGHT), [block(HEIGHT, HEIGHT)], settings, {"time"})
     spacing = float(settings["spacing"])
@@ -52,11 +52,11 @@ def measure_column(settings: Settings) -> Outcome:
     )
 
 
-def column_matrix(full: bool) -> list[Settings]:
+def column_matrix(full: bool) -> list[CaseSettings]:
     """Return distances between particles, and the other walls and gradients."""
     time = 10.0 if full else 1.0
     spacings = SPACINGS if full else SPACINGS[:2]
-    listed: list[Settings] = [{"spacing": spacing, "time": time} for spacing in spacings]
+    listed: list[CaseSettings] = [{"spacing": spacing, "time": time} for spacing in spacings]
     return listed + [{"spacing": 0.01, "time": time, **variant} for variant in VARIANTS[:2]]
 
 
@@ -76,7 +76,7 @@ def deviation(
     return float(np.sqrt(((interpolated - measured) ** 2).mean()))
 
 
-def measure_dam(settings: Settings) -> Outcome:
+def measure_dam(settings: CaseSettings) -> Outcome:
     """Let a column of water collapse, and compare where its front is."""
     spacing = DAM / int(settings["across"])
     drive = mps_drive(
@@ -108,10 +108,10 @@ def _off(name: str, value: float) -> Measured:
     return Measured(name, value, 0.0, value)
 
 
-def dam_matrix(full: bool) -> list[Settings]:
+def dam_matrix(full: bool) -> list[CaseSettings]:
     """Return distances between particles, and the other walls and gradients."""
     across = ACROSS if full else ACROSS[:2]
-    listed: list[Settings] = [{"across": count} for count in across]
+    listed: list[CaseSettings] = [{"across": count} for count in across]
     return listed + [{"across": count, **variant} for variant in VARIANTS for count in across[:2]]
 
 
@@ -144,8 +144,9 @@ DAM_BREAK = Case(
         "Nuclear Science and Engineering 123, 421-434"
     ),
     description="""
-    A column of water, 2 1/4 inches wide and twice as high, collapses. Compared is the foremost
-    particle, half a distance ahead, in widths of the column over T* = t √(2g/a): with another
+    A column of water, 2 1/4 inches wide and twice as high, collapses. The position
+    of the foremost particle is compared, half a distance ahead, in widths of the column over
+    T* = t √(2g/a): with another
     method for water without friction that is released suddenly (volume of fluid, Gerris), and with
     two measured series, as they stand and with the origin of time of Martin and Moyce's tables,
     which bring their runs together at X* = 1.44, T* = 1.19.

@@ -7,12 +7,12 @@ from typing import NamedTuple, cast
 import numpy as np
 
 from snowshed._core import SimulationError
-from snowshed.analysis.accuracy.measurements import Measured, Settings
+from snowshed.analysis.accuracy.measurements import CaseSettings, Measured
 from snowshed.base.arrays import Floats
 from snowshed.scene.components import Condition, Panel, Slab
 from snowshed.scene.scene import Scene
 from validation.framework.case import Case, Outcome, Quantity
-from validation.framework.drive import Drive, apply_settings, relative
+from validation.framework.drive import TimedEventDriver, apply_settings, relative
 from validation.panel_edge.rigid_slab import RigidSlab
 
 TILT, PANEL_LENGTH, PANEL_HEIGHT = 40.0, 2.0, 5.0  # degrees, m, m
@@ -20,7 +20,7 @@ LENGTH, THICKNESS, WIDTH = 0.2, 0.04, 0.1  # of the slab, m; the width in 3D onl
 DROP = 1.0  # m below the edge, where it lands
 #: Settings that are no parameters of the scene's numerics.
 OWN = frozenset({"friction", "condition", "length"})
-SLAB: Settings = {
+SLAB: CaseSettings = {
     "dimension": 2,
     "dx": 0.01,
     "friction": 0.3,
@@ -45,7 +45,7 @@ class Moment(NamedTuple):
     rear: float  # where its last particle is, down the slope from the edge, m
 
 
-def panel_scene(settings: Settings) -> Scene:
+def panel_scene(settings: CaseSettings) -> Scene:
     """Return a panel with a slab in its middle, and nothing below."""
     panel = Panel(height=PANEL_HEIGHT, length=PANEL_LENGTH, width=2 * WIDTH, tilt=TILT)
     panel.friction = float(settings["friction"])
@@ -57,9 +57,9 @@ def panel_scene(settings: Settings) -> Scene:
 class Throw:
     """A slab released on a panel, followed until it has fallen below the edge."""
 
-    def __init__(self, settings: Settings) -> None:
+    def __init__(self, settings: CaseSettings) -> None:
         scene = panel_scene(settings)
-        self.drive = Drive(scene)
+        self.drive = TimedEventDriver(scene)
         frame = self.drive.core.panel_frame()
         assert frame is not None
         self._slope = np.array(frame["slope"])
@@ -68,7 +68,7 @@ class Throw:
         self._longest = 4 * self.rigid(settings).landing(DROP).time_s
 
     @staticmethod
-    def rigid(settings: Settings) -> RigidSlab:
+    def rigid(settings: CaseSettings) -> RigidSlab:
         """Return the same slab as a rigid body."""
         length = float(settings["length"])
         return RigidSlab(length, THICKNESS, TILT, float(settings["friction"]), PANEL_LENGTH / 2)
@@ -121,7 +121,7 @@ def off_parabola(flight: list[Moment], gravity: float = 9.81) -> float:
     return float(np.linalg.norm(centres - parabola, axis=1).max() / distance)
 
 
-def measure(settings: Settings) -> Outcome:
+def measure(settings: CaseSettings) -> Outcome:
     """Let a slab slide off and compare its flight with a rigid slab's and with a parabola."""
     throw = Throw(settings)
     exact = throw.rigid(settings).landing(DROP)
@@ -137,14 +137,14 @@ def measure(settings: Settings) -> Outcome:
     )
 
 
-def matrix(full: bool) -> list[Settings]:
+def matrix(full: bool) -> list[CaseSettings]:
     """Return frictions, and in full resolutions, methods and lengths."""
     if not full:
-        coarse: Settings = {**SLAB, "dx": 0.02}
+        coarse: CaseSettings = {**SLAB, "dx": 0.02}
         return [{**coarse, "friction": 0.0}, coarse, {**SLAB, "transfer": "apic"}]
     frictions = (0.0, 0.3, 0.6)
     listed = [{**SLAB, "dx": dx, "friction": mu} for dx in (0.02, 0.01) for mu in frictions]
-    variants: list[Settings] = [
+    variants: list[CaseSettings] = [
         {"dx": 0.005},
         {"transfer": "apic"},
         {"transfer": "apic", "dx": 0.02},
@@ -170,9 +170,9 @@ CASE = Case(
     ),
     description="""
     A slab, 20 cm long and 4 cm thick, is released in the middle of a panel 2 m long and tilted by
-    40 degrees. It slides off the lower edge and falls. Compared are the place of its centre of mass
-    1 m below the edge; how far it strays, from the moment when all snow is three
-    cells past the edge, from the parabola of that moment; and how fast it turns.
+    40 degrees. It slides off the lower edge and falls. Three quantities are compared: the position
+    of its centre of mass 1 m below the edge; the deviation from the parabola that begins when all
+    snow is three cells past the edge; and the angular velocity.
     """,
     quantities=(
         Quantity("landing", "distance of landing from the edge, m", bar=0.01),

@@ -90,13 +90,13 @@ class RigidSlab:
 
     @property
     def acceleration(self) -> float:
-        """Down the slope as long as the whole slab lies on the panel, m/s2."""
+        """Acceleration down the slope while the whole slab lies on the panel, m/s2."""
         pull, press = self._gravity
         return float(pull + self.friction * press)
 
     @property
     def _gravity(self) -> Floats:
-        """Its parts down the slope and normal to it."""
+        """Gravity down the slope and normal to it, m/s2."""
         tilt = math.radians(self.tilt)
         return self.gravity * np.array([math.sin(tilt), -math.cos(tilt)])
 

@@ -9,13 +9,13 @@ from typing import Union
 
 import numpy as np
 
-from snowshed.analysis.accuracy.measurements import Measured, Settings
+from snowshed.analysis.accuracy.measurements import CaseSettings, Measured
 from snowshed.base.arrays import Floats
 from snowshed.scene.components import Body, Condition, Obstacle
 from snowshed.scene.scene import Scene
 from snowshed.scene.shape import Shape
 from validation.framework.case import Case, Outcome, Quantity
-from validation.framework.drive import Drive, apply_settings, relative
+from validation.framework.drive import TimedEventDriver, apply_settings, relative
 from validation.material_paths.rate_equations import RateEquations
 
 HEIGHT, WIDTH_CELLS = 0.4, 8  # m; the width is so many cells at any resolution
@@ -139,7 +139,7 @@ class YieldingColumn:
 Column = Union[ElasticColumn, YieldingColumn]
 
 
-def column_scene(settings: Settings) -> Scene:
+def column_scene(settings: CaseSettings) -> Scene:
     """Return a column between frictionless walls on a sticky floor."""
     dimension, dx = int(settings["dimension"]), float(settings["dx"])
     floor, width = float(settings["floor_offset"]) * dx, WIDTH_CELLS * dx
@@ -176,7 +176,7 @@ def _wall(corner: Floats, axis: int, side: int, condition: Condition) -> Obstacl
     return Obstacle(shape=plane, condition=condition, friction=0.0)
 
 
-def settle(drive: Drive, periods: float) -> None:
+def settle(drive: TimedEventDriver, periods: float) -> None:
     """Let a column come to rest, damped so strongly that it nowhere sinks too far and comes back.
 
     Snow that yields would keep the mark of a swing. Velocities fall at the rate 2 omega, critical
@@ -190,9 +190,9 @@ def settle(drive: Drive, periods: float) -> None:
         drive.damp(2 * omega * (drive.core.time_s - before))
 
 
-def measure(settings: Settings, column: Column, periods: float) -> Outcome:
+def measure(settings: CaseSettings, column: Column, periods: float) -> Outcome:
     """Settle a column and compare the means over its layers, one cell thick, with what is exact."""
-    drive = Drive(column_scene(settings))
+    drive = TimedEventDriver(column_scene(settings))
     dx = float(settings["dx"])
     start = drive.core.positions()[:, 2]
     settle(drive, periods)
@@ -219,19 +219,19 @@ def measure(settings: Settings, column: Column, periods: float) -> Outcome:
     )
 
 
-def measure_elastic(settings: Settings) -> Outcome:
+def measure_elastic(settings: CaseSettings) -> Outcome:
     """Settle a column of elastic snow."""
     column = ElasticColumn(int(settings["dimension"]))
     return measure({**settings, "model": "elastic"}, column, periods=4)
 
 
-def measure_yielding(settings: Settings) -> Outcome:
+def measure_yielding(settings: CaseSettings) -> Outcome:
     """Settle a column of snow that yields."""
     column = YieldingColumn(int(settings["dimension"]))
     return measure({**settings, "model": "cam_clay"}, column, periods=10)
 
 
-REGULAR: Settings = {
+REGULAR: CaseSettings = {
     "dimension": 2,
     "dx": 0.01,
     "pattern": "regular",
@@ -241,8 +241,8 @@ REGULAR: Settings = {
     "precision": "float",
     "floor_offset": 0.0,
 }
-RANDOM: Settings = {**REGULAR, "pattern": "poisson", "particles_per_voxel": 6}
-METHODS: tuple[Settings, ...] = (
+RANDOM: CaseSettings = {**REGULAR, "pattern": "poisson", "particles_per_voxel": 6}
+METHODS: tuple[CaseSettings, ...] = (
     {"particles_per_voxel": 9},
     {"particles_per_voxel": 16},
     {"transfer": "apic"},
@@ -252,10 +252,10 @@ METHODS: tuple[Settings, ...] = (
 )
 
 
-def elastic_matrix(full: bool) -> list[Settings]:
+def elastic_matrix(full: bool) -> list[CaseSettings]:
     """Return resolutions, and in full seedings, bases and other variations."""
     sizes = (0.04, 0.02, 0.01, 0.005, 0.0025) if full else (0.02, 0.01, 0.005)
-    listed: list[Settings] = [{**REGULAR, "dx": dx} for dx in sizes]
+    listed: list[CaseSettings] = [{**REGULAR, "dx": dx} for dx in sizes]
     if not full:
         return [*listed, {**RANDOM, "dx": 0.01, "seed": 1}]
     listed += [{**RANDOM, "dx": dx, "seed": seed} for dx in sizes for seed in (1, 2, 3)]
@@ -267,10 +267,10 @@ def elastic_matrix(full: bool) -> list[Settings]:
     return [*listed, {**REGULAR, "dx": 0.02, "particles_per_voxel": 8, "dimension": 3}]
 
 
-def yielding_matrix(full: bool) -> list[Settings]:
+def yielding_matrix(full: bool) -> list[CaseSettings]:
     """Return resolutions, and in full seedings and other variations."""
     sizes = (0.02, 0.01, 0.005, 0.0025) if full else (0.02, 0.01)
-    listed: list[Settings] = [{**REGULAR, "dx": dx} for dx in sizes]
+    listed: list[CaseSettings] = [{**REGULAR, "dx": dx} for dx in sizes]
     if full:
         listed += [{**RANDOM, "dx": dx, "seed": seed} for dx in sizes[:3] for seed in (1, 2, 3)]
         listed += [{**REGULAR, "basis": "cubic"}]
@@ -279,7 +279,7 @@ def yielding_matrix(full: bool) -> list[Settings]:
 
 
 def _quantities(finest: float) -> tuple[Quantity, ...]:
-    lattice: Settings = {
+    lattice: CaseSettings = {
         "dx": finest,
         "pattern": "regular",
         "basis": "quadratic",
@@ -295,25 +295,25 @@ def _quantities(finest: float) -> tuple[Quantity, ...]:
 SETTING = """
     A column of snow 40 cm high, between frictionless walls on a floor to which it sticks, settles
     under its own weight until it rests. Its motion is damped by hand so that it never swings back.
-    Compared are how far the snow of the uppermost cell has sunk and the pressure, in means over
-    layers one cell thick; errors of pressure are over the pressure at the bottom.
+    The settlement of the uppermost cell and the pressure are compared as means over layers one cell
+    thick. Pressure errors are relative to the pressure at the bottom.
 """
 FLOOR = """
-The floor costs most. The grid stops its nodes on and below the floor, but between the floor and the
-first free node snow still moves, so the column stands as if its floor lay about a third of a cell
-too low, and the lowest cell carries 11 to 16 % too much pressure, at any resolution, with the next
-one too little (cubic splines: 22 %). This is an error of first order in dx: the settlement is right
-to 1 % from 80 cells of height on (160 where snow yields), and no sooner. All this if the floor lies
-on a row of nodes. Halfway between two rows errors are five times as large, at three quarters of
-a cell fourteen times.
+The floor causes the largest error. The grid stops the nodes on and below the floor, but snow
+between the floor and the first free node still moves. The column therefore behaves as if the floor
+were a third of a cell lower. The pressure in the lowest cell is 11 to 16 % too high at any
+resolution (22 % with cubic splines), and that in the next cell is too low. This error is of first
+order in dx: the settlement is within 1 % from 80 cells of height on (160 where snow yields). These
+numbers hold if the floor lies on a row of nodes. Halfway between two rows errors are five times as
+large, at three quarters of a cell fourteen times.
 """
 RANDOM_SEEDING = """
-Random seeding, the default, makes snow softer: where particles happen to be sparse the grid strains
-more than it should, and what is dense does not make up for it. At 6 particles per voxel the column
-settles by another 1 to 3 % if it is elastic and by 4 to 6 % if it yields, and no finer grid helps,
-for there are as many particles in a cell as before. More particles do: with 24 or more the excess
-is about half a percent. Single particles scatter by 8 % of the bottom's pressure, those of a
-lattice by 2 to 4 %; means over a cell are what should be read.
+Random seeding, the default, makes snow softer. Where particles are sparse the grid strains too
+much, and denser places do not make up for it. At 6 particles per voxel the column settles by
+another 1 to 3 % if it is elastic and by 4 to 6 % if it yields. A finer grid does not help, because
+a cell holds as many particles as before. With 24 or more particles the excess is about half a
+percent. The pressure of single particles scatters by 8 % of the bottom's, on a lattice by 2 to 4 %.
+Use means over a cell.
 """
 
 ELASTIC = Case(

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from snowshed.analysis.accuracy.measurements import Settings
+from snowshed.analysis.accuracy.measurements import CaseSettings
 from validation.framework.case import Case, Outcome, Quantity
 from validation.framework.drive import absolute, relative
 from validation.slide.site import GRAVITY, Plane, Site, rectangle, slide_drive
@@ -17,21 +17,21 @@ FRICTION, TURBULENCE, THICKNESS = 0.325, 300.0, 0.5  # 1, m/s2, m
 HALF = 15.0  # m, half the block's edge on the map
 MIDDLE = 3.0  # m, from the block's middle: particles whose motion is measured
 SLIDING = 3.0  # s; edges make themselves felt in the middle only later
-#: Friction that stops a block that was thrown down the slope at a speed, m/s.
+#: Friction that stops a block, and the speed at which it starts down the slope, m/s.
 STOPPING, THROWN = 1.1, 4.0
 OWN = frozenset({"law"})
 
-DEFAULTS: Settings = {"cell": 2.0, "layer_thickness": 0.06, "time_step": 0.01}
+DEFAULTS: CaseSettings = {"cell": 2.0, "layer_thickness": 0.06, "time_step": 0.01}
 
 
-class Motion(NamedTuple):
+class BlockMotion(NamedTuple):
     """Distance (m) and speed (m/s) of a block after a time."""
 
     distance: float
     speed: float
 
 
-def block_motion(law: str, time: float) -> Motion:
+def block_motion(law: str, time: float) -> BlockMotion:
     """Return how far a block has slid from rest, and its speed.
 
     Coulomb: du/dt = a = g (sin - mu cos). Voellmy: du/dt = a - g u^2/(xi h), so that
@@ -44,13 +44,13 @@ def block_motion(law: str, time: float) -> Motion:
     """
     a = PLANE.coulomb(FRICTION)
     if law == "coulomb":
-        return Motion(0.5 * a * time**2, a * time)
+        return BlockMotion(0.5 * a * time**2, a * time)
     terminal = math.sqrt(a * TURBULENCE * THICKNESS / GRAVITY)
     grown = a * time / terminal
-    return Motion(terminal**2 / a * math.log(math.cosh(grown)), terminal * math.tanh(grown))
+    return BlockMotion(terminal**2 / a * math.log(math.cosh(grown)), terminal * math.tanh(grown))
 
 
-def measure(settings: Settings) -> Outcome:
+def measure(settings: CaseSettings) -> Outcome:
     """Let the middle of a wide block slide from rest, or stop after it was thrown."""
     stops = settings["law"] == "stop"
     block = rectangle(-HALF, -HALF, HALF, HALF, THICKNESS)
@@ -76,20 +76,20 @@ def measure(settings: Settings) -> Outcome:
     speed = float((drive.core.velocities()[middle] @ down).mean())
     if stops:
         exact = THROWN**2 / (-2 * PLANE.coulomb(STOPPING))
-        return drive.outcome([relative("way", distance, exact), absolute("creep", speed, 0.0)])
+        return drive.outcome([relative("distance", distance, exact), absolute("creep", speed, 0.0)])
     motion = block_motion(str(settings["law"]), drive.core.time_s)
     return drive.outcome(
-        [relative("way", distance, motion.distance), relative("speed", speed, motion.speed)]
+        [relative("distance", distance, motion.distance), relative("speed", speed, motion.speed)]
     )
 
 
-def matrix(full: bool) -> list[Settings]:
+def matrix(full: bool) -> list[CaseSettings]:
     """Return laws of friction, and sizes of particles, cells and steps."""
     steps = (0.04, 0.02, 0.01, 0.005, 0.0025) if full else (0.02, 0.01)
     particles = (0.25, 0.06, 0.03) if full else (0.25,)
-    listed: list[Settings] = []
+    listed: list[CaseSettings] = []
     for law in ("coulomb", "voellmy", "stop"):
-        base: Settings = {**DEFAULTS, "law": law}
+        base: CaseSettings = {**DEFAULTS, "law": law}
         listed += [{**base, "time_step": dt} for dt in steps]
         listed += [{**base, "layer_thickness": layer} for layer in particles if layer != 0.06]
         listed += [{**base, "cell": 1.0}] if full else []
@@ -105,12 +105,12 @@ CASE = Case(
     ),
     description="""
     Half a metre of snow, 30 m long and wide on the map, slides down a plane of 35 degrees for 3 s,
-    without bonds and without artificial viscosity. Compared are the distance and the speed of its
-    middle, where the thickness stays what it was. With μ = 1.1 a block that was thrown down the
-    slope at 4 m/s must stop after v²/(2 a), and then stay exactly where it is.
+    without bonds and without artificial viscosity. The distance and the speed of its
+    middle are compared, where the thickness does not change. With μ = 1.1 a block that starts down
+    the slope at 4 m/s must stop after v²/(2 a), and must not move afterwards.
     """,
     quantities=(
-        Quantity("way", "distance down the slope, m", bar=0.005, bar_for={"time_step": 0.01}),
+        Quantity("distance", "distance down the slope, m", bar=0.005, bar_for={"time_step": 0.01}),
         Quantity("speed", "speed, m/s", bar=0.005, bar_for={"time_step": 0.01}),
         Quantity("creep", "speed after stopping, m/s", bar=1e-9, relative=False),
     ),

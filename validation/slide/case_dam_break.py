@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from snowshed.analysis.accuracy.measurements import Measured, Settings
+from snowshed.analysis.accuracy.measurements import CaseSettings, Measured
 from snowshed.base.arrays import Floats
 from validation.framework.case import Case, Outcome, Quantity
 from validation.framework.drive import absolute
@@ -19,7 +19,7 @@ LENGTH, HALF_WIDTH = 40.0, 14.0  # m, along the slope; on the map
 MEASURED = 3.0  # m, half the width of the strip whose mean is compared: no side is felt there
 SEEN = 0.05  # share of the dam's height; the front is where the snow is thicker
 
-DEFAULTS: Settings = {"cell": 2.0, "time_step": 0.02}
+DEFAULTS: CaseSettings = {"cell": 2.0, "time_step": 0.02}
 #: Snow of this thickness over a cell makes a particle, m: about 4, 9, 16 and 36 particles per cell.
 LAYERS = (0.28, 0.126, 0.071, 0.0317)
 
@@ -56,7 +56,7 @@ def exact_front(time: float) -> float:
     return 0.5 * PLANE.coulomb(FRICTION) * time**2 + ahead
 
 
-def measure(settings: Settings) -> Outcome:
+def measure(settings: CaseSettings) -> Outcome:
     """Release a dam and compare the profile along its middle."""
     cosine = math.cos(PLANE.angle)
     dam = rectangle(-LENGTH * cosine, -HALF_WIDTH, 0.0, HALF_WIDTH, THICKNESS)
@@ -86,11 +86,11 @@ def _front(s: Floats, thickness: Floats) -> float:
     return float(s[last] + share * (s[last + 1] - s[last]))
 
 
-def matrix(full: bool) -> list[Settings]:
+def matrix(full: bool) -> list[CaseSettings]:
     """Return sizes of particles and cells, and the shortest steps that go with them."""
     if not full:
         return [{**DEFAULTS, "layer_thickness": layer} for layer in LAYERS[:3]]
-    listed: list[Settings] = [{**DEFAULTS, "layer_thickness": layer} for layer in LAYERS]
+    listed: list[CaseSettings] = [{**DEFAULTS, "layer_thickness": layer} for layer in LAYERS]
     listed += [{"cell": 1.0, "time_step": 0.01, "layer_thickness": layer} for layer in LAYERS]
     listed += [{**DEFAULTS, "layer_thickness": LAYERS[2], "time_step": dt} for dt in (0.04, 0.005)]
     listed += [
@@ -127,7 +127,7 @@ CASE = Case(
                 "artificial_viscosity": None,
             },
             order_in="layer_thickness",
-            least_order=0.5,
+            min_order=0.5,
         ),
         Quantity(
             "front",

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from snowshed.analysis.accuracy.measurements import Measured, Settings
+from snowshed.analysis.accuracy.measurements import CaseSettings, Measured
 from validation.framework.case import Case, Outcome, Quantity
 from validation.slide.site import Height, Site, rectangle, slide_drive
 
@@ -25,7 +25,7 @@ GROUNDS: Mapping[str, Height] = {
     "ridge": lambda x, y: -np.abs(x) * 3.0,
 }
 
-DEFAULTS: Settings = {
+DEFAULTS: CaseSettings = {
     "ground": "slope",
     "thickness": 0.5,
     "cell": 2.0,
@@ -35,7 +35,7 @@ DEFAULTS: Settings = {
     "bonds": True,
 }
 #: Variations on the slope, one at a time.
-EXTREMES: tuple[Settings, ...] = (
+EXTREMES: tuple[CaseSettings, ...] = (
     {"time_step": 1e-5},
     {"time_step": 1.0, "bonds": False},
     {"bond_modulus": 0.0},
@@ -54,8 +54,8 @@ EXTREMES: tuple[Settings, ...] = (
 )
 
 
-def measure(settings: Settings) -> Outcome:
-    """Run some steps, and look at mass, numbers and what must lie still."""
+def measure(settings: CaseSettings) -> Outcome:
+    """Run some steps, and check the mass, the numbers and the snow that must not move."""
     height = GROUNDS[str(settings["ground"])]
     settings = {"layer_thickness": float(settings["thickness"]) / 2, **settings}
     snow = rectangle(-12.3, -12.3, 12.3, 12.3, float(settings["thickness"]))
@@ -77,12 +77,12 @@ def measure(settings: Settings) -> Outcome:
     return drive.outcome(measured)
 
 
-def matrix(full: bool) -> list[Settings]:
+def matrix(full: bool) -> list[CaseSettings]:
     """Return grounds with thicknesses, and settings at their extremes."""
     steps = 3000 if full else STEPS
     thicknesses = (0.001, 0.05, 0.5, 10.0) if full else (0.001, 10.0)
-    base: Settings = {**DEFAULTS, "steps_to_take": steps}
-    listed: list[Settings] = [
+    base: CaseSettings = {**DEFAULTS, "steps_to_take": steps}
+    listed: list[CaseSettings] = [
         {**base, "ground": ground, "thickness": thickness}
         for ground in GROUNDS
         for thickness in thicknesses
@@ -97,19 +97,20 @@ CASE = Case(
     description="""
     A slab slides over cliffs, steps, pits, a gully of one cell, level ground and a sharp ridge, 1
     mm to 10 m thick; and on a slope with time steps, bonds, friction, viscosity and particles at
-    the extremes of what is allowed. No number may be other than finite, the mass on the terrain and
-    beyond it stays what it was, and with μ = 2 snow on a slope of 38 degrees stays where it is.
+    the extremes of what is allowed. All numbers must be finite, the mass on and
+    beyond the terrain must be conserved, and with μ = 2 snow on a slope of 38 degrees must not
+    move.
     """,
     quantities=(
-        Quantity("unsound", "coordinates that are no number", bar=0.0, relative=False),
+        Quantity("unsound", "coordinates that are not finite", bar=0.0, relative=False),
         Quantity("mass", "change of mass", bar=1e-12),
         Quantity("creep", "median speed that friction holds, m/s", bar=0.0, relative=False),
     ),
     matrix=matrix,
     measure=measure,
     remarks="""
-    Bonds that are too stiff for the time step shorten it; where more than a hundred steps were
-    needed in place of one, an error names the step that they need. Left alone the slab would shake
-    itself to pieces.
+    Bonds that are too stiff for the time step shorten it. If more than a hundred steps would
+    replace one, an error gives the required step. Without shorter steps the slab would oscillate
+    until it breaks up.
     """,
 )

@@ -6,11 +6,11 @@ import math
 
 import numpy as np
 
-from snowshed.analysis.accuracy.measurements import Measured, Settings
+from snowshed.analysis.accuracy.measurements import CaseSettings, Measured
 from snowshed.base.arrays import Floats
 from snowshed.scene.components import Area, Hole
 from validation.framework.case import Case, Outcome, Quantity
-from validation.framework.drive import Drive, relative
+from validation.framework.drive import TimedEventDriver, relative
 from validation.slide.site import Plane, Site, maps_of, node_axes, rectangle, slide_drive
 
 PLANE = Plane(30.0)
@@ -24,7 +24,7 @@ OWN = frozenset({"shape"})
 FRICTION = {"ridge": math.tan(math.radians(20.0)), "cap": 0.0}
 LAYERS = (0.25, 0.11, 0.0625, 0.028)
 
-DEFAULTS: Settings = {"cell": 2.0, "time_step": 0.01}
+DEFAULTS: CaseSettings = {"cell": 2.0, "time_step": 0.01}
 
 
 def spread(shape: str, time: float) -> float:
@@ -55,7 +55,7 @@ def spread(shape: str, time: float) -> float:
     return float(solution.y[0, -1])
 
 
-def measure(settings: Settings) -> Outcome:
+def measure(settings: CaseSettings) -> Outcome:
     """Let the snow spread, and compare its half length and its profile."""
     shape = str(settings["shape"])
     site = Site(PLANE.height, -20.0, -28.0, 44.0, 28.0, terraces(shape))
@@ -107,7 +107,7 @@ def _ellipse(radius: float) -> list[tuple[float, float]]:
     return list(zip(x.tolist(), y.tolist()))
 
 
-def _half_length(drive: Drive, shape: str) -> float:
+def _half_length(drive: TimedEventDriver, shape: str) -> float:
     """Return it from the second moment: a^2/5 of a parabola, a^2/6 along an axis of a cap."""
     x, y = drive.core.positions()[:, :2].T
     masses = drive.core.masses()  # without what left the terrain
@@ -118,7 +118,7 @@ def _half_length(drive: Drive, shape: str) -> float:
     return math.sqrt((5 if shape == "ridge" else 6) * variance)
 
 
-def _profile_error(drive: Drive, shape: str, exact: float) -> float:
+def _profile_error(drive: TimedEventDriver, shape: str, exact: float) -> float:
     """Return the mean absolute error of thickness over the snow, in parts of its largest."""
     maps = maps_of(drive)
     x, y = np.meshgrid(*node_axes(maps))
@@ -135,17 +135,17 @@ def _profile_error(drive: Drive, shape: str, exact: float) -> float:
     return float(np.abs(maps.thickness - parabola)[compared].sum() / covered.sum() / highest)
 
 
-def matrix(full: bool) -> list[Settings]:
+def matrix(full: bool) -> list[CaseSettings]:
     """Return both shapes over the size of particles, and in full cells and steps."""
     layers = LAYERS if full else LAYERS[:3]
-    listed: list[Settings] = [
+    listed: list[CaseSettings] = [
         {**DEFAULTS, "shape": shape, "layer_thickness": layer}
         for shape in ("ridge", "cap")
         for layer in layers
     ]
     if not full:
         return listed
-    fine: Settings = {"cell": 1.0, "time_step": 0.005}
+    fine: CaseSettings = {"cell": 1.0, "time_step": 0.005}
     listed += [{**settings, **fine} for settings in listed]
     listed += [
         {**DEFAULTS, "shape": shape, "layer_thickness": LAYERS[2], "time_step": 0.04}

@@ -6,13 +6,13 @@ import math
 
 import numpy as np
 
-from snowshed.analysis.accuracy.measurements import Measured, Settings
+from snowshed.analysis.accuracy.measurements import CaseSettings, Measured
 from snowshed.base.arrays import Floats
 from snowshed.io.raster.raster import Raster
 from snowshed.methods.slide.maps import SlideMaps
 from snowshed.scene.components import Area
 from validation.framework.case import Case, Outcome, Quantity
-from validation.framework.drive import Drive
+from validation.framework.drive import TimedEventDriver
 from validation.slide.site import Site, maps_of, node_axes, slide_drive
 
 HALF = 70.0  # m, half the edge of the terrain
@@ -23,7 +23,7 @@ THICKNESS = 1.0  # m
 REST = 12.0  # s, by when nearly all lies still
 OWN = frozenset({"turned", "shape"})
 
-DEFAULTS: Settings = {
+DEFAULTS: CaseSettings = {
     "cell": 2.0,
     "time_step": 0.04,
     "layer_thickness": 0.04,
@@ -53,7 +53,7 @@ def turn(x: Floats, y: Floats, degrees: float) -> tuple[Floats, Floats]:
     return np.asarray(cosine * x - sine * y), np.asarray(sine * x + cosine * y)
 
 
-def peaks(settings: Settings, degrees: float) -> tuple[Drive, SlideMaps]:
+def peaks(settings: CaseSettings, degrees: float) -> tuple[TimedEventDriver, SlideMaps]:
     """Return a slide at rest, its terrain and release turned, and its maps."""
     shape = str(settings["shape"])
     corners = [turn(np.array(x), np.array(y), degrees) for x, y in CORNERS]
@@ -70,7 +70,7 @@ def peaks(settings: Settings, degrees: float) -> tuple[Drive, SlideMaps]:
     return drive, maps_of(drive)
 
 
-def measure(settings: Settings) -> Outcome:
+def measure(settings: CaseSettings) -> Outcome:
     """Compare the peak fields with those of the slide that was not turned."""
     degrees = float(settings["turned"])
     straight, turned = peaks(settings, 0.0)[1], peaks(settings, degrees)
@@ -105,10 +105,10 @@ def _turned(maps: SlideMaps, values: Floats, degrees: float) -> Floats:
     return heights
 
 
-def matrix(full: bool) -> list[Settings]:
+def matrix(full: bool) -> list[CaseSettings]:
     """Return ground and angles, and in full cells and sizes of particles."""
     angles = (10.0, 30.0, 45.0, 77.0) if full else (30.0,)
-    listed: list[Settings] = [
+    listed: list[CaseSettings] = [
         {**DEFAULTS, "shape": shape, "turned": angle}
         for shape in ("plane", "channel")
         for angle in angles

@@ -10,14 +10,14 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from snowshed.analysis.accuracy.measurements import Settings
+from snowshed.analysis.accuracy.measurements import CaseSettings
 from snowshed.base.arrays import Floats
 from snowshed.io.raster.raster import Raster, write_ascii_grid
 from snowshed.methods.slide.maps import SlideMaps, slide_maps
 from snowshed.methods.slide.settings import SlideSettings
 from snowshed.scene.components import Area, Events, Terrain
 from snowshed.scene.scene import Scene
-from validation.framework.drive import Drive
+from validation.framework.drive import TimedEventDriver
 
 GRAVITY = 9.81  # m/s2
 
@@ -89,7 +89,7 @@ def rectangle(west: float, south: float, east: float, north: float, thickness: f
     return Area(outline=corners, thickness=thickness)
 
 
-def slide_drive(site: Site, settings: Settings, own: Collection[str] = ()) -> Drive:
+def slide_drive(site: Site, settings: CaseSettings, own: Collection[str] = ()) -> TimedEventDriver:
     """Return a slide that is ready to go.
 
     Parameters
@@ -123,10 +123,10 @@ def slide_drive(site: Site, settings: Settings, own: Collection[str] = ()) -> Dr
             numerics=bare,
             events=Events(max_time=400.0),
         )
-        return Drive(scene)
+        return TimedEventDriver(scene)
 
 
-def maps_of(drive: Drive) -> SlideMaps:
+def maps_of(drive: TimedEventDriver) -> SlideMaps:
     """Return a slide's maps as they are now; the speed is the solver's, also beyond the snow."""
     speed = drive.core.slide_maps()["peak_speed"]
     return replace(slide_maps(drive.core), peak_speed=speed)

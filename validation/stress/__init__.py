@@ -1,7 +1,7 @@
-"""Stress: stiff, soft, light, heavy, fast, thin, lonely snow, until it rests or says why not.
+"""The stress suite: small scenes at the extremes of every parameter.
 
-Hundreds of small scenes (thousands with ``full``) at the extremes of every parameter, singly, in
-pairs and at random. Each must come to rest or run to its limit with finite state, exact mass and
+Hundreds of scenes (thousands with ``full``) vary one parameter at a time, pairs, and all at random.
+Each must come to rest or run to its limit with finite state, exact mass and
 closed balances, or stop with an error that names its cause and leaves a checkpoint.
 """
 

@@ -11,7 +11,7 @@ from snowshed import _core
 
 #: Heights are known to rounding only: energies below the work of lifting all snow by this part of
 #: a cell are no measure for an error.
-LEAST_DROP = 1e-2
+MIN_DROP = 1e-2
 
 _SPENT = (
     "plastic_j",
@@ -79,7 +79,7 @@ class Conservation:
             it is positive; ``stored_excess``: largest (stored - came in), ``final_excess``: the
             last one.
         """
-        least = self._mass * self.gravity * self.dx * LEAST_DROP
+        least = self._mass * self.gravity * self.dx * MIN_DROP
         scale = max(self._thrown + self._dropped, least)
         low, high = self._residual
         return {

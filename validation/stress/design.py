@@ -1,4 +1,4 @@
-"""The points of the space that are tried: singly, pairwise, at random."""
+"""The sampled points of the parameter space: one parameter at a time, pairwise, random."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def _singles(steps: int) -> Iterator[Trial]:
     """Yield the reference scene, then each parameter at its extremes about it.
 
     Parameters that the reference scene does not have (a thrown block's) are varied about the scene
-    that has them, so that each extreme is tried in earnest.
+    that has them, so that each extreme has an effect.
     """
     base = reference()
     yield Trial("reference", "", base, steps)

@@ -1,4 +1,4 @@
-"""The verdict on a run: it must run on soundly, or stop with a clear error; all else fails."""
+"""The verdict on a run: it passes if it ends in a sound state or stops with a clear error."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-#: Ways in which a run may end, and what each means.
+#: The outcomes of a run, and their meanings.
 OUTCOMES = {
     "rest": "the snow came to rest",
     "time_limit": "ran soundly to the time limit",
@@ -21,17 +21,18 @@ OUTCOMES = {
 #: Largest change of the mass by reseeding; without it mass is exact, bit by bit.
 MASS_BOUND = 1e-9
 
-#: Largest |stored + spent - brought in| relative to what came in. The balance is of first order in
-#: the time step, and soft snow takes steps that are not small beside its fall or its blow.
+#: Largest allowed energy residual relative to the added energy. The balance is of first order in
+#: the time step, and soft snow takes steps that are not small compared with its fall or impact.
 ENERGY_BOUND = 0.2
 
-#: Allowed excess of motion and elastic strain over the input, for a step or two and at the end.
-#: In the step in which two bodies meet they strain before they slow down: symplectic Euler swings
-#: about an energy of its own, by up to that of the meeting particles.
+#: Allowed excess of kinetic and elastic energy over the input, for a step or two and at the end.
+#: Bodies that collide strain before they slow down: symplectic Euler oscillates about a slightly
+#: different energy, by up to the energy of the colliding particles.
 SWING_BOUND = 0.1
 GAIN_BOUND = 0.01
 
-#: A clear error names a place in the scene, a parameter, a particle, or the way between events.
+#: A clear error names a place in the scene, a parameter, a particle, or the treatment
+#: between events.
 _NAMES = re.compile(
     r"^/\w+|\b(snow|numerics|events|seeding|panel|slab)\.\w+|particle \d+|reseed", re.ASCII
 )
@@ -49,14 +50,14 @@ def momentum_bound(precision: str, steps: int) -> float:
     return epsilon * (100 + steps)
 
 
-def names_its_cause(message: str) -> bool:
-    """Tell whether an error says which parameter or particle it is about.
+def has_cause(message: str) -> bool:
+    """Return whether an error names its parameter or particle.
 
     Examples
     --------
-    >>> names_its_cause("particle 7 at (0.1, 0.2) m: ...")
+    >>> has_cause("particle 7 at (0.1, 0.2) m: ...")
     True
-    >>> names_its_cause("something went wrong")
+    >>> has_cause("something went wrong")
     False
     """
     return _NAMES.search(message) is not None
@@ -72,7 +73,7 @@ def judge(record: Mapping[str, Any]) -> tuple[str, str]:
 
 
 def _error_fault(record: Mapping[str, Any]) -> str:
-    if not names_its_cause(str(record["message"])):
+    if not has_cause(str(record["message"])):
         return f"the error names no cause: {record['message']}"
     return _state_fault(record) if "finite" in record else ""
 

@@ -10,7 +10,7 @@ import pandas as pd
 from snowshed.base.progress import Progress, Reporter
 from validation.stress.design import Trial, trials
 from validation.stress.judge import judge
-from validation.stress.process import Run, record, stress_pool
+from validation.stress.process import ProcessRun, record, stress_pool
 
 
 def run(full: bool, seed: int = 1, progress: Optional[Reporter] = None) -> pd.DataFrame:
@@ -47,7 +47,7 @@ def run_trials(plan: Sequence[Trial], progress: Optional[Reporter] = None) -> pd
     failed = 0
     with stress_pool() as pool:
         for trial in plan:
-            row = {**trial.point, **record(pool, Run(trial.point, trial.steps))}
+            row = {**trial.point, **record(pool, ProcessRun(trial.point, trial.steps))}
             outcome, reason = judge(row)
             failed += outcome == "failed"
             rows.append(

@@ -13,27 +13,27 @@ from validation.stress.space import Point
 LIMIT_S = 60.0  # s that a run may take
 
 
-class Run(NamedTuple):
+class ProcessRun(NamedTuple):
     """A run of the suite: the parameters of its scene, and its time steps."""
 
     point: Point
     steps: int
 
 
-def stress_pool(limit_s: float = LIMIT_S) -> Pool[Run, Record]:
+def stress_pool(limit_s: float = LIMIT_S) -> Pool[ProcessRun, Record]:
     """Return the pool that computes runs, one after another, each in no more than `limit_s`.
 
     Examples
     --------
     >>> from validation.stress.space import reference
     >>> with stress_pool() as pool:
-    ...     record(pool, Run(reference(), 20))["ended"]
+    ...     record(pool, ProcessRun(reference(), 20))["ended"]
     'time_limit'
     """
     return Pool(1, compute, Isolation(limit_s=limit_s, environment={"OMP_NUM_THREADS": "1"}))
 
 
-def record(pool: Pool[Run, Record], run: Run) -> Record:
+def record(pool: Pool[ProcessRun, Record], run: ProcessRun) -> Record:
     """Return the record of a run, with ``ended`` "crashed", "hung" or "raised" where it is so.
 
     "raised" is an exception that is neither `InputError` nor `SimulationError`.
@@ -44,7 +44,7 @@ def record(pool: Pool[Run, Record], run: Run) -> Record:
     return _record(results[0])
 
 
-def compute(run: Run, report: Callable[[float], None]) -> Record:
+def compute(run: ProcessRun, report: Callable[[float], None]) -> Record:
     """Compute a run in this process."""
     try:
         return solve(run.point, run.steps)
@@ -53,7 +53,7 @@ def compute(run: Run, report: Callable[[float], None]) -> Record:
         return {"ended": "raised", "message": traceback.format_exc(limit=-3)}
 
 
-def _record(ended: Ended[Run, Record]) -> Record:
+def _record(ended: Ended[ProcessRun, Record]) -> Record:
     if ended.result is not None:
         return ended.result
     if ended.error is not None:

@@ -29,7 +29,7 @@ from validation.stress.space import Point
 GAP = 2.0
 
 #: Time limit of an event, s: snow of these sizes has fallen and settled by then.
-LONGEST = 2.0
+MAX_DURATION = 2.0
 
 #: Snow that nothing stops may fly this many of its thicknesses: scattered far, every grain costs a
 #: neighbourhood of grid blocks of its own.
@@ -38,17 +38,17 @@ FLIGHT = 50.0
 Plane = NDArray[np.float64]
 
 
-def build(point: Point, max_time: float = LONGEST) -> Scene:
+def build(point: Point, max_time: float = MAX_DURATION) -> Scene:
     """Return the scene of a point, each event `max_time` seconds long at most."""
     scene = _SceneOf(point)
     return scene.complete(max_time)
 
 
-def longest_event(point: Point) -> float:
+def max_event_duration(point: Point) -> float:
     """Return how long an event of a point's scene may be at all, s."""
     if point["kind"] not in ("collide", "plate"):
-        return LONGEST
-    return min(LONGEST, FLIGHT * float(point["thickness"]) / float(point["speed"]))
+        return MAX_DURATION
+    return min(MAX_DURATION, FLIGHT * float(point["thickness"]) / float(point["speed"]))
 
 
 class _SceneOf:

@@ -12,7 +12,7 @@ import numpy as np
 
 from snowshed import _core
 from validation.stress.conservation import Conservation
-from validation.stress.scenes import build, longest_event
+from validation.stress.scenes import build, max_event_duration
 from validation.stress.space import Point
 
 #: Steps between two samples of the balances.
@@ -68,9 +68,9 @@ class _Run:
 
     def __init__(self, point: Point, steps: int) -> None:
         self.free = point["kind"] == "collide"
-        self.most_steps = PATIENCE * steps
+        self.max_steps = PATIENCE * steps
         self.first_step = _first_step(point)
-        limit = min(longest_event(point), steps * self.first_step)
+        limit = min(max_event_duration(point), steps * self.first_step)
         scene = build(point, limit).resolve()
         data: dict[str, Any] = scene.data
         self.gravity = float(data["gravity"])
@@ -112,7 +112,7 @@ class _Run:
             taken = report["steps"] - first
             if taken % STEPS_PER_SAMPLE == 1:
                 self.conservation.sample()
-            return bool(taken < self.most_steps)
+            return bool(taken < self.max_steps)
 
         ended = self.simulation.run(watch, 0.0)
         self.conservation.sample()

@@ -18,7 +18,7 @@ from validation.stress.judge import (
 from validation.stress.space import KINDS, PARAMETERS, Parameter, Range
 
 #: Failures printed in full.
-MOST_FAILURES = 50
+MAX_FAILURES = 50
 
 
 @dataclass(frozen=True)
@@ -199,7 +199,7 @@ def _savings(frame: pd.DataFrame) -> SummaryTable:
 
 
 def _failures(frame: pd.DataFrame) -> SummaryTable:
-    failed = frame[frame.outcome == "failed"].head(MOST_FAILURES)
+    failed = frame[frame.outcome == "failed"].head(MAX_FAILURES)
     names = [p.name for p in PARAMETERS]
     rows = pd.DataFrame(
         {

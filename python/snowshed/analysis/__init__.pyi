@@ -1,8 +1,8 @@
 from .accuracy.stack_errors import StackError as StackError
 from .accuracy.stack_errors import stack_error as stack_error
-from .calibration.comparison import Simulated as Simulated
+from .calibration.comparison import SimulatedStacks as SimulatedStacks
 from .calibration.comparison import compare_stacks as compare_stacks
-from .calibration.comparison import read_simulated as read_simulated
+from .calibration.comparison import read_simulated_stacks as read_simulated_stacks
 from .calibration.design import calibration_study as calibration_study
 from .calibration.measurements import Measurement as Measurement
 from .calibration.measurements import measurements_template as measurements_template
@@ -14,12 +14,12 @@ from .calibration.report import Calibration as Calibration
 from .calibration.report import calibrate as calibrate
 from .calibration.report import evaluate_calibration as evaluate_calibration
 from .calibration.surrogate import Surrogate as Surrogate
-from .clearance.answer import Answer as Answer
-from .clearance.answer import clearance_of as clearance_of
+from .clearance.answer import ClearanceResult as ClearanceResult
+from .clearance.answer import required_clearance as required_clearance
 from .clearance.design import Design as Design
 from .clearance.design import Ranges as Ranges
 from .clearance.winters import Winter as Winter
-from .clearance.winters import winters_of as winters_of
+from .clearance.winters import split_winters as split_winters
 from .grains.material.fit import fit_material as fit_material
 from .grains.material.law import CamClayFit as CamClayFit
 from .grains.material.yield_surface import fit_yield_surface as fit_yield_surface
@@ -43,7 +43,7 @@ from .regression.predictor import Prediction as Prediction
 from .regression.predictor import predict as predict
 from .regression.rows import StackRows as StackRows
 from .regression.rows import read_rows as read_rows
-from .regression.rows import rows_of as rows_of
+from .regression.rows import stack_rows as stack_rows
 from .regression.svr import EpsilonSVR as EpsilonSVR
 from .sensitivity.designs import sensitivity_study as sensitivity_study
 from .sensitivity.fixed_parameter import fixation as fixation
@@ -52,8 +52,8 @@ from .sensitivity.global_indices import sobol_indices as sobol_indices
 from .sensitivity.noise import seeding_noise as seeding_noise
 from .sensitivity.report import evaluate_sensitivity as evaluate_sensitivity
 from .sensitivity.single_parameter import local_index as local_index
-from .sensitivity.stored import StoredRuns as StoredRuns
-from .sensitivity.stored import read_stored as read_stored
+from .sensitivity.stored import StudyRuns as StudyRuns
+from .sensitivity.stored import read_study_runs as read_study_runs
 from .tomography.downscaling import downscaled as downscaled
 from .tomography.example import example_grains as example_grains
 from .tomography.gaussian_snow import gaussian_snow as gaussian_snow

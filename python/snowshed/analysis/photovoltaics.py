@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 
 EVENT_DAY = 0.0254  # m: a snowfall event of Townsend's model is a day with more than an inch
 FIXED_ANGLE = 40.0  # degrees, the pile that the model assumes
-LONGEST = 200 * 366  # days of a table of months
-LOWEST_ANGLE, HIGHEST_ANGLE = 0.1, 89.0  # degrees
+MAX_DAYS = 200 * 366  # days of a table of months
+MIN_ANGLE, MAX_ANGLE = 0.1, 89.0  # degrees
 
 
 def pile_angle(height: float, area: float) -> float:
@@ -45,7 +45,7 @@ def pile_angle(height: float, area: float) -> float:
     if not (height > 0.0 and area > 0.0):
         return FIXED_ANGLE
     angle = math.degrees(math.atan(height**2 / (2.0 * area)))
-    return float(np.clip(angle, LOWEST_ANGLE, HIGHEST_ANGLE))
+    return float(np.clip(angle, MIN_ANGLE, MAX_ANGLE))
 
 
 def loss_townsend(
@@ -220,10 +220,10 @@ def _dates(season: pd.DataFrame) -> pd.Series:
         raise InputError(f"the season, column date: {error}") from None
     if dates.empty:
         raise InputError("the season: no rows")
-    if (dates.iloc[-1] - dates.iloc[0]).days > LONGEST:
+    if (dates.iloc[-1] - dates.iloc[0]).days > MAX_DAYS:
         raise InputError(
             f"the season, column date: it spans {dates.iloc[0].date()} to "
-            f"{dates.iloc[-1].date()}; at most {LONGEST} days are allowed"
+            f"{dates.iloc[-1].date()}; at most {MAX_DAYS} days are allowed"
         )
     return dates
 

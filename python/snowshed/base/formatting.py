@@ -8,7 +8,7 @@ from math import inf, isnan
 from typing import Optional
 
 #: Text for a missing number.
-NOTHING = "\N{EN DASH}"
+MISSING = "\N{EN DASH}"
 TIMES = "\N{MULTIPLICATION SIGN}"
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 #: Smaller shares are written as plain numbers, not in percent.
@@ -21,7 +21,7 @@ UNITS_OF_TIME = (
     (inf, 86400, "days", 1),
 )
 NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
-LONGEST_NUMBER = 400  # characters
+MAX_NUMBER = 400  # characters
 
 
 def exact(value: float) -> str:
@@ -45,7 +45,7 @@ def number(value: Optional[float], digits: int = 3) -> str:
     ['0.123', '12', '0', '123,000']
     """
     if value is None or isnan(value):
-        return NOTHING
+        return MISSING
     text = f"{value:.{digits}g}"
     if "e" in text and 1.0 <= abs(float(text)) < 1e6:
         return f"{float(text):,.0f}"
@@ -65,7 +65,7 @@ def percent(value: Optional[float], digits: int = 3) -> str:
     (['5 %', '1.23 %', '0 %'], '100 %')
     """
     if value is None or isnan(value):
-        return NOTHING
+        return MISSING
     if 0 < abs(value) < SMALL:
         return number(value, digits)
     return f"{number(100 * value, digits)} %"
@@ -80,7 +80,7 @@ def duration(seconds: Optional[float]) -> str:
     ['1.2 ms', '0.5 s', '75 s', '100 s', '6 min 40 s', '2 h 13 min']
     """
     if seconds is None or isnan(seconds):
-        return NOTHING
+        return MISSING
     if seconds < 0.1:
         return f"{number(1e3 * seconds, 2)} ms"
     if seconds < 120:
@@ -142,7 +142,7 @@ def number_in(text: str) -> float:
     (-1500.0, 2.0, nan, nan)
     """
     text = text.strip(" \t")
-    if len(text) > LONGEST_NUMBER or not NUMBER.fullmatch(text):
+    if len(text) > MAX_NUMBER or not NUMBER.fullmatch(text):
         return math.nan
     value = float(text)
     return value if math.isfinite(value) else math.nan

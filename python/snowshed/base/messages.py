@@ -10,16 +10,16 @@ import difflib
 import re
 from collections.abc import Iterable
 
-LONGEST = 60  # characters
+MAX_LENGTH = 60  # characters
 #: Control characters (but tab and end of line), line separators, marks and overrides of the
-#: direction, and what stands for bytes of names that are no UTF-8.
+#: direction, and substitutes of bytes of names that are not UTF-8.
 HARMFUL = re.compile(
     "[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff]"
 )
 FORMULA = ("=", "+", "-", "@", "\t", "\r")  # what a cell begins with that spreadsheets compute
 
 
-def shortened(text: str, longest: int = LONGEST) -> str:
+def shortened(text: str, longest: int = MAX_LENGTH) -> str:
     """Return text without its end where it is long.
 
     Examples
@@ -40,7 +40,7 @@ def quoted(text: str) -> str:
     >>> len(quoted("[" * 20_000))
     65
     """
-    return repr(text[:LONGEST]) + ("" if len(text) <= LONGEST else "...")
+    return repr(text[:MAX_LENGTH]) + ("" if len(text) <= MAX_LENGTH else "...")
 
 
 def suggestion(given: str, allowed: Iterable[str]) -> str:

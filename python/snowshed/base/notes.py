@@ -1,8 +1,8 @@
-"""Notes: what a reader assumed, filled, left out or changed.
+"""Notes: assumptions and changes that a reader made, issued as warnings.
 
 A note is a Python warning of its own class, so that scripts can filter it, turn it into an error or
-record it. The command line prints it as "note: …". What is stored with results is recorded by
-`recorded`.
+record it. The command line prints it as "note: …". `recorded` collects the notes that are stored
+with results.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ class SnowshedNote(UserWarning):
     """A fact that the reader of a result should know; the program has no fault."""
 
 
-def tell(text: str) -> None:
-    """Say a note; the warning names the line outside the package that led to it.
+def issue_note(text: str) -> None:
+    """Issue a note; the warning names the calling line outside the package.
 
     Parameters
     ----------
@@ -29,7 +29,7 @@ def tell(text: str) -> None:
     Examples
     --------
     >>> with recorded() as notes:
-    ...     tell("the raster has feet; they were turned into metres")
+    ...     issue_note("the raster has feet; they were turned into metres")
     >>> notes
     ['the raster has feet; they were turned into metres']
     """
@@ -66,13 +66,13 @@ def recorded() -> Iterator[list[str]]:
 
 
 @contextmanager
-def held() -> Iterator[list[str]]:
+def held_notes() -> Iterator[list[str]]:
     """Collect the notes of a block, each once; issue them only if the block fails.
 
     Examples
     --------
-    >>> with held() as notes:
-    ...     tell("a summary will have this note")
+    >>> with held_notes() as notes:
+    ...     issue_note("a summary will have this note")
     >>> notes
     ['a summary will have this note']
     """
@@ -89,13 +89,13 @@ def held() -> Iterator[list[str]]:
 
 
 @contextmanager
-def told_on_failure(notes: Iterable[str]) -> Iterator[None]:
-    """Tell notes if the block fails, so that no result of it shows them."""
+def issued_on_failure(notes: Iterable[str]) -> Iterator[None]:
+    """Issue notes if the block fails, because no result will show them."""
     try:
         yield
     except BaseException:
         for note in notes:
-            tell(note)
+            issue_note(note)
         raise
 
 

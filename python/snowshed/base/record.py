@@ -18,7 +18,7 @@ from snowshed.base.field_type import alternatives_of, convert, is_record, shown
 from snowshed.base.json_values import JsonObject, JsonValue
 from snowshed.base.messages import shortened, suggestion
 
-DEEPEST = 64  # as the core has it
+MAX_DEPTH = 64  # the same as in the core
 
 RecordType = TypeVar("RecordType", bound="Record")
 
@@ -122,8 +122,8 @@ class Record(metaclass=_RecordClass):
         """
         if not isinstance(data, Mapping):
             raise InputError(f"{path or '/'}: {shown(data)} is not an object")
-        if path.count("/") > 2 * DEEPEST:
-            raise InputError(f"{path[:100]}...: nested more than {DEEPEST} deep")
+        if path.count("/") > 2 * MAX_DEPTH:
+            raise InputError(f"{path[:100]}...: nested more than {MAX_DEPTH} deep")
         record = cls()
         check_once({key: cls.field_of(key, path) for key in data}, path)
         check_instead(cls, [cls.field_of(k, path) for k in data if data[k] is not None], path)
@@ -276,8 +276,8 @@ def _record_type(hint: object) -> Optional[type[Record]]:
 
 
 def _to_json(value: object, path: str, depth: int) -> JsonValue:
-    if depth > DEEPEST:
-        raise InputError(f"{path}: nested more than {DEEPEST} deep")
+    if depth > MAX_DEPTH:
+        raise InputError(f"{path}: nested more than {MAX_DEPTH} deep")
     if isinstance(value, Record):
         return value.to_data(path, depth)
     if isinstance(value, (list, tuple)):

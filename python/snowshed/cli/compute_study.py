@@ -16,7 +16,7 @@ from snowshed.study.definition import Study
 from snowshed.study.errors import StudyInterrupted
 from snowshed.study.store import Store, StoredRun
 
-LISTED = 5  # failed runs that an error names; the output has them all
+MAX_NAMED_RUNS = 5  # failed runs that an error names; the output has them all
 
 
 def print_study_cost(study: Study, jobs: Optional[int]) -> None:
@@ -68,8 +68,8 @@ def print_outcome(folder: Path, names: list[str], quiet: bool) -> None:
         say(f"To write a table: snowshed study export {folder} -o table.csv")
         say(f"To draw a picture: snowshed study picture {folder}")
     if failed:
-        listed = ", ".join(run.hash[:12] for run in failed[:LISTED])
-        listed += ", ..." if len(failed) > LISTED else ""
+        listed = ", ".join(run.hash[:12] for run in failed[:MAX_NAMED_RUNS])
+        listed += ", ..." if len(failed) > MAX_NAMED_RUNS else ""
         raise Failed(f"{len(failed)} of {len(runs)} runs failed: {listed}")
 
 

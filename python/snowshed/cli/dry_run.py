@@ -8,7 +8,7 @@ from rich.table import Table
 
 import snowshed._core as _core
 from snowshed.base.formatting import duration
-from snowshed.base.notes import tell
+from snowshed.base.notes import issue_note
 from snowshed.cli.terminal import PlainConsole
 from snowshed.running.scene_notes import notes_of_beginning
 from snowshed.scene.scene import ResolvedScene
@@ -21,13 +21,13 @@ def print_cost(scene: ResolvedScene) -> None:
     for name, value in cost_rows(_core.plan(scene.core, scene.base_dir)).items():
         table.add_row(name, value)
     PlainConsole().print(table)
-    tell_notes(scene)
+    issue_notes(scene)
 
 
-def tell_notes(scene: ResolvedScene) -> None:
+def issue_notes(scene: ResolvedScene) -> None:
     """Print the notes that a run of a scene prints before its first step."""
     for note in notes_of_beginning(scene):
-        tell(note)
+        issue_note(note)
 
 
 def cost_rows(plan: dict[str, Any]) -> dict[str, str]:

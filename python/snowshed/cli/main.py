@@ -36,7 +36,7 @@ NAME_ERRORS = (
 )
 #: Raised by click for a group of commands without arguments; before 8.2 it printed the help.
 NO_ARGUMENTS: type = getattr(click.exceptions, "NoArgsIsHelpError", type(None))
-LONGEST_MESSAGE = 4000  # characters
+MAX_MESSAGE = 4000  # characters
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
@@ -175,5 +175,5 @@ def _note(
 
 def _fail(message: str, code: int) -> int:
     line = printable(" ".join(message.split()))
-    print("error:", shortened(line, LONGEST_MESSAGE), file=sys.stderr)
+    print("error:", shortened(line, MAX_MESSAGE), file=sys.stderr)
     return code

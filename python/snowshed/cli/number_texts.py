@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from snowshed._core import InputError
 
-MOST_STEPS = 1000
+MAX_STEPS = 1000
 
 
 def numbers(option: str, text: str, *, example: str, steps: bool = False) -> list[float]:
@@ -24,7 +24,7 @@ def numbers(option: str, text: str, *, example: str, steps: bool = False) -> lis
     Raises
     ------
     InputError
-        If the text is no such list, or has more than `MOST_STEPS` steps.
+        If the text is no such list, or has more than `MAX_STEPS` steps.
 
     Examples
     --------
@@ -46,7 +46,7 @@ def numbers(option: str, text: str, *, example: str, steps: bool = False) -> lis
 def _stepped(text: str) -> list[float]:
     low, high, step = (float(part) for part in text.split(":"))
     count = int((high - low) / step + 1e-9) + 1
-    if not (step > 0 and 1 <= count <= MOST_STEPS):
+    if not (step > 0 and 1 <= count <= MAX_STEPS):
         raise ValueError
     return [round(low + n * step, 9) for n in range(count)]
 

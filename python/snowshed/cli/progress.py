@@ -61,7 +61,7 @@ def progress_bar(
 
     def report(progress: Progress) -> None:
         nonlocal bar
-        told = progress.left_s is not None
+        has_estimate = progress.left_s is not None
         if bar is None:
             if announce is not None:
                 console.print(announce(progress))
@@ -69,7 +69,7 @@ def progress_bar(
                 TextColumn("{task.description}"),
                 BarColumn(bar_width=width),
                 TaskProgressColumn(),
-                TimeElapsedColumn() if told else TimeRemainingColumn(),
+                TimeElapsedColumn() if has_estimate else TimeRemainingColumn(),
                 TextColumn("{task.fields[note]}"),
                 console=console,
                 speed_estimate_period=speed_period_s,

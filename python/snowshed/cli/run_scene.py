@@ -19,7 +19,7 @@ from snowshed.scene.scene import ResolvedScene
 LONG = 600.0  # s; longer runs are announced
 
 
-def run_scene(ready: ResolvedScene, folder: Path, resume: bool, quiet: bool) -> None:
+def run_scene(resolved: ResolvedScene, folder: Path, resume: bool, quiet: bool) -> None:
     """Run a scene into a folder with a progress bar, and print its results."""
     from snowshed.cli.progress import progress_bar
     from snowshed.running.run import run
@@ -28,8 +28,8 @@ def run_scene(ready: ResolvedScene, folder: Path, resume: bool, quiet: bool) -> 
         say(f"note: {slow}", err=True)
     try:
         with progress_bar(quiet=quiet) as show:
-            progress = None if show is None else announcing_long_run(ready, show)
-            results = run(ready, folder, resume=resume, progress=progress)
+            progress = None if show is None else announcing_long_run(resolved, show)
+            results = run(resolved, folder, resume=resume, progress=progress)
     except Interrupted as interrupted:
         raise Stopped(str(interrupted)) from None
     if not quiet:
@@ -39,7 +39,7 @@ def run_scene(ready: ResolvedScene, folder: Path, resume: bool, quiet: bool) -> 
 
 
 def run_or_cost(
-    ready: ResolvedScene,
+    resolved: ResolvedScene,
     folder: Path,
     *,
     resume: bool,
@@ -55,28 +55,28 @@ def run_or_cost(
         Whether to measure the error of the stack, too.
     """
     if check:
-        check_can_be_measured(ready)
+        check_can_be_measured(resolved)
     if dry_run:
-        print_cost(ready)
+        print_cost(resolved)
         return
-    run_scene(ready, folder, resume, quiet)
+    run_scene(resolved, folder, resume, quiet)
     if check:
         check_run(folder, quiet)
 
 
-def announcing_long_run(ready: ResolvedScene, show: Reporter) -> Reporter:
+def announcing_long_run(resolved: ResolvedScene, show: Reporter) -> Reporter:
     """Return a reporter that announces a long run as soon as its speed is known.
 
     Only runs with a stack are announced; all others have one event, whose time limit is known.
 
     Parameters
     ----------
-    ready
+    resolved
         The scene that runs.
     show
         Reporter that receives each progress first.
     """
-    unknown = "stack" in method_of(ready.data).results
+    unknown = "stack" in method_of(resolved.data).results
 
     def report(progress: Progress) -> None:
         nonlocal unknown
@@ -84,15 +84,15 @@ def announcing_long_run(ready: ResolvedScene, show: Reporter) -> Reporter:
         if unknown and progress.updates_per_s:
             unknown = False
             with suppress(_core.InputError):  # a file that the run has read may be away by now
-                work = _core.expected_work(ready.core, ready.base_dir)
+                work = _core.expected_work(resolved.core, resolved.base_dir)
                 if (seconds := work / progress.updates_per_s) >= LONG:
-                    say(_long_run(ready, seconds), err=True)
+                    say(_long_run(resolved, seconds), err=True)
 
     return report
 
 
-def _long_run(ready: ResolvedScene, seconds: float) -> str:
-    method = method_of(ready.data)
+def _long_run(resolved: ResolvedScene, seconds: float) -> str:
+    method = method_of(resolved.data)
     path = f"{SETTINGS_KEY}.{method.settings.RESOLUTION}"
     size = "--dx" if method.name == DEFAULT else path
     return (

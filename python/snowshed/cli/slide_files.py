@@ -10,7 +10,7 @@ from typing import Any, Optional, TypeVar
 import click
 
 from snowshed._core import InputError
-from snowshed.base.notes import tell
+from snowshed.base.notes import issue_note
 from snowshed.cli.common_options import PATH, given_values
 from snowshed.scene.builders.terrain_copy import terrain_copy
 from snowshed.scene.scene import ResolvedScene, Scene
@@ -177,7 +177,7 @@ def notes_for_summary(notes: Sequence[str], *scenes: Scene) -> list[str]:
     }
     for note in notes:
         if note not in stored:
-            tell(note)
+            issue_note(note)
     return [note for note in notes if note in stored]
 
 

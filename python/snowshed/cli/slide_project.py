@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Optional
 import snowshed._core as _core
 from snowshed._core import InputError
 from snowshed.base.interrupt import deferred_interrupts
-from snowshed.base.notes import held, told_on_failure
+from snowshed.base.notes import held_notes, issued_on_failure
 from snowshed.cli.dry_run import print_cost
 from snowshed.cli.exit_codes import Failed, Stopped
 from snowshed.cli.run_scene import run_scene
@@ -50,13 +50,13 @@ def run_project(
     from snowshed.results.avaframe import simulation_name
 
     with removing_copies(folder):
-        with held() as notes:
+        with held_notes() as notes:
             simulations = _simulations(project, folder, settings, thickness, max_time)
             scenes = [_resolved(simulation) for simulation in simulations]
         in_summary = notes_for_summary(notes, *(simulation.scene for simulation in simulations))
         if not resume:
             _check_others(simulations[1:], scenes[1:])
-        with _naming_this_command(folder), told_on_failure(in_summary):
+        with _naming_this_command(folder), issued_on_failure(in_summary):
             for number, simulation in enumerate(simulations):
                 results = folder if number == 0 else folder / simulation_name(simulation)
                 if len(simulations) > 1 and not quiet:
@@ -64,7 +64,7 @@ def run_project(
                 resumes = resume and (number == 0 or (results / "scene.json").exists())
                 if resumes:
                     refuse_changed_areas(scenes[number], results, simulation.files)
-                with _of_the_ini(simulation), deferred_interrupts() as interrupt:
+                with _locating_in_ini(simulation), deferred_interrupts() as interrupt:
                     run_scene(scenes[number], results, resumes, quiet)
                 if interrupt.requested:  # while its pictures were drawn
                     raise KeyboardInterrupt
@@ -106,7 +106,7 @@ def _simulations(
 
 
 def _resolved(simulation: AvaFrameSimulation) -> ResolvedScene:
-    with _of_the_ini(simulation):
+    with _locating_in_ini(simulation):
         return simulation.scene.resolve()
 
 
@@ -115,12 +115,12 @@ def _check_others(
 ) -> None:
     """Refuse errors of later simulations before the first one runs."""
     for simulation, scene in zip(simulations, scenes):
-        with _of_the_ini(simulation):
+        with _locating_in_ini(simulation):
             _core.Simulation(scene.core, scene.base_dir)
 
 
 @contextmanager
-def _of_the_ini(simulation: AvaFrameSimulation) -> Iterator[None]:
+def _locating_in_ini(simulation: AvaFrameSimulation) -> Iterator[None]:
     """Add the position in the ini file to errors of settings."""
     try:
         yield

@@ -13,13 +13,13 @@ def main() -> int:
 
         return run()
     except BaseException as error:
-        if not of_an_interrupt(error):
+        if not is_interrupt(error):
             raise
         print("error: interrupted", file=sys.stderr)
         return 130
 
 
-def of_an_interrupt(error: Optional[BaseException]) -> bool:
+def is_interrupt(error: Optional[BaseException]) -> bool:
     """Return whether an interrupt caused an error: Python makes a RuntimeError of some.
 
     An interrupt while a class is made, as imports do all the time, ends in such an error.

@@ -10,11 +10,11 @@ from typing import Any
 
 import numpy as np
 
-LARGEST = 1 << 30  # bytes
+MAX_BYTES = 1 << 30  # bytes
 
 
 @contextmanager
-def open_archive(content: bytes, largest: int = LARGEST) -> Iterator[Any]:
+def open_archive(content: bytes, largest: int = MAX_BYTES) -> Iterator[Any]:
     """Yield the arrays of an archive.
 
     A small archive can hold arrays that fill the memory, so their sizes are checked first.

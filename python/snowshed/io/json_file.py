@@ -46,7 +46,7 @@ def parse_object(text: str | bytes, where: str) -> dict[str, Any]:
 
 
 def _check_seal(text: bytes, where: str) -> None:
-    """Raise InputError unless a text that says its checksum has it."""
+    """Raise InputError if a text's checksum is wrong."""
     at = text.rfind(SEAL)
     if at >= 0 and text[at:] != SEAL + b'%08x"\n}\n' % zlib.crc32(text[:at]):
         raise InputError(f"{where}: damaged: its checksum is not that of its content")

@@ -32,15 +32,15 @@ def loads(text: Union[str, bytes]) -> Any:
     >>> loads('{"a": {"b": 1,\n"b": 2}}')
     Traceback (most recent call last):
     ...
-    ValueError: /a/b: this key appears twice, in line 2 again
+    ValueError: /a/b: this key appears twice, the second time in line 2
     """
     try:
         return json.loads(text, object_pairs_hook=_object)
     except _RepeatedKeyError:
         decoded = text if isinstance(text, str) else text.decode(json.detect_encoding(text))
         path, line = next(_repeated(decoded))
-        said = f"{path}: this key appears twice, in line {line} again"
-    raise ValueError(said)
+        message = f"{path}: this key appears twice, the second time in line {line}"
+    raise ValueError(message)
 
 
 def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:

@@ -86,7 +86,7 @@ def _members(
     begin: Callable[[], Any],
 ) -> bytes:
     """Return the joined contents of the members; zeros may stand between and after them."""
-    made, start = bytearray(), 0
+    joined, start = bytearray(), 0
     for _ in range(MEMBERS):
         member = begin()
         while not member.eof:
@@ -96,8 +96,8 @@ def _members(
             start += len(part)
             try:
                 for piece in made_of(member, part, MB):
-                    made += piece
-                    if len(made) > largest:
+                    joined += piece
+                    if len(joined) > largest:
                         raise InputError(f"{path}: longer than {largest // MB} MB when unpacked")
             except (zlib.error, lzma.LZMAError) as error:
                 raise InputError(f"{path}: damaged: {kind}: {error}") from None
@@ -105,5 +105,5 @@ def _members(
         zeros = ZEROS.match(content, start)
         start = zeros.end() if zeros else start
         if start >= len(content):
-            return bytes(made)
+            return bytes(joined)
     raise InputError(f"{path}: more than {MEMBERS} {kind} members; unpack it first")

@@ -17,9 +17,9 @@ else:
     import tomli as tomllib
 
 #: The library's time and memory grow with the square of these.
-MOST_PARTS, MOST_TABLES = 50, 10_000
+MAX_PARTS, MAX_TABLES = 50, 10_000
 PART = r"""(?:[A-Za-z0-9_-]+|"[^"\n]*"|'[^'\n]*')"""
-LONG_KEY = re.compile(rf"{PART}(?:[ \t]*\.[ \t]*{PART}){{{MOST_PARTS}}}")
+LONG_KEY = re.compile(rf"{PART}(?:[ \t]*\.[ \t]*{PART}){{{MAX_PARTS}}}")
 BARE = re.compile(r"[A-Za-z0-9_-]+")
 
 
@@ -40,9 +40,9 @@ def parse_toml(content: bytes) -> dict[str, Any]:
         text = content.decode("utf-8")
         if long := LONG_KEY.search(text):
             line = text.count("\n", 0, long.start()) + 1
-            raise InputError(f"not TOML: a key of more than {MOST_PARTS} parts (at line {line})")
-        if text.count("\n[") > MOST_TABLES:
-            raise InputError(f"not TOML: more than {MOST_TABLES} tables")
+            raise InputError(f"not TOML: a key of more than {MAX_PARTS} parts (at line {line})")
+        if text.count("\n[") > MAX_TABLES:
+            raise InputError(f"not TOML: more than {MAX_TABLES} tables")
         return tomllib.loads(text)
     except (ValueError, RecursionError) as error:  # of tomllib all errors are ValueErrors
         if isinstance(error, InputError):

@@ -18,7 +18,7 @@ ELASTIC = ("youngs_modulus", "poissons_ratio")
 PLASTIC = ("critical_state_slope", "preconsolidation_pressure", "cohesion", "hardening_factor")
 #: Treatment of the stack between events.
 BETWEEN = {"carry": "the stack stays", "reseed": "the stack is reseeded"}
-MOST_LAYERS = 4  # whose thicknesses are named one by one
+MAX_LAYERS = 4  # whose thicknesses are named one by one
 
 
 def scene_caption(scene: Mapping[str, Any], damping_rate: Optional[float] = None) -> str:
@@ -87,7 +87,7 @@ def _slab(slab: dict[str, Any]) -> str:
     if not layers:
         return f"slab {_shown('slab.thickness', slab)} thick"
     thicknesses = [f"{layer['thickness']:.3g}" for layer in layers]
-    if len(layers) > MOST_LAYERS:
+    if len(layers) > MAX_LAYERS:
         low, high = min(thicknesses, key=float), max(thicknesses, key=float)
         return f"{len(layers)} layers of {low} to {high} m"
     return f"layers {', '.join(thicknesses)} m"

@@ -17,13 +17,13 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 #: Energies that the snow holds, and those of height, whose zero is arbitrary.
-HELD, OF_HEIGHT = ("kinetic_j", "elastic_j", "bonds_j"), ("gravitational_j", "potential_j")
+STORED, POTENTIAL = ("kinetic_j", "elastic_j", "bonds_j"), ("gravitational_j", "potential_j")
 #: The other columns that are not losses.
 SUMS = ("added_j", "residual_j")
 SMALL = 1e-3  # smaller shares of the largest energy are not drawn
 SCALES = ((1e9, "GJ"), (1e6, "MJ"), (1e3, "kJ"), (1.0, "J"), (1e-3, "mJ"), (1e-6, "µJ"))
 WIDTH, HEIGHT = 9.0, 6.4  # inches
-MOST_MARKED = 40  # events whose ends are marked
+MAX_MARKED_EVENTS = 40  # events whose ends are marked
 
 
 def energy_figure(table: pd.DataFrame, scene: Mapping[str, Any]) -> Figure:
@@ -50,24 +50,24 @@ def energy_figure(table: pd.DataFrame, scene: Mapping[str, Any]) -> Figure:
     ['energy, mJ', 'energy, mJ']
     """
     energies = [str(name) for name in table if str(name).endswith("_j")]
-    held = [name for name in HELD if name in energies]
-    taken = [name for name in energies if name not in (*HELD, *OF_HEIGHT, *SUMS)]
-    height = sum(table[name] for name in energies if name in OF_HEIGHT)
+    stored = [name for name in STORED if name in energies]
+    taken = [name for name in energies if name not in (*STORED, *POTENTIAL, *SUMS)]
+    height = sum(table[name] for name in energies if name in POTENTIAL)
     released = (table["added_j"] - height).rename("released")
     with rc_context(STYLE):
         figure = blank_figure(WIDTH, HEIGHT)
         above, below = figure.subplots(2, 1, sharex=True, height_ratios=(2, 3))
         per_width = " per m of width" if scene.get("dimension") == 2 else ""
-        _draw(above, table, {name: table[name] for name in held}, per_width)
+        _draw(above, table, {name: table[name] for name in stored}, per_width)
         above.set_title("In the snow")
         lines = {name: table[name] for name in taken}
         largest = max((np.abs(line).max() for line in (released, *lines.values())), default=0.0)
         visible = {n: line for n, line in lines.items() if np.abs(line).max() > SMALL * largest}
-        shown = {"released by height, and brought": released, **visible}
+        shown = {"released from height and added": released, **visible}
         if "residual_j" in table:
             shown["gained (+) or lost by time integration"] = table["residual_j"]
         _draw(below, table, shown, per_width)
-        below.set_title("Released energy, and its sinks, cumulative")
+        below.set_title("Cumulative released energy and its sinks")
         below.set_xlabel("time through all events, s")
         describe(figure, f"Energy balance\n{_caption(scene)}")
     return figure
@@ -102,7 +102,7 @@ def _draw(
 def _beginnings(table: pd.DataFrame) -> Sequence[float]:
     """Return when the events after the first began, if they are few."""
     begun = table.groupby("event")["time_s"].min().tolist()[1:]
-    return begun if len(begun) <= MOST_MARKED else []
+    return begun if len(begun) <= MAX_MARKED_EVENTS else []
 
 
 def _named(name: str) -> str:

@@ -16,7 +16,7 @@ from snowshed.io.atomic import write_text
 from snowshed.io.film import Film
 from snowshed.plot.film_picture import still_picture, view_lift
 from snowshed.plot.film_summary import Colouring, FilmSummary, summarise_film
-from snowshed.plot.html_page import Grid, template
+from snowshed.plot.html_page import HtmlTable, template
 from snowshed.plot.solids import Box, Solid
 
 VIEWER = Path(__file__).with_name("viewer")
@@ -62,7 +62,7 @@ class ViewContent:
     focus: Box
     notes: Sequence[str] = ()
     measures: Sequence[MeasureLine] = field(default_factory=tuple)
-    table: Optional[Grid] = None
+    table: Optional[HtmlTable] = None
     events: int = 1
 
 

@@ -19,7 +19,7 @@ COLOURS = "viridis"  # perceptually uniform, and safe for colour-blind eyes
 #: Parts of it that stand out from a light and from a dark ground.
 ON_LIGHT, ON_DARK = (0.0, 0.88), (0.25, 1.0)
 SHOWN_SHARES = (0.005, 0.995)  # share of all values within the scale of colours
-MOST_LABELS = 10  # of events; of more, a scale is shown
+MAX_LABELS = 10  # of events; of more, a scale is shown
 SPACING_SAMPLE = 4000  # particles whose nearest neighbours are looked for
 BALL = 0.72  # radius over the distance of neighbours, so that snow looks closed
 SHIFT = 1 << 15  # codes lie between -711 and 711, and are counted with this shift
@@ -153,8 +153,8 @@ def _colourings(
     events = film.frames[-1].event
     colourings = []
     if events > 1:
-        labels = [f"event {k}" for k in range(1, events + 1)] if events <= MOST_LABELS else None
-        title = "Brought by" if labels else "Brought by event"
+        labels = [f"event {k}" for k in range(1, events + 1)] if events <= MAX_LABELS else None
+        title = "Released in" if labels else "Released in event"
         colourings.append(Colouring("event", title, 1.0, float(events), labels))
     for quantity, (low, high) in zip(film.quantities, ranges):
         if high > low:
@@ -164,7 +164,7 @@ def _colourings(
         labels = [f"snow {k + 1}" for k in range(materials + 1)]
         colourings.append(Colouring("material", "Snow", 0.0, float(materials), labels))
     if not colourings:
-        colourings.append(Colouring("event", "Brought by", 1.0, 2.0, ["event 1"]))
+        colourings.append(Colouring("event", "Released in", 1.0, 2.0, ["event 1"]))
     return colourings
 
 

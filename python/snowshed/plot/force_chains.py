@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 SLICE = 0.25  # of the sample's depth, about its middle, whose grains are drawn
 TITLE_WIDTH = 80  # characters
-WIDEST = 7.0  # points, of a line
+MAX_LINE_WIDTH = 7.0  # points, of a line
 MANY = 300  # grains, from which on only the forces in the slice are drawn
 ICE = ("#e3ebf1", "#cfdce6", "#bccdda", "#d9e0ea", "#c5d6d9")
 
@@ -96,19 +96,31 @@ def _draw_forces(axes: Axes, contacts: GrainContacts) -> None:
     for pulls, colour in ((False, BODY), (True, STACK)):
         chosen = (pulling == pulls) & drawn_ones
         for side in (0, 1):
-            ways, complete = contacts.arms(side)
+            arms, complete = contacts.arms(side)
             shown = np.flatnonzero(chosen & complete)
-            ends = np.stack([contacts.points[shown] - ways[shown], contacts.points[shown]], axis=1)
-            lines, widths = 1e3 * ends[:, :, [0, 2]], WIDEST * size[shown] / largest
+            ends = np.stack([contacts.points[shown] - arms[shown], contacts.points[shown]], axis=1)
+            lines, widths = 1e3 * ends[:, :, [0, 2]], MAX_LINE_WIDTH * size[shown] / largest
             drawn = LineCollection(list(lines), linewidths=widths, colors=colour)
             drawn.set(alpha=0.75, capstyle="round")
             axes.add_collection(drawn)
     where = " in the slice" if many else ""
     axes.set_title(f"Forces between grains{where}", color=INK)
     key = [
-        Line2D([], [], color=BODY, lw=WIDEST, label=f"pressing, {_force_label(largest)}"),
-        Line2D([], [], color=BODY, lw=WIDEST / 4, label=f"pressing, {_force_label(largest / 4)}"),
-        Line2D([], [], color=STACK, lw=WIDEST / 4, label=f"pulling, {_force_label(largest / 4)}"),
+        Line2D([], [], color=BODY, lw=MAX_LINE_WIDTH, label=f"pressing, {_force_label(largest)}"),
+        Line2D(
+            [],
+            [],
+            color=BODY,
+            lw=MAX_LINE_WIDTH / 4,
+            label=f"pressing, {_force_label(largest / 4)}",
+        ),
+        Line2D(
+            [],
+            [],
+            color=STACK,
+            lw=MAX_LINE_WIDTH / 4,
+            label=f"pulling, {_force_label(largest / 4)}",
+        ),
     ]
     axes.figure.legend(handles=key, loc="outside lower center", ncols=3, edgecolor=FAINT)
 

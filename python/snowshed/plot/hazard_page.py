@@ -10,7 +10,7 @@ from snowshed.base.arrays import Floats
 from snowshed.io.atomic import write_text
 from snowshed.io.raster.raster import Raster
 from snowshed.plot.hazard_figure import part_shown, percentiles_figure, probability_figure
-from snowshed.plot.html_page import Grid, Picture, template
+from snowshed.plot.html_page import HtmlTable, Picture, template
 from snowshed.plot.terrain_map import Outline
 
 #: Titles of the summary's quantities on the page.
@@ -56,7 +56,7 @@ class HazardPage:
     outlines: Sequence[Outline]
     probabilities: Mapping[str, Floats]
     percentiles: Mapping[int, Mapping[str, Floats]]
-    areas: Grid
+    areas: HtmlTable
     ranges: Mapping[str, Sequence[float]]
     figures: Mapping[str, Mapping[str, float]]
     runs: int
@@ -116,13 +116,13 @@ class HazardPage:
             for percentile, maps in self.percentiles.items()
         ]
 
-    def _range_table(self) -> Grid:
+    def _range_table(self) -> HtmlTable:
         rows = [(name, f"{ends[0]:.4g}", f"{ends[-1]:.4g}") for name, ends in self.ranges.items()]
-        return Grid(("setting", "smallest value", "largest value"), rows, "lrr")
+        return HtmlTable(("setting", "smallest value", "largest value"), rows, "lrr")
 
-    def _figure_table(self) -> Grid:
+    def _figure_table(self) -> HtmlTable:
         rows = [
             (NAMES.get(name, name), *(f"{quantiles[share]:,.4g}" for share in ("p5", "p50", "p95")))
             for name, quantiles in self.figures.items()
         ]
-        return Grid(("figure", "5 %", "50 %", "95 %"), rows, "lrrr")
+        return HtmlTable(("figure", "5 %", "50 %", "95 %"), rows, "lrrr")

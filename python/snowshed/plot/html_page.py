@@ -35,7 +35,7 @@ STATES: Mapping[str, str] = {
 
 
 @dataclass(frozen=True)
-class Grid:
+class HtmlTable:
     """A table of texts.
 
     Attributes

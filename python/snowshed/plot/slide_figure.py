@@ -22,7 +22,7 @@ from snowshed.plot.terrain_map import (
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-LEAST_SHOWN = 0.01  # m of snow
+MIN_SHOWN_THICKNESS = 0.01  # m of snow
 #: Available maps: name, label, colours.
 PEAKS = {
     "peak_speed": ("peak speed, m/s", "YlOrRd"),
@@ -51,7 +51,7 @@ def slide_figure(
 
     label, colours = PEAKS[quantity]
     ground = maps.raster(maps.terrain)
-    snow = maps.peak_thickness > LEAST_SHOWN
+    snow = maps.peak_thickness > MIN_SHOWN_THICKNESS
     part = focus(ground, snow, outlines)
     width, height = panel_size(part, area)
     with rc_context(STYLE):
@@ -62,7 +62,7 @@ def slide_figure(
         drawn = draw_values(axes, ground, values, cmap=colours, vmin=0.0)
         draw_outlines(axes, outlines)
         axes.contour(
-            *coordinates(ground), maps.thickness, levels=[LEAST_SHOWN], colors=[INK],
+            *coordinates(ground), maps.thickness, levels=[MIN_SHOWN_THICKNESS], colors=[INK],
             linewidths=1.2, linestyles="--", zorder=5,
         )  # fmt: skip
         axes.plot([], [], "--", color=INK, lw=1.2, label="snow at the end")

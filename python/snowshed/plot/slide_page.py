@@ -20,8 +20,8 @@ from snowshed.methods.slide.frames import Frame
 from snowshed.methods.slide.maps import SlideMaps
 from snowshed.methods.slide.validity import ReleaseArea
 from snowshed.plot.figure_style import STYLE, blank_figure
-from snowshed.plot.html_page import Grid, Picture, template
-from snowshed.plot.slide_figure import LEAST_SHOWN, PEAKS, slide_figure
+from snowshed.plot.html_page import HtmlTable, Picture, template
+from snowshed.plot.slide_figure import MIN_SHOWN_THICKNESS, PEAKS, slide_figure
 from snowshed.plot.terrain_map import (
     Extent,
     Outline,
@@ -138,8 +138,8 @@ def headline(figures: Mapping[str, Any]) -> str:
 
 
 def _facts(figures: Mapping[str, Any]) -> list[tuple[str, str]]:
-    made = figures["bonds_made"]
-    broken = f"{figures['bonds_broken']:,} of {made:,}" if made else "no bonds"
+    bonds = figures["bonds_made"]
+    broken = f"{figures['bonds_broken']:,} of {bonds:,}" if bonds else "no bonds"
     return [
         ("run-out", f"{figures['run_out_m']:.1f} m from the middle of the release"),
         ("drop", f"{figures['drop_m']:.1f} m"),
@@ -152,7 +152,7 @@ def _facts(figures: Mapping[str, Any]) -> list[tuple[str, str]]:
     ]
 
 
-def _area_table(areas: Sequence[ReleaseArea]) -> Grid:
+def _area_table(areas: Sequence[ReleaseArea]) -> HtmlTable:
     head = ("area", "thickness, m", "on the map, m²", "along the ground, m²", "volume, m³",
             "slope, °", "altitude, m")  # fmt: skip
     rows = [
@@ -167,10 +167,10 @@ def _area_table(areas: Sequence[ReleaseArea]) -> Grid:
         )
         for area in areas
     ]
-    return Grid(head, rows, "lrrrrrr")
+    return HtmlTable(head, rows, "lrrrrrr")
 
 
-def _mass_table(figures: Mapping[str, Any]) -> Grid:
+def _mass_table(figures: Mapping[str, Any]) -> HtmlTable:
     released, entrained = figures["released_kg"], figures["entrained_kg"]
     left = figures["left_terrain_kg"]
     rows = [
@@ -179,10 +179,12 @@ def _mass_table(figures: Mapping[str, Any]) -> Grid:
         ("left the terrain", 0.0 - left),
         ("on the terrain at the end", released + entrained - left),
     ]
-    return Grid(("mass", "t"), [(name, f"{1e-3 * value + 0.0:,.3f}") for name, value in rows], "lr")
+    return HtmlTable(
+        ("mass", "t"), [(name, f"{1e-3 * value + 0.0:,.3f}") for name, value in rows], "lr"
+    )
 
 
-def _settings_table(scene: Mapping[str, Any]) -> Grid:
+def _settings_table(scene: Mapping[str, Any]) -> HtmlTable:
     settings = scene["numerics"]
     rows = [
         (name, _shown(settings[name]), parameter.unit, parameter.description)
@@ -190,7 +192,7 @@ def _settings_table(scene: Mapping[str, Any]) -> Grid:
         for section, _, name in [parameter.path.partition(".")]
         if section == "numerics" and name in settings and name != "threads"
     ]
-    return Grid(("setting", "value", "unit", "meaning"), rows, "lrll")
+    return HtmlTable(("setting", "value", "unit", "meaning"), rows, "lrll")
 
 
 def _shown(value: Any) -> str:
@@ -207,7 +209,7 @@ def _peak(maps: SlideMaps, outlines: Sequence[Outline], quantity: str) -> Pictur
 def _window(maps: SlideMaps, outlines: Sequence[Outline]) -> tuple[slice, slice, Extent]:
     """Return the rows and columns to show, and the map coordinates of their outer edges."""
     ground = maps.raster(maps.terrain)
-    west, east, south, north = focus(ground, maps.peak_thickness > LEAST_SHOWN, outlines)
+    west, east, south, north = focus(ground, maps.peak_thickness > MIN_SHOWN_THICKNESS, outlines)
     edges = extent(ground)
     c0, c1 = (round((x - edges[0]) / maps.cell) for x in (west, east))
     r0, r1 = (round((y - edges[2]) / maps.cell) for y in (south, north))
@@ -251,7 +253,9 @@ def _in_percent(outline: Outline, part: Extent) -> str:
 
 def _largest(frames: Sequence[Frame]) -> float:
     """Return the thickness that hardly any snow exceeds, m."""
-    values = np.concatenate([frame.thickness[frame.thickness > LEAST_SHOWN] for frame in frames])
+    values = np.concatenate(
+        [frame.thickness[frame.thickness > MIN_SHOWN_THICKNESS] for frame in frames]
+    )
     return float(np.quantile(values, 0.995)) if values.size else 1.0
 
 
@@ -259,7 +263,7 @@ def _overlay(thickness: Any, largest: float) -> str:
     """Return the snow as a PNG with one pixel per cell, transparent without snow."""
     share = 0.15 + 0.85 * np.clip(thickness / largest, 0.0, 1.0)
     pixels = np.asarray(mpl.colormaps[COLOURS](share, bytes=True))
-    pixels[..., 3] = np.where(thickness > LEAST_SHOWN, 225, 0)
+    pixels[..., 3] = np.where(thickness > MIN_SHOWN_THICKNESS, 225, 0)
     file = io.BytesIO()
     imsave(file, np.ascontiguousarray(pixels[::-1]), format="png")
     return base64.b64encode(file.getvalue()).decode()
@@ -305,7 +309,7 @@ def multiples_figure(
             draw_terrain(axes, ground, part, labels=False)
             thickness = np.full(ground.heights.shape, np.nan)
             cut = frame.window(rows, columns)
-            thickness[rows, columns] = np.where(cut > LEAST_SHOWN, cut, np.nan)
+            thickness[rows, columns] = np.where(cut > MIN_SHOWN_THICKNESS, cut, np.nan)
             drawn = draw_values(axes, ground, thickness, cmap=COLOURS, norm=norm)
             draw_outlines(axes, outlines)
             axes.set_title(f"{frame.time:.0f} s" if frame.time >= 10 else f"{frame.time:.1f} s")

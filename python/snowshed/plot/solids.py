@@ -23,7 +23,7 @@ from snowshed.scene.resolved import ResolvedScene
 ROUND = 24  # number of sides of round shapes
 SAMPLES = 48  # of a solid that is sampled, along its longest side
 TERRAIN_NODES = 220  # along a side, at most
-MOST_TRIANGLES = 200_000  # of one mesh; larger ones are sampled
+MAX_TRIANGLES = 200_000  # of one mesh; larger ones are sampled
 
 
 @dataclass(frozen=True)
@@ -243,7 +243,7 @@ def _in_space(vector: Any) -> Floats:
 
 def _mesh(shape: Mapping[str, Any], base_dir: Path) -> Optional[Solid]:
     corners, triangles = _core.read_mesh(base_dir / shape["file"], shape.get("scale", 1.0))
-    if len(triangles) > MOST_TRIANGLES:
+    if len(triangles) > MAX_TRIANGLES:
         return None
     return Solid("mesh", "solid", corners, triangles)
 

@@ -29,7 +29,7 @@ from snowshed.plot.figure_style import (
     describe,
     quiet,
 )
-from snowshed.snow.stack.measure import Extent, StackMeasure, level
+from snowshed.snow.stack.measure import Extent, StackMeasure, levelled_positions
 from snowshed.snow.stack.quantities import QUANTITIES
 
 if TYPE_CHECKING:
@@ -37,10 +37,10 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 HELD = "#b8c0c8"  # snow that the panel or a structure holds
-MOST_NAMED, ROWS = 15, 8  # events in a legend, and rows of it
+MAX_NAMED_EVENTS, ROWS = 15, 8  # events in a legend, and rows of it
 PICTURED_PARTICLES = 100_000  # at most; a regular choice of them beyond
 WIDTH, VIEW_WIDTH = 9.0, 8.1  # inches, of the figure and of the views in it
-LOWEST, HIGHEST = 1.6, 5.0  # inches, of a view
+MIN_VIEW_HEIGHT, MAX_VIEW_HEIGHT = 1.6, 5.0  # inches, of a view
 
 Limits = tuple[float, float, float, float]  # left, right, bottom, top
 
@@ -100,7 +100,7 @@ def named_events(count: int) -> list[int]:
     >>> named_events(3), named_events(100)[:2], named_events(100)[-1]
     ([1, 2, 3], [1, 8], 100)
     """
-    return sorted({round(i) for i in np.linspace(1, count, min(count, MOST_NAMED))})
+    return sorted({round(i) for i in np.linspace(1, count, min(count, MAX_NAMED_EVENTS))})
 
 
 def growth_figure(table: pd.DataFrame, scene: Mapping[str, Any]) -> Figure:
@@ -326,7 +326,7 @@ def _round_down(value: float) -> float:
 def _tilted(points: Floats, tilt: float) -> Floats:
     """Turn (x, z) from levelled ground back to where it is."""
     x, z = points.T
-    return level(np.column_stack([x, 0 * x, z]), -tilt)[:, [0, 2]]
+    return levelled_positions(np.column_stack([x, 0 * x, z]), -tilt)[:, [0, 2]]
 
 
 def _panel_ends(frame: dict[str, Any]) -> tuple[Floats, Floats]:
@@ -343,8 +343,8 @@ def _steepness(limits: Limits) -> float:
 def _filling(limits: Limits) -> Limits:
     """Widen limits to the right and upward until they fill a view."""
     left, right, bottom, top = limits
-    right = left + max(right - left, (top - bottom) * VIEW_WIDTH / HIGHEST)
-    top = bottom + max(top - bottom, (right - left) * LOWEST / VIEW_WIDTH)
+    right = left + max(right - left, (top - bottom) * VIEW_WIDTH / MAX_VIEW_HEIGHT)
+    top = bottom + max(top - bottom, (right - left) * MIN_VIEW_HEIGHT / VIEW_WIDTH)
     return left, right, bottom, top
 
 

@@ -26,7 +26,7 @@ MEASURES = {
     "strength_pa": "strength, Pa",
     "tangent_modulus_pa": "tangent modulus, Pa",
 }
-MOST_PARAMETERS = 8
+MAX_PARAMETERS = 8
 COLUMN, ROW = 3.0, 2.6  # inches
 
 
@@ -57,7 +57,7 @@ def study_figure(table: pd.DataFrame, axes: Sequence[str], title: str) -> Figure
     done = table[table["error"].fillna("") == ""] if "error" in table else table
     last = done.sort_values("event", kind="stable").groupby("hash", sort=False).tail(1)
     measures = [name for name in MEASURES if name in last and last[name].notna().any()][:2]
-    shown = [path for path in axes if path in last][:MOST_PARAMETERS]
+    shown = [path for path in axes if path in last][:MAX_PARAMETERS]
     with rc_context(STYLE):
         rows, columns = max(len(measures), 1), max(len(shown), 1)
         figure = blank_figure(1.2 + COLUMN * columns, 0.9 + ROW * rows)

@@ -87,23 +87,23 @@ def write_avaframe_outputs(folder: Path, simulation: AvaFrameSimulation, results
     OSError
         If a file cannot be read or written.
     """
-    ready = simulation.scene.resolve()
-    name = _name(simulation, ready)
+    resolved = simulation.scene.resolve()
+    name = _name(simulation, resolved)
     summary = SlideSummary.read(results)
-    time_step = float(ready.data["numerics"]["time_step"])
+    time_step = float(resolved.data["numerics"]["time_step"])
     last = round(summary.sim_time_s / time_step)
     ending = ".tif" if simulation.terrain.suffix.lower() in GEOTIFF else ".asc"
     peaks = [folder / "Outputs" / module / "peakFiles" for module in MODULES]
     for each in peaks:
         (each / "timeSteps").mkdir(parents=True, exist_ok=True)
-    final = _final_maps(results, ready)
+    final = _final_maps(results, resolved)
     kinds = simulation.project.result_types
     # AvaFrame names the end by the step after it.
     at_end = [((last + 1) * time_step, final)]
-    for time, fields in chain(_earlier_maps(simulation, ready, last), at_end):
+    for time, fields in chain(_earlier_maps(simulation, resolved, last), at_end):
         for each, kind in product(peaks, kinds):
             write_raster(each / "timeSteps" / f"{name}_{kind}_t{time:.2f}{ending}", fields[kind])
-    configuration = _configuration(simulation, ready)
+    configuration = _configuration(simulation, resolved)
     for each in peaks:
         for kind in kinds:
             write_raster(each / f"{name}_{kind}{ending}", final[kind])
@@ -112,35 +112,35 @@ def write_avaframe_outputs(folder: Path, simulation: AvaFrameSimulation, results
     return name
 
 
-def _final_maps(results: Path, ready: ResolvedScene) -> dict[str, Raster]:
+def _final_maps(results: Path, resolved: ResolvedScene) -> dict[str, Raster]:
     """Return the maps at the end by type, from a results folder."""
     maps = {kind: read_raster(results / f"peaks/{kind}.asc") for kind in ("ppr", "pft", "pfv")}
     maps.update({kind: read_raster(results / f"flow/{kind}.asc") for kind in ("FT", "FV")})
-    maps["P"] = replace(maps["FV"], heights=_pressure(ready, maps["FV"].heights))
-    crs = _crs(ready)
+    maps["P"] = replace(maps["FV"], heights=_pressure(resolved, maps["FV"].heights))
+    crs = _crs(resolved)
     return {kind: replace(raster, crs=crs) for kind, raster in maps.items()}
 
 
 def _earlier_maps(
-    simulation: AvaFrameSimulation, ready: ResolvedScene, last: int
+    simulation: AvaFrameSimulation, resolved: ResolvedScene, last: int
 ) -> Iterator[tuple[float, dict[str, Raster]]]:
     """Yield the maps by type at the requested times except the end, time after time.
 
     They are made one by one, because a terrain's maps at thousands of times do not fit into memory.
     """
-    time_step = float(ready.data["numerics"]["time_step"])
+    time_step = float(resolved.data["numerics"]["time_step"])
     steps = {_step_at(time, time_step): time for time in simulation.project.saved_times}
-    crs = _crs(ready)
-    for step, maps in maps_at(ready, [step for step in steps if step <= last]):
-        fields = _fields(ready, maps)
+    crs = _crs(resolved)
+    for step, maps in maps_at(resolved, [step for step in steps if step <= last]):
+        fields = _fields(resolved, maps)
         yield steps[step], {kind: maps.raster(values, crs) for kind, values in fields.items()}
 
 
-def maps_at(ready: ResolvedScene, steps: Sequence[int]) -> Iterator[tuple[int, SlideMaps]]:
+def maps_at(resolved: ResolvedScene, steps: Sequence[int]) -> Iterator[tuple[int, SlideMaps]]:
     """Yield the maps of a slide after given numbers of steps, one after another."""
     if not steps:
         return
-    simulation = _core.Simulation(ready.core, ready.base_dir)
+    simulation = _core.Simulation(resolved.core, resolved.base_dir)
     simulation.begin_event()
     done = 0
     for step in sorted(steps):
@@ -151,9 +151,9 @@ def maps_at(ready: ResolvedScene, steps: Sequence[int]) -> Iterator[tuple[int, S
         yield step, slide_maps(simulation)
 
 
-def _name(simulation: AvaFrameSimulation, ready: ResolvedScene) -> str:
-    terrain = {**ready.data["terrain"], "file": ""}
-    content = {**ready.data, "title": "", "terrain": terrain}
+def _name(simulation: AvaFrameSimulation, resolved: ResolvedScene) -> str:
+    terrain = {**resolved.data["terrain"], "file": ""}
+    content = {**resolved.data, "title": "", "terrain": terrain}
     text = json.dumps(content, sort_keys=True) + simulation.release
     identity = hashlib.shake_256(text.encode()).hexdigest(5)
     release = simulation.release + ("_AF" if "_" in simulation.release else "")
@@ -165,32 +165,32 @@ def _step_at(time: float, time_step: float) -> int:
     return math.ceil((time - 1e-8) / time_step)
 
 
-def _crs(ready: ResolvedScene) -> str:
-    return str(ready.data["terrain"].get("crs", ""))
+def _crs(resolved: ResolvedScene) -> str:
+    return str(resolved.data["terrain"].get("crs", ""))
 
 
-def _fields(ready: ResolvedScene, maps: SlideMaps) -> dict[str, Floats]:
+def _fields(resolved: ResolvedScene, maps: SlideMaps) -> dict[str, Floats]:
     return {
         "ppr": maps.peak_pressure,
         "pft": maps.peak_thickness,
         "pfv": maps.peak_speed,
         "FT": maps.thickness,
         "FV": maps.speed,
-        "P": _pressure(ready, maps.speed),
+        "P": _pressure(resolved, maps.speed),
     }
 
 
-def _pressure(ready: ResolvedScene, speed: Floats) -> Floats:
+def _pressure(resolved: ResolvedScene, speed: Floats) -> Floats:
     """Return the dynamic pressure, Pa; AvaFrame has its peak in kPa, but not this one."""
-    pressure: Floats = float(ready.data["numerics"]["density"]) * speed**2
+    pressure: Floats = float(resolved.data["numerics"]["density"]) * speed**2
     return pressure
 
 
 def _configuration(
-    simulation: AvaFrameSimulation, ready: ResolvedScene
+    simulation: AvaFrameSimulation, resolved: ResolvedScene
 ) -> dict[str, dict[str, str]]:
     """Return the settings by section and key, as AvaFrame writes them."""
-    data = ready.data
+    data = resolved.data
     numerics, terrain = data["numerics"], data["terrain"]
     project = simulation.project
     voellmy = numerics["friction_law"] == "voellmy"

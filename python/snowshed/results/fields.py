@@ -13,7 +13,7 @@ from snowshed.base.arrays import Numbers
 
 @dataclass(frozen=True)
 class Field:
-    """A quantity of all particles; each access reads it anew.
+    """A quantity of all particles; each access reads the present values.
 
     Attributes
     ----------

@@ -193,7 +193,7 @@ class RunFolder:
         done = event - 1 if running else event
         sums_by_table = {name: dict(sums) for name, sums in known.items()}
         for table in self._tables():
-            through = done if table in self._of_ended() else event
+            through = done if table in self._ended_tables() else event
             of_table = sums_by_table.get(table.path.name, {})
             for later in [at for at in of_table if at.isdecimal() and int(at) > through]:
                 del of_table[later]  # of events that are run again
@@ -216,9 +216,9 @@ class RunFolder:
         ended = _last_known(known.get(self.events.path.name, {}), len(self.events.rows))
         for table in self._tables():
             sums = known.get(table.path.name, {})
-            of_ended = table in self._of_ended()
-            through = ended if of_ended else _last_known(sums, event)
-            if of_ended:
+            has_ended_events = table in self._ended_tables()
+            through = ended if has_ended_events else _last_known(sums, event)
+            if has_ended_events:
                 table.keep_through(ended)
             if str(through) in sums and table.checksum(through) != sums[str(through)]:
                 raise InputError(
@@ -226,12 +226,12 @@ class RunFolder:
                     "the run wrote"
                 )
 
-    def _of_ended(self) -> tuple[Table, ...]:
+    def _ended_tables(self) -> tuple[Table, ...]:
         """Return the tables of events that have ended, which are written together."""
         return (self.events, self.outlines, self.energies)
 
     def _tables(self) -> tuple[Table, ...]:
-        return (*self._of_ended(), self.conversions, self.ageings)
+        return (*self._ended_tables(), self.conversions, self.ageings)
 
     def add_outline(self, event: int, outline: Floats) -> None:
         """Add the profile (k, 2) of the stack after an event."""

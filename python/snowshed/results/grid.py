@@ -36,7 +36,7 @@ Basis = Literal["quadratic", "cubic"]
 #: Nodes that a particle reaches along an axis, and where the lowest of them lies, in cells.
 SUPPORT = {"quadratic": 3, "cubic": 4}
 OFFSET = {"quadratic": 0.5, "cubic": 1.0}
-MOST_NODES = 400_000_000
+MAX_NODES = 400_000_000
 
 
 def scene_grid(
@@ -203,7 +203,7 @@ def particles_to_grid(
     lowest = np.floor(points - OFFSET[basis]).astype(np.int64)
     first = lowest.min(axis=0)
     shape = tuple((lowest.max(axis=0) - first + SUPPORT[basis]).tolist())
-    if np.prod(shape, dtype=float) > MOST_NODES:
+    if np.prod(shape, dtype=float) > MAX_NODES:
         raise InputError(
             f"grid: {' x '.join(map(str, shape))} nodes around all particles do not fit into memory"
         )

@@ -105,7 +105,7 @@ class Results:
     def events(self) -> pd.DataFrame:
         """One row per event: its stack, duration and end (events.csv)."""
         if not (self.folder / EVENTS).is_file():
-            self._say_what_there_is()
+            self._refuse_missing_events()
         return _with_units(read_events(self.folder))
 
     @property
@@ -161,7 +161,7 @@ class Results:
         Parameters
         ----------
         event
-            Its number, from 1; None: the last one there is.
+            Its number, from 1; None: the last event.
 
         Returns
         -------
@@ -228,7 +228,7 @@ class Results:
         """The contacts between grains at the end of a loading test, with their forces, N."""
         return cast("pd.DataFrame", self.result("forces"))
 
-    def _say_what_there_is(self) -> None:
+    def _refuse_missing_events(self) -> None:
         method = method_of(self.scene.data)
         if "stack" not in method.results:
             method.read("events", self.folder)

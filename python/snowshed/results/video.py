@@ -28,7 +28,7 @@ def pillow() -> Any:
 
 
 RATE = {".mp4": 30.0, ".gif": 12.5}  # pictures per second
-LONGEST = 12.0  # s, unless asked for
+MAX_DURATION = 12.0  # s, unless asked for
 HOLD = 0.6  # s that the end of an event is shown
 DPI = 100
 COLOURS_OF_GIF = 128
@@ -110,7 +110,7 @@ def _times(film: Film, seconds: Optional[float], rate: float) -> Sequence[float]
     moving = starts[-1] or 1.0
     turns = np.cumsum([b.event != a.event for a, b in zip(film.frames, film.frames[1:])])
     held = np.concatenate([[0.0], turns]) * HOLD
-    length = seconds if seconds is not None else min(LONGEST, moving + held[-1] + HOLD)
+    length = seconds if seconds is not None else min(MAX_DURATION, moving + held[-1] + HOLD)
     slower = max(length - held[-1] - HOLD, 0.3 * length) / moving
     shown = np.array(starts) * slower + held * min(1.0, length / (held[-1] + HOLD))
     wanted = np.arange(0.0, length, 1.0 / rate)

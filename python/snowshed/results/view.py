@@ -15,14 +15,14 @@ from snowshed.methods.registry import method_of
 from snowshed.plot.caption import scene_caption
 from snowshed.plot.film_page import MeasureLine, ViewContent, write_view_page
 from snowshed.plot.film_summary import summarise_film
-from snowshed.plot.html_page import Grid
+from snowshed.plot.html_page import HtmlTable
 from snowshed.plot.solids import scene_solids
 from snowshed.results.folder import read_events
 from snowshed.results.reader import Results
 from snowshed.results.season_folder import SeasonFolder
 from snowshed.scene.scene import ResolvedScene
 from snowshed.scene.terrain_grid import slide_terrain
-from snowshed.snow.stack.measure import level
+from snowshed.snow.stack.measure import levelled_positions
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -163,7 +163,7 @@ def _measures(
             for points, label in zip(
                 ends, (f"height {height:.3g} m", f"length {row['length_m']:.3g} m")
             ):
-                start, end = level(np.array(points), -tilt).tolist()
+                start, end = levelled_positions(np.array(points), -tilt).tolist()
                 lines.append(MeasureLine(event, start, end, label))
         if data.get("panel"):
             lines.append(_clearance(data, event, profiles.get(event), tilt))
@@ -180,7 +180,7 @@ def _clearance(
     edge = ground + panel["height"]
     top = ground
     if profile is not None and len(profile):
-        seen = level(np.insert(profile, 1, 0.0, axis=1), -tilt)[:, [0, 2]]
+        seen = levelled_positions(np.insert(profile, 1, 0.0, axis=1), -tilt)[:, [0, 2]]
         seen = seen[np.argsort(seen[:, 0])]
         if seen[0, 0] <= x <= seen[-1, 0]:
             top = max(ground, float(np.interp(x, seen[:, 0], seen[:, 1])))
@@ -197,7 +197,7 @@ def _profiles(folder: Path) -> dict[int, np.ndarray]:
     return {int(str(event)): rows[["x", "z"]].to_numpy() for event, rows in table.groupby("event")}
 
 
-def _table(table: Optional[pd.DataFrame]) -> Optional[Grid]:
+def _table(table: Optional[pd.DataFrame]) -> Optional[HtmlTable]:
     if table is None:
         return None
     shown = {
@@ -214,7 +214,7 @@ def _table(table: Optional[pd.DataFrame]) -> Optional[Grid]:
         tuple(form.format(row[name]).replace("_", " ") for name, form in known.values())
         for row in table.to_dict("records")
     ]
-    return Grid(tuple(known), rows, "r" * (len(known) - 1) + "l")
+    return HtmlTable(tuple(known), rows, "r" * (len(known) - 1) + "l")
 
 
 __all__ = ["PAGE", "shown_results", "view_content", "write_view"]

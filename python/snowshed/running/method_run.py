@@ -75,7 +75,7 @@ class MethodRun:
     def event_begun(self, reseeding: Optional[dict[str, Any]]) -> None:
         """Record that an event begins; `reseeding` holds the stack before and after reseeding."""
 
-    def doing(self, time_s: float) -> str:
+    def status_line(self, time_s: float) -> str:
         """Return the line that tells people what is computed at a time of the event."""
         return f"{time_s:.2f} s of event {self.simulation.event}"
 
@@ -122,7 +122,7 @@ class MethodRun:
         ]
 
     @classmethod
-    def packed(cls, folder: Path) -> Iterable[tuple[int, bytes]]:
+    def stored_data(cls, folder: Path) -> Iterable[tuple[int, bytes]]:
         """Yield each event with the data that a study stores of it for later measures."""
         return ()
 

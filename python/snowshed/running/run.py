@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Optional
 import snowshed._core as _core
 from snowshed.base.interrupt import Interrupted, InterruptRequest, deferred_interrupts
 from snowshed.base.machine import machine_facts
-from snowshed.base.notes import tell
+from snowshed.base.notes import issue_note
 from snowshed.base.paths import PathLike
 from snowshed.base.progress import Progress, Reporter
 from snowshed.methods.registry import method_of
@@ -84,29 +84,29 @@ def run(
     ...     results.events.event.tolist()
     [1]
     """
-    ready = resolve_scene(scene)
-    method = method_of(ready.data)
+    resolved = resolve_scene(scene)
+    method = method_of(resolved.data)
     if ageing is not None and not method.ages:
         raise _core.InputError(f'ageing: the snow of the method "{method.name}" does not age')
-    if ageing is not None and ready.data["events"]["between"] != "carry":
+    if ageing is not None and resolved.data["events"]["between"] != "carry":
         raise _core.InputError(
             '/events/between: "reseed" replaces the snow, so that it cannot age; use "carry"'
         )
     options = RunOptions(resume, ageing, pictures, compact)
-    sequence = open_sequence(ready, folder, resume=resume)
+    sequence = open_sequence(resolved, folder, resume=resume)
     with sequence, deferred_interrupts() as interrupt:
-        own: MethodRun = method.run_class()(sequence, ready, Path(folder), options)
-        own.begin()
+        method_run: MethodRun = method.run_class()(sequence, resolved, Path(folder), options)
+        method_run.begin()
         sequence.describe_machine(machine_facts())
         try:
-            run_sequence(sequence, _Observer(own, interrupt, progress), ready, folder)
+            run_sequence(sequence, _Observer(method_run, interrupt, progress), resolved, folder)
         except Interrupted:
-            own.interrupted()
+            method_run.interrupted()
             raise
-        own.finish()
+        method_run.finish()
     if pictures:
-        own.draw()
-    return Results.of_run(folder, ready)
+        method_run.draw()
+    return Results.of_run(folder, resolved)
 
 
 def run_events(
@@ -143,69 +143,69 @@ def run_events(
     >>> table.event.tolist()
     [1]
     """
-    ready = resolve_scene(scene)
-    method = method_of(ready.data)
+    resolved = resolve_scene(scene)
+    method = method_of(resolved.data)
     if "stack" not in method.results:
         raise _core.InputError(
             f'/method: the snow of "{method.name}" makes no stack; use snowshed.run'
         )
     options: dict[str, Any] = {"resume": resume, "ageing": ageing, "pictures": pictures}
-    return run(ready, folder, progress=progress, **options).events
+    return run(resolved, folder, progress=progress, **options).events
 
 
 class _Observer:
     """Observer of the core's loop: calls the method's steps, and reports the progress."""
 
     def __init__(
-        self, own: MethodRun, interrupt: InterruptRequest, report: Optional[Reporter]
+        self, method_run: MethodRun, interrupt: InterruptRequest, report: Optional[Reporter]
     ) -> None:
-        self.own = own
+        self.method_run = method_run
         self.interrupt = interrupt
         self.report = report
 
     def between_events(self) -> None:
         """Let the method change the snow between two events."""
-        self.own.between_events()
+        self.method_run.between_events()
 
     def event_begun(self, reseeding: Optional[dict[str, Any]]) -> None:
         """Report an event that begins, or resumes after a pause."""
-        self.own.event_begun(reseeding)
-        self._tell(self.own.simulation.time_s, 0.0)
+        self.method_run.event_begun(reseeding)
+        self._report_progress(self.method_run.simulation.time_s, 0.0)
 
     def noted(self, note: str) -> None:
-        """Give a note of the core, which is in run.json already."""
-        tell(note)
+        """Issue a note of the core; run.json has it already."""
+        issue_note(note)
 
     def progress(self, report: dict[str, Any]) -> None:
         """Report the progress of the event."""
-        self.own.progress()
-        self._tell(report["time_s"], report["progress"], report["updates_per_s"])
+        self.method_run.progress()
+        self._report_progress(report["time_s"], report["progress"], report["updates_per_s"])
 
     def event_ended(self, facts: dict[str, Any]) -> None:
         """Let the method write the results of the event."""
-        self.own.event_ended(facts)
-        self._tell(facts["sim_time_s"], 1.0)
+        self.method_run.event_ended(facts)
+        self._report_progress(facts["sim_time_s"], 1.0)
 
     def before_checkpoint(self) -> None:
         """Let the method write the files that belong to the checkpoint."""
-        self.own.before_checkpoint()
+        self.method_run.before_checkpoint()
 
     def stop_requested(self) -> bool:
         """Return whether to stop at the next safe point."""
         return self.interrupt.requested
 
-    def _tell(self, time_s: float, fraction: float, updates_per_s: float = 0.0) -> None:
+    def _report_progress(self, time_s: float, fraction: float, updates_per_s: float = 0.0) -> None:
         """Report the progress of the run; `fraction` is the part of the event that is done."""
         if self.report is None:
             return
-        event, count = self.own.simulation.event, self.own.simulation.event_count
+        event, count = self.method_run.simulation.event, self.method_run.simulation.event_count
         self.report(
             Progress(
                 (event - 1 + fraction) / count,
                 event - 1 + int(fraction == 1.0),
                 count,
-                self.own.UNIT,
-                self.own.doing(time_s),
+                self.method_run.UNIT,
+                self.method_run.status_line(time_s),
                 event=event,
                 time=time_s,
                 updates_per_s=updates_per_s,

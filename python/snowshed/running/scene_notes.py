@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 FEW_CELLS = 2.0  # across a slab; with fewer its stack is coarse
 ALL_STAYS = 0.98  # of the snow
-MOST_SEEDED = 100_000  # particles; these take two seconds
+MAX_SEEDED_PARTICLES = 100_000  # particles; these take two seconds
 #: Parts of a scene, besides a panel, on which snow can land.
 FLOORS = ("ground", "obstacles", "domain")
 
@@ -61,7 +61,7 @@ def notes_of_beginning(scene: ResolvedScene) -> list[str]:
     Parameters
     ----------
     scene
-        The scene. No snow is laid if it needs more than `MOST_SEEDED` particles.
+        The scene. No snow is laid if it needs more than `MAX_SEEDED_PARTICLES` particles.
 
     Raises
     ------
@@ -76,10 +76,10 @@ def notes_of_beginning(scene: ResolvedScene) -> list[str]:
     """
     notes = notes_before(scene.data)
     simulation = _core.Simulation(scene.core, scene.base_dir)
-    if simulation.expected_particles > MOST_SEEDED:
+    if simulation.expected_particles > MAX_SEEDED_PARTICLES:
         notes.append(
-            f"the scene has more than {MOST_SEEDED} particles: the run itself checks whether snow "
-            "lies in obstacles or in other snow"
+            f"the scene has more than {MAX_SEEDED_PARTICLES} particles: the run itself checks "
+            "whether snow lies in obstacles or in other snow"
         )
     else:
         simulation.begin_event()

@@ -1,6 +1,6 @@
 """The core's sequence of events in a results folder: opened, and run to its end.
 
-Notes (`snowshed.base.notes`) that readers of the results need are given here and written into
+Notes (`snowshed.base.notes`) that readers of the results need are issued here and written into
 run.json, so that every caller sees the same.
 """
 
@@ -12,7 +12,7 @@ from pathlib import Path
 
 import snowshed._core as _core
 from snowshed.base.interrupt import Interrupted
-from snowshed.base.notes import tell
+from snowshed.base.notes import issue_note
 from snowshed.base.paths import PathLike, utf8_path
 from snowshed.io.run_files import file_mark
 from snowshed.running.scene_notes import notes_before
@@ -39,19 +39,19 @@ def seal_files(sequence: _core.EventSequence, folder: PathLike, *names: str) -> 
     sequence.files = {**sequence.files, **marks}
 
 
-def say_note(sequence: _core.EventSequence, note: str) -> None:
-    """Give a note on a run, and add it once to run.json."""
+def record_note(sequence: _core.EventSequence, note: str) -> None:
+    """Issue a note on a run, and add it once to run.json."""
     sequence.add_note(note)
-    tell(note)
+    issue_note(note)
 
 
 @contextmanager
-def telling(core: _core.Simulation) -> Iterator[None]:
-    """Give the notes of a simulation within the block."""
-    said = len(core.notes)
+def issuing_notes(core: _core.Simulation) -> Iterator[None]:
+    """Issue the notes that a simulation makes within the block."""
+    count = len(core.notes)
     yield
-    for note in core.notes[said:]:
-        tell(note)
+    for note in core.notes[count:]:
+        issue_note(note)
 
 
 def run_sequence(
@@ -72,7 +72,7 @@ def run_sequence(
         If the observer asked for a stop; a checkpoint holds the state to resume from.
     """
     for note in notes_before(scene.data):
-        say_note(sequence, note)
+        record_note(sequence, note)
     try:
         finished = sequence.run(observer, REPORT_INTERVAL)
     except (_core.SimulationError, _core.InputError) as error:

@@ -25,7 +25,7 @@ from snowshed.base.paths import PathLike
 from snowshed.results.fields import Fields
 from snowshed.results.grid import grid_dataset, scene_grid
 from snowshed.results.particle_dataset import DATASET, particle_dataset
-from snowshed.running.sequence import telling
+from snowshed.running.sequence import issuing_notes
 from snowshed.scene.components import Snow
 from snowshed.scene.resolved import snows_of
 from snowshed.scene.scene import ResolvedScene, SceneLike, resolve_scene
@@ -39,7 +39,7 @@ Order = Literal["id", "storage"]
 Ended = Literal["rest", "time_limit", "reached"]
 Until = Union[Literal["rest"], float, Callable[["Simulation"], bool]]
 
-MOST_STEPS = 64  # most steps at a time: between them Python checks for Ctrl-C
+MAX_STEPS = 64  # at a time: between them Python checks for Ctrl-C
 CHECK_INTERVAL = 0.1  # s of wall time; the same where the core itself runs to rest
 
 
@@ -120,9 +120,9 @@ class Simulation:
             If it cannot be seeded, or more than 1 % of a body lies where snow must not be (unless
             the scene's ``misplaced_snow`` is "allow").
         SimulationError
-            If the present event has not ended, or its stack cannot be seeded afresh.
+            If the present event has not ended, or the stack cannot be reseeded.
         """
-        with telling(self._core):
+        with issuing_notes(self._core):
             self._core.begin_event()
 
     def step(self, count: int = 1) -> None:
@@ -135,8 +135,8 @@ class Simulation:
         SimulationError
             If no event runs, or the simulation cannot continue.
         """
-        for left in range(whole_number("count", count, lowest=0), 0, -MOST_STEPS):
-            self._core.step(min(left, MOST_STEPS))
+        for left in range(whole_number("count", count, lowest=0), 0, -MAX_STEPS):
+            self._core.step(min(left, MAX_STEPS))
 
     def run(self, until: Until = "rest", *, every: int = 16) -> Ended:
         """Take steps of the present event, or of the next one, until a condition holds.
@@ -178,7 +178,7 @@ class Simulation:
         while self.time < until:
             # Half of the remaining time at the present time step, because the step may grow.
             left = 0.5 * (until - self.time) / self._core.time_step_s if self.time else 1
-            self._core.step(max(1, min(MOST_STEPS, int(left))))
+            self._core.step(max(1, min(MAX_STEPS, int(left))))
         return "reached"
 
     def _run_until(self, condition: Callable[[Simulation], bool], every: int) -> Ended:
@@ -240,7 +240,7 @@ class Simulation:
         given = points("positions", positions, self.dimension)
         speed = points("velocity", np.atleast_2d(np.asarray(velocity)), self.dimension, 1)[0]
         heavy = self._seeded_mass(snows[kind]) if mass is None else positive("mass", mass)
-        with telling(self._core):
+        with issuing_notes(self._core):
             self._core.add_snow(given, heavy, tuple(speed.tolist()), kind)
 
     def add_velocity(self, changes: ArrayLike) -> None:
@@ -318,11 +318,11 @@ class Simulation:
 
     def on_panel(self, order: Order = "id") -> Booleans:
         """Return whether each particle (n,) lies on the panel."""
-        lies = self._core.on_panel()
+        on_panel = self._core.on_panel()
         if _checked(order) == "storage":
-            by_id, lies = lies, np.empty_like(lies)
-            lies[self._core.order_by_id()] = by_id
-        return lies
+            by_id, on_panel = on_panel, np.empty_like(on_panel)
+            on_panel[self._core.order_by_id()] = by_id
+        return on_panel
 
     def _read(self, name: str, order: Order) -> Numbers:
         read = self._core.field_by_id if _checked(order) == "id" else self._core.field

@@ -44,10 +44,8 @@ def slide(
     pictures
         Whether to draw ``slide.png`` and write ``slide.html``.
     settings
-        Settings of the method. [default: `SlideSettings()`]
+                Settings of the method. [default: `SlideSettings()`]
 
-    Other inputs, such as entrainment, are parameters of `snowshed.scene.slide_scene`,
-    whose scene `snowshed.run` simulates.
 
     Returns
     -------
@@ -62,6 +60,11 @@ def slide(
         If the simulation cannot continue.
     Interrupted
         After Ctrl-C; ``snowshed.run(folder / "scene.json", folder, resume=True)`` resumes.
+
+    Notes
+    -----
+    Other inputs, such as entrainment, are parameters of `snowshed.scene.slide_scene`, whose scene
+    `snowshed.run` simulates.
 
     Examples
     --------

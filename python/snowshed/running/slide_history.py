@@ -64,9 +64,9 @@ def slide_states(scene: SceneLike, times: Sequence[float]) -> list[SlideState]:
     >>> len(later.bonds) <= len(first.bonds)
     True
     """
-    ready = resolve_scene(scene)
-    step = ready.data["numerics"].get("time_step", 1.0)
-    simulation = _core.Simulation(ready.core, ready.base_dir)
+    resolved = resolve_scene(scene)
+    step = resolved.data["numerics"].get("time_step", 1.0)
+    simulation = _core.Simulation(resolved.core, resolved.base_dir)
     simulation.begin_event()
     states, done = [], 0
     for time in times:
@@ -102,8 +102,8 @@ def particles_at(scene: SceneLike, steps: Sequence[int]) -> dict[int, pd.DataFra
     >>> list(tables)
     [0, 2]
     """
-    ready = resolve_scene(scene)
-    simulation = _core.Simulation(ready.core, ready.base_dir)
+    resolved = resolve_scene(scene)
+    simulation = _core.Simulation(resolved.core, resolved.base_dir)
     simulation.begin_event()
     tables: dict[int, pd.DataFrame] = {}
     done = 0

@@ -2,9 +2,9 @@
 
 Each event runs until the snow rests: slower than ``events.rest_speed`` (root mean square, as the
 core defines it) for ``events.rest_time``, or until ``events.max_time``; the table has the reason.
-Between events the particles carry over with their state (``carry``), or the stack is turned into a
-solid and seeded afresh at rest (``reseed``, as in the thesis). Reseeding also restores the bonds in
-the stack, and gives it n times the slab's volume; conversions.csv has the changes of mass, height,
+Between events the particles carry over with their state (``carry``), or the stack is converted to a
+solid and reseeded at rest (``reseed``, as in the thesis). Reseeding also restores the bonds in the
+stack, and gives it n times the slab's volume; conversions.csv has the changes of mass, height,
 length and outline. A stack that is carried over ages (``snowshed.running.ageing``) only on request.
 """
 
@@ -34,11 +34,11 @@ from snowshed.results.solids_file import write_solids
 from snowshed.running.conversion import conversion_row
 from snowshed.running.method_run import Cell, MethodRun
 from snowshed.running.scene_notes import notes_after
-from snowshed.running.sequence import say_note, seal_files
+from snowshed.running.sequence import record_note, seal_files
 from snowshed.snow.stack.measure import StackMeasure
 from snowshed.snow.stack.particles import measure_particles
 
-LARGEST_RESIDUAL = 0.01  # of the largest energy
+MAX_RESIDUAL = 0.01  # of the largest energy
 #: Columns of events.csv for the number of the event and the time of its computation.
 ROW_KEYS = ("event", "wall_s")
 KINDS: Mapping[str, type] = {**dict.fromkeys(WORDS, str), "event": int, "steps": int}
@@ -56,11 +56,11 @@ class StackRun(MethodRun):
         self.results = RunFolder(self.folder)
         self.stack: Optional[StackMeasure] = None
         ageing = self.options.ageing
-        told = None if ageing is None else ageing.data
+        ageing_data = None if ageing is None else ageing.data
         if self.options.resume:
-            self._continue_tables(told)
-        elif told is not None:
-            self.results.write_ageing(told)
+            self._continue_tables(ageing_data)
+        elif ageing_data is not None:
+            self.results.write_ageing(ageing_data)
         self._fill_in(self.sequence.finished_events)
 
     def _continue_tables(self, ageing: Optional[dict[str, Any]]) -> None:
@@ -115,7 +115,7 @@ class StackRun(MethodRun):
         _warn_of_residual(facts)
         if facts["event"] == self.simulation.event_count:
             for note in notes_after(parse_events(self.results.events.path), self.scene.data):
-                say_note(self.sequence, note)
+                record_note(self.sequence, note)
 
     def before_checkpoint(self) -> None:
         """Store the checksums of the tables, which are cut to the checkpoint when a run resumes.
@@ -150,7 +150,7 @@ class StackRun(MethodRun):
         return [{name: _value(name, cell) for name, cell in row.items()} for row in table]
 
     @classmethod
-    def packed(cls, folder: Path) -> Iterable[tuple[int, bytes]]:
+    def stored_data(cls, folder: Path) -> Iterable[tuple[int, bytes]]:
         """Yield each event with the particles after it."""
         return ((event, particles.packed()) for event, particles in read_event_particles(folder))
 
@@ -186,10 +186,10 @@ class StackRun(MethodRun):
 def _warn_of_residual(facts: Mapping[str, Any]) -> None:
     """Warn where the time integration gained or lost too much energy."""
     share = facts["energy_residual"]
-    if share is not None and share > LARGEST_RESIDUAL:
+    if share is not None and share > MAX_RESIDUAL:
         warnings.warn(
             f"event {facts['event']}: the energy balance has a residual of {share:.2g} of the "
-            f"largest energy, above {LARGEST_RESIDUAL:g}; a smaller courant_factor or dx may help",
+            f"largest energy, above {MAX_RESIDUAL:g}; a smaller courant_factor or dx may help",
             FutureWarning,
             stacklevel=caller_level(),
         )

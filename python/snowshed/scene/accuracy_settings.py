@@ -9,14 +9,14 @@ from snowshed.methods.registry import DEFAULT, METHODS, NAME_KEY, SETTINGS_KEY
 from snowshed.scene.schema import Parameter, scene_parameters
 
 
-def _of_other_section(parameter: Parameter) -> bool:
+def _is_in_other_section(parameter: Parameter) -> bool:
     return not parameter.path.startswith(f"{SETTINGS_KEY}.")
 
 
-_OF_METHODS: Mapping[str, Mapping[str, str]] = {
+_METHOD_SETTINGS: Mapping[str, Mapping[str, str]] = {
     method: {
         p.path.rpartition(".")[2]: p.path
-        for p in sorted(scene_parameters(method), key=_of_other_section)
+        for p in sorted(scene_parameters(method), key=_is_in_other_section)
         if p.accuracy
     }
     for method in METHODS
@@ -24,7 +24,7 @@ _OF_METHODS: Mapping[str, Mapping[str, str]] = {
 
 #: Where in a scene of the default method each setting stands: those that the schema marks, the
 #: method's own first.
-ACCURACY: Mapping[str, str] = _OF_METHODS[DEFAULT]
+ACCURACY: Mapping[str, str] = _METHOD_SETTINGS[DEFAULT]
 
 #: Those that are numbers, of any method; one that stands in another's place may be missing.
 NUMBERS: Sequence[str] = [
@@ -51,4 +51,4 @@ def accuracy_of(scene: Mapping[str, JsonValue]) -> Mapping[str, str]:
     >>> list(accuracy_of({"method": "slide"}))
     ['cell', 'time_step', 'layer_thickness']
     """
-    return _OF_METHODS[str(scene.get(NAME_KEY) or DEFAULT)]
+    return _METHOD_SETTINGS[str(scene.get(NAME_KEY) or DEFAULT)]

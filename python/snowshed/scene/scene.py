@@ -19,7 +19,7 @@ from snowshed._core import InputError
 from snowshed._core import preset as preset_text
 from snowshed.base.json_values import JsonObject, JsonValue
 from snowshed.base.paths import PathLike
-from snowshed.base.record import DEEPEST, Record, check_instead, check_once
+from snowshed.base.record import MAX_DEPTH, Record, check_instead, check_once
 from snowshed.io.input_file import read_input
 from snowshed.io.json_text import loads
 from snowshed.methods.registry import DEFAULT, NAME_KEY, SETTINGS_KEY, method_named
@@ -237,8 +237,8 @@ class Scene(Record):
         kind = method_named(method).settings
         if isinstance(settings, MethodSettings) and not isinstance(settings, kind):
             raise InputError(
-                f"{where}: the method {method or DEFAULT!r} takes {kind.__name__}, and these are "
-                f"{type(settings).__name__}; set {SETTINGS_KEY} to None, then {NAME_KEY}"
+                f"{where}: the method {method or DEFAULT!r} takes {kind.__name__}, not "
+                f"{type(settings).__name__}; set {SETTINGS_KEY} to None first, then {NAME_KEY}"
             )
 
     @classmethod
@@ -394,8 +394,8 @@ def _refuse_null(data: JsonValue, where: str) -> None:
     """Refuse null: in a file, as for the core, a key that is not given is left out."""
     if data is None:
         raise InputError(f"{where or '/'}: null is not a value; leave the key out")
-    if where.count("/") > 2 * DEEPEST:
-        raise InputError(f"{where[:100]}...: nested more than {DEEPEST} deep")
+    if where.count("/") > 2 * MAX_DEPTH:
+        raise InputError(f"{where[:100]}...: nested more than {MAX_DEPTH} deep")
     items = enumerate(data) if isinstance(data, list) else ()
     inner: Iterable[tuple[object, JsonValue]] = data.items() if isinstance(data, dict) else items
     for key, value in inner:

@@ -10,7 +10,7 @@ from typing import Any
 from snowshed.scene.panel_edge import panel_edge
 
 Point = tuple[float, float]
-WIDTH, HIGHEST = 480, 320  # pixels
+WIDTH, MAX_HEIGHT = 480, 320  # pixels
 MARGIN = 0.15  # of the drawn width, on each side
 PANEL, SNOW, SOLID, GROUND = "#3b4a5a", "#9cc4e4", "#8a8f98", "#6b5b4b"
 
@@ -41,16 +41,16 @@ def _drawing(data: Mapping[str, Any]) -> str:
     left, right = _widened((x for x, _ in corners), highest)
     bottom = min(min(z for _, z in corners), -tilt * right) - 0.02 * (right - left)
     top = highest + 0.05 * (right - left)
-    scale = min(WIDTH / (right - left), HIGHEST / (top - bottom))
+    scale = min(WIDTH / (right - left), MAX_HEIGHT / (top - bottom))
     ground = ((left, -tilt * left), (right, -tilt * right), (right, bottom), (left, bottom))
     shapes = "".join(
-        f'<polygon fill="{color}" points="'
+        f'<polygon fill="{colour}" points="'
         + " ".join(f"{scale * (x - left):.1f},{scale * (top - z):.1f}" for x, z in points)
         + '"/>'
-        for color, points in [(GROUND, ground), *solids]
+        for colour, points in [(GROUND, ground), *solids]
     )
     size = f'width="{scale * (right - left):.0f}" height="{scale * (top - bottom):.0f}"'
-    others = len(data.get("obstacles") or ()) - sum(color == SOLID for color, _ in solids)
+    others = len(data.get("obstacles") or ()) - sum(colour == SOLID for colour, _ in solids)
     note = f"<p>{others} obstacles of other shapes are not drawn.</p>" if others else ""
     return f'<svg xmlns="http://www.w3.org/2000/svg" {size}>{shapes}</svg>{note}'
 

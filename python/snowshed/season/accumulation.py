@@ -9,7 +9,7 @@ from typing import Optional
 
 from snowshed.running.ageing.ageing import Ageing, Interval
 from snowshed.season.checks import check_one_season
-from snowshed.season.release import Balance, balance
+from snowshed.season.release import SnowBalance, snow_balance
 from snowshed.season.settings import SeasonSettings
 from snowshed.season.settling_column import SnowColumn
 from snowshed.season.weather_row import Weather
@@ -17,7 +17,7 @@ from snowshed.snow.relations.new_snow import NEW_SNOW_DENSITY
 
 
 @dataclass(frozen=True)
-class Day:
+class WinterDay:
     """The snow on the panel at one row of the season file.
 
     Attributes
@@ -44,7 +44,7 @@ class Day:
     density: Optional[float]
     load: float
     thickness: float
-    balance: Balance
+    balance: SnowBalance
     released: bool = False
     event: Optional[int] = None
     slab_load: float = 0.0
@@ -53,12 +53,12 @@ class Day:
 
 def accumulate(
     season: Sequence[Weather], settings: SeasonSettings, tilt: float, gravity: float = 9.81
-) -> list[Day]:
+) -> list[WinterDay]:
     """Return the snow on a panel at every row of a season.
 
     Snow of a depth h on level ground has the thickness h cos(Phi) normal to the panel, because its
-    mass per area of the ground is the same. All snow is released at once (`balance`). Melting and
-    wind are left out.
+    mass per area of the ground is the same. All snow is released at once (`snow_balance`). Melting
+    and wind are left out.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ def accumulate(
     check_one_season(season)
     slope = math.cos(math.radians(tilt))
     snow = SnowColumn(load_factor=gravity * slope)
-    days: list[Day] = []
+    days: list[WinterDay] = []
     for row, earlier in zip(season, [None, *season]):
         if earlier is not None:
             elapsed = (row.date - earlier.date).total_seconds()
@@ -96,32 +96,32 @@ def accumulate(
         if density is not None:
             snow.add(settings.catch * density * row.snowfall * slope, density)
         held = _balance(row, settings, snow.mass, tilt, gravity)
-        days.append(Day(row, density, snow.mass, snow.thickness, held, held.releases))
+        days.append(WinterDay(row, density, snow.mass, snow.thickness, held, held.releases))
         if held.releases:
             snow.clear()
     return _slide_offs(days, settings.pool_below)
 
 
-def _slide_offs(days: Sequence[Day], pool_below: float) -> list[Day]:
+def _slide_offs(days: Sequence[WinterDay], pool_below: float) -> list[WinterDay]:
     """Return the days with the slide-offs that the releases make.
 
     Snow of thin releases waits until it makes a slab; the rest slides last.
     """
     releases = [number for number, day in enumerate(days) if day.released]
-    made = list(days)
+    numbered = list(days)
     event, load, thickness = 0, 0.0, 0.0
     for number in releases:
         load, thickness = load + days[number].load, thickness + days[number].thickness
         if thickness >= pool_below or number == releases[-1]:
             event += 1
-            made[number] = replace(
+            numbered[number] = replace(
                 days[number], event=event, slab_load=load, slab_thickness=thickness
             )
             load, thickness = 0.0, 0.0
-    return made
+    return numbered
 
 
-def pauses(days: Sequence[Day]) -> dict[int, list[Interval]]:
+def pauses(days: Sequence[WinterDay]) -> dict[int, list[Interval]]:
     """Return the time between each event and the one before, for every event but the first.
 
     The temperature of a row of the season file holds until the next row.
@@ -139,7 +139,7 @@ def pauses(days: Sequence[Day]) -> dict[int, list[Interval]]:
     return intervals
 
 
-def stack_ageing(days: Sequence[Day], settings: SeasonSettings) -> Optional[Ageing]:
+def stack_ageing(days: Sequence[WinterDay], settings: SeasonSettings) -> Optional[Ageing]:
     """Return how the stack ages between the events of a season; None if it does not."""
     return settings.ageing(pauses(days)) if settings.ages else None
 
@@ -155,7 +155,7 @@ def _density(row: Weather, settings: SeasonSettings) -> Optional[float]:
 
 def _balance(
     row: Weather, settings: SeasonSettings, load: float, tilt: float, gravity: float
-) -> Balance:
+) -> SnowBalance:
     friction = settings.friction if row.friction is None else row.friction
     adhesion = settings.adhesion if row.adhesion is None else row.adhesion
-    return balance(load, tilt, friction, adhesion, gravity)
+    return snow_balance(load, tilt, friction, adhesion, gravity)

@@ -9,10 +9,10 @@ from snowshed._core import InputError
 from snowshed.base.limits import WEATHER_GAP
 from snowshed.io.csv_table import TableRow
 from snowshed.season.extremes import RECORD_DAY, RECORD_WINTER, RECORD_WORDS
-from snowshed.season.source import Source
-from snowshed.season.weather_row import MOST_SNOWFALL, Weather
+from snowshed.season.source import SnowSource
+from snowshed.season.weather_row import MAX_SNOWFALL, Weather
 
-MOST_ROWS = 100_000  # daily data of the longest records, and hourly seasons
+MAX_ROWS = 100_000  # daily data of the longest records, and hourly seasons
 #: Median above which snowfalls cannot be in metres.
 TYPICAL_SNOWFALL = 0.7  # m
 DAY, YEAR = 86400.0, 366.0  # s, days
@@ -41,8 +41,8 @@ def check_rows(
     """
     if not rows:
         raise InputError(f"{name}: no rows below the header")
-    if len(rows) > MOST_ROWS:
-        raise InputError(f"{name}: {len(rows)} rows; at most {MOST_ROWS} are allowed")
+    if len(rows) > MAX_ROWS:
+        raise InputError(f"{name}: {len(rows)} rows; at most {MAX_ROWS} are allowed")
     for earlier, later, before, row in zip(rows, rows[1:], table_rows, table_rows[1:]):
         if later.date <= earlier.date:
             raise InputError(
@@ -89,7 +89,7 @@ def _check_years(rows: Sequence[Weather], table_rows: Sequence[TableRow]) -> Non
         if days <= YEAR:
             continue
         few = min(number, len(rows) - number) <= FEW
-        if days > WEATHER_GAP or (few and days > LONE and later.source is Source.GIVEN):
+        if days > WEATHER_GAP or (few and days > LONE and later.source is SnowSource.GIVEN):
             raise InputError(
                 f"{table_rows[number].where}, column date: {later.date.date()} is "
                 f"{days / 365.25:.0f} "
@@ -111,7 +111,7 @@ def _check_amounts(rows: Sequence[Weather], table_rows: Sequence[TableRow], name
         daily = first > 0 and (rows[first].date - rows[first - 1].date).total_seconds() <= DAY
         single = first + 1 == len(rows) or rows[first + 1].date.date() != day.date()
         # a single row may be the snow of several days
-        most = RECORD_DAY if daily or not single else MOST_SNOWFALL
+        most = RECORD_DAY if daily or not single else MAX_SNOWFALL
         if total > most:
             raise InputError(
                 f"{table_rows[first].where}, column snowfall_m: {total:.3g} m of snow on "

@@ -10,7 +10,7 @@ import numpy as np
 
 from snowshed.base.arrays import Floats
 from snowshed.scene.panel_edge import panel_edge
-from snowshed.snow.stack.measure import level
+from snowshed.snow.stack.measure import levelled_positions
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -81,7 +81,7 @@ def panel_ends(scene: Mapping[str, Any]) -> list[list[float]]:
     """Return the panel's upper and lower edge, [x, z], on levelled ground."""
     edge = panel_edge(scene)
     ends = np.array([[edge.upper[0], 0.0, edge.upper[1]], [edge.x, 0.0, edge.z]])
-    levelled: list[list[float]] = level(ends, _tilt(scene))[:, [0, 2]].tolist()
+    levelled: list[list[float]] = levelled_positions(ends, _tilt(scene))[:, [0, 2]].tolist()
     return levelled
 
 
@@ -107,7 +107,7 @@ CAUSES = (
 
 
 @dataclass(frozen=True)
-class Contact:
+class PanelContact:
     """The first contact of the snow below with the panel.
 
     Attributes
@@ -130,7 +130,7 @@ class Contact:
         return dict(CAUSES)[self.cause]
 
 
-def first_contact(table: pd.DataFrame, dx: float) -> Optional[Contact]:
+def first_contact(table: pd.DataFrame, dx: float) -> Optional[PanelContact]:
     """Return the first row of a season after a contact with the panel, if any.
 
     Parameters
@@ -158,7 +158,7 @@ def first_contact(table: pd.DataFrame, dx: float) -> Optional[Contact]:
         cause = "cover"
     events = table["event"].iloc[: row + 1].dropna()
     event = int(events.iloc[-1]) if len(events) else None
-    return Contact(str(table["date"].iloc[row]), event, cause)
+    return PanelContact(str(table["date"].iloc[row]), event, cause)
 
 
 def first_reached(clearances: Sequence[float], dx: float) -> Optional[int]:

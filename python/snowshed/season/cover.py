@@ -23,7 +23,7 @@ DAY = 86400.0  # s
 #: Hock 2003, J. Hydrol. 282, 104-115, lists, which differ by a factor of four.
 DEGREE_DAY_FACTOR = 4.0
 #: Days from one reading to the next, between which a straight line is drawn.
-LONGEST_LINE = 61
+MAX_INTERPOLATED_DAYS = 61
 #: Density, kg/m3, of a cover of which only the depth is known: amid the bulk densities of seasonal
 #: snow of Sturm et al. 2010, J. Hydrometeorol. 11, 1380-1394 (217 to 373 kg/m3, by climate class).
 COVER_DENSITY = 300.0
@@ -102,7 +102,7 @@ def _measured(season: Sequence[Weather]) -> list[Optional[float]]:
     for before, after in zip(readings, readings[1:]):
         first, last = season[before], season[after]
         span = (last.date - first.date).total_seconds()
-        if after == before + 1 or span > LONGEST_LINE * DAY:
+        if after == before + 1 or span > MAX_INTERPOLATED_DAYS * DAY:
             continue
         low, high = first.snow_depth or 0.0, last.snow_depth or 0.0
         for number in range(before + 1, after):

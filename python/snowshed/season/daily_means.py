@@ -13,13 +13,13 @@ from snowshed.base.arrays import Booleans, Floats, Integers
 from snowshed.io.weather.observation import Observation, Station
 
 #: Days without a row that are set in between two rows; in longer gaps there are no days at all.
-LONGEST_GAP = 60
+MAX_GAP_DAYS = 60
 WHOLE_DAY = 18.0  # hours of a day that an amount must cover to be that of the day
 #: The clock time at which new snow is read in most countries.
 MORNING = 7.0
-NEAR = timedelta(hours=3)  # readings of sums of a day that stand for one at another time
+CLOCK_TOLERANCE = timedelta(hours=3)  # readings of sums of a day that stand for one at another time
 #: No snow falls faster; MeteoIO's filters cut the rate of the snow depth at 0.2 m/h.
-FASTEST = 0.3  # m/h
+MAX_RATE = 0.3  # m/h
 SEVERAL = 3  # changes of the depth on a day, of a sensor that is read all day
 FOLLOWING = 2.0  # hours between readings that are held against that rate
 
@@ -112,7 +112,7 @@ def _calendar(dates: set[date]) -> list[date]:
     """Return the days that are known and those of short gaps between them."""
     days: list[date] = []
     for day in sorted(dates):
-        if days and (day - days[-1]).days - 1 <= LONGEST_GAP:
+        if days and (day - days[-1]).days - 1 <= MAX_GAP_DAYS:
             days += [days[-1] + timedelta(n) for n in range(1, (day - days[-1]).days)]
         days.append(day)
     return days
@@ -153,28 +153,28 @@ def _disjoint(station: Station) -> Sequence[Observation]:
     """Return rows whose new snow does not overlap: of rolling sums those of one clock time."""
     if "snowfall" not in station.rolling:
         return station.rows
-    told = [row for row in station.rows if row.snowfall is not None]
-    clocks = Counter((row.time.hour, row.time.minute) for row in told)
+    rows_with_snowfall = [row for row in station.rows if row.snowfall is not None]
+    clocks = Counter((row.time.hour, row.time.minute) for row in rows_with_snowfall)
     if not clocks:
         return ()
     hour, minute = max(
         clocks, key=lambda clock: (clocks[clock], -abs(clock[0] + clock[1] / 60 - MORNING))
     )
-    return list(_read_at(told, hour, minute))
+    return list(_read_at(rows_with_snowfall, hour, minute))
 
 
-def _read_at(told: Sequence[Observation], hour: int, minute: int) -> Iterator[Observation]:
+def _read_at(rows: Sequence[Observation], hour: int, minute: int) -> Iterator[Observation]:
     """Yield rows at a clock time, or near it, whose spans do not overlap."""
     last: datetime | None = None
-    for number, row in enumerate(told):
+    for number, row in enumerate(rows):
         clock = row.time.replace(hour=hour, minute=minute, second=0, microsecond=0)
-        following = told[number + 1].time if number + 1 < len(told) else None
+        following = rows[number + 1].time if number + 1 < len(rows) else None
         due = row.time == clock or (
-            abs(row.time - clock) <= NEAR
+            abs(row.time - clock) <= CLOCK_TOLERANCE
             and (following is None or abs(following - clock) > abs(row.time - clock))
         )
         span = timedelta(hours=row.snowfall_hours or 24.0)
-        if due and (last is None or row.time - last >= span - NEAR):
+        if due and (last is None or row.time - last >= span - CLOCK_TOLERANCE):
             last = row.time
             yield row
 
@@ -187,7 +187,7 @@ def _depths(
     levels: dict[date, list[float]] = {}
     seams: set[date] = set()
     jumps: list[tuple[date, float]] = []
-    fastest = FASTEST if _is_continuous(station.rows) else np.inf
+    fastest = MAX_RATE if _is_continuous(station.rows) else np.inf
     shift, seam = 0.0, False
     before: Observation | None = None
     for row in station.rows:

@@ -15,11 +15,11 @@ import numpy as np
 
 from snowshed.base.arrays import Booleans, Floats, Integers
 from snowshed.base.formatting import plural
-from snowshed.season.daily_means import LONGEST_GAP, StationDays
+from snowshed.season.daily_means import MAX_GAP_DAYS, StationDays
 from snowshed.season.extremes import RECORD_DAY, RECORD_WORDS
 
-LEAST_RISE = 0.02  # m; smaller rises of the snow depth are noise of the sensor
-LONGEST_TOTAL = 4  # days from reading to reading whose rise is still an observation
+MIN_RISE = 0.02  # m; smaller rises of the snow depth are noise of the sensor
+MAX_TOTAL_DAYS = 4  # days from reading to reading whose rise is still an observation
 SPIKE = 0.3  # m; from there on a change may be a spike
 TAKEN_BACK = 0.8  # of a spike, by the reading that ends it
 NO_MELT = 1.0  # degrees C; below, so much new snow does not vanish within days
@@ -87,7 +87,7 @@ def snow_of_depth(days: StationDays, temperature: Floats) -> DepthSnow:
         np.zeros(len(ordinals), dtype=bool),
         np.where(wrong, np.nan, days.depth),
     )
-    _tell_jumps(days, snow)
+    _note_jumps(days, snow)
     if wrong.any():
         numbers = np.flatnonzero(wrong)
         snow.notes.append(
@@ -100,7 +100,7 @@ def snow_of_depth(days: StationDays, temperature: Floats) -> DepthSnow:
         snow.snow[readings[0]] = 0.0
     for before, after in zip(readings, readings[1:]):
         _take_rise(days, snow, int(before), int(after), float(level[after] - level[before]))
-    _tell_gaps(days, snow)
+    _note_gaps(days, snow)
     return snow
 
 
@@ -108,39 +108,41 @@ def _take_rise(days: StationDays, snow: DepthSnow, before: int, after: int, rise
     """Enter the rise from one reading to the next."""
     span = days.dates[after].toordinal() - days.dates[before].toordinal()
     own = slice(before + 1, after + 1)
-    said = f"{rise:.2f} m from {days.dates[before]} to {days.dates[after]}"
+    rise_text = f"{rise:.2f} m from {days.dates[before]} to {days.dates[after]}"
     if rise > RECORD_DAY * span:
-        snow.notes.append(f"the snow depth rises by {said}, which is not snowfall: {RECORD_WORDS}")
+        snow.notes.append(
+            f"the snow depth rises by {rise_text}, which is not snowfall: {RECORD_WORDS}"
+        )
         return
-    if span > LONGEST_GAP + 1:
-        if rise >= LEAST_RISE:
-            snow.notes.append(f"the snow depth rises by {said}, over a gap; it is not counted")
+    if span > MAX_GAP_DAYS + 1:
+        if rise >= MIN_RISE:
+            snow.notes.append(f"the snow depth rises by {rise_text}, over a gap; it is not counted")
         snow.snow[after] = 0.0
         return
-    if span > LONGEST_TOTAL and rise < LEAST_RISE:
+    if span > MAX_TOTAL_DAYS and rise < MIN_RISE:
         return  # the snow may have fallen and settled: unknown
-    share = rise / span if rise >= LEAST_RISE else 0.0
+    share = rise / span if rise >= MIN_RISE else 0.0
     snow.snow[own] = share
     if span > 1 and share:
         snow.totals.append(SharedRise(range(before + 1, after + 1), rise))
-    if span > LONGEST_TOTAL:
+    if span > MAX_TOTAL_DAYS:
         snow.filled[own] = True
 
 
-def _tell_gaps(days: StationDays, snow: DepthSnow) -> None:
+def _note_gaps(days: StationDays, snow: DepthSnow) -> None:
     """Note the rises that are spread over unobserved days."""
-    gaps = [total for total in snow.totals if len(total.days) > LONGEST_TOTAL]
+    gaps = [total for total in snow.totals if len(total.days) > MAX_TOTAL_DAYS]
     if not gaps:
         return
     most = max(gaps, key=lambda total: total.rise)
-    said = (
+    largest_total = (
         f"by {most.rise:.2f} m in the {len(most.days)} days to {days.dates[most.days[-1]]}, of "
         f"which {len(most.days) - 1} have no reading"
     )
     among = f" over {len(gaps)} gaps without readings, the most" if len(gaps) > 1 else ""
     snow.notes.append(
-        f"the snow depth rises{among} {said}: this is not snowfall of a day, and is divided "
-        "evenly among the days"
+        f"the snow depth rises{among} {largest_total}: this is not snowfall of a day, and is "
+        "divided evenly among the days"
     )
 
 
@@ -183,10 +185,10 @@ def _longest(change: float, days: int) -> int:
     return SPIKE_DAYS if change > 0.0 else DROPOUT_DAYS
 
 
-def _tell_jumps(days: StationDays, snow: DepthSnow) -> None:
+def _note_jumps(days: StationDays, snow: DepthSnow) -> None:
     seams = [(day, rise) for day, rise in days.jumps if day in _seam_dates(days)]
     others = [(day, rise) for day, rise in days.jumps if day not in _seam_dates(days)]
-    rising = [(day, rise) for day, rise in seams if abs(rise) >= LEAST_RISE]
+    rising = [(day, rise) for day, rise in seams if abs(rise) >= MIN_RISE]
     if rising:
         snow.notes.append(
             f"the snow depth jumps at {plural(len(rising), 'joint')} of two series "
@@ -205,10 +207,10 @@ def _seam_dates(days: StationDays) -> set[date]:
 
 def _sizes(jumps: Sequence[tuple[date, float]]) -> str:
     largest = sorted(jumps, key=lambda jump: -abs(jump[1]))[:3]
-    said = ", ".join(f"{rise:+.2f} m on {day}" for day, rise in largest)
-    return said if len(jumps) <= len(largest) else f"the largest: {said}"
+    listed = ", ".join(f"{rise:+.2f} m on {day}" for day, rise in largest)
+    return listed if len(jumps) <= len(largest) else f"the largest: {listed}"
 
 
 def _some(dates: Sequence[date], numbers: Integers) -> str:
-    said = ", ".join(str(dates[number]) for number in numbers[:3])
-    return said if len(numbers) <= 3 else f"{said} and others"
+    listed = ", ".join(str(dates[number]) for number in numbers[:3])
+    return listed if len(numbers) <= 3 else f"{listed} and others"

@@ -17,8 +17,8 @@ from snowshed.methods.registry import resolution_of
 from snowshed.results.season_folder import SeasonFolder
 from snowshed.running.run import run_events
 from snowshed.scene.scene import ResolvedScene, SceneLike, resolve_scene
-from snowshed.season.accumulation import Day, accumulate, stack_ageing
-from snowshed.season.clearance import Contact, first_contact, first_reached, panel_ends
+from snowshed.season.accumulation import WinterDay, accumulate, stack_ageing
+from snowshed.season.clearance import PanelContact, first_contact, first_reached, panel_ends
 from snowshed.season.notes import assumptions, first_staying, notes
 from snowshed.season.quality import COVERAGE
 from snowshed.season.quality_table import caption
@@ -61,7 +61,7 @@ class SeasonResult:
     table: pd.DataFrame
     releases: int
     simulated: int
-    contact: Optional[Contact]
+    contact: Optional[PanelContact]
     burial_event: Optional[int]
     crest_event: Optional[int]
     staying_event: Optional[int]
@@ -169,7 +169,7 @@ class SeasonPlan:
 
     record: SeasonRecord
     winters: WinterList
-    days: Sequence[Day]
+    days: Sequence[WinterDay]
     panel: ResolvedScene
     slides: Optional[ResolvedScene]
 

@@ -17,11 +17,11 @@ import numpy as np
 
 from snowshed._core import InputError
 from snowshed.base.arrays import Booleans
-from snowshed.season.source import Source
-from snowshed.season.weather_row import MOST_SNOWFALL, Weather
+from snowshed.season.source import SnowSource
+from snowshed.season.weather_row import MAX_SNOWFALL, Weather
 
-LEAST_DAYS = 20  # of a month, to fit it
-LEAST_FALL = 0.005  # m; less is no snowfall day
+MIN_DAYS = 20  # of a month, to fit it
+MIN_SNOWFALL = 0.005  # m; less is no snowfall day
 
 
 @dataclass(frozen=True)
@@ -79,8 +79,8 @@ class Climate:
         InputError
             If no month with snow has enough days.
         """
-        days = [day for day in days if day.source is not Source.MISSING]
-        snows = np.array([day.snowfall >= LEAST_FALL for day in days])
+        days = [day for day in days if day.source is not SnowSource.MISSING]
+        snows = np.array([day.snowfall >= MIN_SNOWFALL for day in days])
         temperatures = np.array([day.temperature for day in days])
         months = np.array([day.date.month for day in days])
         falls = np.array([day.snowfall for day in days])
@@ -89,7 +89,7 @@ class Climate:
         anomalies = np.zeros(len(days))
         for month in range(1, 13):
             own = months == month
-            if own.sum() < LEAST_DAYS or not (snows & own).any():
+            if own.sum() < MIN_DAYS or not (snows & own).any():
                 continue
             amounts = falls[own & snows]
             mean, variance = amounts.mean(), max(amounts.var(), 1e-4 * amounts.mean() ** 2)
@@ -106,7 +106,7 @@ class Climate:
             )
         if not climates:
             raise InputError(
-                f"the weather: no month with snow has {LEAST_DAYS} days, to fit a generator to"
+                f"the weather: no month with snow has {MIN_DAYS} days, to fit a generator to"
             )
         pairs = anomalies[:-1] * anomalies[1:]
         spread = float((anomalies**2).mean())
@@ -137,7 +137,7 @@ class Climate:
                     1.0 - self.persistence**2
                 ) * random.normal(0.0, climate.deviation)
                 snow = random.random() < (climate.after_snow if snow else climate.after_dry)
-                depth = min(random.gamma(climate.shape, climate.scale), MOST_SNOWFALL)
+                depth = min(random.gamma(climate.shape, climate.scale), MAX_SNOWFALL)
                 shift = climate.snow_shift if snow else 0.0
                 fall = round(float(depth), 3) if snow else 0.0
                 warm = round(climate.temperature + anomaly - shift, 1)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Optional
 
-from snowshed.season.accumulation import Day
+from snowshed.season.accumulation import WinterDay
 from snowshed.season.cover import end_of_readings
 from snowshed.season.settings import SeasonSettings
 
@@ -25,7 +25,7 @@ def first_staying(events: pd.DataFrame) -> Optional[int]:
 
 
 def assumptions(
-    table: pd.DataFrame, days: Sequence[Day], settings: SeasonSettings
+    table: pd.DataFrame, days: Sequence[WinterDay], settings: SeasonSettings
 ) -> Iterator[str]:
     """Yield the assumptions of a season on ground, settling and strength of the snow.
 
@@ -72,7 +72,7 @@ def assumptions(
 
 def notes(
     dx: float,
-    days: Sequence[Day],
+    days: Sequence[WinterDay],
     settings: SeasonSettings,
     events: pd.DataFrame,
     staying: Optional[int],
@@ -93,13 +93,13 @@ def notes(
         From `first_staying`.
     """
     return [
-        *_of_slabs(dx, days, settings),
-        *_of_ageing(settings),
-        *_of_slide_offs(events, staying),
+        *_slab_notes(dx, days, settings),
+        *_ageing_notes(settings),
+        *_slide_off_notes(events, staying),
     ]
 
 
-def _of_slabs(dx: float, days: Sequence[Day], settings: SeasonSettings) -> Iterator[str]:
+def _slab_notes(dx: float, days: Sequence[WinterDay], settings: SeasonSettings) -> Iterator[str]:
     released = [day for day in days if day.event is not None]
     estimated = sum(day.density is not None and day.weather.density is None for day in days)
     if estimated:
@@ -115,7 +115,7 @@ def _of_slabs(dx: float, days: Sequence[Day], settings: SeasonSettings) -> Itera
         yield "no snow slid: friction and adhesion held it"
 
 
-def _of_ageing(settings: SeasonSettings) -> Iterator[str]:
+def _ageing_notes(settings: SeasonSettings) -> Iterator[str]:
     if settings.settling:
         yield (
             f"the stack settles between events ({settings.settling}). Published rates differ by a "
@@ -128,7 +128,7 @@ def _of_ageing(settings: SeasonSettings) -> Iterator[str]:
         )
 
 
-def _of_slide_offs(events: pd.DataFrame, staying: Optional[int]) -> Iterator[str]:
+def _slide_off_notes(events: pd.DataFrame, staying: Optional[int]) -> Iterator[str]:
     if staying is not None:
         yield (
             f"from event {staying} on, snow that should have left stayed on the panel; later slabs "

@@ -1,6 +1,6 @@
 """Days of a season from the observations of a station: the only place that decides.
 
-`Source` names the origin of a day's new snow, for every format. Each day uses the first of the
+`SnowSource` names the origin of a day's new snow, for every format. Each day uses the first of the
 winter's columns (`columns`) with a value; days without a value are filled by a stated rule, or are
 missing. A missing value is not zero, and is marked.
 """
@@ -19,17 +19,17 @@ from snowshed.base.arrays import Booleans, Floats, Integers
 from snowshed.base.formatting import plural
 from snowshed.io.weather.observation import Station
 from snowshed.season.daily_means import StationDays, days_of_station
-from snowshed.season.depth_rises import LEAST_RISE, DepthSnow, SharedRise, snow_of_depth
+from snowshed.season.depth_rises import MIN_RISE, DepthSnow, SharedRise, snow_of_depth
 from snowshed.season.extremes import RECORD_DAY, RECORD_WORDS
 from snowshed.season.gauge import RULE, snow_of_gauge
 from snowshed.season.season_record import SeasonRecord
-from snowshed.season.source import Source
+from snowshed.season.source import SnowSource
 from snowshed.season.station_choice import CONTRADICTION, Chooser, StationChoice, StationColumn
 from snowshed.season.temperatures import filled_temperatures, some_days
 from snowshed.season.weather_row import Weather
 from snowshed.season.winter_years import Calendar, calendar_of
 
-NAMED = 3  # winters that a note names
+MAX_NAMED_WINTERS = 3  # winters that a note names
 
 
 @dataclass
@@ -37,12 +37,12 @@ class _DailySnow:
     """The new snow of every day, m, its source and the reason where it is not the file's."""
 
     fall: Floats
-    source: list[Source]
+    source: list[SnowSource]
     reason: list[str]
     choices: dict[int, StationChoice] = field(default_factory=dict)
 
 
-def record_of(station: Station, source: str, only: Optional[Source] = None) -> SeasonRecord:
+def record_of(station: Station, source: str, only: Optional[SnowSource] = None) -> SeasonRecord:
     """Return the days of a station as a record.
 
     Parameters
@@ -83,7 +83,9 @@ def record_of(station: Station, source: str, only: Optional[Source] = None) -> S
             None,
             round(float(warm[n]), 2),
             snow_depth=None if np.isnan(depth.depth[n]) else float(depth.depth[n]),
-            source=Source.MODEL if modelled and snow.source[n] is Source.GAUGE else snow.source[n],
+            source=SnowSource.MODEL
+            if modelled and snow.source[n] is SnowSource.GAUGE
+            else snow.source[n],
             reason=snow.reason[n],
         )
         for n, day in enumerate(days.dates)
@@ -103,7 +105,7 @@ def _check_order(station: Station, source: str) -> None:
 
 def _columns(
     days: StationDays, warm: Floats, far: Booleans, depth: DepthSnow, notes: list[str]
-) -> dict[Source, StationColumn]:
+) -> dict[SnowSource, StationColumn]:
     """Return the columns of a station with snow; appends notes on left-out values."""
     hand = days.new_snow.copy()
     beyond = hand > RECORD_DAY
@@ -122,21 +124,21 @@ def _columns(
             f"{RECORD_DAY:g} m of snow: {RECORD_WORDS}"
         )
     return {
-        Source.HAND: StationColumn(Source.HAND, *_whole(hand, days.part_snow)),
-        Source.GAUGE: StationColumn(
-            Source.GAUGE, *_whole(gauge, days.part_water | (far & (days.water > 0.0)))
+        SnowSource.HAND: StationColumn(SnowSource.HAND, *_without_parts(hand, days.part_snow)),
+        SnowSource.GAUGE: StationColumn(
+            SnowSource.GAUGE, *_without_parts(gauge, days.part_water | (far & (days.water > 0.0)))
         ),
-        Source.DEPTH: StationColumn(Source.DEPTH, depth.snow, depth.filled),
+        SnowSource.DEPTH: StationColumn(SnowSource.DEPTH, depth.snow, depth.filled),
     }
 
 
-def _whole(snow: Floats, part: Booleans) -> tuple[Floats, Booleans]:
+def _without_parts(snow: Floats, part: Booleans) -> tuple[Floats, Booleans]:
     """Return snow and whether it is no observation: without any, a part of a day tells nothing."""
     return np.where(part & (snow == 0.0), np.nan, snow), part & (snow > 0.0)
 
 
 def _check_columns(
-    columns: Mapping[Source, StationColumn], only: Optional[Source], form: str, source: str
+    columns: Mapping[SnowSource, StationColumn], only: Optional[SnowSource], form: str, source: str
 ) -> None:
     if only is not None and np.isnan(columns[only].snow).all():
         raise InputError(f"{source}: no {only.label} in any row of this {form} file")
@@ -158,13 +160,13 @@ def _calendar(days: StationDays, warm: Floats, latitude: Optional[float]) -> Cal
 def _chosen(
     days: StationDays,
     chooser: Chooser,
-    columns: Mapping[Source, StationColumn],
+    columns: Mapping[SnowSource, StationColumn],
     calendar: Calendar,
     totals: Sequence[SharedRise],
 ) -> _DailySnow:
     """Return the new snow of every day by the columns of its winter."""
     count = len(days.dates)
-    snow = _DailySnow(np.zeros(count), [Source.MISSING] * count, [""] * count)
+    snow = _DailySnow(np.zeros(count), [SnowSource.MISSING] * count, [""] * count)
     years = np.array([calendar.year(day) for day in days.dates])
     for year in np.unique(years).tolist():
         choice = chooser.of(years == year)
@@ -177,7 +179,7 @@ def _chosen(
 
 
 def _take(
-    snow: _DailySnow, n: int, choice: StationChoice, columns: Mapping[Source, StationColumn]
+    snow: _DailySnow, n: int, choice: StationChoice, columns: Mapping[SnowSource, StationColumn]
 ) -> None:
     for source in choice.observing:
         if columns[source].known[n]:
@@ -186,7 +188,7 @@ def _take(
     for source in (*choice.observing, *([choice.filling] if choice.filling else [])):
         fall = columns[source].snow[n]
         if not np.isnan(fall):
-            snow.fall[n], snow.source[n] = fall, Source.FILLED
+            snow.fall[n], snow.source[n] = fall, SnowSource.FILLED
             part = columns[source].filled[n]
             snow.reason[n] = f"from {'a part of ' if part else ''}the {source.label}"
             return
@@ -196,7 +198,7 @@ def _share_out(snow: _DailySnow, total: SharedRise) -> None:
     """Take snow that other columns observed out of a rise over several days."""
     own, observed = [], 0.0
     for n in total.days:
-        if snow.source[n] is Source.DEPTH or snow.reason[n].endswith(Source.DEPTH.label):
+        if snow.source[n] is SnowSource.DEPTH or snow.reason[n].endswith(SnowSource.DEPTH.label):
             own.append(n)
             snow.reason[n] = f"part of a rise of {total.rise:.2f} m over {len(total.days)} days"
         else:
@@ -227,22 +229,22 @@ def _gaps_text(spans: Integers) -> str:
 
 
 def _notes(snow: _DailySnow, days: StationDays, calendar: Calendar) -> Iterator[str]:
-    if Source.GAUGE in snow.source:
+    if SnowSource.GAUGE in snow.source:
         yield RULE
-    if Source.DEPTH in snow.source:
+    if SnowSource.DEPTH in snow.source:
         yield (
-            f"new snow is the daily rise of the snow depth, from {100 * LEAST_RISE:g} cm; it is "
+            f"new snow is the daily rise of the snow depth, from {100 * MIN_RISE:g} cm; it is "
             "too small, because snow settles meanwhile"
         )
     yield from _contradictions(snow, calendar)
-    filled = [n for n, source in enumerate(snow.source) if source is Source.FILLED]
+    filled = [n for n, source in enumerate(snow.source) if source is SnowSource.FILLED]
     if filled:
         kinds = sorted({_kind(snow.reason[n]) for n in filled})
         yield (
             f"the snow of {some_days(days.dates, filled)} is filled, "
             f"{sum(snow.fall[n] for n in filled):.2f} m in all: {'; '.join(kinds)}"
         )
-    missing = [n for n, source in enumerate(snow.source) if source is Source.MISSING]
+    missing = [n for n, source in enumerate(snow.source) if source is SnowSource.MISSING]
     if missing:
         yield (
             f"the snow of {some_days(days.dates, missing)} is unknown; no snow is laid on the "
@@ -256,7 +258,7 @@ def _kind(reason: str) -> str:
 
 def _contradictions(snow: _DailySnow, calendar: Calendar) -> Iterator[str]:
     """Yield how columns contradict each other, with their sums, for some winters by name."""
-    groups: dict[tuple[Source, frozenset[Source]], list[int]] = {}
+    groups: dict[tuple[SnowSource, frozenset[SnowSource]], list[int]] = {}
     for year, choice in snow.choices.items():
         wrong = choice.contradicted or _far_off(choice)
         if wrong and choice.observing:
@@ -267,9 +269,13 @@ def _contradictions(snow: _DailySnow, calendar: Calendar) -> Iterator[str]:
             + ", ".join(
                 f"{source.label} {total:.3g} m" for source, total in snow.choices[year].sums.items()
             )
-            for year in years[:NAMED]
+            for year in years[:MAX_NAMED_WINTERS]
         )
-        more = f"; and {len(years) - NAMED} more winters" if len(years) > NAMED else ""
+        more = (
+            f"; and {len(years) - MAX_NAMED_WINTERS} more winters"
+            if len(years) > MAX_NAMED_WINTERS
+            else ""
+        )
         yield (
             f"columns contradict each other by more than a factor of {CONTRADICTION:g} ({named}"
             f"{more}); the {used.label} is used, not the "
@@ -277,7 +283,7 @@ def _contradictions(snow: _DailySnow, calendar: Calendar) -> Iterator[str]:
         )
 
 
-def _far_off(choice: StationChoice) -> frozenset[Source]:
+def _far_off(choice: StationChoice) -> frozenset[SnowSource]:
     """Return the sources that contradict the one in use, which stands."""
     if not choice.observing:
         return frozenset()
@@ -291,13 +297,13 @@ def _far_off(choice: StationChoice) -> frozenset[Source]:
     )
 
 
-def _why(used: Source, wrong: frozenset[Source]) -> str:
-    if used is Source.DEPTH and Source.GAUGE in wrong:
+def _why(used: SnowSource, wrong: frozenset[SnowSource]) -> str:
+    if used is SnowSource.DEPTH and SnowSource.GAUGE in wrong:
         return ": gauges catch too little snow in wind or stand still (WMO/TD-872, 1998)"
-    if used is Source.DEPTH:
+    if used is SnowSource.DEPTH:
         return ": a cover cannot rise by more than the snowfall"
-    if used is Source.GAUGE and Source.DEPTH in wrong:
+    if used is SnowSource.GAUGE and SnowSource.DEPTH in wrong:
         return ": a cover settles, melts and drifts away while it snows"
-    if used is Source.GAUGE:
+    if used is SnowSource.GAUGE:
         return ": no new snow was entered all winter"
     return ": measured new snow is preferred to derived"

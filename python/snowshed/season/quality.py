@@ -14,13 +14,13 @@ from datetime import date, timedelta
 from typing import Optional
 
 from snowshed._core import InputError
-from snowshed.season.source import Source
+from snowshed.season.source import SnowSource
 from snowshed.season.weather_row import Weather
 from snowshed.season.winter_years import Calendar, SnowSeason, snow_season_of
 
 COVERAGE = 0.9  # of the days of the snow season, on which snow must have been observed
-LONGEST_ROW_GAP = 3  # days between two rows of a table, covered by the later row
-LISTED = timedelta(days=1.5)  # from row to row, half of them more, in a list of snowfalls
+MAX_ROW_GAP_DAYS = 3  # days between two rows of a table, covered by the later row
+LIST_SPACING = timedelta(days=1.5)  # from row to row, half of them more, in a list of snowfalls
 
 
 @dataclass(frozen=True)
@@ -53,11 +53,11 @@ class WinterQuality:
     rows: Sequence[Weather]
     season: int
     observed: int
-    sources: Counter[Source]
+    sources: Counter[SnowSource]
     filled_snow: float
     counts: bool
     listed: bool = False
-    sums: Mapping[Source, float] = field(default_factory=dict)
+    sums: Mapping[SnowSource, float] = field(default_factory=dict)
 
     @property
     def share(self) -> float:
@@ -91,7 +91,7 @@ def qualities_of(
     rows: Sequence[Weather],
     calendar: Calendar,
     coverage: float = COVERAGE,
-    sums: Optional[Mapping[int, Mapping[Source, float]]] = None,
+    sums: Optional[Mapping[int, Mapping[SnowSource, float]]] = None,
 ) -> tuple[list[WinterQuality], SnowSeason]:
     """Return the quality of each winter from the first to the last row, and the snow season.
 
@@ -132,7 +132,7 @@ def qualities_of(
                 days,
                 seen,
                 Counter(row.source for row in own),
-                sum(row.snowfall for row in own if row.source is Source.FILLED),
+                sum(row.snowfall for row in own if row.source is SnowSource.FILLED),
                 bool(own) and seen >= coverage * days,
                 listed,
                 (sums or {}).get(year, {}),
@@ -143,10 +143,10 @@ def qualities_of(
 
 def is_list(rows: Sequence[Weather]) -> bool:
     """Return whether rows are a list of snowfalls: most lie more than a day apart."""
-    if len(rows) < 2 or any(row.source is not Source.GIVEN for row in rows):
+    if len(rows) < 2 or any(row.source is not SnowSource.GIVEN for row in rows):
         return False
     spans = [later.date - earlier.date for earlier, later in zip(rows, rows[1:])]
-    return sorted(spans)[len(spans) // 2] > LISTED
+    return sorted(spans)[len(spans) // 2] > LIST_SPACING
 
 
 def observed_days(rows: Sequence[Weather], begin: date, after: date) -> int:
@@ -154,10 +154,10 @@ def observed_days(rows: Sequence[Weather], begin: date, after: date) -> int:
     days = sorted({row.date.date().toordinal() for row in rows if row.source.observed})
     first, last = begin.toordinal(), after.toordinal()
     number = sum(first <= day < last for day in days)
-    if any(row.source is not Source.GIVEN for row in rows):
+    if any(row.source is not SnowSource.GIVEN for row in rows):
         return number
     for earlier, later in zip(days, days[1:]):
-        if later - earlier - 1 <= LONGEST_ROW_GAP:
+        if later - earlier - 1 <= MAX_ROW_GAP_DAYS:
             number += max(min(later, last) - max(earlier + 1, first), 0)
     return number
 
@@ -177,13 +177,13 @@ def spans(named: Sequence[tuple[str, Optional[str]]]) -> str:
     """
     groups: list[list[str]] = []
     before: Optional[str] = None
-    for name, said in named:
-        if said is not None and said == before:
+    for name, text in named:
+        if text is not None and text == before:
             groups[-1][1] = name
-        elif said is not None:
-            groups.append([name, name, said])
-        before = said
+        elif text is not None:
+            groups.append([name, name, text])
+        before = text
     return ", ".join(
-        f"{first} ({said})" if first == last else f"{first} to {last} ({said})"
-        for first, last, said in groups
+        f"{first} ({text})" if first == last else f"{first} to {last} ({text})"
+        for first, last, text in groups
     )

@@ -5,11 +5,11 @@ from __future__ import annotations
 from snowshed.base.formatting import plural
 from snowshed.season.quality import WinterQuality
 from snowshed.season.season_record import WinterList, whole_percent
-from snowshed.season.source import Source
+from snowshed.season.source import SnowSource
 
 HEAD = ("winter", "snow observed", "new snow, m", "source", "filled", "not known", "counts")
 ALIGN = "lrrlrrl"
-MOST_ROWS = 24  # on a console
+MAX_ROWS = 24  # on a console
 
 
 def title(winters: WinterList) -> str:
@@ -32,9 +32,9 @@ def quality_rows(winters: WinterList) -> list[tuple[str, ...]]:
 
 def console_rows(rows: list[tuple[str, ...]]) -> tuple[list[tuple[str, ...]], int]:
     """Return the rows for a console, and the number of further rows."""
-    if len(rows) <= MOST_ROWS:
+    if len(rows) <= MAX_ROWS:
         return rows, 0
-    half = MOST_ROWS // 2
+    half = MAX_ROWS // 2
     return [*rows[:half], ("...",) * len(HEAD), *rows[-half:]], len(rows) - 2 * half
 
 
@@ -51,7 +51,7 @@ def caption(winters: WinterList) -> str:
     if len(winters.winters) > 1:
         return f"Snow of {len(winters.winters)} winters; well observed in {len(winters.counted)}"
     winter = winters.winters[0]
-    filled = f"; filled: {_filled(winter)}" if winter.sources[Source.FILLED] else ""
+    filled = f"; filled: {_filled(winter)}" if winter.sources[SnowSource.FILLED] else ""
     return (
         f"Snow of {winter.name}: observed on {_observed(winter)}, source: {winter.source_text}"
         f"{filled}"
@@ -59,13 +59,13 @@ def caption(winters: WinterList) -> str:
 
 
 def _row(winter: WinterQuality) -> tuple[str, ...]:
-    missing = winter.sources[Source.MISSING]
+    missing = winter.sources[SnowSource.MISSING]
     return (
         winter.name,
         _observed(winter),
         f"{winter.snowfall:.2f}" if winter.rows else "",
         winter.source_text if winter.rows else "",
-        _filled(winter) if winter.sources[Source.FILLED] else "",
+        _filled(winter) if winter.sources[SnowSource.FILLED] else "",
         plural(missing, "day") if missing else "",
         "yes" if winter.counts else "no",
     )
@@ -80,4 +80,4 @@ def _observed(winter: WinterQuality) -> str:
 
 
 def _filled(winter: WinterQuality) -> str:
-    return f"{plural(winter.sources[Source.FILLED], 'day')}, {winter.filled_snow:.2f} m"
+    return f"{plural(winter.sources[SnowSource.FILLED], 'day')}, {winter.filled_snow:.2f} m"

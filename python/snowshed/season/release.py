@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
-class Balance:
+class SnowBalance:
     """The driving and the resisting stress of the snow on a panel, Pa."""
 
     driving: float
@@ -19,9 +19,9 @@ class Balance:
         return self.driving > self.resisting
 
 
-def balance(
+def snow_balance(
     load: float, tilt: float, friction: float, adhesion: float, gravity: float = 9.81
-) -> Balance:
+) -> SnowBalance:
     """Return the downslope part of the snow's weight, and the friction and adhesion against it.
 
     The snow is released if m g sin(Phi) > mu m g cos(Phi) + a (Mohr-Coulomb). Without adhesion the
@@ -43,9 +43,9 @@ def balance(
 
     Examples
     --------
-    >>> balance(10.0, 40.0, 0.7, 0.0).releases, balance(10.0, 30.0, 0.7, 0.0).releases
+    >>> snow_balance(10.0, 40.0, 0.7, 0.0).releases, snow_balance(10.0, 30.0, 0.7, 0.0).releases
     (True, False)
     """
     weight = load * gravity
     slope = math.radians(tilt)
-    return Balance(weight * math.sin(slope), friction * weight * math.cos(slope) + adhesion)
+    return SnowBalance(weight * math.sin(slope), friction * weight * math.cos(slope) + adhesion)

@@ -9,7 +9,7 @@ from typing import Optional
 
 from snowshed.base.formatting import plural
 from snowshed.season.quality import COVERAGE, WinterQuality, qualities_of, spans
-from snowshed.season.source import Source
+from snowshed.season.source import SnowSource
 from snowshed.season.weather_row import Weather
 from snowshed.season.winter_years import Calendar, SnowSeason, calendar_of
 
@@ -33,7 +33,7 @@ class SeasonRecord:
     rows: Sequence[Weather]
     notes: Sequence[str] = ()
     latitude: Optional[float] = None
-    sums: Mapping[int, Mapping[Source, float]] = field(default_factory=dict)
+    sums: Mapping[int, Mapping[SnowSource, float]] = field(default_factory=dict)
 
     @cached_property
     def calendar(self) -> Calendar:
@@ -101,18 +101,18 @@ class WinterList:
     @property
     def notes(self) -> list[str]:
         """Notes on the winters that count, and on the others."""
-        told = []
+        notes = []
         if self.excluded_text:
-            told.append(
+            notes.append(
                 f"left out are the winters whose snow was observed on less than "
                 f"{whole_percent(self.coverage)} of the days {self.season.text}: "
                 f"{self.excluded_text}"
             )
         if any(winter.listed for winter in self.winters):
-            told.append(
+            notes.append(
                 "the file lists snowfalls; its days without a row count as days without snow"
             )
-        return told
+        return notes
 
     @property
     def shortfalls(self) -> list[str]:
@@ -122,7 +122,7 @@ class WinterList:
             f"{self.season.text} ({whole_percent(winter.share)}); the snowfall of the others is "
             "unknown"
             for winter in self.winters
-            if winter.rows and not winter.counts and Source.GIVEN not in winter.sources
+            if winter.rows and not winter.counts and SnowSource.GIVEN not in winter.sources
         ]
 
     def data(self) -> list[dict[str, object]]:

@@ -13,7 +13,7 @@ from snowshed.snow.relations.settling import SettlingLaw, settled_densities
 
 #: More layers than a winter of hours with snow has; the lower half of more is merged in pairs, so
 #: that years of snow that stays cost no more than one.
-MOST_LAYERS = 1000
+MAX_LAYERS = 1000
 
 
 @dataclass
@@ -58,7 +58,7 @@ class SnowColumn:
         if mass > 0.0:
             self.masses = np.append(self.masses, mass)
             self.densities = np.append(self.densities, density)
-        if len(self.masses) > MOST_LAYERS:
+        if len(self.masses) > MAX_LAYERS:
             self._merge()
 
     def melt(self, mass: float) -> None:

@@ -12,17 +12,17 @@ from typing import Any, Optional
 from snowshed._core import InputError
 from snowshed.scene.components import Layer, Slab, Snow
 from snowshed.scene.scene import ResolvedScene, Scene
-from snowshed.season.accumulation import Day
+from snowshed.season.accumulation import WinterDay
 from snowshed.season.settings import SeasonSettings
 from snowshed.snow.relations.stiffness import YOUNGS_MODULUS
 from snowshed.snow.relations.strength import TENSILE_STRENGTH
 
-MOST_EVENTS = 1000  # as in a scene
-MOST_SNOWS = 250  # a scene has up to 256
+MAX_EVENTS = 1000  # as in a scene
+MAX_SNOWS = 250  # a scene has up to 256
 
 
 def season_scene(
-    base: ResolvedScene, days: Sequence[Day], settings: Optional[SeasonSettings] = None
+    base: ResolvedScene, days: Sequence[WinterDay], settings: Optional[SeasonSettings] = None
 ) -> ResolvedScene:
     """Return the scene whose events are the releases of a season.
 
@@ -43,16 +43,16 @@ def season_scene(
     """
     scene: dict[str, Any] = base.copied_data()
     released = [day for day in days if day.event is not None]
-    if len(released) > MOST_EVENTS:
-        raise InputError(f"{len(released)} releases; a scene has at most {MOST_EVENTS} events")
+    if len(released) > MAX_EVENTS:
+        raise InputError(f"{len(released)} releases; a scene has at most {MAX_EVENTS} events")
     if scene.get("bodies"):
         raise InputError("/bodies: a season lays its own snow; remove further bodies")
     natural: dict[str, Any] = scene["snow"]
     slab = scene.pop("slab", None) or {}
     strength = (settings or SeasonSettings()).strength
-    made = Scene.from_data(scene)
-    made._base_dir = base.base_dir
-    made.slab = Slab(
+    scene_of_season = Scene.from_data(scene)
+    scene_of_season._base_dir = base.base_dir
+    scene_of_season.slab = Slab(
         length=slab.get("length"),
         width=slab.get("width"),
         layers=[
@@ -64,8 +64,8 @@ def season_scene(
             for day, density in zip(released, _densities(released))
         ],
     )
-    made.set("events.count", len(released))
-    return made.resolve()
+    scene_of_season.set("events.count", len(released))
+    return scene_of_season.resolve()
 
 
 def snow_of_density(base: Mapping[str, Any], density: float, strength: Optional[str]) -> Snow:
@@ -104,12 +104,12 @@ def snow_of_density(base: Mapping[str, Any], density: float, strength: Optional[
     return snow
 
 
-def _densities(released: Sequence[Day]) -> list[float]:
+def _densities(released: Sequence[WinterDay]) -> list[float]:
     """Return densities of the slabs, kg/m3, rounded so that a scene can hold all of them."""
     for step in (1.0, 10.0):
         densities = [
             max(step * round(day.slab_load / day.slab_thickness / step), step) for day in released
         ]
-        if len(set(densities)) <= MOST_SNOWS:
+        if len(set(densities)) <= MAX_SNOWS:
             break
     return densities

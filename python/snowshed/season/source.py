@@ -5,12 +5,12 @@ from __future__ import annotations
 from enum import Enum
 
 
-class Source(Enum):
+class SnowSource(Enum):
     """Origin of the new snow of a day.
 
     Examples
     --------
-    >>> Source.DEPTH.label, Source.DEPTH.observed, Source.FILLED.observed
+    >>> SnowSource.DEPTH.label, SnowSource.DEPTH.observed, SnowSource.FILLED.observed
     ('snow depth', True, False)
     """
 
@@ -30,9 +30,9 @@ class Source(Enum):
     @property
     def observed(self) -> bool:
         """Whether the snow of such a day was observed."""
-        return self not in (Source.FILLED, Source.MISSING)
+        return self not in (SnowSource.FILLED, SnowSource.MISSING)
 
 
 #: Names of the sources in options (`--snow-from`).
-CHOICES = {"new-snow": Source.HAND, "depth": Source.DEPTH, "gauge": Source.GAUGE}
+CHOICES = {"new-snow": SnowSource.HAND, "depth": SnowSource.DEPTH, "gauge": SnowSource.GAUGE}
 AUTO = "auto"

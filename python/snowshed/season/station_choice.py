@@ -18,10 +18,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from snowshed.base.arrays import Booleans, Floats
-from snowshed.season.source import Source
+from snowshed.season.source import SnowSource
 
 CONTRADICTION = 2.0  # one column over the other, over a winter
-LEAST_DIFFERENCE = 0.1  # m over a winter
+MIN_DIFFERENCE = 0.1  # m over a winter
 COLD = -4.0  # degrees C; what falls on such days is snow for certain
 
 
@@ -39,7 +39,7 @@ class StationColumn:
         Whether its value was not observed on that day.
     """
 
-    source: Source
+    source: SnowSource
     snow: Floats
     filled: Booleans
 
@@ -65,10 +65,10 @@ class StationChoice:
         Sources that were left out or used last, because another contradicts them.
     """
 
-    observing: Sequence[Source]
-    filling: Source | None
-    sums: Mapping[Source, float]
-    contradicted: frozenset[Source] = frozenset()
+    observing: Sequence[SnowSource]
+    filling: SnowSource | None
+    sums: Mapping[SnowSource, float]
+    contradicted: frozenset[SnowSource] = frozenset()
 
 
 class Chooser:
@@ -86,71 +86,79 @@ class Chooser:
 
     def __init__(
         self,
-        columns: Mapping[Source, StationColumn],
+        columns: Mapping[SnowSource, StationColumn],
         temperature: Floats,
-        only: Source | None = None,
+        only: SnowSource | None = None,
     ) -> None:
         self.only = only
         self._cold = temperature <= COLD
         everything = np.ones(len(temperature), dtype=bool)
         self._all = {
-            source: column for source, column in columns.items() if _tells(column, everything)
+            source: column
+            for source, column in columns.items()
+            if _is_informative(column, everything)
         }
         idle = {source for source in self._all if source is not only and self._idle(source)}
         self._idle_columns = idle
         self.columns = {
             source: column for source, column in self._all.items() if source not in idle
         }
-        self._gauge_fails = Source.DEPTH in self._against(Source.GAUGE, everything)
+        self._gauge_fails = SnowSource.DEPTH in self._against(SnowSource.GAUGE, everything)
 
     def of(self, winter: Booleans) -> StationChoice:
         """Return the columns for the days of a winter (n,)."""
-        there = {source for source, column in self.columns.items() if _tells(column, winter)}
+        there = {
+            source for source, column in self.columns.items() if _is_informative(column, winter)
+        }
         sums = self._sums(winter)
         if self.only is not None:
             others = [source for source in self.columns if source is not self.only]
             return StationChoice([self.only], others[0] if others else None, sums)
-        with_hand = Source.HAND in self.columns
+        with_hand = SnowSource.HAND in self.columns
         choice = (self._with_hand if with_hand else self._without_hand)(winter, there, sums)
-        if max(sums.values(), default=0.0) <= LEAST_DIFFERENCE:
+        if max(sums.values(), default=0.0) <= MIN_DIFFERENCE:
             return choice
         unkept = {source for source in self._idle_columns if source in sums}
         return replace(choice, contradicted=choice.contradicted | unkept)
 
     def _with_hand(
-        self, winter: Booleans, there: set[Source], sums: Mapping[Source, float]
+        self, winter: Booleans, there: set[SnowSource], sums: Mapping[SnowSource, float]
     ) -> StationChoice:
-        order = [source for source in (Source.HAND, Source.DEPTH) if source in there]
-        stronger = self._against(Source.HAND, winter)
-        none_by_hand = sums.get(Source.HAND, 0.0) == 0.0 and Source.HAND in there
-        wrong: set[Source] = set()
-        if Source.DEPTH in stronger:
-            order = [Source.DEPTH, Source.HAND]
-            wrong.add(Source.HAND)
-        elif Source.GAUGE in stronger and none_by_hand and self._cold_gauge(winter):
-            return StationChoice([Source.GAUGE, *order], None, sums, frozenset({Source.HAND}))
-        filling: Source | None = None
-        if Source.GAUGE in there:
-            agrees = not any(self._contradict(Source.GAUGE, source, winter) for source in order)
-            filling = Source.GAUGE if agrees and not self._gauge_fails else None
+        order = [source for source in (SnowSource.HAND, SnowSource.DEPTH) if source in there]
+        stronger = self._against(SnowSource.HAND, winter)
+        none_by_hand = sums.get(SnowSource.HAND, 0.0) == 0.0 and SnowSource.HAND in there
+        wrong: set[SnowSource] = set()
+        if SnowSource.DEPTH in stronger:
+            order = [SnowSource.DEPTH, SnowSource.HAND]
+            wrong.add(SnowSource.HAND)
+        elif SnowSource.GAUGE in stronger and none_by_hand and self._cold_gauge(winter):
+            return StationChoice(
+                [SnowSource.GAUGE, *order], None, sums, frozenset({SnowSource.HAND})
+            )
+        filling: SnowSource | None = None
+        if SnowSource.GAUGE in there:
+            agrees = not any(self._contradict(SnowSource.GAUGE, source, winter) for source in order)
+            filling = SnowSource.GAUGE if agrees and not self._gauge_fails else None
         return StationChoice(order, filling, sums, frozenset(wrong))
 
     def _without_hand(
-        self, winter: Booleans, there: set[Source], sums: Mapping[Source, float]
+        self, winter: Booleans, there: set[SnowSource], sums: Mapping[SnowSource, float]
     ) -> StationChoice:
-        if Source.DEPTH in self._against(Source.GAUGE, winter):
-            return StationChoice([Source.DEPTH], None, sums, frozenset({Source.GAUGE}))
-        if Source.GAUGE in self._against(Source.DEPTH, winter):
-            return StationChoice([Source.GAUGE], None, sums, frozenset({Source.DEPTH}))
-        if self._gauge_fails and Source.DEPTH in there:
-            return StationChoice([Source.DEPTH], None, sums)
+        if SnowSource.DEPTH in self._against(SnowSource.GAUGE, winter):
+            return StationChoice([SnowSource.DEPTH], None, sums, frozenset({SnowSource.GAUGE}))
+        if SnowSource.GAUGE in self._against(SnowSource.DEPTH, winter):
+            return StationChoice([SnowSource.GAUGE], None, sums, frozenset({SnowSource.DEPTH}))
+        if self._gauge_fails and SnowSource.DEPTH in there:
+            return StationChoice([SnowSource.DEPTH], None, sums)
         if self._gauge_fails:
-            return StationChoice([], Source.GAUGE, sums)
+            return StationChoice([], SnowSource.GAUGE, sums)
         return StationChoice(
-            [source for source in (Source.GAUGE, Source.DEPTH) if source in there], None, sums
+            [source for source in (SnowSource.GAUGE, SnowSource.DEPTH) if source in there],
+            None,
+            sums,
         )
 
-    def _against(self, source: Source, days: Booleans) -> set[Source]:
+    def _against(self, source: SnowSource, days: Booleans) -> set[SnowSource]:
         """Return the other columns that contradict one with more snow than it has."""
         return {
             other
@@ -161,13 +169,15 @@ class Chooser:
             and np.subtract(*self._pair(other, source, days)) > 0.0
         }
 
-    def _contradict(self, first: Source, other: Source, days: Booleans) -> bool:
+    def _contradict(self, first: SnowSource, other: SnowSource, days: Booleans) -> bool:
         if first not in self.columns or other not in self.columns:
             return False
         less, more = sorted(self._pair(first, other, days))
-        return bool(more > CONTRADICTION * less and more - less > LEAST_DIFFERENCE)
+        return bool(more > CONTRADICTION * less and more - less > MIN_DIFFERENCE)
 
-    def _pair(self, reference: Source, other: Source, days: Booleans) -> tuple[float, float]:
+    def _pair(
+        self, reference: SnowSource, other: SnowSource, days: Booleans
+    ) -> tuple[float, float]:
         """Return the sums of two columns on the days of both."""
         first, second = self.columns[reference], self.columns[other]
         both = days & first.known & second.known
@@ -175,10 +185,10 @@ class Chooser:
 
     def _cold_gauge(self, winter: Booleans) -> bool:
         """Return whether the gauge has snow on days on which nothing else can fall."""
-        gauge = self.columns[Source.GAUGE]
-        return float(gauge.snow[winter & gauge.known & self._cold].sum()) > LEAST_DIFFERENCE
+        gauge = self.columns[SnowSource.GAUGE]
+        return float(gauge.snow[winter & gauge.known & self._cold].sum()) > MIN_DIFFERENCE
 
-    def _sums(self, winter: Booleans) -> dict[Source, float]:
+    def _sums(self, winter: Booleans) -> dict[SnowSource, float]:
         """Return the sum of each column on the common days of columns with data in the winter."""
         there = [column for column in self._all.values() if column.known[winter].any()]
         both = winter.copy()
@@ -189,21 +199,21 @@ class Chooser:
             column.source: float(np.nansum(column.snow[days & column.known])) for column in there
         }
 
-    def _idle(self, source: Source) -> bool:
+    def _idle(self, source: SnowSource) -> bool:
         """Return whether a column is zero throughout the file although another one has snow."""
         own = self._all[source]
         if np.nansum(own.snow) > 0.0:
             return False
         for other, column in self._all.items():
             both = own.known & column.known
-            if other is Source.GAUGE:
+            if other is SnowSource.GAUGE:
                 both &= self._cold
-            least = LEAST_DIFFERENCE if Source.HAND in (source, other) else 0.0
+            least = MIN_DIFFERENCE if SnowSource.HAND in (source, other) else 0.0
             if other is not source and float(column.snow[both].sum()) > least:
                 return True
         return False
 
 
-def _tells(column: StationColumn, days: Booleans) -> bool:
+def _is_informative(column: StationColumn, days: Booleans) -> bool:
     """Return whether a column has a value on any of some days."""
     return bool((days & ~np.isnan(column.snow)).any())

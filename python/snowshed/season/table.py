@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Union
 import numpy as np
 
 from snowshed.results.season_folder import SEASON_COLUMNS
-from snowshed.season.accumulation import Day
+from snowshed.season.accumulation import WinterDay
 from snowshed.season.clearance import below_panel, clearance
 from snowshed.season.cover import natural_cover
 from snowshed.season.settings import SeasonSettings
@@ -23,7 +23,7 @@ Row = Mapping[str, Union[str, float, int]]
 
 def season_table(
     scene: Mapping[str, Any],
-    days: Sequence[Day],
+    days: Sequence[WinterDay],
     settings: SeasonSettings,
     events: pd.DataFrame,
     outlines: pd.DataFrame,
@@ -56,7 +56,7 @@ def season_table(
     return pd.DataFrame(rows, columns=list(SEASON_COLUMNS)).astype({"event": "Int64"})
 
 
-def _panel_columns(day: Day) -> dict[str, Any]:
+def _panel_columns(day: WinterDay) -> dict[str, Any]:
     weather = day.weather
     midnight = not (weather.date.hour or weather.date.minute or weather.date.second)
     return {

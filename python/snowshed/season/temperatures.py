@@ -10,14 +10,14 @@ import numpy as np
 
 from snowshed.base.arrays import Booleans, Floats, Integers
 
-LONGEST_INTERPOLATION = 3  # days without temperature, between which a straight line is drawn
+MAX_INTERPOLATED_DAYS = 3  # days without temperature, between which a straight line is drawn
 AROUND = 7  # half width of the window of the mean, days of the year
-LEAST = 5  # measured days for such a mean
+MIN_MEASURED_DAYS = 5  # measured days for such a mean
 YEAR = 366
 
 
 def filled_temperatures(
-    dates: Sequence[date], measured: Floats, told: Optional[Booleans] = None
+    dates: Sequence[date], measured: Floats, is_measured: Optional[Booleans] = None
 ) -> tuple[Floats, Booleans, list[str]]:
     """Return the temperature of every day, the days far from a measurement, and notes.
 
@@ -31,7 +31,7 @@ def filled_temperatures(
         Days, in order.
     measured : (n,)
         Temperatures, degrees C; NaN: not measured; at least one is measured.
-    told : (n,)
+    is_measured : (n,)
         The days that notes count; None: all.
 
     Examples
@@ -43,11 +43,11 @@ def filled_temperatures(
     ordinals = np.array([day.toordinal() for day in dates])
     measured_days = np.flatnonzero(~np.isnan(measured))
     lined: Floats = np.interp(ordinals, ordinals[measured_days], measured[measured_days])
-    far = _distance(ordinals, ordinals[measured_days]) > LONGEST_INTERPOLATION
+    far = _distance(ordinals, ordinals[measured_days]) > MAX_INTERPOLATED_DAYS
     usual = _usual(dates, measured)
     climate = far & ~np.isnan(usual)
     filled = np.where(climate, usual, lined)
-    gaps = np.isnan(measured) & (True if told is None else told)
+    gaps = np.isnan(measured) & (True if is_measured is None else is_measured)
     return filled, far, _notes(dates, gaps & climate, gaps & far & ~climate, gaps & ~far)
 
 
@@ -97,7 +97,7 @@ def _usual(dates: Sequence[date], measured: Floats) -> Floats:
     window = np.arange(-AROUND, AROUND + 1)
     around = (np.arange(YEAR)[:, None] + window) % YEAR
     total, number = sums[around].sum(axis=1), counts[around].sum(axis=1)
-    means = np.where(number >= LEAST, total / np.maximum(number, 1), np.nan)
+    means = np.where(number >= MIN_MEASURED_DAYS, total / np.maximum(number, 1), np.nan)
     return np.asarray(means[place], dtype=float)
 
 

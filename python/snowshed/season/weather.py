@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Optional, Union
 from snowshed._core import InputError
 from snowshed.base.formatting import number_in
 from snowshed.base.messages import quoted
-from snowshed.base.notes import tell
+from snowshed.base.notes import issue_note
 from snowshed.base.paths import PathLike
 from snowshed.io.csv_table import TableRow, frame_as_text, read_text_table
 from snowshed.io.weather.joined import read_stations
@@ -28,7 +28,7 @@ from snowshed.season.checks import NO_SNOW, check_rows
 from snowshed.season.observed import record_of
 from snowshed.season.season_record import SeasonRecord
 from snowshed.season.source import AUTO, CHOICES
-from snowshed.season.weather_row import MOST_SNOWFALL, Weather
+from snowshed.season.weather_row import MAX_SNOWFALL, Weather
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -48,7 +48,7 @@ class _Column:
 
 COLUMNS: Mapping[str, _Column] = {
     "snowfall_m": _Column(
-        0.0, MOST_SNOWFALL, "m", required=True, filled=True, hint="; is it in cm, mm or inches?"
+        0.0, MAX_SNOWFALL, "m", required=True, filled=True, hint="; is it in cm, mm or inches?"
     ),
     "temperature_c": _Column(-90.0, 40.0, "degrees C", required=True, filled=True),
     "density_kg_m3": _Column(10.0, 700.0, "kg/m3"),
@@ -97,7 +97,7 @@ def read_season(season: Season) -> list[Weather]:
     """
     record = read_record(season)
     for note in record.notes:
-        tell(note)
+        issue_note(note)
     return [*record.rows]
 
 
@@ -141,13 +141,13 @@ def read_record(
         )
     if len(files) > 1 or temperature is not None:
         joined = read_stations(files, None if temperature is None else Path(temperature))
-        return _of_station(joined, " and ".join(map(str, files)), snow_from)
+        return _station_record(joined, " and ".join(map(str, files)), snow_from)
     if files:
         season = files[0]
     if isinstance(season, (str, os.PathLike)):
         station = read_station(Path(season))
         if station is not None:
-            return _of_station(station, str(season), snow_from)
+            return _station_record(station, str(season), snow_from)
         hint = f"the first line names the columns: {', '.join(ALLOWED)}"
         table, name = read_text_table(Path(season), hint, _check_columns), str(season)
     elif isinstance(season, Sequence):
@@ -174,7 +174,7 @@ def _weather_files(season: Season) -> list[Path]:
     return []
 
 
-def _of_station(station: Station, source: str, snow_from: str) -> SeasonRecord:
+def _station_record(station: Station, source: str, snow_from: str) -> SeasonRecord:
     record = record_of(station, source, CHOICES.get(snow_from))
     table_rows = [TableRow(source, f"line {row.line}", row.line, {}) for row in record.rows]
     notes = [f"the weather is of a file in the format {station.format}", *record.notes]

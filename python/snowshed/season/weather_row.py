@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import Optional
 
-from snowshed.season.source import Source
+from snowshed.season.source import SnowSource
 
 #: In a row, which may hold the snow of several days.
-MOST_SNOWFALL = 3.0  # m
+MAX_SNOWFALL = 3.0  # m
 
 
 @dataclass(frozen=True)
@@ -46,5 +46,5 @@ class Weather:
     friction: Optional[float] = None
     adhesion: Optional[float] = None
     snow_depth: Optional[float] = None
-    source: Source = Source.GIVEN
+    source: SnowSource = SnowSource.GIVEN
     reason: str = ""

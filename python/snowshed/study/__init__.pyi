@@ -11,7 +11,7 @@ from .factors import sobol as sobol
 from .formats import export as export
 from .formats import to_dataset as to_dataset
 from .remeasuring import remeasure as remeasure
-from .scene_hash import Run as Run
+from .scene_hash import RunKey as RunKey
 from .season_part import SeasonPart as SeasonPart
 from .session import resume as resume
 from .table import read_table as read_table

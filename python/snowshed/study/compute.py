@@ -105,7 +105,7 @@ def _outcome(task: RunTask, folder: Path, error: Optional[str]) -> RunOutcome:
     events = runs.rows(folder)
     status = "done" if error is None else "failed"
     begun = (folder / "scene.json").is_file()  # else it failed before there was anything
-    particles = dict(runs.packed(folder)) if task.keep_particles and begun else {}
+    particles = dict(runs.stored_data(folder)) if task.keep_particles and begun else {}
     facts = results.read_run()
     notes = tuple(facts.get("notes", ()))
     return RunOutcome(task.hash, status, events, _timing(facts), error, particles, notes)
@@ -135,13 +135,13 @@ def _weighted(report: Optional[FractionReporter]) -> Optional[Reporter]:
     if report is None:
         return None
 
-    def tell(progress: Progress) -> None:
+    def report_progress(progress: Progress) -> None:
         event, count = progress.event, progress.count
         within = progress.fraction * count - (event - 1)  # part of this event
         done = event * (event - 1) / 2 + within * event
         report(done / (count * (count + 1) / 2))
 
-    return tell
+    return report_progress
 
 
 @contextmanager

@@ -17,14 +17,14 @@ from snowshed.io.atomic import write_text
 from snowshed.scene.scene import Scene
 from snowshed.study import session, study_file
 from snowshed.study.factors import SEED, Part, axis
-from snowshed.study.scene_hash import Run
+from snowshed.study.scene_hash import RunKey
 from snowshed.study.season_part import DECIDED, SeasonPart
 from snowshed.study.table import read_table
 
 if TYPE_CHECKING:
     import pandas as pd
 
-LARGEST_STUDY = 1_000_000  # runs
+MAX_RUNS = 1_000_000  # runs
 
 #: Parameters that cannot vary, because they do not change a result.
 WITHOUT_EFFECT = ("title", "output", "numerics.threads")
@@ -162,8 +162,8 @@ class Study:
         for part in self.parts:
             self._check(part)
         count = sum(math.prod(len(factor) for factor in part) for part in self._seeded())
-        if count > LARGEST_STUDY:
-            raise InputError(f"has {count} runs; at most {LARGEST_STUDY} are allowed")
+        if count > MAX_RUNS:
+            raise InputError(f"has {count} runs; at most {MAX_RUNS} are allowed")
 
     @property
     def axes(self) -> list[str]:
@@ -171,7 +171,7 @@ class Study:
         paths = (path for part in self.parts for factor in part for path in factor.columns)
         return list(dict.fromkeys(paths))
 
-    def runs(self) -> list[Run]:
+    def runs(self) -> list[RunKey]:
         """Return the runs in order, the last factor varying fastest, seeds faster still.
 
         Raises
@@ -181,7 +181,7 @@ class Study:
         OSError
             If a file that the scene names cannot be read.
         """
-        runs: dict[str, Run] = {}
+        runs: dict[str, RunKey] = {}
         for point in self._points():
             run = self._run(point)
             runs.setdefault(run.hash, run)
@@ -313,10 +313,10 @@ class Study:
             for points in itertools.product(*(factor.points() for factor in part)):
                 yield {path: value for point in points for path, value in point.items()}
 
-    def _run(self, point: Mapping[str, object]) -> Run:
+    def _run(self, point: Mapping[str, object]) -> RunKey:
         try:
-            ready = self.scene.with_(point).resolve()
-            return Run.of(ready) if self.season is None else self.season.run(ready)
+            resolved = self.scene.with_(point).resolve()
+            return RunKey.of(resolved) if self.season is None else self.season.run(resolved)
         except InputError as error:
             values = ", ".join(f"{path} = {value}" for path, value in point.items())
             raise InputError(f"{values}: {error}" if values else str(error)) from None

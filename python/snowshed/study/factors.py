@@ -15,7 +15,7 @@ from typing import Optional
 from snowshed._core import InputError
 from snowshed.base.messages import shortened
 
-LARGEST_COUNT = 1_000_000  # values of one factor; more is a slip of the pen
+MAX_COUNT = 1_000_000  # values of one factor; more is a slip of the pen
 SCALES = ("linear", "log")
 #: Path of the seed of the particles' placement, which repeats a point of a study.
 SEED = "seeding.seed"
@@ -50,8 +50,8 @@ class Factor:
         if not counts:
             raise InputError("names no parameter; name at least one")
         for path, count in counts.items():
-            if not 0 < count <= LARGEST_COUNT:
-                raise InputError(f"{path}: {count} values; allowed are 1 to {LARGEST_COUNT}")
+            if not 0 < count <= MAX_COUNT:
+                raise InputError(f"{path}: {count} values; allowed are 1 to {MAX_COUNT}")
         if len(set(counts.values())) > 1:
             listed = ", ".join(f"{path} has {count}" for path, count in counts.items())
             raise InputError(
@@ -118,8 +118,8 @@ def linear(
     if stop < start:
         raise InputError(f"must not fall: from {start} to {stop}")
     steps = (float(stop) - float(start)) / step * (1 + 1e-9)
-    if not steps < LARGEST_COUNT:
-        raise InputError(f"has too many values; at most {LARGEST_COUNT} are allowed")
+    if not steps < MAX_COUNT:
+        raise InputError(f"has too many values; at most {MAX_COUNT} are allowed")
     return [_tidy(start + i * step) for i in range(math.floor(steps) + 1)]
 
 
@@ -212,8 +212,8 @@ def sobol(spans: Mapping[str, Span], count: int, *, seed: int = 1) -> Factor:
 def _sample(method: str, spans: Mapping[str, Span], count: int, seed: int) -> Factor:
     from scipy.stats import qmc
 
-    if not 0 < count <= LARGEST_COUNT:
-        raise InputError(f"count {count} is outside the allowed range (1 to {LARGEST_COUNT})")
+    if not 0 < count <= MAX_COUNT:
+        raise InputError(f"count {count} is outside the allowed range (1 to {MAX_COUNT})")
     if seed < 0:
         raise InputError(f"seed {seed} is negative")
     if not spans:
@@ -245,5 +245,5 @@ def _check_positive(*values: float) -> None:
 
 
 def _check_count(count: int) -> None:
-    if not 2 <= count <= LARGEST_COUNT:
-        raise InputError(f"count {count} is outside the allowed range (2 to {LARGEST_COUNT})")
+    if not 2 <= count <= MAX_COUNT:
+        raise InputError(f"count {count} is outside the allowed range (2 to {MAX_COUNT})")

@@ -51,8 +51,8 @@ class RunOutcome:
     error
         Reason why the run is not done.
     particles
-        Packed results of each completed event (see `MethodRun.packed`), by event; empty unless the
-        task asked for them.
+        Packed results of each completed event (see `MethodRun.stored_data`), by event; empty
+        unless the task asked for them.
     notes
         Notes on the results, as in run.json.
     """

@@ -51,7 +51,7 @@ CONDITION_HASHED_AS = {"separate": "slip", "slip": "slip of version 2"}
 
 
 @dataclass(frozen=True)
-class Run:
+class RunKey:
     """One run of a study.
 
     Attributes
@@ -67,7 +67,7 @@ class Run:
     scene: str
 
     @classmethod
-    def of(cls, scene: ResolvedScene, ageing: Optional[Ageing] = None) -> Run:
+    def of(cls, scene: ResolvedScene, ageing: Optional[Ageing] = None) -> RunKey:
         """Return the run of a scene, without the outputs that a study does not store.
 
         Parameters
@@ -81,10 +81,10 @@ class Run:
         --------
         >>> from snowshed import Scene
         >>> lab = Scene.preset("lab-50")
-        >>> one = Run.of(lab.resolve())
-        >>> one == Run.of(lab.set("numerics.threads", 3).resolve())
+        >>> one = RunKey.of(lab.resolve())
+        >>> one == RunKey.of(lab.set("numerics.threads", 3).resolve())
         True
-        >>> one.hash == Run.of(lab.set("panel.tilt", 51).resolve()).hash
+        >>> one.hash == RunKey.of(lab.set("panel.tilt", 51).resolve()).hash
         False
         """
         data = with_ageing(scene.copied_data(), ageing)
@@ -133,8 +133,8 @@ def content_hash(scene: Mapping[str, Any]) -> str:
     if content.get("terrain"):
         terrain = content["terrain"].items()
         content["terrain"] = {k: v for k, v in terrain if k not in TERRAIN_WITHOUT_EFFECT}
-    whole = {"snowshed": _core.version, "scene": _with_file_contents(content)}
-    text = json.dumps(whole, sort_keys=True, separators=(",", ":"))
+    hashed = {"snowshed": _core.version, "scene": _with_file_contents(content)}
+    text = json.dumps(hashed, sort_keys=True, separators=(",", ":"))
     return hashlib.sha256(text.encode()).hexdigest()[:HASH_DIGITS]
 
 

@@ -17,7 +17,7 @@ from snowshed.season.settings import SeasonSettings
 from snowshed.season.slabs import season_scene
 from snowshed.season.weather import read_season
 from snowshed.season.weather_row import Weather
-from snowshed.study.scene_hash import Run
+from snowshed.study.scene_hash import RunKey
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -85,7 +85,7 @@ class SeasonPart:
         """The rows of the winter; raises InputError where the file is wrong."""
         return read_season(self.weather)
 
-    def run(self, scene: ResolvedScene) -> Run:
+    def run(self, scene: ResolvedScene) -> RunKey:
         """Return the slide-offs of the winter from the panel of a scene as a run.
 
         Raises
@@ -99,8 +99,8 @@ class SeasonPart:
         days = accumulate(self.rows, self.settings, data["panel"]["tilt"], data["gravity"])
         if not any(day.event for day in days):
             raise InputError("no snow slides off all winter; there is nothing to compute")
-        made = season_scene(scene, days, self.settings)
-        return Run.of(made, stack_ageing(days, self.settings))
+        resolved = season_scene(scene, days, self.settings)
+        return RunKey.of(resolved, stack_ageing(days, self.settings))
 
     def data(self) -> dict[str, object]:
         """Return the table of a study file that `of` reads.

@@ -16,7 +16,7 @@ from typing import Optional
 import snowshed._core as _core
 from snowshed._core import InputError
 from snowshed.base.interrupt import InterruptRequest, deferred_interrupts
-from snowshed.base.notes import tell
+from snowshed.base.notes import issue_note
 from snowshed.base.paths import PathLike
 from snowshed.base.pool.pool import available_cores
 from snowshed.base.progress import Progress, Reporter
@@ -26,13 +26,13 @@ from snowshed.study.local import LocalWorkers
 from snowshed.study.locks import is_held, is_owner
 from snowshed.study.outcome import RunOutcome, RunTask
 from snowshed.study.owner import ownership, release_dead
-from snowshed.study.scene_hash import Run, is_hash
+from snowshed.study.scene_hash import RunKey, is_hash
 from snowshed.study.store import Store, StoredRun
 from snowshed.study.workers import Workers
 
 POLL_S = 0.25  # s between checks of interrupts and progress
 ELSEWHERE_S = 1.0  # s between checks of what other processes compute
-MOST_NOTES = 10  # that are said after a session, each once
+MAX_NOTES = 10  # that are said after a session, each once
 DEATHS = 3  # workers that may die of a run before it counts as failed
 
 
@@ -68,7 +68,7 @@ def compute_runs(
     folder: PathLike,
     study: str,
     axes: Sequence[str],
-    runs: Sequence[Run],
+    runs: Sequence[RunKey],
     *,
     jobs: Optional[int] = None,
     threads: Optional[int] = None,
@@ -167,17 +167,17 @@ def _compute(
             try:
                 session.run(_Narrator(session, progress, at_once) if progress else None)
             finally:
-                _tell_of_runs(session.notes)
+                _issue_run_notes(session.notes)
     finally:
         workers.close()
 
 
-def _tell_of_runs(notes: Counter[str]) -> None:
+def _issue_run_notes(notes: Counter[str]) -> None:
     """Give the notes on runs, the most frequent first."""
-    for note, runs in notes.most_common(MOST_NOTES):
-        tell(f"{runs} {'run' if runs == 1 else 'runs'}: {note}")
-    if len(notes) > MOST_NOTES:
-        tell(f"{len(notes) - MOST_NOTES} further notes on runs")
+    for note, runs in notes.most_common(MAX_NOTES):
+        issue_note(f"{runs} {'run' if runs == 1 else 'runs'}: {note}")
+    if len(notes) > MAX_NOTES:
+        issue_note(f"{len(notes) - MAX_NOTES} further notes on runs")
 
 
 def _check_version(store: Store, pending: Sequence[StoredRun]) -> None:
@@ -233,31 +233,31 @@ class _Session:
         self.deaths: Counter[str] = Counter()
         self.notes: Counter[str] = Counter()  # on how many runs each was made
 
-    def run(self, tell: Optional[Callable[[], None]]) -> None:
+    def run(self, report: Optional[Callable[[], None]]) -> None:
         """Compute until no run is missing."""
         try:
-            self._compute(tell)
+            self._compute(report)
         except StudyError:
             with suppress(StudyError):  # it may be the store that takes nothing more
                 self._stop()
             raise
 
-    def _compute(self, tell: Optional[Callable[[], None]]) -> None:
+    def _compute(self, report: Optional[Callable[[], None]]) -> None:
         while self.waiting or self.running or self.elsewhere:
             if self.interrupt.requested:
                 self._stop()
                 raise StudyInterrupted(self.store.folder)
             self._look_elsewhere()
             self._hand_out()
-            if tell:
-                tell()
+            if report:
+                report()
             ended = self._wait()
             self._hand_out()  # before anything is stored: no worker need wait for the disk
             ended.sort(key=lambda pair: pair[1].status == "unable")  # which raises: store the rest
             for run, outcome in ended:
                 self._settle(run, outcome)
-        if tell:
-            tell()
+        if report:
+            report()
 
     def _hand_out(self) -> None:
         while self.waiting and not self.interrupt.requested and self._has_room():

@@ -30,7 +30,7 @@ from snowshed.study.factors import SEED
 if TYPE_CHECKING:
     import pandas as pd
 
-LARGEST_TABLE = 1_000_000  # rows of a Parquet file, which packs them well
+MAX_ROWS = 1_000_000  # rows of a Parquet file, which packs them well
 #: Columns for physics and methods; rows that differ in them cannot be compared.
 SETTINGS = ("version", "dimension", "trimming", *ACCURACY)
 
@@ -125,8 +125,8 @@ class StackTable:
                 return cls.of(read_csv(path, as_text=True), path.stem)
             parquet = require("pyarrow.parquet", "study", "reading Parquet")
             count = parquet.read_metadata(path).num_rows
-            if count > LARGEST_TABLE:
-                raise InputError(f"{path}: {count} rows; at most {LARGEST_TABLE} are allowed")
+            if count > MAX_ROWS:
+                raise InputError(f"{path}: {count} rows; at most {MAX_ROWS} are allowed")
             return cls.of(pd.read_parquet(path), path.stem)
         except InputError:
             raise
@@ -151,10 +151,10 @@ class StackTable:
     @classmethod
     def _of_results(cls, folder: Path) -> StackTable:
         """Read a results folder; all numbers and choices of its scene's panel are axes."""
-        from snowshed.study.scene_hash import Run
+        from snowshed.study.scene_hash import RunKey
         from snowshed.study.table import scene_columns
 
-        run = Run.of(ResolvedScene.load(folder / "scene.json"))
+        run = RunKey.of(ResolvedScene.load(folder / "scene.json"))
         scene = scene_data(run.scene)
         axes = [f"panel.{name}" for name in scene.get("panel", {})]
         facts = {"hash": run.hash, **scene_columns(scene, axes)}

@@ -32,7 +32,7 @@ from snowshed.study.database import (
 )
 from snowshed.study.locks import holding
 from snowshed.study.outcome import RunOutcome
-from snowshed.study.scene_hash import Run, is_hash
+from snowshed.study.scene_hash import RunKey, is_hash
 
 STATUSES = ("pending", "done", "failed")
 WITHOUT_CHECKSUM = (
@@ -66,7 +66,7 @@ class Store:
     --------
     >>> from tempfile import TemporaryDirectory
     >>> from snowshed import Scene
-    >>> run = Run.of(Scene.preset("lab-50").resolve())
+    >>> run = RunKey.of(Scene.preset("lab-50").resolve())
     >>> with TemporaryDirectory() as folder, Store.create(folder) as store:
     ...     store.register("lab", [], [run])
     ...     store.claim(run.hash, "me"), store.claim(run.hash, "somebody else")
@@ -129,7 +129,12 @@ class Store:
         return self.folder / RUNNING
 
     def register(
-        self, study: str, axes: Sequence[str], runs: Iterable[Run], *, keep_particles: bool = False
+        self,
+        study: str,
+        axes: Sequence[str],
+        runs: Iterable[RunKey],
+        *,
+        keep_particles: bool = False,
     ) -> None:
         """Register a study with its runs; it replaces a study of the same name.
 

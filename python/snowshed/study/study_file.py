@@ -19,7 +19,7 @@ from snowshed.scene.accuracy_settings import ACCURACY, FORMER_NAMES, accuracy_of
 from snowshed.scene.components import Snow
 from snowshed.scene.scene import Scene
 from snowshed.study.factors import (
-    LARGEST_COUNT,
+    MAX_COUNT,
     SCALES,
     Factor,
     Part,
@@ -264,12 +264,12 @@ def _absolute(value: Any, folder: Path) -> Any:
 
 
 def _seeds(value: Any) -> list[int]:
-    if type(value) is int and 0 < value <= LARGEST_COUNT:
+    if type(value) is int and 0 < value <= MAX_COUNT:
         return list(range(1, value + 1))
     if isinstance(value, list) and value and all(type(seed) is int for seed in value):
         return value
     raise InputError(
-        f"seeds: {value!r} is neither a number of seeds (1 to {LARGEST_COUNT}) nor a list of them"
+        f"seeds: {value!r} is neither a number of seeds (1 to {MAX_COUNT}) nor a list of them"
     )
 
 

@@ -74,7 +74,7 @@ def read_table(
     columns += [*settings, *(("wall_s", *RUN_TIMING) if timing else ())]
     table = pd.DataFrame(rows, columns=list(dict.fromkeys(columns)))  # axes may be among them
     types: dict[str, Any] = {
-        **dict.fromkeys(_of_type("INTEGER"), "Int64"),
+        **dict.fromkeys(_columns_of_type("INTEGER"), "Int64"),
         **dict.fromkeys(NUMBERS, float),
     }
     for column in measured:
@@ -153,7 +153,7 @@ def _events(store: Store, study: str) -> dict[str, list[dict[str, Any]]]:
         " WHERE study = ? ORDER BY position, event.event",
         (study,),
     )
-    texts = _of_type("TEXT")
+    texts = _columns_of_type("TEXT")
     events: dict[str, list[dict[str, Any]]] = {}
     for hash_, *values in rows:
         row = dict(zip(names, values))
@@ -173,7 +173,7 @@ def _run_timings(store: Store, study: str) -> list[tuple[Any, ...]]:
     )
 
 
-def _of_type(kind: str) -> list[str]:
+def _columns_of_type(kind: str) -> list[str]:
     return [name for name, stored in STORED_TYPES.items() if stored == kind]
 
 

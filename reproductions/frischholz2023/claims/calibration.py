@@ -32,7 +32,7 @@ class Recovery:
     Attributes
     ----------
     ranked
-        From `snowshed.analysis.calibration.rank`: one row per parameter set, the best first.
+        From `snowshed.analysis.rank_sets`: one row per parameter set, the best first.
     ranges
         From `snowshed.analysis.calibration.Posterior.ranges`.
     """
@@ -90,8 +90,8 @@ def _upper(row: Mapping[Any, Any]) -> float:
 
 
 def is_the_laboratory(data: Recovery) -> Finding:
-    """Return that the laboratory's snow cannot be judged: its stacks exist in figures only."""
-    text = "the thesis prints the measured stacks as figures only; a comparison is impossible"
+    """Return an undecided finding: the thesis shows the measured stacks only in figures."""
+    text = "the thesis shows the measured stacks only in figures, so no comparison is possible"
     return Finding(UNDECIDED, text)
 
 
@@ -112,8 +112,8 @@ CALIBRATION: tuple[Claim[Recovery], ...] = (
     Claim(
         "beyond the thesis",
         "The posterior finds the snow (on synthetic stacks).",
-        "the true values of all parameters lie in their 95 % ranges, which go on to the end of the "
-        "grid where they are open; undecided if one does not (one draw of the errors, no noise)",
+        "the true values of all parameters lie in their 95 % ranges, which extend to the end of "
+        "the grid if they are open; undecided if one does not (one draw of the errors, no noise)",
         is_in_the_ranges,
     ),
 )

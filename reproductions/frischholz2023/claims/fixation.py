@@ -45,7 +45,7 @@ YIELD = (SLOPE, PRESSURE, COHESION)
 
 def effect(table: pd.DataFrame, parameter: str, target: str) -> Estimate:
     """Return the change of the mean stack over the range of a parameter, last event, m."""
-    rows = _last(_of_target(table, target), parameter)
+    rows = _last(_target_rows(table, target), parameter)
     low, high = (Estimate(row["mean_m"], row["noise_m"]) for row in (rows.iloc[0], rows.iloc[-1]))
     return high - low
 
@@ -63,7 +63,7 @@ def lowers(table: pd.DataFrame, parameter: str, target: str) -> Finding:
 def shortens_at_first(table: pd.DataFrame, parameter: str) -> Finding:
     """Test whether all stacks shrink from the first value of a parameter to the second."""
     findings = []
-    for event, rows in _by_event(_of_target(table, "length"), parameter):
+    for event, rows in _by_event(_target_rows(table, "length"), parameter):
         low, high = (Estimate(row["mean_m"], row["noise_m"]) for _, row in rows.iloc[:2].iterrows())
         what = f"length, second minus lowest {label(parameter).symbol}, event {event:g}"
         findings.append(negative(high - low, what, "m"))
@@ -74,7 +74,7 @@ def hardly_matter(table: pd.DataFrame, target: str) -> Finding:
     """Test whether the stack changes little over the ranges of both hardening parameters."""
     findings = []
     for parameter in (HARDENING, MODULUS):
-        mean = _last(_of_target(table, target), parameter)["mean_m"].mean()
+        mean = _last(_target_rows(table, target), parameter)["mean_m"].mean()
         change = effect(table, parameter, target).scaled(1 / mean)
         findings.append(small(change, HARDLY, _change(parameter, target), "%"))
     return all_of(findings)
@@ -82,7 +82,7 @@ def hardly_matter(table: pd.DataFrame, target: str) -> Finding:
 
 def events_matter_more(table: pd.DataFrame, target: str) -> Finding:
     """Test whether the events change the stack more than any parameter does over its range."""
-    first, last = _ends(_of_target(table, target))
+    first, last = _ends(_target_rows(table, target))
     effects = {
         parameter: effect(table, parameter, target)
         for parameter in dict.fromkeys(table["parameter"])
@@ -96,7 +96,7 @@ def events_matter_more(table: pd.DataFrame, target: str) -> Finding:
 
 def second_event_adds_most_length(table: pd.DataFrame) -> Finding:
     """Test whether the second event adds more length than the third."""
-    rows = _of_target(table, "length")
+    rows = _target_rows(table, "length")
     events = sorted(rows["event"].unique())
     if len(events) < 3:
         raise LookupError("three events")
@@ -113,7 +113,7 @@ def cohesive_snow_is_more_sensitive(table: pd.DataFrame) -> Finding:
     """
     findings = []
     for parameter in YIELD:
-        rows = _last(_of_target(table, "height"), parameter)
+        rows = _last(_target_rows(table, "height"), parameter)
         low, high = (_deviation(row) for row in (rows.iloc[0], rows.iloc[-1]))
         what = f"scatter at the highest {label(parameter).symbol} minus at the lowest"
         findings.append(positive(high - low, what, "m"))
@@ -124,7 +124,7 @@ def mass_makes_sensitive(table: pd.DataFrame) -> Finding:
     """Test whether heights scatter more after the last event than after the first."""
     findings = []
     for parameter in YIELD:
-        by_event = [rows for _, rows in _by_event(_of_target(table, "height"), parameter)]
+        by_event = [rows for _, rows in _by_event(_target_rows(table, "height"), parameter)]
         first, last = (
             mean_of([_deviation(row) for _, row in rows.iterrows()])
             for rows in (by_event[0], by_event[-1])
@@ -137,7 +137,7 @@ def mass_makes_sensitive(table: pd.DataFrame) -> Finding:
 def cohesion_drives(table: pd.DataFrame) -> Finding:
     """Test whether heights of all events hardly scatter over M and p0 where beta is small."""
     findings = []
-    for event, rows in _by_event(_of_target(table, "height"), COHESION):
+    for event, rows in _by_event(_target_rows(table, "height"), COHESION):
         for _, row in rows[rows["value"] < DRIVES * (1 - 1e-9)].iterrows():
             scatter = _deviation(row).scaled(1 / row["mean_m"])
             what = f"scatter at β {row['value']:g}, event {event:g}"
@@ -145,7 +145,7 @@ def cohesion_drives(table: pd.DataFrame) -> Finding:
     return all_of(findings)
 
 
-def _of_target(table: pd.DataFrame, target: str) -> pd.DataFrame:
+def _target_rows(table: pd.DataFrame, target: str) -> pd.DataFrame:
     return table[table["target"] == target]
 
 

@@ -15,12 +15,12 @@ from reproductions.frischholz2023.stages import ThesisComputation
 from reproductions.frischholz2023.studies import GRID, TRUTH, TRUTH_SEED
 from reproductions.frischholz2023.tables import PANEL_FRICTION, SAVED_DPI, settings_grid
 from snowshed._core import InputError
-from snowshed.analysis.calibration.comparison import read_simulated
+from snowshed.analysis.calibration.comparison import read_simulated_stacks
 from snowshed.analysis.calibration.measurements import Measurement
 from snowshed.analysis.calibration.misfit import RANKED, statistics
 from snowshed.analysis.calibration.report import Calibration, calibrate, write
 from snowshed.base.formatting import number, percent
-from snowshed.plot.html_page import Grid, Picture
+from snowshed.plot.html_page import HtmlTable, Picture
 from snowshed.plot.labels import label
 from snowshed.study.table import read_table
 
@@ -65,9 +65,11 @@ def build(work: ThesisComputation) -> Content:
     """
     stage, folder = work.study_stages["calibration"], work.folder.of_stage("calibration")
     if not stage.state().finished:
-        raise InputError("the grid is ranked when all of it is computed")
+        raise InputError("the grid can be ranked only when all its runs are computed")
     measured = synthetic(read_table(work.folder.runs, TRUTH))
-    result = calibrate(measured, read_simulated(work.folder.runs, GRID), steps=work.settings.steps)
+    result = calibrate(
+        measured, read_simulated_stacks(work.folder.runs, GRID), steps=work.settings.steps
+    )
     write(result, folder)
     tables = [
         ("Table 4.1.1: settings", settings_grid(printed.CALIBRATION, stage.scenes(GRID))),
@@ -93,7 +95,7 @@ def synthetic(truth: pd.DataFrame) -> list[Measurement]:
     """
     truth = truth.dropna(subset=["height_m", "length_m"])
     if truth.empty:
-        raise InputError("the runs that stand for the measurements are not computed")
+        raise InputError("the synthetic measurements are not computed")
     errors = np.random.default_rng(ERRORS_SEED)
     measured = []
     for row in truth.sort_values(["panel.tilt", "event"]).to_dict("records"):
@@ -105,7 +107,7 @@ def synthetic(truth: pd.DataFrame) -> list[Measurement]:
     return measured
 
 
-def statistics_grid(calibration: Calibration) -> Grid:
+def statistics_grid(calibration: Calibration) -> HtmlTable:
     """Return Table 4.2.1, the thesis's beside the synthetic one."""
     ours = statistics(calibration.ranked)
     rows = []
@@ -114,10 +116,10 @@ def statistics_grid(calibration: Calibration) -> Grid:
         synthetic_row = [_metres(ours[name][f"{quantity}_rmse_m"]) for name in thesis]
         here = f"here, {len(calibration.ranked)} triplets, synthetic truth"
         rows.append(["", here, *synthetic_row])
-    return Grid(["RMSE", "against", *thesis], rows, "ll" + "r" * len(thesis))
+    return HtmlTable(["RMSE", "against", *thesis], rows, "ll" + "r" * len(thesis))
 
 
-def scores_grid(calibration: Calibration) -> Grid:
+def scores_grid(calibration: Calibration) -> HtmlTable:
     """Return the scores of the calibrated snow, the thesis's beside the synthetic ones."""
     row = calibration.ranked
     for path, value in CALIBRATED.items():
@@ -130,10 +132,10 @@ def scores_grid(calibration: Calibration) -> Grid:
     if len(row):
         rank = f"{row['rank'].iloc[0]} of {len(calibration.ranked)} (synthetic)"
         rows.append(["rank by the rescaled mean", "1 of 48; " + printed.CALIBRATED_RANKS, rank])
-    return Grid(["score", "thesis (laboratory)", "here (synthetic truth)"], rows, "lrr")
+    return HtmlTable(["score", "thesis (laboratory)", "here (synthetic truth)"], rows, "lrr")
 
 
-def ranges_grid(ranges: pd.DataFrame) -> Grid:
+def ranges_grid(ranges: pd.DataFrame) -> HtmlTable:
     """Return the posterior's ranges beside the truth."""
     rows = []
     for row in ranges.to_dict("records"):
@@ -143,7 +145,7 @@ def ranges_grid(ranges: pd.DataFrame) -> Grid:
                 for low, high in (("lower_68", "upper_68"), ("lower_95", "upper_95"))]  # fmt: skip
         rows.append([known.axis, *(known.value(value) for value in values), *ends, row["open"]])
     head = ["parameter", "truth", "best triplet", "median", "68 %", "95 %", "open"]
-    return Grid(head, rows, "lrrrrrl")
+    return HtmlTable(head, rows, "lrrrrrl")
 
 
 def _metres(value: float) -> str:

@@ -24,9 +24,9 @@ from reproductions.frischholz2023.variants import (
 from snowshed.analysis.regression.deviations import FRAME_RATE
 from snowshed.analysis.regression.geometry import DAMPING_RATE
 from snowshed.analysis.regression.summary import QUARTILES
-from snowshed.base.formatting import NOTHING, percent
+from snowshed.base.formatting import MISSING, percent
 from snowshed.io.csv_table import write_csv
-from snowshed.plot.html_page import Grid
+from snowshed.plot.html_page import HtmlTable
 from snowshed.snow.stack.trimming import DEFAULT_TRIMMING, TRIMMINGS
 
 if TYPE_CHECKING:
@@ -81,16 +81,16 @@ def sample_text(stacks: pd.DataFrame) -> list[str]:
     ]
 
 
-def deviations_grid() -> Grid:
+def deviations_grid() -> HtmlTable:
     """Return each deviation and its reason."""
     rows = [
         [deviation.name, deviation.thesis, deviation.here, deviation.reason]
         for deviation in DEVIATIONS.values()
     ]
-    return Grid(["deviation", "the thesis", "here", "because"], rows, "llll")
+    return HtmlTable(["deviation", "the thesis", "here", "because"], rows, "llll")
 
 
-def changes_grid(stacks: pd.DataFrame) -> Grid:
+def changes_grid(stacks: pd.DataFrame) -> HtmlTable:
     """Return the change of a stack by each deviation, the largest change of H/L first."""
     rows = []
     for name in by_size(stacks):
@@ -98,14 +98,14 @@ def changes_grid(stacks: pd.DataFrame) -> Grid:
     if THESIS in set(stacks["variant"]):
         rows.append(["all except the trimming", *_changes(stacks, THESIS, DEFAULT_TRIMMING)])
         rows.append([_title(stacks, THESIS), *_changes(stacks, THESIS)])
-    return Grid(["undone", *QUANTITIES.values()], rows, "l" + "r" * len(QUANTITIES))
+    return HtmlTable(["undone", *QUANTITIES.values()], rows, "l" + "r" * len(QUANTITIES))
 
 
-def variations_grid(stacks: pd.DataFrame) -> Grid:
+def variations_grid(stacks: pd.DataFrame) -> HtmlTable:
     """Return the change of a stack by each variation of our settings."""
     there = [name for name in VARIATIONS if name in set(stacks["variant"])]
     rows = [[WORDS[name], *_changes(stacks, name)] for name in there]
-    return Grid(["varied", *QUANTITIES.values()], rows, "l" + "r" * len(QUANTITIES))
+    return HtmlTable(["varied", *QUANTITIES.values()], rows, "l" + "r" * len(QUANTITIES))
 
 
 def _changes(stacks: pd.DataFrame, name: str, trimming: Optional[str] = None) -> list[str]:
@@ -113,7 +113,7 @@ def _changes(stacks: pd.DataFrame, name: str, trimming: Optional[str] = None) ->
     return [change_text(estimate) for estimate in estimates]
 
 
-def errors_grid(errors: pd.DataFrame, stacks: pd.DataFrame) -> Grid:
+def errors_grid(errors: pd.DataFrame, stacks: pd.DataFrame) -> HtmlTable:
     """Return Tables 5.3.1 and 5.3.2 for the rows of each variant.
 
     Parameters
@@ -132,7 +132,7 @@ def errors_grid(errors: pd.DataFrame, stacks: pd.DataFrame) -> Grid:
         rows.append([name, str(row["trimming"]), str(row["model"]), *numbers, part])
     head = ["undone", "trimming rule", "model", *QUARTILES]
     head += ["mean absolute error", "on rows not trained on", "of the median prediction"]
-    return Grid(head, rows, "lll" + "r" * 7)
+    return HtmlTable(head, rows, "lll" + "r" * 7)
 
 
 def change_text(change: Estimate) -> str:
@@ -145,11 +145,11 @@ def change_text(change: Estimate) -> str:
     """
     if change.value == 0 and change.noise == 0:
         return "none"
-    noise = NOTHING if np.isnan(change.noise) else f"{100 * change.noise:.0f}"
+    noise = MISSING if np.isnan(change.noise) else f"{100 * change.noise:.0f}"
     return f"{100 * change.value:+.0f} ± {noise} %"
 
 
-def quartiles_grid(stacks: pd.DataFrame) -> Grid:
+def quartiles_grid(stacks: pd.DataFrame) -> HtmlTable:
     """Return the quartiles of H/L of each variant with its own runs, by both trimming rules."""
     rows = [
         [
@@ -162,7 +162,7 @@ def quartiles_grid(stacks: pd.DataFrame) -> Grid:
     ]
     printed = [f"{quartile:.3f}" for quartile in THESIS_QUARTILES["rbf"]]
     rows.append(["Table 5.3.1, RBF", "not printed", *printed])
-    return Grid(["undone", "trimming rule", "Q1", "Q2", "Q3", "Q4"], rows, "llrrrr")
+    return HtmlTable(["undone", "trimming rule", "Q1", "Q2", "Q3", "Q4"], rows, "llrrrr")
 
 
 def _title(stacks: pd.DataFrame, variant: str) -> str:

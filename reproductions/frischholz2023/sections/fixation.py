@@ -23,8 +23,8 @@ from reproductions.frischholz2023.tables import (
 from snowshed._core import InputError
 from snowshed.analysis.sensitivity.noise import seeding_noise
 from snowshed.analysis.sensitivity.report import evaluate_sensitivity
-from snowshed.analysis.sensitivity.stored import StoredRuns, read_stored
-from snowshed.plot.html_page import Grid, Picture
+from snowshed.analysis.sensitivity.stored import StudyRuns, read_study_runs
+from snowshed.plot.html_page import HtmlTable, Picture
 from snowshed.plot.labels import label
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ def build(work: ThesisComputation) -> Content:
     """Return the content; raises InputError if nothing of it is computed."""
     runs, folder = work.folder.runs, work.folder.of_stage("fixation")
     table = evaluate_sensitivity(runs, folder, "fixation", study=FIXATION)
-    stored = read_stored(runs, FIXATION)
+    stored = read_study_runs(runs, FIXATION)
     own = work.settings.fixation_seeds > 1
     noise = seeding_noise(stored if own else _other(work))
     table = with_noise(table, noise, work.settings.fixation_seeds)
@@ -72,9 +72,9 @@ def build(work: ThesisComputation) -> Content:
     return Content(text, tables, pictures, claims)
 
 
-def _other(work: ThesisComputation) -> StoredRuns:
+def _other(work: ThesisComputation) -> StudyRuns:
     try:
-        return read_stored(work.folder.runs, INDEX)
+        return read_study_runs(work.folder.runs, INDEX)
     except InputError as error:
         raise InputError(f"its noise is that of the stage s-index: {error}") from None
 
@@ -98,7 +98,7 @@ def with_noise(table: pd.DataFrame, noise: pd.DataFrame, seeds: int) -> pd.DataF
     return table.assign(noise_m=relative * table["mean_m"] / np.sqrt(table["points"] * seeds))
 
 
-def fixation_grid(table: pd.DataFrame) -> Grid:
+def fixation_grid(table: pd.DataFrame) -> HtmlTable:
     """Return means and deviations, one row per parameter, value and target."""
     events = sorted(table["event"].unique())
     rows = []
@@ -111,4 +111,4 @@ def fixation_grid(table: pd.DataFrame) -> Grid:
         ]
         rows.append([known.symbol, known.quantity(value), target, *cells])
     head = ["parameter", "value", "of the", *(f"event {event:g}" for event in events)]
-    return Grid(head, rows, "lll" + "r" * len(events))
+    return HtmlTable(head, rows, "lll" + "r" * len(events))

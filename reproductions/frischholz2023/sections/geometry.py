@@ -17,7 +17,7 @@ from snowshed._core import InputError
 from snowshed.analysis.regression.dataset import geometry_table as shipped_rows
 from snowshed.analysis.regression.rows import StackRows
 from snowshed.io.csv_table import read_csv
-from snowshed.plot.html_page import Grid, Picture
+from snowshed.plot.html_page import HtmlTable, Picture
 from snowshed.study.table import read_table
 
 TEXT = (
@@ -55,7 +55,7 @@ def geometry_table(rows: StackRows) -> pd.DataFrame:
     return pd.DataFrame(rows.inputs, columns=list(INPUTS)).assign(**rows.targets)
 
 
-def inputs_grid(table: pd.DataFrame) -> Grid:
+def inputs_grid(table: pd.DataFrame) -> HtmlTable:
     """Return the values of the inputs, the thesis's beside ours."""
     ours = {
         name: ", ".join(f"{value:g}" for value in np.unique(table[column]))
@@ -63,20 +63,20 @@ def inputs_grid(table: pd.DataFrame) -> Grid:
     }
     rows = [[name, thesis, ours[name]] for name, thesis in printed.PANELS.items()]
     rows.append(["rows", printed.PANEL_ROWS, str(len(table))])
-    return Grid(["input", "thesis", "here"], rows, "lll")
+    return HtmlTable(["input", "thesis", "here"], rows, "lll")
 
 
-def columns_grid(table: pd.DataFrame) -> Grid:
+def columns_grid(table: pd.DataFrame) -> HtmlTable:
     """Return the settings of the rows from their table, the thesis's beside ours."""
     rows = [
         [row.title, row.text, ", ".join(str(value) for value in np.unique(table[row.path]))]
         for row in printed.PANEL_SETTINGS
         if row.path in table
     ]
-    return Grid(["setting", "thesis", "here"], rows, "lll")
+    return HtmlTable(["setting", "thesis", "here"], rows, "lll")
 
 
-def _settings(work: ThesisComputation) -> list[tuple[str, Grid]]:
+def _settings(work: ThesisComputation) -> list[tuple[str, HtmlTable]]:
     """Return the common settings of all panels, unless the table is the user's."""
     if work.table is not None and work.table != shipped_rows():
         return []

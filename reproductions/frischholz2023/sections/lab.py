@@ -15,7 +15,7 @@ from reproductions.frischholz2023.studies import LAB_2D, LAB_3D, RELEASE
 from reproductions.frischholz2023.tables import grouped, plus_minus, settings_grid
 from snowshed._core import InputError
 from snowshed.base.formatting import percent
-from snowshed.plot.html_page import Grid, Picture
+from snowshed.plot.html_page import HtmlTable, Picture
 from snowshed.snow.stack.quantities import QUANTITIES
 from snowshed.study.table import read_table
 
@@ -91,7 +91,7 @@ def judged(rows: pd.DataFrame, released: pd.DataFrame) -> list[Judged]:
     ]
 
 
-def variants_grid(rows: pd.DataFrame) -> Grid:
+def variants_grid(rows: pd.DataFrame) -> HtmlTable:
     """Return the verdict of every claim for every dimension and friction."""
     variants = dict(grouped(rows, "dimension", "friction"))
     verdicts = [
@@ -100,10 +100,10 @@ def variants_grid(rows: pd.DataFrame) -> Grid:
     ]
     head = ["claim", *(f"{d:g}D, friction {mu:g}" for d, mu in variants)]
     table = [[claim.text, *of_claim] for claim, *of_claim in zip(claims.GROWTH, *verdicts)]
-    return Grid(head, table, "l" * len(head))
+    return HtmlTable(head, table, "l" * len(head))
 
 
-def stacks_grid(rows: pd.DataFrame) -> Grid:
+def stacks_grid(rows: pd.DataFrame) -> HtmlTable:
     """Return mean stacks, one row per dimension, friction, tilt and event."""
     keys = ("dimension", "friction", "tilt", "event")
     table = [
@@ -119,16 +119,16 @@ def stacks_grid(rows: pd.DataFrame) -> Grid:
         )
     ]
     head = ["", "friction", "tilt", "event", *(f"{name}, m" for name in QUANTITIES)]
-    return Grid(head, table, "llll" + "r" * len(QUANTITIES))
+    return HtmlTable(head, table, "llll" + "r" * len(QUANTITIES))
 
 
-def release_grid(rows: pd.DataFrame) -> Grid:
+def release_grid(rows: pd.DataFrame) -> HtmlTable:
     """Return the outcome of the slabs at 30 degrees."""
     table = [
         [f"{row['friction']:g}", f"{row['event']:g}", percent(row["stayed"], 2), row["ended"]]
         for _, row in rows.sort_values(["friction", "seed"]).iterrows()
     ]
-    return Grid(["friction", "events", "snow that stays on the panel", "ended"], table, "lrrl")
+    return HtmlTable(["friction", "events", "snow that stays on the panel", "ended"], table, "lrrl")
 
 
 def _variant(rows: pd.DataFrame, dimension: float, friction: float) -> pd.DataFrame:

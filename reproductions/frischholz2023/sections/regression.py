@@ -25,7 +25,7 @@ from snowshed.analysis.regression.rows import StackRows, read_rows
 from snowshed.analysis.regression.summary import QUARTILES, quartiles
 from snowshed.base.formatting import percent
 from snowshed.io.csv_table import read_csv
-from snowshed.plot.html_page import Grid, Picture
+from snowshed.plot.html_page import HtmlTable, Picture
 from snowshed.snow.stack.quantities import MEASURES
 
 TEXT = (
@@ -113,7 +113,7 @@ def _by_model(file: Path, columns: Sequence[str], models: Sequence[str] = KINDS)
     return table.set_index("model")
 
 
-def quartiles_grid(data: Mapping[str, Regressed]) -> Grid:
+def quartiles_grid(data: Mapping[str, Regressed]) -> HtmlTable:
     """Return Table 5.3.1, which holds predictions, and the rows beside them."""
     rows = []
     for model in KINDS:
@@ -123,10 +123,10 @@ def quartiles_grid(data: Mapping[str, Regressed]) -> Grid:
             rows.append([f"{NAMES[model]}, here", f"predictions, {name}", *ours])
     for name, regressed in data.items():
         rows.append(["none", name, *_numbers(regressed.quartiles.loc["data", list(QUARTILES)])])
-    return Grid(["model", "of", *QUARTILES], rows, "ll" + "r" * len(QUARTILES))
+    return HtmlTable(["model", "of", *QUARTILES], rows, "ll" + "r" * len(QUARTILES))
 
 
-def rows_grid(file: Path) -> Grid:
+def rows_grid(file: Path) -> HtmlTable:
     """Return the quartiles of H/L of a table's rows by each measure that it has."""
     rows = []
     for measure in MEASURES.values():
@@ -139,10 +139,10 @@ def rows_grid(file: Path) -> Grid:
         for of_one in (measured.of_one_seed(), *([measured] if measured.most_seeds > 1 else [])):
             numbers = _numbers(quartiles(of_one.targets[TARGET]))
             rows.append([measure.label, rows_label(of_one), *numbers])
-    return Grid(["the stack is", "of", *QUARTILES], rows, "ll" + "r" * len(QUARTILES))
+    return HtmlTable(["the stack is", "of", *QUARTILES], rows, "ll" + "r" * len(QUARTILES))
 
 
-def errors_grid(data: Mapping[str, Regressed]) -> Grid:
+def errors_grid(data: Mapping[str, Regressed]) -> HtmlTable:
     """Return Table 5.3.2, with parts of the median and scores on rows that were not trained on."""
     rows = []
     for model in KINDS:
@@ -162,7 +162,7 @@ def errors_grid(data: Mapping[str, Regressed]) -> Grid:
             rows.append([f"{NAMES[model]}, here", name, *ours, percent(part, 2), *held_out, score])
     head = ["model", "of", "mean absolute error", "standard deviation", "of the median prediction"]
     head += ["on rows not trained on", "median absolute error, validation"]
-    return Grid(head, rows, "ll" + "r" * 5)
+    return HtmlTable(head, rows, "ll" + "r" * 5)
 
 
 def _read_text(file: Path) -> str:

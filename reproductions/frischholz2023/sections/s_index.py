@@ -21,8 +21,8 @@ from reproductions.frischholz2023.tables import (
 from snowshed.analysis.sensitivity.noise import seeding_noise
 from snowshed.analysis.sensitivity.parameter_ranges import PAIRS
 from snowshed.analysis.sensitivity.report import evaluate_sensitivity
-from snowshed.analysis.sensitivity.stored import read_stored
-from snowshed.plot.html_page import Grid, Picture
+from snowshed.analysis.sensitivity.stored import read_study_runs
+from snowshed.plot.html_page import HtmlTable, Picture
 from snowshed.plot.labels import label
 
 if TYPE_CHECKING:
@@ -50,13 +50,13 @@ def build(work: ThesisComputation) -> Content:
         ("Table 3.2.1: settings, and the values of Table 3.3.1", _settings(scenes)),
         ("Index S ± standard error by seeding noise", index_grid(table)),
     ]
-    noise = seeding_noise(read_stored(work.folder.runs, INDEX))
+    noise = seeding_noise(read_study_runs(work.folder.runs, INDEX))
     errors = table["standard_error"] * widenings(table, noise)
     claims = judge(S_INDEX, table.assign(standard_error=errors))
     return Content(TEXT, tables, [picture], claims)
 
 
-def _settings(scenes: list[str]) -> Grid:
+def _settings(scenes: list[str]) -> HtmlTable:
     """Return Table 3.2.1 with the values of Table 3.3.1 where they replace its own."""
     grid = settings_grid(printed.SENSITIVITY, scenes)
     pairs = {row.title: row for row in printed.SENSITIVITY if row.path in PAIRS}
@@ -66,10 +66,10 @@ def _settings(scenes: list[str]) -> Grid:
             path = pairs[row[0]].path
             row[1] = ", ".join(label(path).value(value) for value in PAIRS[path])
     note = "thesis (3.3.1 where a parameter varies; else its reference)"
-    return Grid(["parameter", note, "here", "unit"], rows, grid.align)
+    return HtmlTable(["parameter", note, "here", "unit"], rows, grid.align)
 
 
-def index_grid(table: pd.DataFrame) -> Grid:
+def index_grid(table: pd.DataFrame) -> HtmlTable:
     """Return S, one row per parameter and target."""
     events = sorted(table["event"].unique())
     rows = []
@@ -84,4 +84,4 @@ def index_grid(table: pd.DataFrame) -> Grid:
         ]
         rows.append([known.symbol, pair, target, *cells])
     head = ["parameter", "from → to", "of the", *(f"event {event:g}" for event in events)]
-    return Grid(head, rows, "lll" + "r" * len(events))
+    return HtmlTable(head, rows, "lll" + "r" * len(events))

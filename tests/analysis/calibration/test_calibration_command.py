@@ -15,7 +15,7 @@ from snowshed.analysis import (
     calibrate,
     calibration_study,
     read_measurements,
-    read_simulated,
+    read_simulated_stacks,
 )
 from snowshed.cli.main import main
 from snowshed.study import Factor, Span, Study, axis, latin_hypercube
@@ -88,13 +88,13 @@ def test_without_a_library_nothing_is_computed(
     assert f"needs {library}" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
     if library != "xarray":  # the cost is told without it
-        assert run("calibrate", evaluated / "stacks.csv", *options, "--plan") == 0
+        assert run("calibrate", evaluated / "stacks.csv", *options, "--dry-run") == 0
 
 
 def test_what_it_prints(evaluated, capsys):
     from snowshed.cli.commands.calibrate import print_calibration
 
-    stacks = read_simulated(evaluated / "store")
+    stacks = read_simulated_stacks(evaluated / "store")
     measurements = read_measurements(evaluated / "stacks.csv")
     print_calibration(calibrate(measurements, stacks, steps=100))
     shown = capsys.readouterr().out
@@ -109,7 +109,7 @@ def test_runs_that_are_not_computed_are_told(evaluated, tmp_path, capsys):
 
     grid = calibration_study(read_measurements(evaluated / "stacks.csv"))
     fill(tmp_path / "store", grid, pending=40)
-    stacks = read_simulated(tmp_path / "store")
+    stacks = read_simulated_stacks(tmp_path / "store")
     assert stacks.pending == 40
     print_calibration(calibrate(read_measurements(evaluated / "stacks.csv"), stacks, steps=100))
     assert "40 runs of the study are not computed yet" in " ".join(capsys.readouterr().out.split())
@@ -124,7 +124,7 @@ def test_the_template_is_written(tmp_path, capsys):
 def test_plan_and_errors(tmp_path, capsys):
     write_measurements(measured(TRUTH), tmp_path / "stacks.csv")
     options = (tmp_path / "stacks.csv", "-o", tmp_path / "out")
-    assert run("calibrate", *options, "--quick", "--plan") == 0
+    assert run("calibrate", *options, "--quick", "--dry-run") == 0
     assert "calibration-quick: 48 runs" in capsys.readouterr().out
     bad = tmp_path / "bad.csv"
     bad.write_text("tilt_deg,event,height_m,height_std_m\n40,one,0.1,0.01\n")
@@ -134,7 +134,7 @@ def test_plan_and_errors(tmp_path, capsys):
         ((tmp_path / "none.csv", "-o", tmp_path), "none.csv: No such file"),
         ((bad, "-o", tmp_path), "bad.csv, line 2: event: 'one' is not a number"),
         ((*options, "--stored", tmp_path / "nowhere"), "nowhere"),
-        ((*options, "--stored", tmp_path, "--plan"), "--dry-run has no effect with --stored"),
+        ((*options, "--stored", tmp_path, "--dry-run"), "--dry-run has no effect with --stored"),
         ((*options, "--study", tmp_path / "x", "--seeds", 3), "--seeds has no effect with --study"),
         ((*options, "--name", "grid"), "--name needs --stored"),
         ((*options, "--quantity", "width", "--study", tmp_path / "no.toml"), "no.toml"),
@@ -166,7 +166,7 @@ def test_real_snow_is_recovered_from_its_own_coarse_stacks(tmp_path):
         at = (float(row["panel.tilt"]), int(row["event"]), 1)
         measurements.append(Measurement(*at, quantity, noisy, 0.03 * value))
     study.run(tmp_path, jobs=1, threads=1)
-    found = calibrate(measurements, read_simulated(tmp_path, "sample"))
+    found = calibrate(measurements, read_simulated_stacks(tmp_path, "sample"))
     ranges = found.ranges.set_index("parameter")
     print(json.dumps(ranges.reset_index().to_dict("records"), indent=1))
     for path, true in truth.items():

@@ -8,7 +8,7 @@ from stand_in import COHESION, HIGH, LOW, measured, table_of, thesis_triplets
 
 from snowshed import InputError
 from snowshed.analysis import Surrogate, calibrate, sample_posterior
-from snowshed.analysis.calibration.comparison import Simulated, simulated
+from snowshed.analysis.calibration.comparison import SimulatedStacks, simulated
 from snowshed.analysis.calibration.posterior import Posterior, outputs_of
 
 STEPS = 200
@@ -145,7 +145,7 @@ def test_the_same_seed_gives_the_same_samples(surrogate):
 def test_what_cannot_be_calibrated_is_refused(stacks, surrogate):
     with pytest.raises(InputError, match="steps: 99 are too few; at least 100 are needed"):
         sample_posterior(surrogate, measured((0.5, 5e3, 0.1)), steps=99)
-    few = Simulated(stacks.parameters, stacks.sets, stacks.rows[stacks.rows["set"] <= 4])
+    few = SimulatedStacks(stacks.parameters, stacks.sets, stacks.rows[stacks.rows["set"] <= 4])
     message = "4 parameter sets have event 1 at tilt 40; the surrogate needs at least 6"
     with pytest.raises(InputError, match=message):
         Surrogate.fitted(few, [("height", 40.0, 1)])

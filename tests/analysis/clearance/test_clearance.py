@@ -8,11 +8,11 @@ from datetime import date
 
 import numpy as np
 import pytest
+from helpers.station_files import days, elements, ghcn
 from plot.browser import check_page
-from station_files import days, elements, ghcn
 
 from snowshed import InputError
-from snowshed.analysis import Design, Ranges, clearance_of, winters_of
+from snowshed.analysis import Design, Ranges, required_clearance, split_winters
 from snowshed.analysis.clearance import answer_text, statistics
 from snowshed.analysis.clearance.answer import STUDY, forecast
 from snowshed.analysis.clearance.report import write_report
@@ -22,7 +22,7 @@ from snowshed.results.folder import read_events
 from snowshed.results.season_folder import SeasonFolder
 from snowshed.season import SeasonSettings, run_season
 from snowshed.season.generator import EXAMPLE_CLIMATE, Climate, MonthClimate
-from snowshed.season.source import Source
+from snowshed.season.source import SnowSource
 from snowshed.study.errors import StudyInterrupted
 from snowshed.study.table import read_table
 
@@ -40,12 +40,12 @@ HEIGHT = 0.45
 
 
 def answer_of(winters, folder, heights=(HEIGHT,), **options):
-    return clearance_of(DESIGN, winters, heights, folder, ranges=KNOWN, **options)
+    return required_clearance(DESIGN, winters, heights, folder, ranges=KNOWN, **options)
 
 
 @pytest.fixture(scope="module")
 def winters():
-    return winters_of(SHORT.winters(3, seed=3))
+    return split_winters(SHORT.winters(3, seed=3))
 
 
 @pytest.fixture(scope="module")
@@ -140,9 +140,9 @@ def test_a_forecast_counts_the_seasons(winters):
 
 @pytest.mark.slow
 def test_its_probability_is_that_of_counting(tmp_path):
-    """Known friction and adhesion: burial in 200 made winters and in 200 others."""
-    asked = winters_of(SHORT.winters(200, seed=11))
-    counted = winters_of(SHORT.winters(200, seed=12))
+    """Known friction and adhesion: burial in 200 synthetic winters and in 200 others."""
+    asked = split_winters(SHORT.winters(200, seed=11))
+    counted = split_winters(SHORT.winters(200, seed=12))
     told = answer_of(asked, tmp_path / "runs").buried(HEIGHT)
     buried = []
     for number, case in enumerate(answer_cases(counted)):
@@ -221,7 +221,7 @@ def test_no_burial_in_ten_winters_is_no_proof():
     assert burial_interval(1.0, 10)[1] == 1.0
 
 
-# --- made winters --------------------------------------------------------------------------
+# --- synthetic winters --------------------------------------------------------------------------
 
 
 def test_made_winters_have_the_climate_that_they_are_fitted_to():
@@ -238,7 +238,7 @@ def test_made_winters_have_the_climate_that_they_are_fitted_to():
 def test_a_climate_is_not_fitted_to_days_that_nobody_knows():
     rows = EXAMPLE_CLIMATE.winters(3, seed=4)
     unknown = [
-        replace(row, snowfall=0.0, source=Source.MISSING, date=row.date.replace(year=1990))
+        replace(row, snowfall=0.0, source=SnowSource.MISSING, date=row.date.replace(year=1990))
         for row in rows[:90]
     ]
     assert Climate.fit([*unknown, *rows]) == Climate.fit(rows)
@@ -276,7 +276,7 @@ def test_bad_questions_are_refused(options, message, tmp_path, capsys):
 
 def test_too_short_weather_is_refused():
     with pytest.raises(InputError, match=r"no winter has snow .*: 2001/02 \(22 %\)"):
-        winters_of(SHORT.winters(1, seed=1)[:20])
+        split_winters(SHORT.winters(1, seed=1)[:20])
 
 
 def test_the_answer_says_from_how_many_winters_it_is(tmp_path, capsys):

@@ -4,7 +4,7 @@ import sqlite3
 from contextlib import closing
 
 import pytest
-from processes import kill_with_children, snowshed_command, wait_for
+from helpers.processes import kill_with_children, snowshed_command, wait_for
 
 from snowshed.season.generator import Climate, MonthClimate
 from snowshed.study.database import FILE

@@ -3,7 +3,7 @@
 import numpy as np
 import pandas as pd
 import pytest
-from grain_files import column_of_grains
+from helpers.grain_files import column_of_grains
 from scipy import stats
 
 from snowshed import GrainsSettings, InputError, LoadingStage

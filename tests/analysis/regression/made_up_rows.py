@@ -3,7 +3,7 @@
 import numpy as np
 import pandas as pd
 
-from snowshed.analysis import rows_of
+from snowshed.analysis import stack_rows
 
 HEIGHTS = (1, 1.5, 2, 2.5, 3, 3.5, 4)
 LENGTHS = (0.5, 1, 1.5, 2, 2.5, 3, 3.5, 4, 6, 8, 10)
@@ -41,7 +41,7 @@ def made_up_rows(inputs=None, noise=0.003, seed=1):
     off = np.random.default_rng(seed).normal(0, noise, len(inputs))
     ratio = np.maximum(smooth_ratio(inputs) + off, 0.005)
     length = smooth_length(inputs)
-    return rows_of(inputs, ratio * length, length)
+    return stack_rows(inputs, ratio * length, length)
 
 
 def few_inputs():

@@ -60,7 +60,7 @@ def test_snow_is_neither_lost_nor_left_on_the_panel(between):
 
 
 def test_a_row_is_what_its_scene_gives(tmp_path):
-    """The first event below a panel whose stacks hardly scatter, computed anew.
+    """The first event below a panel whose stacks hardly scatter, computed again.
 
     Other vector instructions round differently, and the stack then is one more of its kind.
     """

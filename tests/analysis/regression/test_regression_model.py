@@ -16,7 +16,7 @@ from snowshed.analysis import OutsideDataError, load_model, predict, save_model
 from snowshed.analysis.regression.ensemble import Ensemble
 from snowshed.analysis.regression.kinds import kinds
 from snowshed.analysis.regression.model_file import Member, StackModel
-from snowshed.analysis.regression.rows import rows_of
+from snowshed.analysis.regression.rows import stack_rows
 from snowshed.analysis.regression.scaling import Scaling
 from snowshed.analysis.regression.spread import (
     INTERVAL,
@@ -186,7 +186,7 @@ def test_rows_of_a_panel_are_left_out_together():
     rng = np.random.default_rng(2)
     offset = rng.normal(0, 0.01, rows.panels.max() + 1)[rows.panels]
     length = rows.targets["length"]
-    shifted = rows_of(rows.inputs, (rows.targets["ratio"] + offset) * length, length)
+    shifted = stack_rows(rows.inputs, (rows.targets["ratio"] + offset) * length, length)
     found = unseen_panels(kinds()["rbf"], [[PARAMETERS] * 8] * 2, shifted, "ratio")
     assert np.abs(found - shifted.targets["ratio"]).mean() > 0.006
 
@@ -369,7 +369,7 @@ def test_nothing_in_a_file_is_executed(file, tmp_path):
 
 
 def test_a_file_that_unpacks_to_too_much_is_refused(file, monkeypatch):
-    monkeypatch.setattr("snowshed.analysis.regression.model_file.LARGEST", 1000)
+    monkeypatch.setattr("snowshed.analysis.regression.model_file.MAX_BYTES", 1000)
     with pytest.raises(InputError, match="at most 1000 are allowed"):
         load_model(file)
 

@@ -2,8 +2,8 @@
 
 import re
 
+from helpers.paths import ROOT
 from made_up_rows import few_inputs, made_up_rows, write_table
-from paths import ROOT
 
 DOCS = (ROOT / "docs" / "guides" / "prediction.md").read_text(encoding="utf-8")
 

@@ -6,7 +6,7 @@ import pytest
 from made_up_rows import few_inputs, made_up_rows, thesis_inputs, write_table
 
 from snowshed import InputError
-from snowshed.analysis import read_rows, rows_of
+from snowshed.analysis import read_rows, stack_rows
 from snowshed.analysis.regression import rows as rows_module
 
 
@@ -56,7 +56,7 @@ def test_stacks_that_differ_in_their_seeds_make_one_row():
 
 def test_rows_may_have_different_numbers_of_stacks():
     inputs = np.array([[1, 2, 4, 40], [2, 2, 4, 40], [1, 2, 4, 40]])
-    rows = rows_of(inputs, np.array([1, 2, 3]), np.array([4, 5, 4]))
+    rows = stack_rows(inputs, np.array([1, 2, 3]), np.array([4, 5, 4]))
     assert rows.targets["height"].tolist() == [2, 2]
     np.testing.assert_array_equal(rows.stacks["height"], [[1, 3], [2, np.nan]])
     assert rows.scatter("height") == pytest.approx(np.sqrt(2))
@@ -64,7 +64,7 @@ def test_rows_may_have_different_numbers_of_stacks():
 
 def test_the_ratio_of_a_row_is_that_of_its_mean_stack():
     inputs = np.tile([1.0, 2.0, 4.0, 40.0], (2, 1))
-    rows = rows_of(inputs, np.array([1.0, 2.0]), np.array([1.0, 5.0]))
+    rows = stack_rows(inputs, np.array([1.0, 2.0]), np.array([1.0, 5.0]))
     assert rows.targets["ratio"].tolist() == [0.5]  # of the mean of the ratios it would be 0.7
 
 
@@ -86,7 +86,7 @@ def test_stacks_that_still_move_are_counted(tmp_path):
 
 def test_too_many_rows_are_refused(tmp_path, monkeypatch):
     write_table(made_up_rows(few_inputs()), tmp_path / "rows.csv")
-    monkeypatch.setattr(rows_module, "MOST_ROWS", 95)
+    monkeypatch.setattr(rows_module, "MAX_ROWS", 95)
     with pytest.raises(InputError, match="96 rows; at most 95 are allowed"):
         read_rows(tmp_path / "rows.csv")
 

@@ -7,7 +7,7 @@ import json
 import numpy as np
 import pandas as pd
 
-from snowshed.analysis import StoredRuns, sensitivity_study
+from snowshed.analysis import StudyRuns, sensitivity_study
 from snowshed.analysis.sensitivity.sampling import SAMPLERS
 from snowshed.study.table import value_at
 
@@ -35,14 +35,14 @@ def stored(points, height, length=lambda snow, event: 0.3, events=(1, 2, 3)):
         {**point, "event": event, "height": height(point, event), "length": length(point, event)}
         for point, event in itertools.product(points.to_dict("records"), events)
     ]
-    return StoredRuns("made-up", axes, points, pd.DataFrame(rows))
+    return StudyRuns("made-up", axes, points, pd.DataFrame(rows))
 
 
 def designed(method, height, length=lambda snow, event: 0.3, events=(1, 2, 3), **options):
     """The study that a method designs, with made-up stacks; its axes in the study's order."""
     axes, points = designed_points(method, **options)
     found = stored(points, height, length, events)
-    return StoredRuns(found.name, axes, found.points, found.rows)
+    return StudyRuns(found.name, axes, found.points, found.rows)
 
 
 @functools.cache

@@ -6,7 +6,7 @@ import pandas as pd
 import pytest
 
 from snowshed import Scene
-from snowshed.analysis import read_stored
+from snowshed.analysis import read_study_runs
 from snowshed.cli.main import main
 from snowshed.results.folder import WORDS
 from snowshed.study import Study
@@ -52,11 +52,11 @@ def grid(name="grid", seeds=None):
 def test_without_salib_the_error_says_what_to_install(tmp_path, capsys, hide, method):
     hide("SALib")
     out = tmp_path / "out"
-    assert run("sensitivity", "--method", method, "--quick", "--plan", "-o", out) == 2
+    assert run("sensitivity", "--method", method, "--quick", "--dry-run", "-o", out) == 2
     said = capsys.readouterr().err
     assert "needs SALib" in said and 'pip install "snowshed[sensitivity]"' in said
     assert said.count("\n") == 1 and not out.exists()
-    assert run("sensitivity", "--method", "s", "--quick", "--plan", "-o", out) == 0
+    assert run("sensitivity", "--method", "s", "--quick", "--dry-run", "-o", out) == 0
 
 
 @pytest.mark.parametrize("method", ["s", "fixation"])
@@ -123,8 +123,8 @@ def test_a_second_design_in_the_same_folder_is_evaluated_too(tmp_path):
 def test_bodies_instead_of_stacks_and_one_of_several_studies(tmp_path):
     for name in ("one", "other"):
         fill(tmp_path / "store", grid(name))
-    stack = read_stored(tmp_path / "store", "one")
-    body = read_stored(tmp_path / "store", "other", "body")
+    stack = read_study_runs(tmp_path / "store", "one")
+    body = read_study_runs(tmp_path / "store", "other", "body")
     assert (body.rows["height"] == 2 * stack.rows["height"]).all()
     assert stack.parameters == [SLOPE, COHESION] and stack.events == [1, 2]
 
@@ -166,7 +166,7 @@ def test_a_damaged_store_is_named(tmp_path, capsys):
 
 
 def test_plan_says_how_many_runs(tmp_path, capsys):
-    options = ("--quick", "--plan", "-o", tmp_path)
+    options = ("--quick", "--dry-run", "-o", tmp_path)
     assert run("sensitivity", "--method", "fixation", *options) == 0
     assert "sensitivity-fixation-quick: 70 runs" in capsys.readouterr().out
 

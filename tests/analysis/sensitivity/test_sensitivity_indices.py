@@ -7,7 +7,7 @@ from made_up_studies import BETA, P0, REFERENCE, SEED, XI, E, M, designed, noisy
 
 from snowshed import InputError
 from snowshed.analysis import (
-    StoredRuns,
+    StudyRuns,
     fixation,
     local_index,
     morris_effects,
@@ -153,7 +153,7 @@ def test_noise_shows_in_the_total_index_of_the_seed():
     rows = base.rows.assign(
         height=base.rows["height"] + generator.normal(0, 12**-0.5, len(base.rows))
     )
-    table = sobol_indices(StoredRuns("noisy", base.axes, base.points, rows))
+    table = sobol_indices(StudyRuns("noisy", base.axes, base.points, rows))
     assert pick(table, SEED, column="total") == pytest.approx(0.5, abs=0.1)
     assert pick(table, BETA, column="total") == pytest.approx(0.5, abs=0.1)  # no more than noise
     assert pick(table, M, column="first") == pytest.approx(0.5, abs=0.15)
@@ -183,7 +183,7 @@ def test_noise_shows_in_the_strength_of_the_seed():
     for _ in range(8):
         noise = generator.normal(0, 0.05, len(base.rows))
         rows = base.rows.assign(height=base.rows["height"] + noise)
-        table = morris_effects(StoredRuns("noisy", base.axes, base.points, rows))
+        table = morris_effects(StudyRuns("noisy", base.axes, base.points, rows))
         found.append({path: pick(table, path, column="strength") for path in (M, BETA, SEED)})
     mean = pd.DataFrame(found).mean()
     assert mean[BETA] == pytest.approx(mean[SEED], rel=0.15)
@@ -220,11 +220,11 @@ def test_steps_that_differ_are_no_design_after_morris():
 def test_blocks_with_failed_runs_are_left_out_whole(method, indices):
     study = designed(method, lambda snow, event: 5 + unit(snow)[M], samples=8)
     rows = study.rows[study.rows["hash"] != "run3"]
-    table = indices(StoredRuns("holes", study.axes, study.points, rows))
+    table = indices(StudyRuns("holes", study.axes, study.points, rows))
     assert (table["blocks"] == 7).all()
     few = study.rows[study.rows["hash"].isin([f"run{number}" for number in range(9)])]
     with pytest.raises(InputError, match=r"event 1: 1 of 8 blocks .* at least 2 are needed"):
-        indices(StoredRuns("few", study.axes, study.points, few))
+        indices(StudyRuns("few", study.axes, study.points, few))
 
 
 def test_other_studies_are_no_designs():

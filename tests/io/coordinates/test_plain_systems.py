@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from listener import silence
+from helpers.listener import silence
 
 from snowshed import InputError
 from snowshed.io.coordinates.plain_systems import first_part, plain_system

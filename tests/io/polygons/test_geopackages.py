@@ -5,8 +5,8 @@ import struct
 
 import numpy as np
 import pytest
-from polygon_files import SQUARE, polygon, pyogrio, shapely, write
-from slide_files import write_polygons
+from helpers.polygon_files import SQUARE, polygon, pyogrio, shapely, write
+from helpers.slide_files import write_polygons
 
 from snowshed import InputError
 from snowshed.base.notes import recorded
@@ -118,7 +118,7 @@ def test_a_name_that_is_no_text_is_refused(package):
 def test_a_hot_journal_is_not_played_back(package):
     journal = package.with_name("a.gpkg-journal")
     journal.write_bytes(b"\xd9\xd5\x05\xf9\x20\xa1\x63\xd7" + bytes(512))
-    with pytest.raises(InputError, match="a program that wrote to it was cut off"):
+    with pytest.raises(InputError, match="an interrupted write left"):
         read_areas(package)
     assert journal.exists()
 

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from listener import silence
-from polygon_files import HOLE, SQUARE, polygon, pyogrio, shapely, write
-from slide_files import WITH_HOLE, box, write_features, write_polygons
+from helpers.listener import silence
+from helpers.polygon_files import HOLE, SQUARE, polygon, pyogrio, shapely, write
+from helpers.slide_files import WITH_HOLE, box, write_features, write_polygons
 
 from snowshed import InputError
 from snowshed.base.limits import CORNERS, POLYGONS

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from raster_files import CELL, SIDE, SLOPE, WEST, grid_text
+from helpers.raster_files import CELL, SIDE, SLOPE, WEST, grid_text
 
 from snowshed import InputError
 from snowshed.base.limits import RASTER_CELLS
@@ -62,7 +62,7 @@ def test_a_grid_is_read_as_gdal_reads_it(tmp_path, text, missing):
 @pytest.mark.parametrize(
     ("text", "note"),
     [
-        (with_word("-9999"), "a.asc: 1 values of -9999 are missing ones; the header declares none"),
+        (with_word("-9999"), "a.asc: 1 values of -9999 are missing; the header declares none"),
         (with_word("884,960"), "a.asc: 1 numbers have a decimal comma"),
         (grid_text(), None),
         (with_word("-9999", nodata_value=-9999), None),

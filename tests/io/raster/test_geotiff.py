@@ -6,7 +6,7 @@ import warnings
 
 import numpy as np
 import pytest
-from raster_files import CELL, NORTH, SIDE, SLOPE, WEST, in_unit, scaled, write_geotiff
+from helpers.raster_files import CELL, NORTH, SIDE, SLOPE, WEST, in_unit, scaled, write_geotiff
 
 from snowshed import InputError, SnowshedNote
 from snowshed.base.limits import RASTER_CELLS

@@ -6,8 +6,8 @@ import warnings
 
 import numpy as np
 import pytest
+from helpers.voxel_files import VOXELS, of_type, save_metaimage, save_slices
 from PIL import Image
-from voxel_files import VOXELS, of_type, save_metaimage, save_slices
 
 from snowshed import InputError
 from snowshed.base.notes import recorded
@@ -108,7 +108,7 @@ def test_slices_of_two_names_are_told(tmp_path):
     (folder / "slice3.png").rename(folder / "other3.png")
     with recorded() as notes:
         open_voxels(folder)
-    assert "several names, as other3.png and slice1.png" in notes[0]
+    assert "several names, other3.png and slice1.png" in notes[0]
 
 
 def test_slices_that_unpack_to_too_much_are_refused(tmp_path):

@@ -5,7 +5,7 @@ import itertools
 
 import numpy as np
 import pytest
-from voxel_files import TYPES, VOXELS, of_type, save_metaimage
+from helpers.voxel_files import TYPES, VOXELS, of_type, save_metaimage
 
 from snowshed import InputError
 from snowshed.base.notes import recorded
@@ -84,7 +84,7 @@ def test_axes_point_where_the_matrix_says(tmp_path, order, signs, compress):
     assert found.shape == (z.max() + 1, y.max() + 1, x.max() + 1)
     assert (found[z, y, x] == VOXELS.ravel()).all()
     turned = not (matrix == np.eye(3)).all()
-    assert [note.endswith("turned as its TransformMatrix says") for note in notes] == [
+    assert [note.endswith("rotated according to its TransformMatrix") for note in notes] == [
         True
     ] * turned
 
@@ -138,7 +138,7 @@ def test_the_edge_of_a_voxel(tmp_path, header, size):
 def test_another_scale_of_the_numbers_is_told(tmp_path):
     slope = "ElementToIntensityFunctionSlope = 2"
     found, notes = read(save_metaimage(tmp_path / "a.mha", VOXELS, slope))
-    assert (found == VOXELS).all() and "without ElementToIntensityFunctionSlope 2" in notes[0]
+    assert (found == VOXELS).all() and "ElementToIntensityFunctionSlope 2 and Offset" in notes[0]
     with pytest.raises(InputError, match="only positive ones"):
         open_voxels(save_metaimage(tmp_path / "a.mha", VOXELS, slope.replace("2", "-2")))
 

@@ -6,8 +6,8 @@ import struct
 
 import numpy as np
 import pytest
+from helpers.voxel_files import VOXELS, of_type, save_pages
 from PIL import Image, ImageOps
-from voxel_files import VOXELS, of_type, save_pages
 
 from snowshed import InputError
 from snowshed.base.limits import PAGES

@@ -5,8 +5,8 @@ import struct
 
 import numpy as np
 import pytest
+from helpers.voxel_files import TYPES, VOXELS, save_metaimage, save_pages, save_slices
 from PIL import Image
-from voxel_files import TYPES, VOXELS, save_metaimage, save_pages, save_slices
 
 from snowshed import InputError
 from snowshed.io.voxels.open_voxels import open_voxels

@@ -2,7 +2,7 @@
 
 from datetime import datetime, timedelta
 
-import weather_files
+from helpers import weather_files
 
 BEGIN = datetime(2024, 1, 10)
 

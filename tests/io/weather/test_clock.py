@@ -48,7 +48,7 @@ def test_times_with_offsets_are_unique_at_the_end_of_summer_time(form, writing, 
     steps = {later.time - earlier.time for earlier, later in zip(read.rows, read.rows[1:])}
     assert steps == {timedelta(minutes=30)} and len(read.rows) == 60
     assert read.utc_offset == 1.0 and read.rows[0].time == datetime(2023, 10, 28, 13)
-    assert any("2 offsets from universal time" in note for note in read.notes)
+    assert any("2 UTC offsets; they are converted to UTC+1 h" in note for note in read.notes)
 
 
 def test_one_offset_stays_as_it_is(station):
@@ -60,9 +60,9 @@ def test_one_offset_stays_as_it_is(station):
 
 def test_offsets_of_some_rows_only_are_refused(station):
     times = ["2024-01-01 00:00:00+00:00", "2024-01-01 01:00:00"]
-    with pytest.raises(InputError, match="line 3, column date: 2024-01-01 01:00:00 has no offset"):
+    with pytest.raises(InputError, match="01:00:00 has no UTC offset, but line 2 has one"):
         station(imis(times))
-    with pytest.raises(InputError, match=r"line 3, column date: .* has an offset"):
+    with pytest.raises(InputError, match=r"line 3, .* has a UTC offset, but line 2 has none"):
         station(imis(times[::-1]))
 
 

@@ -7,8 +7,8 @@ from datetime import datetime, timedelta
 
 import pandas as pd
 import pytest
+from helpers.weather_files import EPW
 from made import ghcn, meteoswiss, smet
-from weather_files import EPW
 
 from snowshed import InputError
 from snowshed.io import read_stations

@@ -5,8 +5,8 @@ import re
 
 import pandas as pd
 import pytest
-import weather_files
-from weather_files import FILES, METEOSWISS, NEW_SNOW, VARIANTS
+from helpers import weather_files
+from helpers.weather_files import FILES, METEOSWISS, NEW_SNOW, VARIANTS
 
 from snowshed import InputError
 from snowshed.io import read_station

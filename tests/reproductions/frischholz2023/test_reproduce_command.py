@@ -9,8 +9,8 @@ import time
 from dataclasses import replace
 from pathlib import Path
 
-from paths import ROOT
-from processes import modules_after
+from helpers.paths import ROOT
+from helpers.processes import modules_after
 from reproduce_helpers import geometry_table
 from reproductions.common.command import command_of
 from reproductions.frischholz2023 import studies

@@ -5,7 +5,7 @@ import re
 
 import pandas as pd
 import pytest
-from pages import Page
+from helpers.pages import Page
 from plot.browser import check_page
 from reproduce_helpers import TINY, TINY_WITH_PANELS, few_fits, fill, geometry_table, report
 from reproductions.frischholz2023.stages import ThesisComputation

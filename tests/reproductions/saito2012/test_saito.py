@@ -30,7 +30,7 @@ def test_every_scene_can_be_begun(resolution):
 
 
 def test_a_frame_stands_on_its_path():
-    path = made.Path.of(made.SLOPES[2])
+    path = made.GroundProfile.of(made.SLOPES[2])
     for way in (-55.0, -31.0, -29.0, -1.0):
         point, down, normal, tilt = path.frame(way)
         assert path.along(point[None])[0] == pytest.approx(way)

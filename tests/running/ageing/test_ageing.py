@@ -67,7 +67,7 @@ def broken(simulation, plastic_strain):
 
 
 def strength(simulation):
-    """p0 of (1.1.42) over that of new snow, computed anew."""
+    """p0 of (1.1.42) over that of new snow, computed again."""
     snow = json.loads(simulation.snows[0])
     bulk = snow["youngs_modulus"] / (3 * (1 - 2 * snow["poissons_ratio"]))
     strains = np.minimum(simulation.plastic_strains(), 0.0)

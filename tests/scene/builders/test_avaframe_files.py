@@ -3,7 +3,7 @@
 import os
 
 import pytest
-from slide_files import write_polygons, write_project
+from helpers.slide_files import write_polygons, write_project
 
 from snowshed import InputError
 from snowshed.base import limits

@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 import pytest
-from slide_files import WITH_HOLE, box, plane, write_polygons, write_project
+from helpers.slide_files import WITH_HOLE, box, plane, write_polygons, write_project
 
 from snowshed import InputError, _core
 from snowshed.io.raster.raster import read_raster

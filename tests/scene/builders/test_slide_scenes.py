@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from slide_files import SQUARE, WITH_HOLE, write_polygons
+from helpers.slide_files import SQUARE, WITH_HOLE, write_polygons
 
 from snowshed import InputError
 from snowshed.io.raster.areas import read_areas

@@ -3,7 +3,7 @@
 import re
 
 import numpy as np
-from paths import DOCS
+from helpers.paths import DOCS
 
 GUIDES = DOCS / "guides"
 

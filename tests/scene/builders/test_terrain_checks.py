@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from raster_files import CELL, SLOPE, grid_text, in_unit, scaled, write_geotiff
+from helpers.raster_files import CELL, SLOPE, grid_text, in_unit, scaled, write_geotiff
 
 from snowshed import InputError
 from snowshed.io.raster.raster import Raster

@@ -3,7 +3,7 @@
 import json
 
 import pytest
-from processes import modules_after
+from helpers.processes import modules_after
 
 from snowshed import Scene, read_events
 from snowshed.cli.main import main

@@ -1,7 +1,7 @@
 """The guide knows every word."""
 
 import pytest
-from paths import ROOT
+from helpers.paths import ROOT
 
 from snowshed.scene.lua.limits import LuaLimits
 from snowshed.scene.lua.vocabulary import SHAPES, SYMBOLS, WORDS

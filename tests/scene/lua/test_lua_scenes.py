@@ -5,8 +5,8 @@ import re
 
 import numpy as np
 import pytest
+from helpers.paths import ROOT
 from lua_helpers import error_of, load
-from paths import ROOT
 
 from snowshed import InputError, Scene
 from snowshed.scene import load_lua

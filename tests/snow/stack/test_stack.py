@@ -1,9 +1,9 @@
 import numpy as np
 import pandas as pd
 import pytest
-from piles import ball, cone, triangle
+from helpers.piles import ball, cone, triangle
 
-from snowshed import InputError, level, measure_stack
+from snowshed import InputError, levelled_positions, measure_stack
 from snowshed.snow.stack.trimming import TRIMMINGS
 
 
@@ -129,9 +129,9 @@ def test_tilted_ground_does_not_change_the_measure(degrees):
 def test_level_turns_the_ground_normal_upright():
     psi = np.radians(25)
     normal = np.array([[np.sin(psi), 0, np.cos(psi)]])
-    assert np.allclose(level(normal, 25), [[0, 0, 1]])
+    assert np.allclose(levelled_positions(normal, 25), [[0, 0, 1]])
     points = np.random.default_rng(1).normal(size=(10, 3))
-    assert np.allclose(level(level(points, 25), -25), points)
+    assert np.allclose(levelled_positions(levelled_positions(points, 25), -25), points)
 
 
 @pytest.mark.parametrize("dimension", [2, 3])

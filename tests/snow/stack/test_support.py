@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from piles import ball, triangle
+from helpers.piles import ball, triangle
 
 from snowshed import measure_stack
 

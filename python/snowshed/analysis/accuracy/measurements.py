@@ -22,7 +22,7 @@ Value = Union[str, int, float, bool]
 #: "flip_ratio", "basis", "precision", "particles_per_voxel", "courant_factor", "between",
 #: "dimension", "seed", ...) or of the problem's own parameters ("friction", "law"), and their
 #: values.
-Settings = Mapping[str, Value]
+CaseSettings = Mapping[str, Value]
 
 #: Columns of the table before and after the settings.
 IDENTITY = ("case", "quantity")
@@ -86,7 +86,7 @@ class MeasuredSolution:
     """
 
     case: str
-    settings: Settings
+    settings: CaseSettings
     measured: Sequence[Measured]
     wall_s: float = 0.0
     updates: int = 0
@@ -149,7 +149,7 @@ class MeasuredSolution:
         return cls(**{**data, "settings": settings, "measured": measured})
 
 
-def measurement_key(case: str, settings: Settings) -> str:
+def measurement_key(case: str, settings: CaseSettings) -> str:
     """Return the key under which a case with these settings is kept."""
     return f"{case} {json.dumps(dict(settings), sort_keys=True)}"
 

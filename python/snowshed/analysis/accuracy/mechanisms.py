@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import Any, Optional
 
-from snowshed.analysis.accuracy.measurements import Settings, Value
+from snowshed.analysis.accuracy.measurements import CaseSettings, Value
 from snowshed.analysis.accuracy.recorded_stacks import PRESET
 from snowshed.analysis.accuracy.setting_labels import settings as settings_label
 from snowshed.base.formatting import percent
@@ -134,7 +134,7 @@ def scheme_of(settings: Mapping[str, Any]) -> str:
 
 
 @lru_cache(maxsize=8)
-def decided_by(scheme: str) -> Settings:
+def decided_by(scheme: str) -> CaseSettings:
     """Return the settings that a scheme decides.
 
     Examples

@@ -10,7 +10,7 @@ from collections.abc import Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Optional
 
-from snowshed.analysis.accuracy.measurements import MeasuredSolution, Settings, Value, to_table
+from snowshed.analysis.accuracy.measurements import CaseSettings, MeasuredSolution, Value, to_table
 from snowshed.analysis.accuracy.solutions import (
     SAMPLING,
     assured_errors,
@@ -45,7 +45,7 @@ class RecordedStack:
         Processor on which it was measured.
     """
 
-    settings: Settings
+    settings: CaseSettings
     errors: Sequence[float]
     biases: Sequence[float]
     spreads: Sequence[float]
@@ -111,7 +111,7 @@ def slab_thickness(data: Mapping[str, Any]) -> Optional[float]:
 
 
 def nearest(stacks: Sequence[RecordedStack], wanted: Mapping[str, Value]) -> list[RecordedStack]:
-    """Return the stacks whose settings are nearest to the wanted ones; the first counts most."""
+    """Return the stacks with the nearest settings; earlier settings have priority."""
     chosen = list(stacks)
     for name, value in wanted.items():
         recorded = {stack.settings[name] for stack in chosen if name in stack.settings}
@@ -122,7 +122,7 @@ def nearest(stacks: Sequence[RecordedStack], wanted: Mapping[str, Value]) -> lis
 
 
 def circumstances(data: Mapping[str, Any]) -> dict[str, Value]:
-    """Return what recorded runs are chosen by: dimension, and the number and kind of events."""
+    """Return the criteria for recorded runs: dimension, and the number and kind of events."""
     events = data["events"]
     return {
         "dimension": data["dimension"],

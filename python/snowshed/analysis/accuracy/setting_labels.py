@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from typing import Optional
 
 from snowshed.analysis.accuracy.measurements import Value
-from snowshed.base.formatting import NOTHING, number
+from snowshed.base.formatting import MISSING, number
 from snowshed.scene.accuracy_settings import ACCURACY
 
 
@@ -37,10 +37,10 @@ def unset(name: str) -> str:
 
     Examples
     --------
-    >>> unset("flip_ratio"), unset("aspect") == NOTHING
+    >>> unset("flip_ratio"), unset("aspect") == MISSING
     ('default', True)
     """
-    return "default" if name in ACCURACY else NOTHING
+    return "default" if name in ACCURACY else MISSING
 
 
 def settings(chosen: Mapping[str, Optional[Value]], names: Optional[Iterable[str]] = None) -> str:

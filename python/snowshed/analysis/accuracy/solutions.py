@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple, Optional
 
 import numpy as np
 
-from snowshed.analysis.accuracy.measurements import Settings, setting_names
+from snowshed.analysis.accuracy.measurements import CaseSettings, setting_names
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -24,7 +24,7 @@ SAMPLING = ("seed", "seedings")
 class SolutionRow(NamedTuple):
     """A row of the table."""
 
-    settings: Settings
+    settings: CaseSettings
     error: float
     wall_s: float
 
@@ -43,7 +43,7 @@ class Solution:
         Mean time of the solution, s.
     """
 
-    settings: Settings
+    settings: CaseSettings
     error: float
     wall_s: float
 
@@ -79,7 +79,7 @@ def solutions(rows: pd.DataFrame) -> list[Solution]:
     return [_solution(group) for group in groups.values()]
 
 
-def settings_key(settings: Settings, *, without: Collection[str] = ()) -> Hashable:
+def settings_key(settings: CaseSettings, *, without: Collection[str] = ()) -> Hashable:
     """Return a key that is equal for equal settings in any order.
 
     Examples
@@ -126,7 +126,7 @@ def assured_errors(solved: Sequence[Solution], order_in: Optional[str]) -> list[
 
 
 def quickest(costs: Sequence[float], errors: Sequence[float], wanted: float) -> int:
-    """Return the index of the cheapest whose error is small enough, or of the smallest error.
+    """Return the index of the cheapest accurate solution, or else of the most accurate one.
 
     Examples
     --------

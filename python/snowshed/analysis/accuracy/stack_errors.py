@@ -12,7 +12,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Optional, Union
 
-from snowshed.analysis.accuracy.measurements import MeasuredSolution, Settings
+from snowshed.analysis.accuracy.measurements import CaseSettings, MeasuredSolution
 from snowshed.analysis.accuracy.mechanisms import DECIDED, SCHEME, Mechanisms
 from snowshed.analysis.accuracy.recorded import load_recorded
 from snowshed.analysis.accuracy.recorded_stacks import (
@@ -68,7 +68,7 @@ class StackError:
     scatter: Mapping[str, float]
     cells: float
     recorded_cells: float
-    settings: Settings
+    settings: CaseSettings
     thickness: float = PRESET_THICKNESS
 
     @property
@@ -86,8 +86,8 @@ class StackError:
         )
         return (
             f"error of the stack in recorded runs ({_where(self.settings)}, {cells} in the "
-            f"slab{mine}): {bias}, against the finest recorded grid of this scheme, itself not "
-            "converged"
+            f"slab{mine}): {bias}, against the finest recorded grid of this scheme, which "
+            "has not converged either"
             + (f"; single runs scatter by {scatter}" if scatter else "")
             + (f"; {lengths}" if lengths else "")
         )
@@ -214,7 +214,7 @@ def _plain_stacks(
     ]
 
 
-def _where(settings: Settings) -> str:
+def _where(settings: CaseSettings) -> str:
     """Return the recorded scene of settings, with its scheme."""
     scene = f"{PRESET} in {settings['dimension']}D, event {settings['events']}"
     return f"{scene}, {Mechanisms.of_settings(settings).label}"

@@ -23,7 +23,7 @@ SET = "set"  # the column that numbers parameter sets, from 1
 
 
 @dataclass(frozen=True)
-class Simulated:
+class SimulatedStacks:
     """Simulated stacks of a study.
 
     Attributes
@@ -46,9 +46,9 @@ class Simulated:
     pending: int = 0
 
 
-def read_simulated(
+def read_simulated_stacks(
     folder: PathLike, study: Optional[str] = None, measure: str = "stack"
-) -> Simulated:
+) -> SimulatedStacks:
     """Read the stacks of the computed runs of a study from its store.
 
     Parameters
@@ -73,7 +73,7 @@ def read_simulated(
         raise InputError(f"{folder}: {error}") from None
 
 
-def simulated(frame: pd.DataFrame, measure: str = "stack") -> Simulated:
+def simulated(frame: pd.DataFrame, measure: str = "stack") -> SimulatedStacks:
     """Return the stacks in a study's table, as `snowshed.study.read_table` returns it."""
     if TILT not in frame:
         raise InputError(f"no axis {TILT}; write axes.{TILT} = 40, also for a single tilt")
@@ -86,12 +86,12 @@ def simulated(frame: pd.DataFrame, measure: str = "stack") -> Simulated:
     numbered = frame.assign(**{SET: frame.groupby(varied, sort=False).ngroup() + 1})
     sets = numbered.drop_duplicates(SET).set_index(SET)[varied].astype(float)
     rows = measured.assign(**{SET: numbered[SET]}).rename(columns={TILT: "tilt"})
-    return Simulated(
+    return SimulatedStacks(
         varied, sets, rows[["tilt", "seed", "event", *QUANTITIES, SET]].reset_index(drop=True)
     )
 
 
-def compare_stacks(stacks: Simulated, measurements: Sequence[Measurement]) -> pd.DataFrame:
+def compare_stacks(stacks: SimulatedStacks, measurements: Sequence[Measurement]) -> pd.DataFrame:
     """Return simulated beside measured values.
 
     Returns
@@ -120,7 +120,7 @@ def compare_stacks(stacks: Simulated, measurements: Sequence[Measurement]) -> pd
     return complete.sort_values([SET, "line", "quantity"], ignore_index=True)
 
 
-def _check_simulated(stacks: Simulated, measurement: Measurement) -> None:
+def _check_simulated(stacks: SimulatedStacks, measurement: Measurement) -> None:
     tilts = np.unique(stacks.rows["tilt"].to_numpy(float))
     if measurement.tilt not in tilts:
         listed = ", ".join(f"{tilt:g}" for tilt in tilts)

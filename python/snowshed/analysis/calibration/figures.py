@@ -26,9 +26,9 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 PLAIN, BEST, ALLOWED = "#9fb4c2", BODY, COLOURS[0]
-NAMED = 60  # parameter sets that are named below their bars
+MAX_NAMED_SETS = 60  # parameter sets that are named below their bars
 BAND = (2.5, 16.0, 84.0, 97.5)  # percentiles
-DRAWN = 400  # samples that predictions are drawn from
+PREDICTION_SAMPLES = 400  # samples that predictions are drawn from
 
 
 def relative_error_figure(ranked: pd.DataFrame, parameters: Sequence[str]) -> Figure:
@@ -37,7 +37,7 @@ def relative_error_figure(ranked: pd.DataFrame, parameters: Sequence[str]) -> Fi
     Parameters
     ----------
     ranked
-        From `rank`.
+        From `rank_sets`.
     parameters
         Dotted paths of the parameters.
     """
@@ -61,7 +61,7 @@ def rmse_figure(ranked: pd.DataFrame, parameters: Sequence[str]) -> Figure:
     Parameters
     ----------
     ranked
-        From `rank`.
+        From `rank_sets`.
     parameters
         Dotted paths of the parameters.
     """
@@ -108,7 +108,7 @@ def _name_sets(axes: Axes, rows: pd.DataFrame, parameters: Sequence[str], best: 
     axes.set_xlabel(
         " · ".join(f"{word.symbol} ({word.unit})" if word.unit else word.symbol for word in labels)
     )
-    if len(rows) > NAMED:
+    if len(rows) > MAX_NAMED_SETS:
         axes.set_xticks([])
         return
     names = [
@@ -129,7 +129,7 @@ def fit_figure(
     Parameters
     ----------
     comparison
-        From `compare`.
+        From `compare_stacks`.
     best
         Number of the best parameter set.
     posterior
@@ -198,7 +198,7 @@ def predicted_bands(posterior: Posterior, *, seed: int = 1) -> pd.DataFrame:
     import pandas as pd
 
     surrogate = posterior.surrogate
-    every = max(1, len(posterior.samples) // DRAWN)
+    every = max(1, len(posterior.samples) // PREDICTION_SAMPLES)
     means, variances = surrogate.predict(surrogate.unit(posterior.samples[::every]))
     noise = np.random.default_rng(seed).normal(size=means.shape)
     levels = np.percentile(means + noise * np.sqrt(variances), BAND, axis=1).T

@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 POSITIVE = ("height", "length")
 KEYS = ("tilt_deg", "event")
 ROUND = "round"
-STEEPEST = 90.0  # degrees, not allowed itself
-FARTHEST = 100.0  # m, of anything that is measured of a stack
+MAX_TILT = 90.0  # degrees, not allowed itself
+MAX_DISTANCE = 100.0  # m, of anything that is measured of a stack
 FAR = 3.0  # largest difference between length and tail - head, in standard deviations
 
 TEMPLATE_TILTS = (40, 50)
@@ -60,7 +60,7 @@ def uncertainty_column(quantity: str) -> str:
     return f"{quantity}_std_m"
 
 
-LARGEST_NUMBER = 1000  # of an event or a round; a scene has no more events
+MAX_EVENT_NUMBER = 1000  # of an event or a round; a scene has no more events
 
 COLUMNS = (
     *KEYS,
@@ -187,7 +187,7 @@ class _Row:
 
     def measurements(self, seen: dict[tuple[float, int, int], int]) -> list[Measurement]:
         """Return the measurements of the line; `seen` holds the line of every stack so far."""
-        key = self._tilt(), self._whole("event"), self._whole(ROUND, 1)
+        key = self._tilt(), self._whole_number("event"), self._whole_number(ROUND, 1)
         values = {quantity: self._value(quantity) for quantity in QUANTITIES}
         measurements = [
             Measurement(*key, quantity, *value, self.row.number)
@@ -214,8 +214,8 @@ class _Row:
         value = self._number(column)
         if quantity in POSITIVE and value <= 0:
             raise self._error(f"{column}: {value:g} is not positive")
-        if abs(value) > FARTHEST:
-            raise self._error(f"{column}: {value:g} m; at most {FARTHEST:g} m are allowed")
+        if abs(value) > MAX_DISTANCE:
+            raise self._error(f"{column}: {value:g} m; at most {MAX_DISTANCE:g} m are allowed")
         if not self.cells.get(uncertain):
             raise self._error(f"{uncertain}: missing; give one standard deviation of {column}")
         uncertainty = self._number(uncertain)
@@ -239,17 +239,17 @@ class _Row:
 
     def _tilt(self) -> float:
         tilt = self._number("tilt_deg")
-        if not 0 <= tilt < STEEPEST:
+        if not 0 <= tilt < MAX_TILT:
             raise self._error(f"tilt_deg: {tilt:g} is outside the allowed range (0 to 90 degrees)")
         return tilt
 
-    def _whole(self, column: str, default: int = 0) -> int:
+    def _whole_number(self, column: str, default: int = 0) -> int:
         if default and not self.cells.get(column):
             return default
         number = self._number(column)
-        if not 1 <= number <= LARGEST_NUMBER or number % 1:
+        if not 1 <= number <= MAX_EVENT_NUMBER or number % 1:
             raise self._error(
-                f"{column}: {number:g} is not a whole number from 1 to {LARGEST_NUMBER}"
+                f"{column}: {number:g} is not a whole number from 1 to {MAX_EVENT_NUMBER}"
             )
         return int(number)
 

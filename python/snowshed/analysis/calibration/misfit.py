@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from snowshed._core import InputError
-from snowshed.analysis.calibration.comparison import SET, Simulated
+from snowshed.analysis.calibration.comparison import SET, SimulatedStacks
 from snowshed.analysis.sensitivity.fixed_parameter import rescaled
 from snowshed.base.arrays import Floats
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 RANKED = ("height", "length")
 
 
-def rank_sets(stacks: Simulated, comparison: pd.DataFrame) -> pd.DataFrame:
+def rank_sets(stacks: SimulatedStacks, comparison: pd.DataFrame) -> pd.DataFrame:
     """Score every parameter set, and rank the sets by the mean rescaled RMSE, as section 4.1 does.
 
     Parameters
@@ -26,7 +26,7 @@ def rank_sets(stacks: Simulated, comparison: pd.DataFrame) -> pd.DataFrame:
     stacks
         The simulated stacks.
     comparison
-        From `compare`.
+        From `compare_stacks`.
 
     Returns
     -------

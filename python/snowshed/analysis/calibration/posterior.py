@@ -38,12 +38,12 @@ if TYPE_CHECKING:
 PURPOSE = "the posterior of the parameters"
 WALKERS_PER_DIMENSION = 8
 STEPS = 2000
-FEWEST_STEPS = 100  # shorter chains do not even show how correlated they are
+MIN_STEPS = 100  # shorter chains do not even show how correlated they are
 BURN_IN = 0.33  # part of the steps that is thrown away
 KEPT = 4000  # samples, at most
 STARTS = 4096  # points of the prior among which the walkers start
 DISCREPANCY = 0.1  # scale of its prior
-LARGEST_DISCREPANCY = 1.0
+MAX_DISCREPANCY = 1.0
 EDGE = 0.05  # part of a range that counts as its end
 DENSE = 0.5  # part of the prior's density there that leaves the range open
 LEVELS = {
@@ -56,7 +56,7 @@ LEVELS = {
 #: Convergence of the chains: independent samples that quantiles of 95 % need, and the largest
 #: r_hat of chains that have forgotten where they began.
 ENOUGH = 400
-LARGEST_R_HAT = 1.1
+MAX_R_HAT = 1.1
 DIAGNOSTICS = ("ess_bulk", "ess_tail", "r_hat")
 
 
@@ -146,7 +146,7 @@ class Posterior:
     def converged(self) -> bool:
         """True if the draws suffice for the quantiles of 95 % and the chains agree."""
         enough = self.effective >= ENOUGH
-        return bool(enough and (self.diagnostics["r_hat"] <= LARGEST_R_HAT).all())
+        return bool(enough and (self.diagnostics["r_hat"] <= MAX_R_HAT).all())
 
     @property
     def effective(self) -> float:
@@ -195,8 +195,8 @@ def sample_posterior(
     InputError
         If there are too few steps, or a library of the extra ``calibration`` is not installed.
     """
-    if steps < FEWEST_STEPS:
-        raise InputError(f"steps: {steps} are too few; at least {FEWEST_STEPS} are needed")
+    if steps < MIN_STEPS:
+        raise InputError(f"steps: {steps} are too few; at least {MIN_STEPS} are needed")
     emcee, xarray = require("emcee", EXTRA, PURPOSE), require("xarray", EXTRA, PURPOSE)
     density = _Density.of(surrogate, measurements)
     dimensions = len(surrogate.parameters) + len(density.quantities)
@@ -288,7 +288,7 @@ class _Density:
         count = len(self.surrogate.parameters)
         unit, discrepancy = points[:, :count], points[:, count:]
         inside = ((unit >= 0) & (unit <= 1)).all(axis=1)
-        inside &= ((discrepancy >= 0) & (discrepancy <= LARGEST_DISCREPANCY)).all(axis=1)
+        inside &= ((discrepancy >= 0) & (discrepancy <= MAX_DISCREPANCY)).all(axis=1)
         logarithms = np.full(len(points), -np.inf)
         if inside.any():
             logarithms[inside] = self._log_density(unit[inside], discrepancy[inside])
@@ -309,7 +309,7 @@ class _Density:
         parameters = len(self.surrogate.parameters)
         unit = random.uniform(size=(STARTS, parameters))
         size = (STARTS, len(self.quantities))
-        discrepancy = np.minimum(np.abs(random.normal(0, DISCREPANCY, size)), LARGEST_DISCREPANCY)
+        discrepancy = np.minimum(np.abs(random.normal(0, DISCREPANCY, size)), MAX_DISCREPANCY)
         points = np.hstack([unit, discrepancy])
         likelihood = self._log_density(unit, discrepancy)
         likelihood += 0.5 * ((discrepancy / DISCREPANCY) ** 2).sum(axis=1)

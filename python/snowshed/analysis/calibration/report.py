@@ -8,7 +8,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Optional
 
 from snowshed._core import InputError
-from snowshed.analysis.calibration.comparison import Simulated, compare_stacks, read_simulated
+from snowshed.analysis.calibration.comparison import (
+    SimulatedStacks,
+    compare_stacks,
+    read_simulated_stacks,
+)
 from snowshed.analysis.calibration.measurements import Measurement
 from snowshed.analysis.calibration.misfit import RANKED, rank_sets, statistics
 from snowshed.analysis.calibration.posterior import STEPS, Posterior, outputs_of, sample_posterior
@@ -39,7 +43,7 @@ class Calibration:
         The posterior of the parameters.
     """
 
-    stacks: Simulated
+    stacks: SimulatedStacks
     comparison: pd.DataFrame
     ranked: pd.DataFrame
     posterior: Posterior
@@ -59,7 +63,7 @@ class Calibration:
 
 def calibrate(
     measurements: Sequence[Measurement],
-    stacks: Simulated,
+    stacks: SimulatedStacks,
     *,
     quantities: Sequence[str] = RANKED,
     steps: int = STEPS,
@@ -72,7 +76,7 @@ def calibrate(
     measurements
         From `read_measurements`.
     stacks
-        From `read_simulated`.
+        From `read_simulated_stacks`.
     quantities
         Quantities that the posterior uses, if they were measured. Length is tail - head, so it must
         not be used together with both of these.
@@ -139,15 +143,15 @@ def evaluate_calibration(
     study
         Name of the study; not needed if the store holds only one.
     measure
-        "stack" or "body"; see `read_simulated`.
+        "stack" or "body"; see `read_simulated_stacks`.
 
     Raises
     ------
     InputError
-        As for `read_simulated` and `calibrate`.
+        As for `read_simulated_stacks` and `calibrate`.
     """
     calibration = calibrate(
-        measurements, read_simulated(stored, study, measure), quantities=quantities
+        measurements, read_simulated_stacks(stored, study, measure), quantities=quantities
     )
     write(calibration, Path(folder))
     return calibration

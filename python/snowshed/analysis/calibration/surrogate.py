@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from snowshed._core import InputError
-from snowshed.analysis.calibration.comparison import SET, Simulated
+from snowshed.analysis.calibration.comparison import SET, SimulatedStacks
 from snowshed.base.arrays import Floats
 from snowshed.base.extras import require
 
@@ -29,7 +29,7 @@ SMOOTHNESS = 2.5
 LENGTHS = (0.1, 30.0)
 AMPLITUDE = (1e-2, 1e2)
 NOISE = (1e-5, 2.0)
-FEWEST_POINTS = 6  # parameter sets
+MIN_POINTS = 6  # parameter sets
 
 Output = tuple[str, float, int]  # quantity, tilt, event
 
@@ -123,7 +123,7 @@ class Surrogate:
     processes: Sequence[Process]
 
     @classmethod
-    def fitted(cls, stacks: Simulated, outputs: Sequence[Output]) -> Surrogate:
+    def fitted(cls, stacks: SimulatedStacks, outputs: Sequence[Output]) -> Surrogate:
         """Fit a surrogate to simulated stacks.
 
         Raises
@@ -140,10 +140,10 @@ class Surrogate:
             rows = stacks.rows
             rows = rows[(rows["tilt"] == tilt) & (rows["event"] == event)]
             count = rows[SET].nunique()
-            if count < FEWEST_POINTS:
+            if count < MIN_POINTS:
                 raise InputError(
                     f"{count} parameter sets have event {event} at tilt {tilt:g}; the surrogate "
-                    f"needs at least {FEWEST_POINTS}"
+                    f"needs at least {MIN_POINTS}"
                 )
             points = unit.loc[rows[SET]].to_numpy(float)
             processes.append(Process.fitted(points, rows[quantity].to_numpy(float)))

@@ -16,7 +16,7 @@ import numpy as np
 
 from snowshed._core import InputError
 from snowshed.analysis.clearance.design import Design, Ranges
-from snowshed.analysis.clearance.seasons import Case, SeasonOutcome, cases_of
+from snowshed.analysis.clearance.seasons import SeasonCase, SeasonOutcome, cases_of
 from snowshed.analysis.clearance.statistics import CauseShare, Level, levels_of, shares_of
 from snowshed.analysis.clearance.winters import Winter
 from snowshed.base.arrays import Floats
@@ -38,7 +38,7 @@ height_key = attrgetter("height")
 
 
 @dataclass(frozen=True)
-class Answer:
+class ClearanceResult:
     """The height of the lower edge that a panel needs.
 
     Attributes
@@ -61,7 +61,7 @@ class Answer:
 
     design: Design
     heights: Sequence[float]
-    cases: Sequence[Case]
+    cases: Sequence[SeasonCase]
     outcomes: Sequence[Sequence[SeasonOutcome]]
     failed: int = 0
     winters: Sequence[str] = field(default_factory=list)
@@ -157,8 +157,8 @@ def required_height(outcomes: Sequence[SeasonOutcome]) -> float:
 
     Examples
     --------
-    >>> from snowshed.season.clearance import Contact
-    >>> touched = Contact("2024-12-24", 1, "crest")
+    >>> from snowshed.season.clearance import PanelContact
+    >>> touched = PanelContact("2024-12-24", 1, "crest")
     >>> required_height([SeasonOutcome(1.0, -0.1, touched), SeasonOutcome(2.0, 0.9, None)])
     1.1
     """
@@ -174,7 +174,7 @@ def required_height(outcomes: Sequence[SeasonOutcome]) -> float:
     return below.height + part * (above.height - below.height)
 
 
-def clearance_of(
+def required_clearance(
     design: Design,
     winters: Sequence[Winter],
     heights: Sequence[float],
@@ -186,7 +186,7 @@ def clearance_of(
     winter_list: Optional[WinterList] = None,
     jobs: Optional[int] = None,
     progress: Optional[Reporter] = None,
-) -> Answer:
+) -> ClearanceResult:
     """Return the height of the lower edge that a panel needs.
 
     Parameters
@@ -194,7 +194,7 @@ def clearance_of(
     design
         The panel.
     winters
-        From `winters_of`.
+        From `split_winters`.
     heights
         Candidates for the height of the lower edge above the ground, m.
     folder
@@ -232,7 +232,7 @@ def clearance_of(
     complete = [number for number, outcomes in enumerate(search.outcomes) if outcomes]
     if not complete:
         raise InputError(f"{folder}: all runs failed; see its table")
-    return Answer(
+    return ClearanceResult(
         design,
         candidates,
         [cases[number] for number in complete],
@@ -255,7 +255,7 @@ def forecast(
 ) -> tuple[float, int]:
     """Return the expected time of an answer, s, and its number of seasons.
 
-    The parameters are those of `clearance_of`.
+    The parameters are those of `required_clearance`.
     """
     values = (ranges or Ranges()).drawn(len(winters))
     cases = cases_of(design, winters, values, settings or SeasonSettings(), scene or {})
@@ -268,7 +268,7 @@ def forecast(
 class _Search:
     """Bisection for every case over the candidate heights."""
 
-    def __init__(self, cases: Sequence[Case], heights: Sequence[float]) -> None:
+    def __init__(self, cases: Sequence[SeasonCase], heights: Sequence[float]) -> None:
         self.cases, self.heights = cases, heights
         self.outcomes: list[list[SeasonOutcome]] = [[] for _ in cases]
         self._low = [0] * len(cases)  # heights below are reached

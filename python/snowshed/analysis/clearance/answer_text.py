@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from snowshed.analysis.accuracy.mechanisms import Mechanisms
 from snowshed.analysis.accuracy.stack_errors import recorded_bias
-from snowshed.analysis.clearance.answer import Answer
+from snowshed.analysis.clearance.answer import ClearanceResult
 from snowshed.analysis.clearance.design import MEANING, Ranges
 from snowshed.base.formatting import plural
 from snowshed.season.season_record import whole_percent
@@ -17,7 +17,7 @@ TYPICAL_SLIDE_OFFS = 5
 CHANCE = "chance: positions of particles, and interactions of causes"
 
 
-def sentence(answers: Sequence[Answer]) -> str:
+def sentence(answers: Sequence[ClearanceResult]) -> str:
     """Return the answer for the first panel in a sentence."""
     answer = answers[0]
     design = answer.design
@@ -38,7 +38,7 @@ def cause_label(cause: str) -> str:
     return CHANCE if cause == "chance" else MEANING[cause]
 
 
-def advice(answer: Answer) -> str:
+def advice(answer: ClearanceResult) -> str:
     """Return which measurement would reduce the uncertainty of the required height most."""
     shares = [share for share in answer.shares if share.cause in MEANING]
     if not shares:
@@ -54,7 +54,7 @@ def advice(answer: Answer) -> str:
     )
 
 
-def warnings(answers: Sequence[Answer]) -> list[str]:
+def warnings(answers: Sequence[ClearanceResult]) -> list[str]:
     """Return where the answer is extrapolated or incomplete."""
     notes = [*_excluded_winters(answers[0]), _grid_error(answers[0])]
     for answer in answers:
@@ -78,7 +78,7 @@ def warnings(answers: Sequence[Answer]) -> list[str]:
     return notes
 
 
-def _excluded_winters(answer: Answer) -> list[str]:
+def _excluded_winters(answer: ClearanceResult) -> list[str]:
     """Return a note on the winters of the file that do not count."""
     record = answer.winter_list
     if record is None or len(record.counted) == len(record.winters):
@@ -90,14 +90,14 @@ def _excluded_winters(answer: Answer) -> list[str]:
     ]
 
 
-def _grid_error(answer: Answer) -> str:
+def _grid_error(answer: ClearanceResult) -> str:
     """Return what recorded runs say of the grid's error, which no interval contains."""
     scene = answer.cases[0].panel(answer.heights[0]).data
     bias = recorded_bias(2, TYPICAL_SLIDE_OFFS, Mechanisms.of_scene(scene))
     return f"the intervals leave out the error of the grid: {bias}"
 
 
-def assumptions(answer: Answer) -> list[str]:
+def assumptions(answer: ClearanceResult) -> list[str]:
     """Return the assumptions of the seasons, a sentence each."""
     season = answer.cases[0].season
     cover = "from the weather" if season.cover == "weather" else f"{season.cover}"

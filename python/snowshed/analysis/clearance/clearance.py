@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Optional
 
-from snowshed.analysis.clearance.answer import Answer, clearance_of
+from snowshed.analysis.clearance.answer import ClearanceResult, required_clearance
 from snowshed.analysis.clearance.design import Design, Ranges
 from snowshed.analysis.clearance.winters import counted
 from snowshed.base.json_values import JsonValue
-from snowshed.base.notes import tell
+from snowshed.base.notes import issue_note
 from snowshed.base.paths import PathLike
 from snowshed.base.progress import Reporter
 from snowshed.season.quality import COVERAGE
@@ -36,7 +36,7 @@ def clearance(
     temperature: Optional[PathLike] = None,
     jobs: Optional[int] = None,
     progress: Optional[Reporter] = None,
-) -> Answer:
+) -> ClearanceResult:
     r"""Return how high the lower edge of a panel must be to stay clear of shed snow.
 
     Parameters
@@ -72,7 +72,7 @@ def clearance(
     Returns
     -------
     Answer
-        `Answer.at` gives the height and its 90 % interval.
+        `ClearanceResult.at` gives the height and its 90 % interval.
 
     Raises
     ------
@@ -100,8 +100,8 @@ def clearance(
     record = read_record(weather, snow_from, temperature)
     winter_list = record.winters(coverage)
     for note in (*record.notes, *winter_list.notes):
-        tell(note)
-    return clearance_of(
+        issue_note(note)
+    return required_clearance(
         Design(slope_length, tilt),
         counted(winter_list),
         heights,

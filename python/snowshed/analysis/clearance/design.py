@@ -14,7 +14,7 @@ from snowshed.scene.components import Ground, Panel, Slab
 from snowshed.scene.scene import ResolvedScene, Scene
 from snowshed.season.settings import SeasonSettings
 
-FINEST, COARSEST, CELLS = 0.04, 0.1, 40  # m, m, cells along the slope
+MIN_CELL, MAX_CELL, CELLS = 0.04, 0.1, 40  # m, m, cells along the slope
 
 Span = tuple[float, float]
 
@@ -65,7 +65,7 @@ class Design:
     @property
     def dx(self) -> float:
         """Size of the grid cells, m."""
-        return float(np.clip(self.slope_length / CELLS, FINEST, COARSEST))
+        return float(np.clip(self.slope_length / CELLS, MIN_CELL, MAX_CELL))
 
 
 @dataclass(frozen=True)

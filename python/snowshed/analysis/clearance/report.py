@@ -8,18 +8,18 @@ from pathlib import Path
 from typing import Any, Optional
 
 from snowshed.analysis.clearance import answer_text
-from snowshed.analysis.clearance.answer import Answer
+from snowshed.analysis.clearance.answer import ClearanceResult
 from snowshed.analysis.clearance.design import Ranges
 from snowshed.analysis.clearance.statistics import burial_interval
 from snowshed.io.atomic import write_text
 from snowshed.io.csv_table import write_csv
 from snowshed.plot.clearance_figure import burial_figure, causes_figure, design_figure
-from snowshed.plot.html_page import Grid, Picture, template
+from snowshed.plot.html_page import HtmlTable, Picture, template
 from snowshed.season.quality_table import ALIGN, HEAD, quality_rows, title
 
 
 def write_report(
-    answers: Sequence[Answer], ranges: Ranges, folder: Path, notes: Sequence[str] = ()
+    answers: Sequence[ClearanceResult], ranges: Ranges, folder: Path, notes: Sequence[str] = ()
 ) -> None:
     """Write clearance.html, clearance.csv and clearance.json into a folder.
 
@@ -50,13 +50,17 @@ def write_report(
         chart=_chart(answers) if len(answers) > 1 else None,
         winter_table=_winter_table(answers[0]),
         notes=notes,
-        ranges=Grid(("uncertain parameter", "from", "to"), answer_text.range_rows(ranges), "lrr"),
+        ranges=HtmlTable(
+            ("uncertain parameter", "from", "to"), answer_text.range_rows(ranges), "lrr"
+        ),
         assumptions=answer_text.assumptions(answers[0]),
     )
     write_text(folder / "clearance.html", page)
 
 
-def summary(answers: Sequence[Answer], ranges: Ranges, notes: Sequence[str] = ()) -> dict[str, Any]:
+def summary(
+    answers: Sequence[ClearanceResult], ranges: Ranges, notes: Sequence[str] = ()
+) -> dict[str, Any]:
     """Return the answer as JSON data; the parameters are those of `write_report`."""
     record = answers[0].winter_list
     return {
@@ -82,15 +86,15 @@ def summary(answers: Sequence[Answer], ranges: Ranges, notes: Sequence[str] = ()
     }
 
 
-def _winter_table(answer: Answer) -> Optional[tuple[str, Grid]]:
+def _winter_table(answer: ClearanceResult) -> Optional[tuple[str, HtmlTable]]:
     """Return the title and the table of the winters of the file."""
     record = answer.winter_list
     if record is None:
         return None
-    return title(record), Grid(HEAD, quality_rows(record), ALIGN)
+    return title(record), HtmlTable(HEAD, quality_rows(record), ALIGN)
 
 
-def _panel(answer: Answer, folder: Path) -> dict[str, Any]:
+def _panel(answer: ClearanceResult, folder: Path) -> dict[str, Any]:
     """Return the section of a panel, and write the moving view of its worst winter."""
     levels = [(level.probability, level.height, level.low, level.high) for level in answer.levels]
     shares = {answer_text.cause_label(share.cause): share.part for share in answer.shares}
@@ -119,7 +123,7 @@ def _panel(answer: Answer, folder: Path) -> dict[str, Any]:
     }
 
 
-def _level_grid(answer: Answer) -> Grid:
+def _level_grid(answer: ClearanceResult) -> HtmlTable:
     rows = [
         (
             f"{100 * level.probability:g} %",
@@ -131,10 +135,10 @@ def _level_grid(answer: Answer) -> Grid:
         for level in answer.levels
     ]
     head = ("stays clear in", "height, m", "90 % interval, m", "return period, years", "method")
-    return Grid(head, rows, "lrrrl")
+    return HtmlTable(head, rows, "lrrrl")
 
 
-def _height_grid(answer: Answer) -> Grid:
+def _height_grid(answer: ClearanceResult) -> HtmlTable:
     rows = []
     for height in answer.heights:
         buried = answer.buried(height)
@@ -144,10 +148,10 @@ def _height_grid(answer: Answer) -> Grid:
             (f"{height:g}", f"{100 * buried:.0f}", f"{100 * low:.0f} to {100 * high:.0f}", years)
         )
     head = ("height, m", "buried in, %", "90 % interval, %", "return period, years")
-    return Grid(head, rows, "rrrr")
+    return HtmlTable(head, rows, "rrrr")
 
 
-def _worst(answer: Answer) -> str:
+def _worst(answer: ClearanceResult) -> str:
     case, outcomes = answer.cases[answer.worst], answer.outcomes[answer.worst]
     first = next((outcome for outcome in outcomes if outcome.contact), None)
     snowfall = f"{case.winter.name}: {case.winter.snowfall:.1f} m of new snow in all. "
@@ -160,7 +164,7 @@ def _worst(answer: Answer) -> str:
     )
 
 
-def _worst_picture(answer: Answer, view: Path) -> Optional[Picture]:
+def _worst_picture(answer: ClearanceResult, view: Path) -> Optional[Picture]:
     """Simulate the worst winter once more, write its moving view, and return its picture."""
     from tempfile import TemporaryDirectory
 
@@ -183,7 +187,7 @@ def _worst_picture(answer: Answer, view: Path) -> Optional[Picture]:
         )
 
 
-def _chart(answers: Sequence[Answer]) -> Picture:
+def _chart(answers: Sequence[ClearanceResult]) -> Picture:
     heights = []
     probability = answer_text.FIRST_PROBABILITY
     for answer in answers:

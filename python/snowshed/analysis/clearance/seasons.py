@@ -16,12 +16,12 @@ import numpy as np
 from snowshed.analysis.clearance.design import Design, scene_of, season_settings
 from snowshed.analysis.clearance.winters import Winter
 from snowshed.scene.scene import ResolvedScene
-from snowshed.season.accumulation import Day, accumulate, stack_ageing
-from snowshed.season.clearance import Contact, first_contact
+from snowshed.season.accumulation import WinterDay, accumulate, stack_ageing
+from snowshed.season.clearance import PanelContact, first_contact
 from snowshed.season.settings import SeasonSettings
 from snowshed.season.slabs import season_scene
 from snowshed.season.table import season_table
-from snowshed.study.scene_hash import Run
+from snowshed.study.scene_hash import RunKey
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -43,11 +43,11 @@ class SeasonOutcome:
 
     height: float
     margin: float
-    contact: Optional[Contact]
+    contact: Optional[PanelContact]
 
 
 @dataclass(frozen=True)
-class Case:
+class SeasonCase:
     """A panel in a winter, with drawn values of the uncertain parameters.
 
     Attributes
@@ -77,7 +77,7 @@ class Case:
         return season_settings(self.settings, self.values, self.design.dx)
 
     @cached_property
-    def days(self) -> list[Day]:
+    def days(self) -> list[WinterDay]:
         """The snow on the panel, row after row."""
         return accumulate(self.winter.days, self.season, self.design.tilt)
 
@@ -90,10 +90,10 @@ class Case:
         """Return the scene of the panel at a height, without slabs."""
         return scene_of(self.design, height, self.values, self.seed, self.base)
 
-    def run(self, height: float) -> Run:
+    def run(self, height: float) -> RunKey:
         """Return the slide-offs of the season as a run of a study."""
         scene = season_scene(self.panel(height), self.days, self.season)
-        return Run.of(scene, stack_ageing(self.days, self.season))
+        return RunKey.of(scene, stack_ageing(self.days, self.season))
 
     def outcome(self, height: float, events: pd.DataFrame) -> SeasonOutcome:
         """Return the outcome at a height.
@@ -122,11 +122,11 @@ def cases_of(
     values: Sequence[Mapping[str, float]],
     settings: SeasonSettings,
     base: Mapping[str, Any],
-) -> list[Case]:
+) -> list[SeasonCase]:
     """Return the cases of a panel: every winter with its draws, in order."""
     draws = len(values) // len(winters)
     seeds = np.random.default_rng(len(values)).integers(1, 2**31, len(values))
     return [
-        Case(design, winters[number // draws], drawn, int(seed), settings, base)
+        SeasonCase(design, winters[number // draws], drawn, int(seed), settings, base)
         for number, (drawn, seed) in enumerate(zip(values, seeds))
     ]

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from snowshed._core import InputError
-from snowshed.base.notes import tell
+from snowshed.base.notes import issue_note
 from snowshed.season.quality import COVERAGE
 from snowshed.season.season_record import SeasonRecord, WinterList, whole_percent
 from snowshed.season.weather_row import Weather
@@ -33,7 +33,7 @@ class Winter:
         return sum(day.snowfall for day in self.days)
 
 
-def winters_of(season: Sequence[Weather], coverage: float = COVERAGE) -> list[Winter]:
+def split_winters(season: Sequence[Weather], coverage: float = COVERAGE) -> list[Winter]:
     """Return the winters with observed snow in many years of weather.
 
     Years are cut in the station's summer, on 1 July in the north and on 1 January in the south.
@@ -55,13 +55,13 @@ def winters_of(season: Sequence[Weather], coverage: float = COVERAGE) -> list[Wi
     Examples
     --------
     >>> from snowshed.season.generator import EXAMPLE_CLIMATE
-    >>> [winter.name for winter in winters_of(EXAMPLE_CLIMATE.winters(2, seed=1))]
+    >>> [winter.name for winter in split_winters(EXAMPLE_CLIMATE.winters(2, seed=1))]
     ['2001/02', '2002/03']
     """
     record = SeasonRecord(season).winters(coverage)
     winters = counted(record)
     for note in record.notes:
-        tell(note)
+        issue_note(note)
     return winters
 
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-LARGEST = 1e4  # ratio that is still drawn
+MAX_RATIO = 1e4  # ratio that is still drawn
 
 
 def sensitivity_figure(comparison: pd.DataFrame, title: str = "") -> Figure:
@@ -39,8 +39,8 @@ def sensitivity_figure(comparison: pd.DataFrame, title: str = "") -> Figure:
         headline(
             figure,
             (f"{title}: " if title else "")
-            + "stress over that of the base; bars: 95 % by the scatter between samples, "
-            "hollow where it may be none",
+            + "ratio of the stress to the base; bars: 95 % interval from the scatter between "
+            "samples; hollow: may be no effect",
         )
         grid = figure.subplots(1, len(stresses), sharey=True, squeeze=False)[0]
         for axes, stress in zip(grid, stresses):
@@ -61,7 +61,9 @@ def _draw(axes: Axes, place: int, row: Any, colour: str) -> None:
         return
     low, high = float(row["low"]), float(row["high"])
     if np.isfinite(low):
-        axes.plot([max(low, 1 / LARGEST), min(high, LARGEST)], [place] * 2, color=colour, lw=1.6)
+        axes.plot(
+            [max(low, 1 / MAX_RATIO), min(high, MAX_RATIO)], [place] * 2, color=colour, lw=1.6
+        )
     filled = colour if row["distinct"] is not False else "white"
     axes.plot([ratio], [place], "o", color=colour, markerfacecolor=filled, markersize=5)
 
@@ -73,8 +75,8 @@ def _finish(axes: Axes, base: Any, title: str) -> None:
     axes.axvline(1.0, color=INK, lw=0.8)
     axes.set_xscale("log")
     low, high = axes.get_xlim()
-    axes.set_xlim(max(min(low, 0.4), 1 / LARGEST), min(max(high, 2.5), LARGEST))
+    axes.set_xlim(max(min(low, 0.4), 1 / MAX_RATIO), min(max(high, 2.5), MAX_RATIO))
     value = float(base["value_pa"])
     unit, size = ("MPa", 1e6) if value >= 1e6 else ("kPa", 1e3)
     axes.set_title(f"{title}\nbase {value / size:.3g} {unit}")
-    axes.set_xlabel("ratio; grey: samples differ so")
+    axes.set_xlabel("ratio (grey: scatter between samples)")

@@ -13,15 +13,15 @@ from snowshed._core import InputError
 from snowshed.analysis.tomography.downscaling import downscaled
 from snowshed.analysis.tomography.ice_image import IceImage
 from snowshed.base.arrays import AnyIntegers, Labels, positive
-from snowshed.base.notes import tell
+from snowshed.base.notes import issue_note
 from snowshed.base.paths import PathLike
 from snowshed.io.atomic import replacing
 from snowshed.io.voxels.array_files import open_npy
 from snowshed.methods.grains.sample_folder import LABELS, find_sample
 
 #: Least number of voxels of a sample along an edge.
-LEAST_VOXELS = 6
-LARGEST_LABEL = 2**31 - 1
+MIN_VOXELS = 6
+MAX_LABEL = 2**31 - 1
 
 
 @dataclass(frozen=True)
@@ -113,17 +113,17 @@ class LabelledSample:
         if factor == 1:
             return self
         counts = [length // factor for length in self.labels.shape]
-        if factor < 1 or min(counts) < LEAST_VOXELS:
+        if factor < 1 or min(counts) < MIN_VOXELS:
             raise InputError(
                 f"{self.name}: {self.labels.shape} voxels cannot be made {factor} times coarser; "
-                f"at least {LEAST_VOXELS} must remain along each edge"
+                f"at least {MIN_VOXELS} must remain along each edge"
             )
         image = downscaled(IceImage(self.labels > 0, self.voxel_size, self.name), factor)
         nz, ny, nx = counts
         divisible = self.labels[: nz * factor, : ny * factor, : nx * factor]
         blocks = divisible.reshape(nz, factor, ny, factor, nx, factor).transpose(0, 2, 4, 1, 3, 5)
         labels = np.zeros(image.ice.shape, dtype=self.labels.dtype)
-        labels[image.ice] = _most_frequent(blocks[image.ice].reshape(-1, factor**3))
+        labels[image.ice] = _modal_label(blocks[image.ice].reshape(-1, factor**3))
         name = f"{self.name}-coarser{factor}"
         return LabelledSample(name, labels, image.voxel_size, self.source)
 
@@ -138,10 +138,10 @@ class LabelledSample:
         if not 0 < part <= 1:
             raise InputError(f"part {part:g}: above 0 and up to 1 are allowed")
         lengths = [round(part * length) for length in self.labels.shape]
-        if min(lengths) < LEAST_VOXELS:
+        if min(lengths) < MIN_VOXELS:
             raise InputError(
                 f"{self.name}: {part:g} of {self.labels.shape} voxels are fewer than "
-                f"{LEAST_VOXELS} along an edge"
+                f"{MIN_VOXELS} along an edge"
             )
         cut = tuple(
             slice((size - length) // 2, (size - length) // 2 + length)
@@ -182,15 +182,15 @@ class LabelledSample:
 
 def _checked_labels(file: Path, labels: AnyIntegers, split: bool) -> Labels:
     """Return labels as the core takes them; tell where one lies in several places."""
-    if int(labels.min()) < 0 or int(labels.max()) > LARGEST_LABEL:
-        raise InputError(f"{file}: no labels; 0 is air, grains are 1 to {LARGEST_LABEL:,}")
+    if int(labels.min()) < 0 or int(labels.max()) > MAX_LABEL:
+        raise InputError(f"{file}: no labels; 0 is air, grains are 1 to {MAX_LABEL:,}")
     labelled = labels.astype(np.int32)
     try:
         note = _core.label_note(labelled, split)
     except InputError as error:
         raise InputError(f"{file}: {error}") from None
     if note:
-        tell(f"{file}: {note}")
+        issue_note(f"{file}: {note}")
     return _core.split_labels(labelled) if split else labelled
 
 
@@ -206,7 +206,7 @@ def _check_voxel_size(file: Path, labels: AnyIntegers, voxel_size: float) -> Non
         raise InputError(f"{file}: {error}") from None
 
 
-def _most_frequent(blocks: AnyIntegers) -> AnyIntegers:
+def _modal_label(blocks: AnyIntegers) -> AnyIntegers:
     """Return the label other than 0 that each row has most often; the smaller of equals."""
     rows = np.sort(blocks, axis=1)
     best = np.zeros(len(rows), dtype=rows.dtype)

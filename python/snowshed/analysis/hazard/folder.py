@@ -36,11 +36,11 @@ from snowshed.base.paths import PathLike
 from snowshed.io.atomic import write_text
 from snowshed.io.raster.output import write_raster
 from snowshed.methods.registry import SETTINGS_KEY
-from snowshed.methods.slide.validity import AS_ONE, release_areas, validity_notes
+from snowshed.methods.slide.validity import MAX_BROKEN_SHARE, release_areas, validity_notes
 from snowshed.plot.figure_style import save_figure
 from snowshed.plot.hazard_figure import part_shown, probability_figure
 from snowshed.plot.hazard_page import HazardPage
-from snowshed.plot.html_page import Grid
+from snowshed.plot.html_page import HtmlTable
 from snowshed.scene.resolved import scene_data
 from snowshed.scene.terrain_grid import release_outlines
 from snowshed.study.formats import export
@@ -133,7 +133,7 @@ def _page(maps: HazardMaps, scene: Mapping[str, Any], facts: Mapping[str, Any]) 
         outlines=release_outlines(scene),
         probabilities={exceedance.label: exceedance.probability for exceedance in maps.exceedances},
         percentiles=percentiles,
-        areas=Grid(head, rows, "l" + "r" * len(LEVELS)),
+        areas=HtmlTable(head, rows, "l" + "r" * len(LEVELS)),
         ranges=facts["ranges"],
         figures=facts["figures"],
         runs=maps.runs,
@@ -154,7 +154,7 @@ def _notes(maps: HazardMaps, scene: Mapping[str, Any], table: pd.DataFrame) -> l
     notes = validity_notes(areas, scene[SETTINGS_KEY], figures)
     counts = {
         "more than a tenth of the bonds broke: they did not move as a unit": (
-            table["bonds_broken"] > AS_ONE * table["bonds_made"]
+            table["bonds_broken"] > MAX_BROKEN_SHARE * table["bonds_made"]
         ),
         "the slide had not come to rest at the time limit": table["ended"] == "time_limit",
     }

@@ -85,19 +85,19 @@ class DataDomain:
         scaling = Scaling.of(panels)
         points, place = scaling.scaled(panels), scaling.scaled(panel)
         distances = np.linalg.norm(points - place, axis=1)
-        where = f"the nearest panel in the data has {self._told(panels[distances.argmin()])}"
+        where = f"the nearest panel in the data has {self._panel_text(panels[distances.argmin()])}"
         if len(panels) < self._known:
             where = f"only {len(panels)} of {self._known} panels have event {event:g}; {where}"
         if not _in_hull(points, place):
             return [
-                f"each input is within its range, but not together: {self._told(panel)} is "
+                f"each input is within its range, but not together: {self._panel_text(panel)} is "
                 f"outside the convex hull of the data; {where}"
             ]
         if distances.min() > _widest_gap(points) + TOLERANCE:
-            return [f"{self._told(panel)} is in a gap of the data; {where}"]
+            return [f"{self._panel_text(panel)} is in a gap of the data; {where}"]
         return []
 
-    def _told(self, panel: Floats) -> str:
+    def _panel_text(self, panel: Floats) -> str:
         """Return the inputs of a panel as text."""
         return settings(dict(zip(self.names[1:], panel)))
 

@@ -15,13 +15,13 @@ from scipy.linalg import lapack
 
 from snowshed.base.arrays import Floats
 
-MOST_STEPS = 80
+MAX_STEPS = 80
 INTERIOR = 0.995  # largest share of the distance to the boundary in a step
-SMALLEST_PART = 1e-8  # smallest step that makes progress
+MIN_STEP = 1e-8  # smallest step that makes progress
 ROUNDING = 1e-12  # of the largest diagonal element of the kernel
 DIVERGED = 1e6  # times the smallest residual so far
 USELESS = 1e-2  # a residual that is no fit
-SMALLEST_GOAL = 1e-3  # objectives below count as this, times the tolerance
+MIN_OBJECTIVE = 1e-3  # objectives below count as this, times the tolerance
 
 
 @dataclass(frozen=True)
@@ -115,7 +115,7 @@ class _Iteration:
     def run(self, tolerance: float) -> SupportVectors:
         """Iterate to the tolerance, or to where rounding lets it come no nearer."""
         best, solution = np.inf, self._function()
-        for _ in range(MOST_STEPS):
+        for _ in range(MAX_STEPS):
             residual = self._residuals()
             if residual < best:
                 best, solution = residual, self._function()
@@ -142,7 +142,7 @@ class _Iteration:
         goal = 0.5 * float(beta @ image) + self._c * float(loss)
         infeasible = max(np.abs(self._dual).max(), np.abs(self._dual_star).max())
         self._gap = self._products(self._alpha) + self._products(self._star)
-        return float(max(self._gap / (SMALLEST_GOAL + abs(goal)), infeasible))
+        return float(max(self._gap / (MIN_OBJECTIVE + abs(goal)), infeasible))
 
     def _products(self, bounds: _Bounds) -> float:
         return float(bounds.value @ bounds.lower + bounds.room @ bounds.upper)
@@ -160,7 +160,7 @@ class _Iteration:
         centring = (ahead / self._gap) ** 3 * self._gap / count
         move = self._direction(centring, predictor)
         part = INTERIOR * self._longest(move)
-        if not part > SMALLEST_PART:
+        if not part > MIN_STEP:
             return False
         self._alpha = _moved(self._alpha, move.alpha, part)
         self._star = _moved(self._star, move.alpha_star, part)

@@ -9,7 +9,7 @@ import numpy as np
 from snowshed.base.arrays import Floats
 
 #: Kernel values below are zero: arithmetic with numbers near the smallest ones is slow.
-NOTHING = 1e-100
+UNDERFLOW = 1e-100
 
 
 def kernel_matrix(first: Floats, other: Floats, rates: Floats) -> Floats:
@@ -42,7 +42,7 @@ def kernel_matrix(first: Floats, other: Floats, rates: Floats) -> Floats:
     for rate, a, b in zip(rates, first.T, other.T):
         squares += rate * (a[:, None] - b[None, :]) ** 2
     values = np.exp(-squares)
-    values[values < NOTHING] = 0.0
+    values[values < UNDERFLOW] = 0.0
     return np.asarray(values)
 
 

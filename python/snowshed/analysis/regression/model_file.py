@@ -30,9 +30,9 @@ from snowshed.study.table import FORMER_TRIMMING
 
 FORMAT = "snowshed stack model"
 VERSION = 1
-LARGEST = 2**28  # bytes, unpacked
-LARGEST_VALUE = 1e50  # of anything in an array; its square is a number too
-LARGEST_FACTS = 2**20  # characters
+MAX_BYTES = 2**28  # bytes, unpacked
+MAX_VALUE = 1e50  # of anything in an array; its square is a number too
+MAX_METADATA_LENGTH = 2**20  # characters
 #: Kinds of model that a file may hold: all are sums of kernels. The first there is answers.
 STORED_KINDS = ("rbf", "gaussian-process", "linear")
 ENSEMBLE_ARRAYS = ("coefficients", "intercepts", "rates")
@@ -146,7 +146,7 @@ def load_model(file: PathLike) -> StackModel:
     except OSError as error:
         raise InputError(f"{path}: {error.strerror or error}") from None
     try:
-        with open_archive(content, LARGEST) as archive:
+        with open_archive(content, MAX_BYTES) as archive:
             return _ModelReader(archive).model()
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
@@ -185,7 +185,11 @@ class _ModelReader:
 
     def _facts(self) -> dict[str, Any]:
         text = self._raw("facts")
-        if text.dtype.kind != "U" or text.ndim != 0 or text.dtype.itemsize > 4 * LARGEST_FACTS:
+        if (
+            text.dtype.kind != "U"
+            or text.ndim != 0
+            or text.dtype.itemsize > 4 * MAX_METADATA_LENGTH
+        ):
             raise InputError("facts: not a text")
         try:
             facts = json.loads(str(text))
@@ -231,10 +235,8 @@ class _ModelReader:
             raise InputError(
                 f"{key}: {array.dtype} numbers of shape {array.shape}; must be float64, {wanted}"
             )
-        if not (np.abs(array) <= LARGEST_VALUE).all():
-            raise InputError(
-                f"{key}: holds values that are not finite, or beyond {LARGEST_VALUE:g}"
-            )
+        if not (np.abs(array) <= MAX_VALUE).all():
+            raise InputError(f"{key}: holds values that are not finite, or beyond {MAX_VALUE:g}")
         return np.asarray(array)
 
     def _raw(self, key: str) -> Any:

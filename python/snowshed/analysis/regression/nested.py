@@ -24,7 +24,7 @@ from snowshed.io.folders import claim_folder
 from snowshed.study.locks import holding, is_held
 
 IDENTITY = "regression.json"
-FORMAT = 2  # of the results of folds; another one is computed anew
+FORMAT = 2  # of the results of folds; another one is computed again
 POLL_S = 0.25  # s between checks of interrupts
 
 
@@ -118,14 +118,14 @@ class _Tracker:
         self._finished = 0.0
         self._report = report
         if missing:
-            self._tell(missing[0])
+            self._report_fold(missing[0])
 
     def advance(self, task: FoldTask) -> None:
         self._done += 1
         self._finished += self._cost[task.kind]
-        self._tell(task)
+        self._report_fold(task)
 
-    def _tell(self, task: FoldTask) -> None:
+    def _report_fold(self, task: FoldTask) -> None:
         if self._report is not None:
             doing = f"{task.target}, {self._title[task.kind]}"
             fraction = self._finished / self._work

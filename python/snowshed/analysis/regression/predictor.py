@@ -159,9 +159,9 @@ def predict(
         raise OutsideDataError(_refusal(outside, questions))
     table = _answers(model, kind, questions)
     table["extrapolated"] = np.isin(table["panel"], [questions.labels[n] for n in outside])
-    told = tuple(text for number in outside for text in _told(outside, number, questions))
+    reasons = tuple(text for number in outside for text in _reasons(outside, number, questions))
     asked = settings(dict(zip(model.names[1:], questions.inputs[0, 1:])))
-    return Prediction(table, kind, model.title, model.measure, model.settings, told, asked)
+    return Prediction(table, kind, model.title, model.measure, model.settings, reasons, asked)
 
 
 @cache
@@ -176,7 +176,7 @@ def _objections(model: StackModel, questions: Questions) -> dict[int, list[str]]
     return {number: texts for number, texts in enumerate(objections) if texts}
 
 
-def _told(outside: Mapping[int, list[str]], number: int, questions: Questions) -> list[str]:
+def _reasons(outside: Mapping[int, list[str]], number: int, questions: Questions) -> list[str]:
     """Return the objections to a panel, with its label if there are others."""
     if len(questions.labels) == 1:
         return outside[number]
@@ -186,7 +186,9 @@ def _told(outside: Mapping[int, list[str]], number: int, questions: Questions) -
 def _refusal(outside: Mapping[int, list[str]], questions: Questions) -> str:
     count = len(questions.labels)
     subject = "the question lies" if count == 1 else f"{len(outside)} of {count} panels lie"
-    shown = [text for number in list(outside)[:SHOWN] for text in _told(outside, number, questions)]
+    shown = [
+        text for number in list(outside)[:SHOWN] for text in _reasons(outside, number, questions)
+    ]
     if len(outside) > SHOWN:
         shown.append(f"and {len(outside) - SHOWN} more panels")
     this = "this panel" if len(outside) == 1 else "these panels"

@@ -23,8 +23,8 @@ SHORT: Mapping[str, str] = {
     "panel.height": "height", "panel.length": "length", "panel.tilt": "tilt"
 }  # fmt: skip
 EVENTS = "events"
-MOST_EVENTS = 1000  # of a panel
-MOST = 20_000  # events of all panels: kernel matrices have a row for each
+MAX_EVENTS = 1000  # of a panel
+MAX_TOTAL_EVENTS = 20_000  # events of all panels: kernel matrices have a row for each
 
 
 @dataclass(frozen=True)
@@ -154,12 +154,12 @@ def _check(panels: Mapping[str, Floats], labels: pd.Index[int]) -> None:
             _refuse(name, values, ~((values >= 0) & (values < 90)), outside, labels)
         elif name != EVENTS:
             _refuse(name, values, ~np.isfinite(values), "is not a finite number", labels)
-    outside = f"is outside the allowed range (1 to {MOST_EVENTS})"
-    _refuse("events", events, ~((events >= 1) & (events <= MOST_EVENTS)), outside, labels)
+    outside = f"is outside the allowed range (1 to {MAX_EVENTS})"
+    _refuse("events", events, ~((events >= 1) & (events <= MAX_EVENTS)), outside, labels)
     _refuse("events", events, events % 1 != 0, "is not a whole number", labels)
-    if events.sum() > MOST:
+    if events.sum() > MAX_TOTAL_EVENTS:
         raise InputError(
-            f"{events.sum():g} events of all panels; at most {MOST} may be asked at once"
+            f"{events.sum():g} events of all panels; at most {MAX_TOTAL_EVENTS} are allowed"
         )
 
 

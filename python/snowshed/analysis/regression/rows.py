@@ -25,7 +25,7 @@ TARGETS: Mapping[str, str] = {"ratio": "", "height": "m", "length": "m"}
 STACK = ("height", "length")
 PATH = re.compile(r"[a-z]\w{0,60}(\.\w{1,60}){1,6}", re.ASCII)
 #: Kernel matrices grow with the square of the rows, the time to fit with their cube.
-FEWEST_ROWS, MOST_ROWS = 20, 5000
+MIN_ROWS, MAX_ROWS = 20, 5000
 
 
 @dataclass(frozen=True)
@@ -92,7 +92,7 @@ class StackRows:
 
         Examples
         --------
-        >>> rows = rows_of([[1, 2, 4, 40]] * 2, np.array([1.0, 3.0]), np.array([4.0, 4.0]))
+        >>> rows = stack_rows([[1, 2, 4, 40]] * 2, np.array([1.0, 3.0]), np.array([4.0, 4.0]))
         >>> rows.targets["height"].tolist(), rows.of_one_seed().targets["height"].tolist()
         ([2.0], [1.0])
         """
@@ -150,7 +150,7 @@ def read_rows(
     measure
         One of `snowshed.snow.stack.quantities.MEASURES`. "stack": height and length of 97 % of the
         snow, as the thesis measures, by the trimming rule that the table names; "body": of the
-        largest connected body; "outermost_first" or "equal_pace": as "stack", by that reading.
+        largest connected body; "outermost_first" or "equal_pace": as "stack", by that rule.
     where
         Columns and the value they must have: only these rows are read.
     inputs
@@ -171,7 +171,7 @@ def read_rows(
         raise InputError(f"{file}: {error}") from None
 
 
-def rows_of(inputs: Floats, height: Floats, length: Floats) -> StackRows:
+def stack_rows(inputs: Floats, height: Floats, length: Floats) -> StackRows:
     """Return rows from arrays; stacks with the same inputs make one row.
 
     Parameters
@@ -184,7 +184,7 @@ def rows_of(inputs: Floats, height: Floats, length: Floats) -> StackRows:
     Examples
     --------
     >>> inputs = np.array([[1, 2, 4, 40], [2, 2, 4, 40], [2, 2, 4, 40]])
-    >>> rows = rows_of(inputs, np.array([1, 2, 3]), np.array([4, 5, 5]))
+    >>> rows = stack_rows(inputs, np.array([1, 2, 3]), np.array([4, 5, 5]))
     >>> rows.targets["ratio"].tolist(), rows.panels.tolist()
     ([0.25, 0.5], [0, 0])
     """
@@ -232,10 +232,10 @@ def _rows(table: StackTable, measure: Measure, names: Sequence[str]) -> StackRow
     events = inputs[:, 0]
     _check_seeds(table, inputs)
     table.refuse(INPUTS[0], (events < 1) | (events % 1 != 0), "a whole number, 1 or more")
-    selected = rows_of(inputs, height, length)
+    selected = stack_rows(inputs, height, length)
     _check_enough(len(selected), left_out)
-    if len(selected) > MOST_ROWS:
-        raise InputError(f"{len(selected)} rows; at most {MOST_ROWS} are allowed")
+    if len(selected) > MAX_ROWS:
+        raise InputError(f"{len(selected)} rows; at most {MAX_ROWS} are allowed")
     frame = table.frame
     moving = int((frame["ended"] == "time_limit").sum()) if "ended" in frame else 0
     return replace(
@@ -244,9 +244,9 @@ def _rows(table: StackTable, measure: Measure, names: Sequence[str]) -> StackRow
 
 
 def _check_enough(rows: int, left_out: int) -> None:
-    if rows < FEWEST_ROWS:
+    if rows < MIN_ROWS:
         lost = f" (and {left_out} without a stack)" if left_out else ""
-        raise InputError(f"{rows} rows{lost}; at least {FEWEST_ROWS} are needed")
+        raise InputError(f"{rows} rows{lost}; at least {MIN_ROWS} are needed")
 
 
 def _check_seeds(table: StackTable, inputs: Floats) -> None:

@@ -20,7 +20,7 @@ from snowshed.base.arrays import Floats
 
 #: Part of the cases that lie within the spread, and within the interval.
 SPREAD, INTERVAL = 0.68, 0.90
-SMALLEST = 1e-9  # of a scale, as a part of the target's deviation
+MIN_SCALE = 1e-9  # of a scale, as a part of the target's deviation
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ class Spread:
         noise = np.sqrt(np.maximum(errors**2 - deviations**2, 0.0))
         design = np.column_stack([np.ones_like(predictions), np.abs(predictions)])
         floor, slope = optimize.nnls(design, noise)[0]
-        floor = max(float(floor), SMALLEST * float(np.std(predictions)), 1e-12)
+        floor = max(float(floor), MIN_SCALE * float(np.std(predictions)), 1e-12)
         scales = _scales(floor, float(slope), predictions, deviations)
         ratios = np.sort(np.abs(errors) / scales)
         factors = {part: _quantile(ratios, part) for part in (SPREAD, INTERVAL)}

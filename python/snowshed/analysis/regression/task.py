@@ -29,7 +29,7 @@ class FoldTask:
 
 
 def compute(task: FoldTask, rows: StackRows, scheme: CrossValidation) -> FoldResult:
-    """Choose, train and score a model as section 5.2.3 says; train it anew on all rows (5.2.4).
+    """Choose, train and score a model as section 5.2.3 says; train it again on all rows (5.2.4).
 
     Inputs and target are standardised over all rows, (5.2.12). Scores are in the target's unit.
     """

@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
 
-BARS = 0.8  # part of the room of a group that its bars fill
-FIRST, LAST = 0.3, 0.85  # part of the colour map that reads well on white
+BARS = 0.8  # share of a group's width that its bars fill
+FIRST, LAST = 0.3, 0.85  # part of the colour map that is legible on white
 
 
 def local_index_figure(table: pd.DataFrame) -> Figure:
@@ -229,7 +229,7 @@ def _noise_look() -> dict[str, Any]:
 
 def _noise_key() -> Line2D:
     look = _noise_look()
-    return Line2D([], [], **look, label="seeding alone: smaller values are no effects")
+    return Line2D([], [], **look, label="seeding noise: smaller values are not significant")
 
 
 def _unique(table: pd.DataFrame, column: str) -> list[Any]:

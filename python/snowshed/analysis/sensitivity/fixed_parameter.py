@@ -10,7 +10,7 @@ import numpy as np
 from snowshed._core import InputError
 from snowshed.analysis.sensitivity.noise import noise_of
 from snowshed.analysis.sensitivity.parameter_ranges import GROUPS
-from snowshed.analysis.sensitivity.stored import TARGETS, StoredRuns
+from snowshed.analysis.sensitivity.stored import TARGETS, StudyRuns
 from snowshed.base.arrays import Floats
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ def rescaled(values: Floats) -> Floats:
     return np.asarray((values - np.min(values)) / (span or 1.0))
 
 
-def groups_of(stored: StoredRuns) -> dict[str, list[str]]:
+def groups_of(stored: StudyRuns) -> dict[str, list[str]]:
     """Return the groups of parameters that a study varies; "other" are those not in the thesis."""
     groups = {
         name: [path for path in paths if path in stored.parameters]
@@ -40,7 +40,7 @@ def groups_of(stored: StoredRuns) -> dict[str, list[str]]:
     return {name: paths for name, paths in groups.items() if paths}
 
 
-def fixation(stored: StoredRuns) -> pd.DataFrame:
+def fixation(stored: StudyRuns) -> pd.DataFrame:
     """Return mean and deviation at each value of each parameter, over all values of the others.
 
     While a group of parameters varies, the parameters of the other groups are fixed at the values
@@ -74,7 +74,7 @@ def fixation(stored: StoredRuns) -> pd.DataFrame:
 
 
 def _group(
-    stored: StoredRuns,
+    stored: StudyRuns,
     name: str,
     group: list[str],
     target: str,
@@ -111,7 +111,7 @@ def _group(
     return pd.DataFrame(rows_of_values)
 
 
-def _with_others_kept(stored: StoredRuns, group: Sequence[str]) -> pd.DataFrame:
+def _with_others_kept(stored: StudyRuns, group: Sequence[str]) -> pd.DataFrame:
     """Return the rows at the values of all other parameters at which there are most points."""
     others = [path for path in stored.parameters if path not in group]
     if not others:

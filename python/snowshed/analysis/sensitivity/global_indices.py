@@ -15,7 +15,7 @@ import numpy as np
 
 from snowshed._core import InputError
 from snowshed.analysis.sensitivity.sampling import EXTRA, LEVELS, problem
-from snowshed.analysis.sensitivity.stored import TARGETS, StoredRuns
+from snowshed.analysis.sensitivity.stored import TARGETS, StudyRuns
 from snowshed.base.arrays import Booleans, Floats
 from snowshed.base.extras import require
 from snowshed.study.factors import SEED
@@ -26,11 +26,11 @@ if TYPE_CHECKING:
 RESAMPLES = 500  # of the bootstrap
 CONFIDENCE = 0.95
 RANDOM = 1
-FEWEST = 2  # blocks
+MIN_BLOCKS = 2  # blocks
 SAME_STEP = 1e-3  # relative difference of equal steps: files hold rounded numbers
 
 
-def sobol_indices(stored: StoredRuns) -> pd.DataFrame:
+def sobol_indices(stored: StudyRuns) -> pd.DataFrame:
     """Return first-order and total Sobol indices per parameter and event.
 
     Returns
@@ -70,7 +70,7 @@ def sobol_indices(stored: StoredRuns) -> pd.DataFrame:
     return _analyzed(stored, design, analyze)
 
 
-def morris_effects(stored: StoredRuns) -> pd.DataFrame:
+def morris_effects(stored: StudyRuns) -> pd.DataFrame:
     """Return elementary effects after Morris per parameter and event.
 
     An effect is the change of the stack, relative to its mean over the sample, per sampled range of
@@ -136,7 +136,7 @@ class _Design:
 
     @classmethod
     def of(
-        cls, stored: StoredRuns, more: int, is_block: Callable[[Booleans], bool], unit: str
+        cls, stored: StudyRuns, more: int, is_block: Callable[[Booleans], bool], unit: str
     ) -> _Design:
         """Return the design of a study's points.
 
@@ -159,7 +159,7 @@ class _Design:
 
 
 def _analyzed(
-    stored: StoredRuns,
+    stored: StudyRuns,
     design: _Design,
     analyze: Callable[[Booleans, Floats], dict[str, Floats]],
 ) -> pd.DataFrame:
@@ -177,10 +177,10 @@ def _analyzed(
     table_rows: list[dict[str, Any]] = []
     for event, target, values in _values(stored):
         complete = np.isfinite(values.reshape(-1, design.size)).all(axis=1)
-        if complete.sum() < FEWEST:
+        if complete.sum() < MIN_BLOCKS:
             raise InputError(
                 f"event {event}: {complete.sum()} of {complete.size} blocks of {design.size} runs "
-                f"are complete; at least {FEWEST} are needed"
+                f"are complete; at least {MIN_BLOCKS} are needed"
             )
         columns = analyze(np.repeat(complete, design.size), values)
         for number, name in enumerate(design.names):
@@ -190,7 +190,7 @@ def _analyzed(
     return pd.DataFrame(table_rows)
 
 
-def _values(stored: StoredRuns) -> Iterator[tuple[int, str, Floats]]:
+def _values(stored: StudyRuns) -> Iterator[tuple[int, str, Floats]]:
     """Yield each event's measures in the order of the points, NaN for missing ones."""
     for event in stored.events:
         rows = stored.rows[stored.rows["event"] == event].set_index("hash")

@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from snowshed.analysis.sensitivity.stored import TARGETS, StoredRuns
+from snowshed.analysis.sensitivity.stored import TARGETS, StudyRuns
 from snowshed.base.arrays import Floats
 
 if TYPE_CHECKING:
     import pandas as pd
 
 
-def seeding_noise(stored: StoredRuns) -> pd.DataFrame:
+def seeding_noise(stored: StudyRuns) -> pd.DataFrame:
     """Return the deviation between seedings, event by event.
 
     The deviation is pooled over all points with several seedings. Few seedings of many points give
@@ -31,7 +31,7 @@ def seeding_noise(stored: StoredRuns) -> pd.DataFrame:
     >>> import pandas as pd
     >>> points = pd.DataFrame({"hash": ["a", "b"], "snow.cohesion": 0.1, "seeding.seed": [1, 2]})
     >>> rows = points.assign(event=1, height=[0.09, 0.11], length=[0.3, 0.3])
-    >>> seeding_noise(StoredRuns("s", ["snow.cohesion"], points, rows)).loc[(1, "height")].round(4)
+    >>> seeding_noise(StudyRuns("s", ["snow.cohesion"], points, rows)).loc[(1, "height")].round(4)
     noise_m    0.0141
     noise      0.1414
     freedom    1.0000
@@ -61,7 +61,7 @@ def seeding_noise(stored: StoredRuns) -> pd.DataFrame:
     return pd.DataFrame(scatter).set_index(["event", "target"])
 
 
-def noise_of(stored: StoredRuns, column: str) -> dict[tuple[Any, str], float]:
+def noise_of(stored: StudyRuns, column: str) -> dict[tuple[Any, str], float]:
     """Return one column of `seeding_noise`, by event and target."""
     table = seeding_noise(stored).reset_index()
     return dict(zip(zip(table["event"], table["target"]), table[column]))

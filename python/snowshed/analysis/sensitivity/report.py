@@ -11,7 +11,7 @@ from snowshed.analysis.sensitivity.fixed_parameter import fixation
 from snowshed.analysis.sensitivity.global_indices import morris_effects, sobol_indices
 from snowshed.analysis.sensitivity.noise import seeding_noise
 from snowshed.analysis.sensitivity.single_parameter import local_index
-from snowshed.analysis.sensitivity.stored import StoredRuns, read_stored
+from snowshed.analysis.sensitivity.stored import StudyRuns, read_study_runs
 from snowshed.base.paths import PathLike
 from snowshed.io.csv_table import write_csv
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.figure import Figure
 
-EVALUATIONS: Mapping[str, Callable[[StoredRuns], pd.DataFrame]] = {
+EVALUATIONS: Mapping[str, Callable[[StudyRuns], pd.DataFrame]] = {
     "s": local_index,
     "fixation": fixation,
     "sobol": sobol_indices,
@@ -69,7 +69,7 @@ def evaluate_sensitivity(
 
     if method not in EVALUATIONS:
         raise InputError(f"method: {method!r} is unknown; allowed: {', '.join(EVALUATIONS)}")
-    runs = read_stored(stored, study, measure)
+    runs = read_study_runs(stored, study, measure)
     if note and runs.incomplete:
         note(
             f"{runs.incomplete} of {len(runs.points)} runs are not computed, have failed or left "

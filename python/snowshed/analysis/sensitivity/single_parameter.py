@@ -10,7 +10,7 @@ import numpy as np
 from snowshed._core import InputError
 from snowshed.analysis.sensitivity.noise import noise_of
 from snowshed.analysis.sensitivity.parameter_ranges import PAIRS
-from snowshed.analysis.sensitivity.stored import TARGETS, StoredRuns
+from snowshed.analysis.sensitivity.stored import TARGETS, StudyRuns
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 CONFIDENT = 1.96  # standard errors on either side: 95 %
 
 
-def local_index(stored: StoredRuns) -> pd.DataFrame:
+def local_index(stored: StudyRuns) -> pd.DataFrame:
     """Return S = ((R_a - R_n)/R_n) / ((P_a - P_n)/P_n), equation 3.3.1, per parameter and event.
 
     R is the height or length of the stack, as the mean over the seedings. P_n and P_a are the
@@ -44,7 +44,7 @@ def local_index(stored: StoredRuns) -> pd.DataFrame:
     >>> import pandas as pd
     >>> points = pd.DataFrame({"hash": ["a", "b"], "snow.cohesion": [0.1, 0.2], "seeding.seed": 1})
     >>> rows = points.assign(event=1, height=[0.10, 0.15], length=[0.3, 0.3])
-    >>> local_index(StoredRuns("s", ["snow.cohesion"], points, rows))["s"].round(6).tolist()
+    >>> local_index(StudyRuns("s", ["snow.cohesion"], points, rows))["s"].round(6).tolist()
     [0.5, 0.0]
     """
     import pandas as pd
@@ -68,7 +68,7 @@ def local_index(stored: StoredRuns) -> pd.DataFrame:
     return table[[*columns, *(name for name in table if name not in columns)]]
 
 
-def _pair(stored: StoredRuns, parameter: str) -> tuple[float, float]:
+def _pair(stored: StudyRuns, parameter: str) -> tuple[float, float]:
     values = np.unique(stored.rows[parameter].to_numpy(float))
     pair = PAIRS.get(parameter, (np.nan, np.nan))
     if not all(np.isclose(values, value, rtol=1e-9).any() for value in pair):
@@ -79,7 +79,7 @@ def _pair(stored: StoredRuns, parameter: str) -> tuple[float, float]:
 
 
 def _pairs(
-    stored: StoredRuns, rows: pd.DataFrame, parameter: str, pair: tuple[float, float]
+    stored: StudyRuns, rows: pd.DataFrame, parameter: str, pair: tuple[float, float]
 ) -> Iterator[tuple[pd.DataFrame, pd.DataFrame]]:
     """Yield the rows at the nominal and at the altered value, for each choice of all others."""
     others = [path for path in stored.parameters if path != parameter]

@@ -18,7 +18,7 @@ TARGETS = ("height", "length")
 
 
 @dataclass(frozen=True)
-class StoredRuns:
+class StudyRuns:
     """The runs of a study.
 
     Attributes
@@ -58,9 +58,9 @@ class StoredRuns:
         return sorted(int(event) for event in self.rows["event"].unique())
 
 
-def read_stored(
+def read_study_runs(
     folder: PathLike, study: Optional[str] = None, measure: str = "stack"
-) -> StoredRuns:
+) -> StudyRuns:
     """Read the computed runs of a study.
 
     Parameters
@@ -85,9 +85,9 @@ def read_stored(
         raise InputError(f"{folder}: {table.name}: {error}") from None
 
 
-def stored_runs(table: StackTable, measure: str = "stack") -> StoredRuns:
+def stored_runs(table: StackTable, measure: str = "stack") -> StudyRuns:
     """Return the runs in a table of stacks."""
     measured = table.measured(measure, TARGETS)[["hash", "event", *TARGETS]]
     varying = table.varying(table.axes, "sensitivity")
     axes = tuple(path for path in table.axes if path == SEED or path in varying)
-    return StoredRuns(table.name, axes, table.points, table.points.merge(measured, on="hash"))
+    return StudyRuns(table.name, axes, table.points, table.points.merge(measured, on="hash"))

@@ -9,7 +9,7 @@ from snowshed._core import InputError
 from snowshed.analysis.tomography.ice_image import IceImage
 from snowshed.base.arrays import AnyIntegers, SingleFloats
 
-LARGEST_FACTOR = 16
+MAX_FACTOR = 16
 
 
 def downscaled(image: IceImage, factor: int) -> IceImage:
@@ -32,10 +32,8 @@ def downscaled(image: IceImage, factor: int) -> IceImage:
     >>> coarse.ice.shape, coarse.voxel_size, coarse.ice_fraction
     ((4, 4, 4), 0.0001, 0.375)
     """
-    if factor != int(factor) or not 1 <= factor <= LARGEST_FACTOR:
-        raise InputError(
-            f"downscale {factor}: whole numbers from 1 to {LARGEST_FACTOR} are allowed"
-        )
+    if factor != int(factor) or not 1 <= factor <= MAX_FACTOR:
+        raise InputError(f"downscale {factor}: whole numbers from 1 to {MAX_FACTOR} are allowed")
     if min(image.ice.shape) < factor:
         raise InputError(f"{image.source}: {image.ice.shape} voxels; too few to join {factor}")
     if factor == 1:

@@ -25,8 +25,8 @@ from snowshed.base.arrays import Booleans, SingleFloats, positive
 
 SHELL_WIDTH = 0.15  # standard deviation of the wave numbers over their mean
 #: Tolerance of the search, and its largest numbers of fields and of cuts.
-SURFACE_TOLERANCE, ICE_TOLERANCE, MOST_TRIES = 0.005, 1e-4, 12
-LARGEST_SURFACE_ERROR = 0.03  # of the best try
+SURFACE_TOLERANCE, ICE_TOLERANCE, MAX_TRIES = 0.005, 1e-4, 12
+MAX_SURFACE_ERROR = 0.03  # of the best try
 
 
 def gaussian_snow(
@@ -137,8 +137,8 @@ def _search(
     target = surface * ICE_DENSITY * fraction * voxel_size  # per volume, in voxels
     wavelength = float(2 * np.pi * per_length / target)
     best: Optional[tuple[Booleans, float]] = None
-    least = LARGEST_SURFACE_ERROR
-    for attempt in range(MOST_TRIES):
+    least = MAX_SURFACE_ERROR
+    for attempt in range(MAX_TRIES):
         field = noise.field(_resolved(wavelength, voxel_size, noise.shape))
         ice = _cut(field, fraction, connected)
         density = surface_density(ice) * ice.size * fraction / np.count_nonzero(ice)
@@ -147,7 +147,7 @@ def _search(
         if least < SURFACE_TOLERANCE:
             break
         # Parts that come loose or hold make the surface jump; smaller steps then get nearer.
-        wavelength *= float(density / target) ** (1.0 if attempt < MOST_TRIES // 3 else 0.4)
+        wavelength *= float(density / target) ** (1.0 if attempt < MAX_TRIES // 3 else 0.4)
     if best is not None:
         return best
     raise InputError(
@@ -174,7 +174,7 @@ def _cut(field: SingleFloats, fraction: float, connected: bool) -> Booleans:
     if not connected:
         return _highest(field, target)
     count, best, least = target, None, field.size
-    for _ in range(MOST_TRIES):
+    for _ in range(MAX_TRIES):
         ice = largest_part(_highest(field, count))
         missing = target - int(np.count_nonzero(ice))
         if abs(missing) < least:

@@ -12,7 +12,7 @@ from snowshed.analysis.tomography.crofton import SLAB, surface_density
 from snowshed.analysis.tomography.ice_image import ICE_DENSITY, IceImage, check_phases
 from snowshed.base.arrays import Booleans, Floats
 
-SMALLEST_GRAIN, LARGEST_GRAIN = _core.smallest_grain, _core.largest_grain  # m, diameters
+MIN_GRAIN, MAX_GRAIN = _core.smallest_grain, _core.largest_grain  # m, diameters
 
 
 @dataclass(frozen=True)
@@ -156,14 +156,14 @@ def mean_chords(ice: Booleans, axis: int) -> tuple[float, float]:
 
 
 def _check_scale(image: IceImage, diameter: float) -> None:
-    if SMALLEST_GRAIN <= diameter <= LARGEST_GRAIN:
+    if MIN_GRAIN <= diameter <= MAX_GRAIN:
         return
     hint = ""
     for unit, factor in (("mm", 1e-3), ("um", 1e-6)):
-        if SMALLEST_GRAIN <= diameter * factor <= LARGEST_GRAIN:
+        if MIN_GRAIN <= diameter * factor <= MAX_GRAIN:
             hint = f"; is it in {unit}? Then it is {image.voxel_size * factor:g} m"
     raise InputError(
         f"{image.source}: wrongly scaled: with voxels of {image.voxel_size:g} m its grains measure "
-        f"some {diameter:.3g} m; those of snow measure {SMALLEST_GRAIN:g} to {LARGEST_GRAIN:g} m"
+        f"some {diameter:.3g} m; those of snow measure {MIN_GRAIN:g} to {MAX_GRAIN:g} m"
         f"{hint}"
     )

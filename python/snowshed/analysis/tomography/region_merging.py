@@ -96,7 +96,7 @@ class _Graph:
         while queue and -queue[0][0] > contiguity:
             negative, first, other = heapq.heappop(queue)
             if other not in self.areas[first] or -self._contiguity(first, other) != negative:
-                continue  # merged, or changed and queued anew
+                continue  # merged, or changed and queued again
             self._merge(first, other)
             for third in self.areas[first]:
                 pair = (first, third) if first < third else (third, first)

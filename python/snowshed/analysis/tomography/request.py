@@ -9,7 +9,7 @@ from snowshed._core import InputError
 from snowshed.analysis.tomography.ice_image import ICE_DENSITY
 from snowshed.base.arrays import positive
 
-MOST_VOXELS = 1 << 30
+MAX_VOXELS = 1 << 30
 
 
 def check_shape(shape: tuple[int, int, int]) -> None:
@@ -24,8 +24,8 @@ def check_shape(shape: tuple[int, int, int]) -> None:
     """
     if len(shape) != 3 or any(int(count) != count or count < 8 for count in shape):
         raise InputError(f"shape {shape}: not three whole numbers (nz, ny, nx), each 8 or more")
-    if prod(map(int, shape)) > MOST_VOXELS:
-        raise InputError(f"shape {shape}: more than {MOST_VOXELS:,} voxels")
+    if prod(map(int, shape)) > MAX_VOXELS:
+        raise InputError(f"shape {shape}: more than {MAX_VOXELS:,} voxels")
 
 
 def asked_fraction(ice_fraction: Optional[float], density: Optional[float]) -> float:

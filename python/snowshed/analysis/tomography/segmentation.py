@@ -129,13 +129,13 @@ def segment(
     """
     chosen = settings or SegmentationSettings()
     check_phases(image)
-    tell = progress or _silent
-    tell(0.0, "cutting the ice")
+    report = progress or _silent
+    report(0.0, "cutting the ice")
     basins = _basins(image, chosen)
-    tell(0.6, "measuring contacts")
+    report(0.6, "measuring contacts")
     labels = basins.labels
     touching = find_adjacency(labels, basins.distance)
-    tell(0.9, "merging")
+    report(0.9, "merging")
     new = np.arange(len(touching.air))
     if chosen.method == "watershed":
         new = merge_shallow(touching, basins.peaks, chosen.depth)

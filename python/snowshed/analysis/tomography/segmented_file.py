@@ -89,7 +89,7 @@ def segment_image(
             progress(Progress(part, int(part), 1, "images", doing, expected_s=seconds))
 
     report(0.0, "reading")
-    with recorded() as told:
+    with recorded() as notes:
         read = read_ice(file, wanted)
     measure_microstructure(read.image)  # what cannot be snow is refused before the long part
     segmentation = segment(
@@ -101,7 +101,7 @@ def segment_image(
         "threshold_from": read.chosen,
         "unconnected_ice": read.lost,
         "downscale": wanted.downscale,
-        "notes": [*file.notes, *told],
+        "notes": [*file.notes, *notes],
     }
     numbers = write_grains(folder, segmentation, facts, surface=surface)
     report(1.0, "")

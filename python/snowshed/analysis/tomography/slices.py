@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 AIR = (1.0, 1.0, 1.0)
 LINE = (0.13, 0.19, 0.24)  # between grains
 HUES, TURN = 64, 0.381966  # of a circle: neighbours by number differ much
-MOST_PIXELS = 1000  # along an edge of a slice
+MAX_PIXELS = 1000  # along an edge of a slice
 
 
 def slices_figure(
@@ -56,7 +56,7 @@ def slices_figure(
 
 
 def _draw(axes: Axes, cut: Labels, voxel_size: float, size: tuple[int, int]) -> None:
-    every = -(-max(cut.shape) // MOST_PIXELS)
+    every = -(-max(cut.shape) // MAX_PIXELS)
     extent = (0.0, 1e3 * size[0] * voxel_size, 0.0, 1e3 * size[1] * voxel_size)
     axes.grid(visible=False)
     axes.imshow(_coloured(cut[::every, ::every]), origin="lower", extent=extent)

@@ -17,9 +17,9 @@ from snowshed.analysis.tomography.request import asked_fraction, check_shape
 from snowshed.base.arrays import Booleans, Floats, Labels, SingleFloats, finite, positive
 
 #: The pack is full when this many spheres in a row found no place.
-MOST_FAILURES = 20_000
-LARGEST_SPREAD = 0.5
-MOST_SPHERES = 1_000_000
+MAX_FAILURES = 20_000
+MAX_SPREAD = 0.5
+MAX_SPHERES = 1_000_000
 
 
 def sphere_snow(
@@ -71,8 +71,8 @@ def sphere_snow(
     ratio, width = finite("neck_ratio", neck_ratio), finite("spread", spread)
     if not 0.1 <= ratio <= 0.9:
         raise InputError(f"neck_ratio {ratio:g}: 0.1 to 0.9 are allowed")
-    if not 0 <= width <= LARGEST_SPREAD:
-        raise InputError(f"spread {width:g}: 0 to {LARGEST_SPREAD} are allowed")
+    if not 0 <= width <= MAX_SPREAD:
+        raise InputError(f"spread {width:g}: 0 to {MAX_SPREAD} are allowed")
     pack = _Pack(shape, ratio)
     random = np.random.default_rng(seed)
     target = fraction * np.prod(shape, dtype=np.int64)
@@ -81,7 +81,7 @@ def sphere_snow(
         failures = (
             0 if pack.add(radius * random.uniform(1 - width, 1 + width), random) else failures + 1
         )
-        if failures > MOST_FAILURES or pack.count > MOST_SPHERES:
+        if failures > MAX_FAILURES or pack.count > MAX_SPHERES:
             reached = pack.voxels / np.prod(shape, dtype=np.int64)
             raise InputError(
                 f"ice fraction {fraction:.3g}: the spheres fill {reached:.3g}, and no other finds "

@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from snowshed._core import InputError
+from snowshed.analysis.tomography.automatic_threshold import automatic_threshold
 from snowshed.analysis.tomography.downscaling import downscaled
-from snowshed.analysis.tomography.found_threshold import found_threshold
 from snowshed.analysis.tomography.ice_image import IceImage, check_phases
 from snowshed.analysis.tomography.parts import largest_part
 from snowshed.base.arrays import finite, positive
-from snowshed.base.notes import tell
+from snowshed.base.notes import issue_note
 from snowshed.io.voxels.voxel_file import VoxelFile
 
 #: Difference of the voxel sizes of file and options that is told.
@@ -110,7 +110,7 @@ def read_ice(file: VoxelFile, settings: Optional[ImageSettings] = None) -> ReadI
     if wanted.threshold is not None:
         threshold, chosen = finite("threshold", wanted.threshold), "given"
     else:
-        threshold, chosen = found_threshold(
+        threshold, chosen = automatic_threshold(
             file.name, lambda: (part for _, part in _parts(file, crop))
         )
     ice = np.empty([high - low for low, high in crop], dtype=bool)
@@ -144,7 +144,7 @@ def _voxel_size(file: VoxelFile, given: Optional[float]) -> float:
     size = positive("voxel size", given)
     for stated, source in ((file.voxel_size, "the file"), (file.printed_size, "its resolution")):
         if stated is not None and abs(stated - size) > OTHER_SIZE * size:
-            tell(f"{file.name}: voxels of {size:g} m, as given; {source} says {stated:.4g} m")
+            issue_note(f"{file.name}: voxels of {size:g} m, as given; {source} says {stated:.4g} m")
     return size
 
 

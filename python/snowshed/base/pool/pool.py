@@ -23,7 +23,7 @@ from snowshed.base.pool.messages import Died, Done, Fraction, Raised, Ready
 
 STOP_S = 60.0  # time for a process to write its checkpoint, s
 END_S = 5.0  # time for a process to end after its socket is closed, s
-LAST_WORDS = 4096  # bytes of a process's stderr whose last line is reported
+STDERR_TAIL_BYTES = 4096  # bytes of a process's stderr whose last line is reported
 
 Task = TypeVar("Task")
 Result = TypeVar("Result")
@@ -77,11 +77,11 @@ class Ended(Generic[Task, Result]):
     death
         Description of how its process ended, if it died.
     last_words
-        The last line that a process that ended so wrote to stderr; may be empty.
+        Last line on stderr of a process that died; may be empty.
     hung
-        Whether that process was killed because the task took too long.
+        Whether the process was killed because the task took too long.
     never_began
-        Whether that process ended before it was ready, so that no other would begin either.
+        Whether the process died before it was ready; other processes would fail, too.
     """
 
     task: Task
@@ -183,8 +183,8 @@ class Pool(Generic[Task, Result]):
         """Take a message of each process that has one within `timeout`; end those that hang."""
         busy = self._busy()
         left = min((process.left_s for process in busy), default=timeout)
-        ready = wait([process.connection for process in busy], min(timeout, max(0.0, left)))
-        messages = (process.receive() for process in busy if process.connection in ready)
+        readable = wait([process.connection for process in busy], min(timeout, max(0.0, left)))
+        messages = (process.receive() for process in busy if process.connection in readable)
         ended = [message for message in messages if message]
         ended += [process.give_up() for process in self._busy() if process.left_s <= 0.0]
         for process in [process for process in self._processes if process.dead]:
@@ -207,8 +207,8 @@ class _Process(Generic[Task, Result]):
         self._errors = tempfile.TemporaryFile("a+b")  # noqa: SIM115 - `end` closes it
         ours, theirs = socket.socketpair()
         with theirs:
-            # In a session of its own a Ctrl-C does not reach it: who made the pool stops it once,
-            # in order. The current folder is not to be searched for modules.
+            # In its own session it does not receive Ctrl-C; the owner of the pool stops it. The
+            # current folder is not searched for modules.
             self._process = subprocess.Popen(
                 [sys.executable, "-m", "snowshed.base.pool.process", str(theirs.fileno())]
                 + ["forked"] * isolation.forked,
@@ -313,7 +313,7 @@ class _Process(Generic[Task, Result]):
     def _last_error_line(self) -> str:
         """Return the last line that the process wrote to stderr since it was asked before."""
         size = self._errors.seek(0, os.SEEK_END)
-        self._errors.seek(max(0, size - LAST_WORDS))
+        self._errors.seek(max(0, size - STDERR_TAIL_BYTES))
         lines = self._errors.read().decode(errors="replace").strip().splitlines()
         self._errors.truncate(0)
         return lines[-1].strip() if lines else ""

@@ -24,7 +24,7 @@ from snowshed.cli.weather_options import weather_options
 from snowshed.cli.winters_table import print_quality
 
 if TYPE_CHECKING:
-    from snowshed.analysis.clearance.answer import Answer
+    from snowshed.analysis.clearance.answer import ClearanceResult
     from snowshed.analysis.clearance.design import Design, Ranges
     from snowshed.analysis.clearance.winters import Winter
     from snowshed.season.season_record import SeasonRecord, WinterList
@@ -138,8 +138,8 @@ def _answers(
     jobs: Optional[int],
     *,
     quiet: bool,
-) -> list[Answer]:
-    from snowshed.analysis.clearance.answer import clearance_of
+) -> list[ClearanceResult]:
+    from snowshed.analysis.clearance.answer import required_clearance
     from snowshed.cli.progress import progress_bar
     from snowshed.study.errors import StudyInterrupted
 
@@ -151,7 +151,9 @@ def _answers(
             store = folder / f"runs-{design.slope_length:g}-{design.tilt:g}"
             with progress_bar(quiet=quiet) as progress:
                 answers.append(
-                    clearance_of(design, winters, heights, store, progress=progress, **options)
+                    required_clearance(
+                        design, winters, heights, store, progress=progress, **options
+                    )
                 )
     except StudyInterrupted:
         raise Stopped("interrupted; resume with the same command") from None
@@ -179,7 +181,7 @@ def _span(text: str) -> tuple[str, tuple[float, float]]:
     return named_span("--range", text, example="friction=0.3:0.6", single=True)
 
 
-def print_answers(answers: Sequence[Answer], folder: Path) -> None:
+def print_answers(answers: Sequence[ClearanceResult], folder: Path) -> None:
     """Print the answer in a sentence, and the heights for each panel and probability."""
     from snowshed.analysis.clearance import answer_text
 

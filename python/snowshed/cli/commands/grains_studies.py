@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Optional, TypeVar
 
 import click
 
-from snowshed.base.formatting import NOTHING
+from snowshed.base.formatting import MISSING
 from snowshed.cli.commands.grain_images import VOXEL, split_labels_option
 from snowshed.cli.common_options import (
     PATH,
@@ -227,7 +227,7 @@ def _cell(row: Any, *, base: bool) -> str:
     import numpy as np
 
     if not np.isfinite(row["ratio"]):
-        return NOTHING
+        return MISSING
     if base:
         scatter = f" x/ {np.exp(row['scatter']):.2f}" if np.isfinite(row["scatter"]) else ""
         return f"{row['value_pa'] / 1e3:.3g} kPa{scatter}  "

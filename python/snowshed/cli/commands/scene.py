@@ -10,7 +10,7 @@ import click
 import snowshed._core as _core
 from snowshed.cli.accuracy import accuracy_option
 from snowshed.cli.common_options import PATH, quiet_option
-from snowshed.cli.dry_run import tell_notes
+from snowshed.cli.dry_run import issue_notes
 from snowshed.cli.resolve_options import resolve_options
 from snowshed.cli.scene_options import scene_options
 from snowshed.cli.terminal import write_out
@@ -31,7 +31,7 @@ def scene(
 ) -> None:
     """Write the scene that the same options of ``panel`` would run."""
     resolved = resolve_options(preset, snow_preset, options, accuracy, quiet=quiet)
-    tell_notes(resolved)
+    issue_notes(resolved)
     if file is None:
         write_out(resolved.json)
     else:

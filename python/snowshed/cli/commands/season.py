@@ -56,7 +56,7 @@ SEASON_TABLE = {
     "clearance\nm": ("clearance_m", "{:.2f}"),
     "to crest\nm": ("crest_clearance_m", "{:.2f}"),
 }
-MOST_ROWS = 60  # a longer table shows its releases only
+MAX_ROWS = 60  # a longer table shows its releases only
 SETTLED = {"settled\nheight, m": ("settled_height_m", "{:.2f}")}
 
 
@@ -308,8 +308,8 @@ def print_season(result: SeasonResult, folder: Path, scene: ResolvedScene) -> No
 def _rows(result: SeasonResult) -> tuple[list[dict[str, Any]], int]:
     """Return the rows to print, and the number of left-out rows without a release."""
     table = result.table
-    if len(table) > MOST_ROWS:
-        table = table[table["released"] == "yes"].head(MOST_ROWS)
+    if len(table) > MAX_ROWS:
+        table = table[table["released"] == "yes"].head(MAX_ROWS)
     rows = [{str(name): value for name, value in row.items()} for row in table.to_dict("records")]
     return rows, len(result.table) - len(table)
 

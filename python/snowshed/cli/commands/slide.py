@@ -12,7 +12,7 @@ from typing import Any, Optional
 import click
 
 from snowshed._core import InputError
-from snowshed.base.notes import held, recorded, told_on_failure
+from snowshed.base.notes import held_notes, issued_on_failure, recorded
 from snowshed.cli.commands.slide_ranges import (
     RangeOptions,
     range_options,
@@ -131,7 +131,7 @@ def _run_or_cost_files(
     if options.resume and not (files.any() or sampled or dry_run):
         resolved = ResolvedScene.load(results / "scene.json")
     else:
-        with recorded() if dry_run or sampled else held() as notes:
+        with recorded() if dry_run or sampled else held_notes() as notes:
             scene = files.scene(results, example=options.example, settings=options.settings)
         if options.max_time is not None:
             scene.set("events.max_time", options.max_time)
@@ -142,7 +142,7 @@ def _run_or_cost_files(
         if options.resume and not dry_run:
             refuse_changed_areas(resolved, results, files.of_areas())
         in_summary = [] if dry_run else notes_for_summary(notes, scene)
-    with told_on_failure(in_summary):
+    with issued_on_failure(in_summary):
         run_or_cost(resolved, results, resume=options.resume, dry_run=dry_run, quiet=quiet)
     return None if dry_run else resolved
 

@@ -74,7 +74,7 @@ def _command(name: str, kind: Structure) -> click.Command:
     def write(file: Path, picture: Optional[Path], quiet: bool, **given: Any) -> None:
         values = given_values(given)
         mesh = [values.pop("mesh")] if "mesh" in values else []
-        _tell(_write(_built(kind.build, *mesh, **values), file, picture), quiet)
+        _print_files(_write(_built(kind.build, *mesh, **values), file, picture), quiet)
 
     docs = parameter_docs(kind.build)
     options: list[click.Parameter] = [
@@ -110,7 +110,7 @@ def _terrain() -> click.Command:
         start = Scene.load(scene)
         distances = file.with_suffix(".npy")
         built = _built(on_terrain, start, raster, distances, **values)
-        _tell([*_write(built, file, picture), distances], quiet)
+        _print_files([*_write(built, file, picture), distances], quiet)
 
     docs = parameter_docs(on_terrain)
     parameters = [*inspect.signature(on_terrain).parameters.values()][3:]
@@ -205,7 +205,7 @@ def _write(scene: Scene, file: Path, picture: Optional[Path]) -> list[Path]:
     return [*written, file]
 
 
-def _tell(written: Sequence[Path], quiet: bool) -> None:
+def _print_files(written: Sequence[Path], quiet: bool) -> None:
     for file in written if not quiet else ():
         say(file)
 

@@ -6,14 +6,12 @@ import math
 
 import snowshed._core as _core
 from snowshed.base.arrays import Floats
+from snowshed.running.simulation import MAX_STEPS
 from snowshed.scene.scene import Scene
 
-#: The most steps between two readings of the clock.
-MOST_STEPS = 200
 
-
-class Drive:
-    """The first event of a scene, run as far as asked.
+class EventDriver:
+    """The first event of a scene, run to given times.
 
     Parameters
     ----------
@@ -31,7 +29,7 @@ class Drive:
     --------
     >>> from snowshed import Body, Shape
     >>> scene = Scene(dimension=2, bodies=[Body(shape=Shape.sphere((0, 1), 0.05))])
-    >>> drive = Drive(scene.update({"numerics.dx": 0.02, "numerics.precision": "double"}))
+    >>> drive = EventDriver(scene.update({"numerics.dx": 0.02, "numerics.precision": "double"}))
     >>> drive.run_to(0.1)
     >>> print(f"{drive.mean(drive.core.velocities())[2] / drive.core.time_s:.6f}")
     -9.810000
@@ -54,7 +52,7 @@ class Drive:
         """Take steps until a time of the event, s, and no further than the step that reaches it."""
         while self.core.time_s < time_s:
             left = (time_s - self.core.time_s) / self.core.time_step_s if self.core.time_s else 1
-            self.step(max(1, min(MOST_STEPS, int(left))))
+            self.step(max(1, min(MAX_STEPS, int(left))))
 
     def mean(self, values: Floats) -> Floats:
         """Return the mean over all particles, weighted by mass, of rows of values."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from snowshed.cli.self_test.drive import Drive
+from snowshed.cli.self_test.drive import EventDriver
 from snowshed.cli.self_test.incline import GRAVITY, Incline
 from snowshed.scene.components import Body, Obstacle
 from snowshed.scene.scene import Scene
@@ -26,7 +26,7 @@ def fall_error() -> float:
     """Return the relative error of the speed of a ball in free fall: g t."""
     ball = Body(shape=Shape.sphere((0, 1), 0.05))
     scene = Scene(dimension=2, gravity=GRAVITY, bodies=[ball])
-    drive = Drive(scene.update({"numerics.dx": 0.02, "numerics.precision": "double"}))
+    drive = EventDriver(scene.update({"numerics.dx": 0.02, "numerics.precision": "double"}))
     drive.run_to(FALL_S)
     speed = -drive.mean(drive.core.velocities())[2]
     return float(speed / (GRAVITY * drive.core.time_s) - 1)
@@ -35,7 +35,7 @@ def fall_error() -> float:
 def friction_error() -> float:
     """Return the relative error of a slab's acceleration on an incline: Coulomb's law."""
     incline = Incline(TILT, dimension=2)
-    drive = Drive(incline.scene(SLAB, FRICTION).update({"numerics.dx": 0.01}))
+    drive = EventDriver(incline.scene(SLAB, FRICTION).update({"numerics.dx": 0.01}))
     begin, end = WINDOW
     drive.run_to(begin)
     speed, time_s = drive.mean(drive.core.velocities()) @ incline.along, drive.core.time_s
@@ -54,7 +54,7 @@ def column_error() -> float:
     vertical = YOUNGS_MODULUS * (1 - POISSONS_RATIO) / stretched  # lambda + 2 mu
     bulk = YOUNGS_MODULUS / (2 * stretched)  # K in the plane, lambda + mu
     slowest = math.pi / (2 * HEIGHT) * math.sqrt(vertical / DENSITY)  # swing, rad/s
-    drive = Drive(column_scene())
+    drive = EventDriver(column_scene())
     while slowest * drive.core.time_s < SETTLING:
         before = drive.core.time_s
         drive.step(STEPS)

@@ -1,4 +1,4 @@
-"""Two ways to the same snow: threads, a checkpoint, and the executable."""
+"""Reproducibility checks: threads, a checkpoint, the executable."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import numpy as np
 
 import snowshed._core as _core
 from snowshed.base.arrays import Floats
-from snowshed.cli.self_test.drive import Drive
+from snowshed.cli.self_test.drive import EventDriver
 from snowshed.io.vtk.vtp import read_particles
 from snowshed.scene.scene import Scene
 
@@ -20,7 +20,7 @@ from snowshed.scene.scene import Scene
 FINE, COARSE = 0.0025, 0.02
 STEPS = 200
 #: Limit on the run time of the executable, far beyond the usual time, s.
-LONGEST_S = 120.0
+TIME_LIMIT_S = 120.0
 
 
 def panel_scene(dx: float, threads: int) -> Scene:
@@ -31,28 +31,30 @@ def panel_scene(dx: float, threads: int) -> Scene:
 
 
 def threads_error() -> float:
-    """Return the part of the particles that two threads move otherwise than one."""
-    single, two = (Drive(panel_scene(FINE, threads)) for threads in (1, 2))
+    """Return the share of particles that differ between one and two threads."""
+    single, two = (EventDriver(panel_scene(FINE, threads)) for threads in (1, 2))
     for drive in (single, two):
         drive.step(STEPS)
     return different(single.core, two.core)
 
 
 def checkpoint_error() -> float:
-    """Return the part of the particles that move otherwise after a checkpoint than without it."""
-    uninterrupted, interrupted = (Drive(panel_scene(COARSE, threads=1)).core for _ in range(2))
-    uninterrupted.run(_go_on)
+    """Return the share of particles that differ between a run and its continuation."""
+    uninterrupted, interrupted = (
+        EventDriver(panel_scene(COARSE, threads=1)).core for _ in range(2)
+    )
+    uninterrupted.run(_continue)
     interrupted.run(lambda report: bool(report["steps"] < STEPS), 0.0)
     with TemporaryDirectory() as folder:
         checkpoint = str(Path(folder) / "checkpoint.bin")
         interrupted.save(checkpoint)
         resumed = _core.Simulation.load(checkpoint)
-    resumed.run(_go_on)
+    resumed.run(_continue)
     return different(uninterrupted, resumed)
 
 
 def executable_error() -> float:
-    """Return the part of the particles that ``snowshed-run`` moves otherwise than Python.
+    """Return the share of particles that differ between ``snowshed-run`` and Python.
 
     Raises
     ------
@@ -67,13 +69,13 @@ def executable_error() -> float:
         scene.save(file)
         command = [executable(), str(file), "-o", str(out), "--quiet"]
         done = subprocess.run(
-            command, capture_output=True, text=True, timeout=LONGEST_S, check=False
+            command, capture_output=True, text=True, timeout=TIME_LIMIT_S, check=False
         )
         if done.returncode != 0:
             raise _core.SimulationError(f"exit code {done.returncode}: {done.stderr.strip()}")
         particles = read_particles(out / "particles" / "event_001.vtp")
-    here = Drive(panel_scene(COARSE, threads=1)).core
-    here.run(_go_on)
+    here = EventDriver(panel_scene(COARSE, threads=1)).core
+    here.run(_continue)
     return _different_rows(particles["position"], here.positions().astype(np.float32))
 
 
@@ -92,12 +94,12 @@ def executable() -> str:
     return program
 
 
-def _go_on(report: object) -> bool:
+def _continue(report: object) -> bool:
     return True
 
 
 def different(first: _core.Simulation, other: _core.Simulation) -> float:
-    """Return the part of the particles whose positions or velocities differ in any bit."""
+    """Return the share of particles whose positions or velocities differ in any bit."""
     states = (np.hstack([core.positions(), core.velocities()]) for core in (first, other))
     return _different_rows(*states)
 

@@ -9,7 +9,7 @@ from typing import Literal
 
 import numpy as np
 
-from snowshed.cli.self_test.drive import Drive
+from snowshed.cli.self_test.drive import EventDriver
 from snowshed.cli.self_test.incline import GRAVITY
 from snowshed.io.raster.raster import Raster, write_ascii_grid
 from snowshed.methods.slide.settings import SlideSettings
@@ -48,10 +48,10 @@ def _acceleration() -> float:
     return GRAVITY * (math.sin(tilt) - FRICTION * math.cos(tilt))
 
 
-def _slid(law: Law) -> tuple[Drive, float]:
+def _slid(law: Law) -> tuple[EventDriver, float]:
     """Return a slab that has slid from rest, and the speed of its middle, m/s."""
     with TemporaryDirectory() as folder:
-        drive = Drive(_scene(law, Path(folder) / "plane.asc"))
+        drive = EventDriver(_scene(law, Path(folder) / "plane.asc"))
     start = drive.core.positions()
     middle = np.hypot(*(start - start.mean(axis=0))[:, :2].T) < MIDDLE
     drive.run_to(SLIDING)

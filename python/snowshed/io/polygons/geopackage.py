@@ -25,7 +25,7 @@ from snowshed.base.limits import (
     SQL_STEPS,
 )
 from snowshed.base.messages import quoted
-from snowshed.base.notes import tell
+from snowshed.base.notes import issue_note
 from snowshed.io.atomic import replacing
 from snowshed.io.coordinates.plain_systems import plain_system
 from snowshed.io.coordinates.systems import system_of
@@ -66,8 +66,8 @@ def _opened(path: Path) -> Iterator[sqlite3.Connection]:
         log = _companion(path, "-wal", LOG)
         if _companion(path, "-journal", JOURNAL) is not None:
             raise InputError(
-                f"{path}: a program that wrote to it was cut off ({path.name}-journal); open and "
-                "close it there once"
+                f"{path}: an interrupted write left {path.name}-journal; open and close the file "
+                "once in the program that wrote it"
             )
         file = path
         if log is not None:  # another program has it open; SQLite would write beside it to read it
@@ -172,7 +172,7 @@ class _Package:
                 f"{self.path}: has {len(every)} layers: {names}; choose one ({option} NAME)"
             )
         if len(every) > 1:
-            tell(
+            issue_note(
                 f"{self.path}: of its layers {names} the one that may hold polygons is read, "
                 f"{quoted(str(of_polygons[0][0]))}"
             )
@@ -244,5 +244,5 @@ def _wkb(value: object, where: str) -> Optional[bytes]:
     flags = value[3]
     begin = ENVELOPES.get(flags >> 1 & 7)
     if begin is None or flags & 0x20:
-        raise InputError(f"{where}: its geometry is of a kind that is not known")
+        raise InputError(f"{where}: its geometry type is unknown")
     return value[begin:]

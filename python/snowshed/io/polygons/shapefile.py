@@ -12,7 +12,7 @@ from snowshed._core import InputError
 from snowshed.base.extras import require
 from snowshed.base.limits import CORNERS, POLYGONS, RINGS
 from snowshed.base.messages import shortened
-from snowshed.base.notes import tell
+from snowshed.base.notes import issue_note
 from snowshed.io.coordinates.gdal_fence import fenced_pyogrio
 from snowshed.io.coordinates.systems import read_system
 from snowshed.io.polygons.layer import PolygonLayer, is_wanted
@@ -34,7 +34,7 @@ def read_shapefile(path: Path) -> PolygonLayer:
     if ".prj" in companions:
         read_system(companions[".prj"])
     file = path.absolute()
-    with warnings.catch_warnings(record=True) as said:
+    with warnings.catch_warnings(record=True) as log:
         warnings.simplefilter("always")
         try:
             with fenced_pyogrio():
@@ -52,8 +52,8 @@ def read_shapefile(path: Path) -> PolygonLayer:
             raise InputError(
                 f"{path}: not a file of polygons: {shortened(str(error), 300)}"
             ) from None
-    for warning in dict.fromkeys(shortened(str(caught.message), 300) for caught in said):
-        tell(f"{path}: GDAL says: {warning}")
+    for warning in dict.fromkeys(shortened(str(caught.message), 300) for caught in log):
+        issue_note(f"{path}: GDAL says: {warning}")
     rows = zip(*columns) if columns else [()] * len(shapes)
     names = [str(name) for name in meta["fields"]]
     return PolygonLayer(

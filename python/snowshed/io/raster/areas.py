@@ -15,7 +15,7 @@ import numpy as np
 from snowshed._core import InputError
 from snowshed.base.extras import require
 from snowshed.base.messages import shortened
-from snowshed.base.notes import tell
+from snowshed.base.notes import issue_note
 from snowshed.base.paths import PathLike
 from snowshed.io.coordinates.systems import is_in_degrees
 from snowshed.io.polygons import read_layer
@@ -24,7 +24,7 @@ from snowshed.io.raster.thickness import ThicknessField, thickness_fields, thick
 
 Ring = Sequence[Sequence[float]]
 
-LONGEST_NAME = 200  # characters
+MAX_NAME = 200  # characters
 
 
 @dataclass(frozen=True)
@@ -96,7 +96,7 @@ def read_areas(
     if not areas:
         raise InputError(f"{path}: holds no polygon")
     if not features.crs:
-        tell(f"{path}: has no coordinate system; that of the terrain is assumed")
+        issue_note(f"{path}: has no coordinate system; that of the terrain is assumed")
     return areas
 
 
@@ -107,7 +107,7 @@ def _areas(
     named = next((field for field in layer.fields if field.strip().lower() == "name"), "")
     facts = [
         (
-            shortened(str(record.get(named) or f"area {number}"), LONGEST_NAME),
+            shortened(str(record.get(named) or f"area {number}"), MAX_NAME),
             thickness_of(fields, record, f"{path}, feature {number}"),
         )
         for number, record in enumerate(layer.records, 1)

@@ -22,7 +22,7 @@ from snowshed.base.arrays import Booleans, Floats
 from snowshed.base.extras import require
 from snowshed.base.limits import RASTER_BLOCK, RASTER_CELLS
 from snowshed.base.messages import quoted
-from snowshed.base.notes import tell
+from snowshed.base.notes import issue_note
 from snowshed.io.coordinates.gdal_fence import fenced_rasterio
 from snowshed.io.input_file import read_regular
 from snowshed.io.raster.sidecars import sidecar, small_file
@@ -78,7 +78,7 @@ def read_geotiff(path: Path, band: Optional[int] = None) -> PlacedHeights:
         number = _checked_band(source, path, band)
         _check_size(source, path, number)
         facts = _facts(source, number)
-        _tell_of_sidecar(path, content, extra, number, facts)
+        _note_on_sidecar(path, content, extra, number, facts)
         values, missing = source.read(number), _missing(source, number)
         system, per_height = ("", None)
         if source.crs is not None:
@@ -114,8 +114,8 @@ def _opened(path: Path, content: bytes, extra: dict[str, bytes]) -> Iterator[Any
             )
             yield stack.enter_context(file.open(driver="GTiff"))
         except (rasterio.errors.RasterioError, gdal.CPLE_BaseError, UnicodeDecodeError) as error:
-            told = str(error).replace(f"/vsimem/{folder}/", "")
-            raise InputError(f"{path}: not a GeoTIFF: {told}") from None
+            reason = str(error).replace(f"/vsimem/{folder}/", "")
+            raise InputError(f"{path}: not a GeoTIFF: {reason}") from None
 
 
 @contextmanager
@@ -123,7 +123,7 @@ def _without_words_of_gdal() -> Iterator[None]:
     """Prevent tracebacks of rasterio where GDAL quotes bytes that are not text."""
     unraisable, uncaught = sys.unraisablehook, sys.excepthook
 
-    def drop_or_tell(event: Any) -> None:
+    def drop_or_report(event: Any) -> None:
         if not isinstance(event.exc_value, UnicodeDecodeError):
             unraisable(event)
 
@@ -131,7 +131,7 @@ def _without_words_of_gdal() -> Iterator[None]:
         if not isinstance(value, UnicodeDecodeError):
             uncaught(kind, value, trace)
 
-    sys.unraisablehook, sys.excepthook = drop_or_tell, drop_or_print
+    sys.unraisablehook, sys.excepthook = drop_or_report, drop_or_print
     try:
         yield
     finally:
@@ -176,7 +176,8 @@ def _checked_band(source: Any, path: Path, band: Optional[int]) -> int:
     if np.dtype(source.dtypes[chosen - 1]).kind not in "iuf":
         raise InputError(f"{path}: holds {source.dtypes[chosen - 1]} values, which are not heights")
     if len(bands) > 1:
-        tell(f"{path.name}: band {chosen} of {len(bands)} is read ({_named(source, [chosen])})")
+        title = _named(source, [chosen])
+        issue_note(f"{path.name}: band {chosen} of {len(bands)} is read ({title})")
     return chosen
 
 
@@ -200,7 +201,7 @@ def _check_size(source: Any, path: Path, band: int) -> None:
     if rows * columns * together * np.dtype(source.dtypes[band - 1]).itemsize > RASTER_BLOCK:
         raise InputError(
             f"{path}: blocks of {columns} columns, {rows} rows and {together} bands take more than "
-            f"{RASTER_BLOCK >> 20} MB; write it anew: gdal_translate -co TILED=YES"
+            f"{RASTER_BLOCK >> 20} MB; convert it: gdal_translate -co TILED=YES"
         )
 
 
@@ -213,7 +214,7 @@ def _facts(source: Any, band: int) -> BandFacts:
     )  # fmt: skip
 
 
-def _tell_of_sidecar(
+def _note_on_sidecar(
     path: Path, content: bytes, extra: dict[str, bytes], band: int, facts: BandFacts
 ) -> None:
     """Print a note on facts about a band that come from the file .aux.xml beside it."""
@@ -226,7 +227,7 @@ def _tell_of_sidecar(
     if changed:
         shown = [f"{name} {getattr(facts, name)}" for name in changed if name != "system"]
         shown += ["coordinate system"] if "system" in changed else []
-        tell(f"{path.name}.aux.xml, beside the raster, gives its {quoted(', '.join(shown))}")
+        issue_note(f"{path.name}.aux.xml, beside the raster, gives its {quoted(', '.join(shown))}")
 
 
 def _missing(source: Any, band: int) -> Booleans:
@@ -264,11 +265,11 @@ def _in_metres(values: Any, facts: BandFacts, factor: float, path: Path) -> Floa
     if (scale, offset) != (1.0, 0.0):
         heights *= scale
         heights += offset
-        tell(f"{path.name}: its numbers were multiplied by {scale:.10g}"
+        issue_note(f"{path.name}: its numbers were multiplied by {scale:.10g}"
              + (f", and {offset:.10g} added" if offset else ""))  # fmt: skip
     if factor != 1.0:
         heights *= factor
-        tell(f"{path.name}: its values were turned into metres; one unit is {factor:.10g} m")
+        issue_note(f"{path.name}: its values were turned into metres; one unit is {factor:.10g} m")
     return heights
 
 

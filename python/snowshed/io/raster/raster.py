@@ -10,7 +10,7 @@ import numpy as np
 
 from snowshed._core import InputError, read_ascii_grid
 from snowshed.base.arrays import Floats
-from snowshed.base.notes import tell
+from snowshed.base.notes import issue_note
 from snowshed.base.paths import PathLike
 from snowshed.io.atomic import replacing
 from snowshed.io.coordinates.systems import read_prj
@@ -133,14 +133,14 @@ def _read_ascii(path: Path) -> Raster:
     heights, west, south, cell, missing, commas = read_ascii_grid(str(path))
     refuse_other_facts(path, heights)
     if missing:
-        tell(f"{path.name}: {missing} values of -9999 are missing ones; the header declares none")
+        issue_note(f"{path.name}: {missing} values of -9999 are missing; the header declares none")
     if commas:
-        tell(f"{path.name}: {commas} numbers have a decimal comma")
+        issue_note(f"{path.name}: {commas} numbers have a decimal comma")
     raster = Raster(heights, west, south, cell, str(path), read_prj(path), plain=True)
     system, per_height = split_vertical(raster.crs, str(path))
     if per_height in (None, 1.0):
         return replace(raster, crs=system)
-    tell(f"{path.name}: its values were turned into metres; one unit is {per_height:.10g} m")
+    issue_note(f"{path.name}: its values were turned into metres; one unit is {per_height:.10g} m")
     return replace(raster, crs=system, heights=heights * per_height, plain=False)
 
 

@@ -20,7 +20,7 @@ from snowshed.io.raster.raster import Raster
 #: Areas that touch at a corner are separated by this share of a cell.
 GAP = 1e-7
 #: Thicknesses that are codes and not snow, m.
-THICKEST = 100.0
+MAX_THICKNESS = 100.0
 
 
 def snow_part(depth: Raster) -> Raster:
@@ -33,7 +33,7 @@ def snow_part(depth: Raster) -> Raster:
     """
     values = depth.heights
     _refuse(depth, values < 0, "a negative thickness")
-    _refuse(depth, values > THICKEST, f"a thickness above {THICKEST:g} m")
+    _refuse(depth, values > MAX_THICKNESS, f"a thickness above {MAX_THICKNESS:g} m")
     snow = values > 0
     if not snow.any():
         raise InputError(f"{depth.name}: holds no thickness above 0")

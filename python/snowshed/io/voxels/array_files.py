@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from snowshed._core import InputError
 from snowshed.base.damage import DAMAGED
 from snowshed.base.messages import quoted
-from snowshed.base.notes import tell
+from snowshed.base.notes import issue_note
 from snowshed.io.input_file import open_regular, stored_bytes
 from snowshed.io.voxels.turned import Turn, turned
 from snowshed.io.voxels.voxel_file import VoxelFile, check_size, check_type, check_unpacked
@@ -23,7 +23,7 @@ from snowshed.io.voxels.voxel_file import VoxelFile, check_size, check_type, che
 TYPES = (
     "uint8", "int8", "uint16", "int16", "uint32", "int32", "uint64", "int64", "float32", "float64"
 )  # fmt: skip
-LONGEST_HEADER = 10_000
+MAX_HEADER = 10_000
 COLUMNS_FIRST = Turn((2, 1, 0))
 
 
@@ -43,7 +43,7 @@ def open_npy(path: Path) -> VoxelFile:
             read = {(1, 0): npy_format.read_array_header_1_0}.get(
                 version, npy_format.read_array_header_2_0
             )
-            shape, columns_first, dtype = read(file, max_header_size=LONGEST_HEADER)
+            shape, columns_first, dtype = read(file, max_header_size=MAX_HEADER)
         except DAMAGED as error:
             raise InputError(f"{path}: damaged: no NPY file: {error}") from None
         start = file.tell()
@@ -131,7 +131,7 @@ def numbers_of(
             )
         check_unpacked(str(data), count, stored_bytes(file, count))
     if size > start + count:
-        tell(f"{data}: {size - start - count:,} bytes after the image are left out")
+        issue_note(f"{data}: {size - start - count:,} bytes after the image are left out")
     nz, ny, nx = shape
     layer = ny * nx
 

@@ -13,7 +13,7 @@ from typing import Optional
 
 import numpy as np
 
-from snowshed.base.notes import tell
+from snowshed.base.notes import issue_note
 from snowshed.io.voxels.array_files import number_type, numbers_of
 from snowshed.io.voxels.metaimage_fields import HeaderFields
 from snowshed.io.voxels.packed_numbers import packed_numbers
@@ -58,12 +58,12 @@ def open_metaimage(path: Path) -> VoxelFile:
     shape = _shape(fields)
     kind = _kind(fields)
     opened = _numbers(fields, shape, kind)
-    _tell_of_scale(fields)
+    _note_on_scale(fields)
     spacing = _spacing(fields)
     image = VoxelFile(str(path), opened.shape, opened.dtype, opened.read_layers, spacing)
     turn = _turn(fields)
     if not turn.is_none:
-        tell(f"{path}: the image is turned as its {fields.given(*MATRICES)} says")
+        issue_note(f"{path}: the image is rotated according to its {fields.given(*MATRICES)}")
     return turned(image, turn)
 
 
@@ -72,9 +72,9 @@ def _shape(fields: HeaderFields) -> tuple[int, int, int]:
     object_type = fields.text("ObjectType", "Image")
     if object_type != "Image":
         raise fields.wrong("ObjectType", "Image is needed")
-    if fields.whole("NDims", 3) != 3:
+    if fields.whole_number("NDims", 3) != 3:
         raise fields.wrong("NDims", "an image of snow has 3")
-    if fields.whole("ElementNumberOfChannels", 1) != 1:
+    if fields.whole_number("ElementNumberOfChannels", 1) != 1:
         raise fields.wrong(
             "ElementNumberOfChannels", "several numbers per voxel (colours?); one is needed"
         )
@@ -113,7 +113,7 @@ def _numbers(fields: HeaderFields, shape: tuple[int, int, int], kind: str) -> Vo
     if packed and as_text:
         raise fields.wrong("CompressedData", "numbers as text (BinaryData = False) are not packed")
     if packed:
-        size = fields.whole("CompressedDataSize", 0)
+        size = fields.whole_number("CompressedDataSize", 0)
         return packed_numbers(path, data, shape, dtype, start, size)
     if as_text:
         return text_numbers(path, data, shape, dtype, start)
@@ -155,16 +155,16 @@ def _header_size(
     return max(size, start)
 
 
-def _tell_of_scale(fields: HeaderFields) -> None:
+def _note_on_scale(fields: HeaderFields) -> None:
     """Print a note that the file's scale is not applied to the numbers."""
     (slope,) = fields.numbers("ElementToIntensityFunctionSlope", 1, [1.0])
     (offset,) = fields.numbers("ElementToIntensityFunctionOffset", 1, [0.0])
     if slope <= 0:
         raise fields.wrong("ElementToIntensityFunctionSlope", "only positive ones are read")
     if (slope, offset) != (1.0, 0.0):
-        tell(
-            f"{fields.path}: numbers, and thresholds, are those that are stored, without "
-            f"ElementToIntensityFunctionSlope {slope:g} and Offset {offset:g}"
+        issue_note(
+            f"{fields.path}: the stored numbers are used; ElementToIntensityFunctionSlope "
+            f"{slope:g} and Offset {offset:g} are not applied, also not to thresholds"
         )
 
 
@@ -174,7 +174,7 @@ def _spacing(fields: HeaderFields) -> Optional[float]:
     if name is None:
         return None
     if name == "ElementSize":
-        tell(
+        issue_note(
             f"{fields.path}: ElementSize is used as the spacing, because ElementSpacing is missing"
         )
     unit = fields.text("DistanceUnits", "mm").lower()

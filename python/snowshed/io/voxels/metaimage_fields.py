@@ -13,7 +13,7 @@ from snowshed._core import InputError
 from snowshed.base.messages import quoted
 from snowshed.io.input_file import open_regular
 
-LONGEST_HEADER = 1 << 16
+MAX_HEADER = 1 << 16
 LAST = "ElementDataFile"
 
 
@@ -47,7 +47,7 @@ class HeaderFields:
             If the file cannot be read.
         """
         with open_regular(path) as file:
-            head = file.read(LONGEST_HEADER)
+            head = file.read(MAX_HEADER)
         fields: dict[str, str] = {}
         position = 0
         while LAST not in fields:
@@ -57,7 +57,7 @@ class HeaderFields:
                 position = end + 1
                 continue
             name, separator, value = _parted(line)
-            if not separator or (end < 0 and len(head) == LONGEST_HEADER):
+            if not separator or (end < 0 and len(head) == MAX_HEADER):
                 raise InputError(f"{path}: damaged: no line {LAST} = ... in its header")
             if name in fields:
                 raise InputError(f"{path}: {quoted(name)} stands twice in its header")
@@ -89,7 +89,7 @@ class HeaderFields:
             raise self.wrong(name, "True or False is needed")
         return truth
 
-    def whole(self, name: str, default: int) -> int:
+    def whole_number(self, name: str, default: int) -> int:
         """Return a field that is a whole number from 0."""
         if name not in self.values:
             return default

@@ -54,9 +54,9 @@ def open_voxels(
     ...     open_voxels(folder + "/snow.npy").shape
     (2, 3, 4)
     """
-    with recorded() as told:
+    with recorded() as notes:
         opened = _opened(Path(path), shape, kind)
-    return replace(opened, notes=tuple(told))
+    return replace(opened, notes=tuple(notes))
 
 
 def _opened(file: Path, shape: Optional[tuple[int, int, int]], kind: Optional[str]) -> VoxelFile:

@@ -9,7 +9,7 @@ from typing import Optional
 
 from snowshed._core import InputError
 from snowshed.base.limits import PAGES
-from snowshed.base.notes import tell
+from snowshed.base.notes import issue_note
 from snowshed.io.voxels.picture import PixelPicture, stacked
 from snowshed.io.voxels.plain_pictures import open_picture
 from snowshed.io.voxels.tiff_description import Description, described
@@ -40,12 +40,12 @@ def open_stack(path: Path) -> VoxelFile:
         if len(pictures) == 1:
             pictures = contiguous_copies(pictures[0], description.slices or 0)
         else:
-            tell(
+            issue_note(
                 f"{path}: its description speaks of {description.slices} slices; it has "
                 f"{len(pictures)} pages, which are read"
             )
     for note in description.notes:
-        tell(f"{path}: {note}")
+        issue_note(f"{path}: {note}")
     return stacked(str(path), pictures, description.voxel_size, printed)
 
 
@@ -81,19 +81,19 @@ def open_slices(folder: Path) -> VoxelFile:
 def _pages(path: Path) -> tuple[list[PixelPicture], Description, Optional[float]]:
     """Return the pages of a TIFF file, its description, and the size of its pixels in print."""
     big_endian = is_big_endian(path)
-    told: list[tuple[Description, Optional[float]]] = []
+    descriptions: list[tuple[Description, Optional[float]]] = []
 
     def look(tags: Tags) -> PixelPicture:
         picture = page_picture(path, tags, big_endian)
-        if not told:
+        if not descriptions:
             text = described(str(path), tags.text(270), tags.ratio(282))
-            told.append((text, _printed_size(tags)))
+            descriptions.append((text, _printed_size(tags)))
         return picture
 
     pictures = read_pages(path, look)
     if not pictures:
         raise InputError(f"{path}: damaged: not read as TIFF: it has no pages")
-    return (pictures, *told[0])
+    return (pictures, *descriptions[0])
 
 
 def _printed_size(tags: Tags) -> Optional[float]:
@@ -102,7 +102,7 @@ def _printed_size(tags: Tags) -> Optional[float]:
     if unit is None or across is None or along is None:
         return None
     if not isclose(across, along, rel_tol=1e-3):
-        tell(f"{tags.name}: its tags of resolution declare pixels that are not square; ignored")
+        issue_note(f"{tags.name}: its resolution tags declare pixels that are not square; ignored")
         return None
     if any(isclose(across * INCH / unit, usual, rel_tol=1e-2) for usual in USUAL_DPI):
         return None
@@ -135,7 +135,9 @@ def _numbered(folder: Path) -> list[Path]:
         named.setdefault(path.stem[: match.start(1)] + "*" + path.stem[match.end(1) :], path)
     if len(named) > 1:
         first, other = [path.name for path in named.values()][:2]
-        tell(f"{folder}: its slices have several names, as {first} and {other}; all are one stack")
+        issue_note(
+            f"{folder}: its slices have several names, {first} and {other}; all are one stack"
+        )
     order = sorted(numbers)
     for one_number, following in zip(order, order[1:]):
         if following != one_number + 1:

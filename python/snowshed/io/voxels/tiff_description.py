@@ -81,8 +81,10 @@ def _stack(name: str, counts: Mapping[str, int]) -> tuple[int, tuple[str, ...]]:
     """Return the number of slices, from pages along several dimensions."""
     more = {kind: count for kind, count in counts.items() if count > 1}
     if len(more) > 1:
-        said = " x ".join(f"{count} {kind}" for kind, count in more.items())
-        raise InputError(f"{name}: {said}; one stack of slices is needed: save one of them alone")
+        counted = " x ".join(f"{count} {kind}" for kind, count in more.items())
+        raise InputError(
+            f"{name}: {counted}; one stack of slices is needed: save one of them alone"
+        )
     if more and "slices" not in more:
         ((kind, count),) = more.items()
         return count, (f"its {count} {kind} are taken for slices, as it has no others",)
@@ -95,8 +97,8 @@ def _cube(name: str, edges: list[Optional[float]]) -> Optional[float]:
     if len(valid) < len(edges):
         return None
     if max(valid) > CUBIC * min(valid):
-        said = " x ".join(f"{edge:.4g}" for edge in valid)
-        raise InputError(f"{name}: voxels of {said} m; they must be cubes: resample the image")
+        text = " x ".join(f"{edge:.4g}" for edge in valid)
+        raise InputError(f"{name}: voxels of {text} m; they must be cubes: resample the image")
     return float(f"{valid[0]:.7g}")
 
 
@@ -135,7 +137,7 @@ def _by_ome(name: str, text: str) -> Description:
     for entry in data:
         shift = _count(entry.get("FirstZ", "0")) - _count(entry.get("IFD", "0"))
         if shift and max(_count(pixels.get(f"Size{axis}", "1")) for axis in "CT") == 1:
-            raise InputError(f"{name}: its pages are not in the order of z; save it anew")
+            raise InputError(f"{name}: its pages are not in the order of z; save it again")
     sizes = zip(KINDS, "CZT")
     counts = {kind: _count(pixels.get(f"Size{axis}", "1")) for kind, axis in sizes}
     slices, notes = _stack(name, counts)

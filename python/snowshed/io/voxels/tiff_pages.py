@@ -25,7 +25,7 @@ WHITE_NOTE = (
 #: The sample formats of TIFF, by NumPy's letter for the kind.
 KINDS = {1: "u", 2: "i", 3: "f", 4: "u"}
 UNDEFINED = 4
-LARGEST_TILE = 1 << 20  # pixels, of an image that is smaller
+MAX_TILE = 1 << 20  # pixels, of an image that is smaller
 
 
 @dataclass(frozen=True)
@@ -159,8 +159,8 @@ def _layout(path: Path, tags: Tags, size: tuple[int, int], big_endian: bool) -> 
     else:
         piece = (min(tags.number(278, height), height), width)
         offsets, counts = tags.numbers(273), tags.numbers(279)
-    most_pixels = max(4 * height * width, LARGEST_TILE)
-    if min(piece) < 1 or piece[0] * piece[1] > most_pixels:
+    max_pixels = max(4 * height * width, MAX_TILE)
+    if min(piece) < 1 or piece[0] * piece[1] > max_pixels:
         raise InputError(f"{tags.name}: damaged: strips or tiles of {piece[1]} x {piece[0]} pixels")
     coding = _coding(tags, big_endian)
     across, down = -(-width // piece[1]), -(-height // piece[0])

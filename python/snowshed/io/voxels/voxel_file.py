@@ -15,8 +15,8 @@ from snowshed.base.formatting import number
 from snowshed.base.limits import MB, UNPACKED_FREELY, UNPACKED_RATIO, VOXELS_AT_ONCE
 from snowshed.base.messages import shortened
 
-MOST_VOXELS = 1 << 32
-MOST_ALONG = 1 << 16
+MAX_VOXELS = 1 << 32
+MAX_AXIS_LENGTH = 1 << 16
 #: Allowed kinds of voxels, by NumPy's letters.
 KINDS = "buif"
 
@@ -80,10 +80,10 @@ def check_size(name: str, shape: tuple[int, ...]) -> None:
     """Raise InputError unless a shape is three-dimensional and of a plausible size."""
     if len(shape) != 3:
         raise InputError(f"{name}: {len(shape)} dimensions; an image of snow has 3 (nz, ny, nx)")
-    if min(shape) < 1 or max(shape) > MOST_ALONG or prod(shape) > MOST_VOXELS:
+    if min(shape) < 1 or max(shape) > MAX_AXIS_LENGTH or prod(shape) > MAX_VOXELS:
         raise InputError(
-            f"{name}: {' x '.join(map(str, shape))} voxels; 1 to {MOST_ALONG:,} along an edge and "
-            f"{MOST_VOXELS:,} in all are allowed"
+            f"{name}: {' x '.join(map(str, shape))} voxels; 1 to {MAX_AXIS_LENGTH:,} along an edge "
+            f"and {MAX_VOXELS:,} in all are allowed"
         )
 
 

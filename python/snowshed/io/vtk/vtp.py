@@ -30,7 +30,7 @@ TYPES = MappingProxyType(
 APPENDED = b'<AppendedData encoding="raw">\n_'
 #: End of a file, with and without a checksum of the content before.
 END = re.compile(rb"  <!-- crc32 ([0-9a-f]{8}) -->\n</VTKFile>\n\Z")
-OLD_END, LONGEST_END = b"\n  </AppendedData>\n</VTKFile>\n", 64
+OLD_END, MAX_END_LENGTH = b"\n  </AppendedData>\n</VTKFile>\n", 64
 LENGTH_BYTES = 8  # before each block
 
 
@@ -75,7 +75,7 @@ def _check_sum(content: bytes) -> None:
     """Raise ValueError unless the checksum at the end is right; a version before wrote none."""
     if content.endswith(OLD_END):
         return
-    if not (end := END.search(content, max(0, len(content) - LONGEST_END))):
+    if not (end := END.search(content, max(0, len(content) - MAX_END_LENGTH))):
         raise ValueError("it ends too early")
     if zlib.crc32(memoryview(content)[: end.start()]) != int(end[1], 16):
         raise ValueError("its checksum is wrong")

@@ -33,17 +33,17 @@ BY_STATION_HEAD = (
 )  # fmt: skip
 INCH = 0.0254  # m
 FAHRENHEIT = (5.0 / 9.0, -160.0 / 9.0)
-_HIGHEST = ("TMAX", Quantity("temperature", "degrees F", *FAHRENHEIT))
-_LOWEST = ("TMIN", Quantity("temperature", "degrees F", *FAHRENHEIT))
+_MAXIMUM = ("TMAX", Quantity("temperature", "degrees F", *FAHRENHEIT))
+_MINIMUM = ("TMIN", Quantity("temperature", "degrees F", *FAHRENHEIT))
 _MEAN = ("TAVG", Quantity("temperature", "degrees F", *FAHRENHEIT))
 _WATER = ("PRCP", Quantity("precipitation", "inches", 1e3 * INCH))
 _NEW = ("SNOW", Quantity("snowfall", "inches", INCH))
 _DEPTH = ("SNWD", Quantity("snow_depth", "inches", INCH))
-#: ACIS columns, by what is left of their names in small letters without blanks: those of the
+#: ACIS columns, by their names in small letters without blanks: those of the
 #: service, of its data listings, and of the tables of NOWData.
 ACIS: Mapping[str, tuple[str, Quantity]] = {
-    **dict.fromkeys(("maxt", "maxtemp", "maxtemperature", "temperaturemaximum"), _HIGHEST),
-    **dict.fromkeys(("mint", "mintemp", "mintemperature", "temperatureminimum"), _LOWEST),
+    **dict.fromkeys(("maxt", "maxtemp", "maxtemperature", "temperaturemaximum"), _MAXIMUM),
+    **dict.fromkeys(("mint", "mintemp", "mintemperature", "temperatureminimum"), _MINIMUM),
     **dict.fromkeys(("avgt", "avgtemp", "avgtemperature", "temperatureaverage"), _MEAN),
     **dict.fromkeys(("pcpn", "precip", "precipitation"), _WATER),
     **dict.fromkeys(("snow", "newsnow", "snowfall"), _NEW),

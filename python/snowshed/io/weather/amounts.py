@@ -19,7 +19,7 @@ EPOCH = datetime(1, 1, 1)
 #: A total is an error of its sensor if it exceeds the totals within it, which cover half of its
 #: time and more, by this factor and by this many mm.
 FACTOR, EXCESS = 20.0, 50.0
-MOST_STEPS = 400  # of a total: a year of days, half a month of hours
+MAX_STEPS = 400  # of a total: a year of days, half a month of hours
 
 
 class Total(NamedTuple):
@@ -57,7 +57,7 @@ def without_overlap(
     for i in sorted(range(len(totals)), key=lambda i: totals[i].hours):
         total = totals[i]
         last = math.ceil((total.end - EPOCH) / HOUR / step - 1e-6)
-        span = range(last - min(max(round(total.hours / step), 1), MOST_STEPS) + 1, last + 1)
+        span = range(last - min(max(round(total.hours / step), 1), MAX_STEPS) + 1, last + 1)
         inside = [known[slot] for slot in span if slot in known]
         rest = max(total.amount - math.fsum(inside), 0.0)
         if 2 * len(inside) >= len(span) and rest > max(EXCESS, FACTOR * math.fsum(inside)):

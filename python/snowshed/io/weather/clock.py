@@ -30,8 +30,8 @@ def on_one_clock(station: Station, source: str) -> Station:
         if (row.time.tzinfo is not None) != aware:
             raise InputError(
                 f"{source}, line {row.line}, column date: {row.time.isoformat(' ')} has "
-                f"{'no' if aware else 'an'} offset from universal time, other than line "
-                f"{rows[0].line}; give all of them offsets, or none"
+                f"{'no' if aware else 'a'} UTC offset, but line {rows[0].line} has "
+                f"{'one' if aware else 'none'}; give all times an offset, or none"
             )
     if aware:
         offsets = {row.time.utcoffset() or timedelta(0) for row in rows}
@@ -39,14 +39,14 @@ def on_one_clock(station: Station, source: str) -> Station:
         rows = [_moved(row, min(offsets), source) for row in rows]
         if len(offsets) > 1:
             notes.append(
-                f"its times have {len(offsets)} offsets from universal time; they are put on the "
-                f"clock of UTC{offset:+g} h, whose days count"
+                f"its times have {len(offsets)} UTC offsets; they are converted to UTC{offset:+g} "
+                "h, which also defines the days"
             )
     _check_years(rows, source)
     step = usual_step([row.time for row in rows])
     _check_order(rows, source, step)
     if not aware and step <= 1.0:
-        notes += _of_missing_hours(rows, step)
+        notes += _missing_hour_notes(rows, step)
     return replace(station, rows=rows, utc_offset=offset, notes=notes)
 
 
@@ -106,7 +106,7 @@ def repeated_hour(earlier: datetime, later: datetime, step: float) -> str:
     return ""
 
 
-def _of_missing_hours(rows: Sequence[Observation], step: float) -> list[str]:
+def _missing_hour_notes(rows: Sequence[Observation], step: float) -> list[str]:
     missing = [
         earlier.time
         for earlier, later in zip(rows, rows[1:])

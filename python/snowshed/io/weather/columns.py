@@ -10,7 +10,7 @@ from snowshed.io.weather.observation import Observation, Quantity
 
 HOURS = {"precipitation": "precipitation_hours", "snowfall": "snowfall_hours"}
 ENOUGH = 0.9  # of the values of the fullest column; then the earlier in the list is taken
-MOST_KNOWN = 50_000  # texts of a column that are remembered
+MAX_REMEMBERED = 50_000  # texts of a column that are remembered
 WORDS = {
     "temperature": "the temperature",
     "precipitation": "precipitation",
@@ -50,7 +50,7 @@ class Cells:
         for (i, title, quantity), parsed in self.known:
             text = cells[i]
             if text not in parsed:
-                if len(parsed) >= MOST_KNOWN:
+                if len(parsed) >= MAX_REMEMBERED:
                     parsed.clear()
                 parsed[text] = quantity.read(text, f"{place}, column {title}", self.missing)
             values.append(parsed[text])

@@ -17,7 +17,7 @@ from snowshed.io.weather.observation import DAY, Observation, Quantity
 
 MISSING = ("", "-9999")
 PRESUMED = "P"  # the flag of a value that is missing and was presumed to be 0
-MOST_DAYS = 366  # of a total over several days
+MAX_DAYS = 366  # of a total over several days
 
 
 class _Several(NamedTuple):
@@ -90,8 +90,8 @@ class Days:
         if cell in MISSING:
             return
         number = number_in(cell)
-        if not (1 <= number <= MOST_DAYS and number == int(number)):
-            raise InputError(f"{where}: {quoted(cell)}; allowed: 1 to {MOST_DAYS} days")
+        if not (1 <= number <= MAX_DAYS and number == int(number)):
+            raise InputError(f"{where}: {quoted(cell)}; allowed: 1 to {MAX_DAYS} days")
         self.enter(day, line, element, int(number), where)
 
     def rows(self) -> tuple[list[Observation], list[str]]:
@@ -127,17 +127,17 @@ class Days:
             if total is not None:
                 count = values.get(names.number)
                 counted += count is None
-                count = count or (min((day - last).days, MOST_DAYS) if last else 1)
+                count = count or (min((day - last).days, MAX_DAYS) if last else 1)
                 totals.append(Total(end, DAY * max(count, 1), total))
                 days.append(day)
                 several += 1
             if own is not None or total is not None:
                 last = day
         amounts, notes = without_overlap(totals, DAY, names.unit)
-        made: dict[datetime, tuple[float, float]] = {}
+        by_day: dict[datetime, tuple[float, float]] = {}
         for day, total, amount in zip(days, totals, amounts):
-            before, hours = made.get(day, (0.0, 0.0))
-            made[day] = (before + amount, max(hours, total.hours))
+            before, hours = by_day.get(day, (0.0, 0.0))
+            by_day[day] = (before + amount, max(hours, total.hours))
         if several:
             gathered = math.fsum(values.get(names.days) or 0.0 for values in self.values.values())
             notes.insert(
@@ -148,7 +148,7 @@ class Days:
                     f"; {counted} do not tell how many, and count since the last" if counted else ""
                 ),
             )
-        return made, notes
+        return by_day, notes
 
 
 NO_VALUES = ("line", *COUNTS)

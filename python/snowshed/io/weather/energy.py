@@ -114,10 +114,10 @@ def read_epw(name: str, lines: Sequence[str]) -> Station:
 def _epw_time(cells: dict[str, str], place: str) -> tuple[datetime, datetime]:
     """Return the time of a row, a minute before the end of its hour or part of it, and the end."""
     year, month, day, minute = (
-        _whole(cells[title], f"{place}, column {title}", 0, 9999)
+        _integer(cells[title], f"{place}, column {title}", 0, 9999)
         for title in ("year", "month", "day", "minute")
     )
-    hour = _whole(cells["hour"], f"{place}, column hour", 1, 24)
+    hour = _integer(cells["hour"], f"{place}, column hour", 1, 24)
     try:
         begin = datetime(year, month, day, hour - 1)
         time = begin.replace(minute=max(min(minute, 60) - 1, 0))
@@ -159,7 +159,7 @@ def _tmy3_end(cells: dict[str, str], place: str) -> datetime:
     day = time_of(cells[TMY3_DATE], f"{place}, column {TMY3_DATE}", "%m/%d/%Y")
     where = f"{place}, column {TMY3_TIME}"
     hour, _, minute = cells[TMY3_TIME].partition(":")
-    hours, minutes = _whole(hour, where, 0, 24), _whole(minute or "0", where, 0, 59)
+    hours, minutes = _integer(hour, where, 0, 24), _integer(minute or "0", where, 0, 59)
     try:
         end = day + timedelta(hours=hours, minutes=minutes)
         _ = end - MINUTE, end + timedelta(days=1)
@@ -168,7 +168,7 @@ def _tmy3_end(cells: dict[str, str], place: str) -> datetime:
     return end
 
 
-def _whole(text: str, where: str, low: int, high: int) -> int:
+def _integer(text: str, where: str, low: int, high: int) -> int:
     number = number_in(text)
     if not (low <= number <= high and number == int(number)):
         raise InputError(f"{where}: {quoted(text)}; allowed: whole numbers from {low} to {high}")
@@ -193,9 +193,11 @@ def _station(
     periods: Sequence[Optional[float]],
     columns: Mapping[str, str],
 ) -> Station:
-    made, of_amounts = _with_amounts(rows, periods)
-    made, typical, of_years = arranged(made, place.latitude, source)
-    return Station(form, place.name, made, (*of_amounts, *of_years), typical, *place[1:], columns)
+    completed, of_amounts = _with_amounts(rows, periods)
+    completed, typical, of_years = arranged(completed, place.latitude, source)
+    return Station(
+        form, place.name, completed, (*of_amounts, *of_years), typical, *place[1:], columns
+    )
 
 
 def _with_amounts(

@@ -16,7 +16,7 @@ AMOUNTS = (
     ("precipitation", "precipitation_hours", "mm", "precipitation"),
     ("snowfall", "snowfall_hours", "m", "new snow"),
 )
-FEWEST_RISES = 8  # of a counter; a storm may grow from row to row some times
+MIN_RISES = 8  # of a counter; a storm may grow from row to row some times
 #: A counter's noise, relative to its value; its value after emptying; rises per reset.
 NOISE, EMPTIED, RISES = 0.02, 0.2, 10
 FILLED = 0.5  # part of the rows, from the first amount on, in which a counter is above 0
@@ -101,7 +101,7 @@ def added_to_counter(times: Sequence[datetime], values: Sequence[float]) -> Opti
     """
     rises = sum(later > earlier for earlier, later in zip(values, values[1:]))
     falls = [i for i in range(1, len(values)) if values[i] < (1.0 - NOISE) * values[i - 1]]
-    if rises < FEWEST_RISES or any(values[i] > EMPTIED * values[i - 1] for i in falls):
+    if rises < MIN_RISES or any(values[i] > EMPTIED * values[i - 1] for i in falls):
         return None
     daily = len(falls) >= 3 and len({times[i].time() for i in falls}) == 1
     if rises < RISES * len(falls) and not daily:

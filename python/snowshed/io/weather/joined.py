@@ -16,7 +16,7 @@ from snowshed.io.weather.observation import RANGES, Observation, Station, change
 from snowshed.io.weather.plain import read_plain
 from snowshed.io.weather.recognise import read_station
 
-MOST_FILES = 200
+MAX_FILES = 200
 FAR, HIGHER = 2.0, 100.0  # km and m between the positions of what should be one station
 DEGREE = 111.2  # km of latitude
 TEMPERATURE, DEPTH = "temperature", "snow_depth"
@@ -58,8 +58,8 @@ def read_stations(paths: Sequence[Path], temperature: Optional[Path] = None) -> 
     OSError
         If one cannot be read.
     """
-    if len(paths) > MOST_FILES:
-        raise InputError(f"{len(paths)} weather files; at most {MOST_FILES} are allowed")
+    if len(paths) > MAX_FILES:
+        raise InputError(f"{len(paths)} weather files; at most {MAX_FILES} are allowed")
     if not paths:
         raise InputError("no weather file is given")
     files = [_read(path) for path in paths]
@@ -71,7 +71,7 @@ def read_stations(paths: Sequence[Path], temperature: Optional[Path] = None) -> 
         return files[0].station
     files, notes = _alike(files)
     own = -1 if temperature is not None else None
-    values = [value for name in RANGES for value in _of_quantity(files, name, own)]
+    values = [value for name in RANGES for value in _quantity_values(files, name, own)]
     rows = _rows(values, _series_of_depth(files))
     _check_common_days(files, values)
     return _station(files, rows, values, notes)
@@ -90,7 +90,7 @@ def _read(path: Path) -> _File:
 def _alike(files: Sequence[_File]) -> tuple[list[_File], list[str]]:
     """Return the files on the clock of the first, and notes on what tells them apart."""
     first, *others = files
-    made, notes = [first], []
+    clocked, notes = [first], []
     for name, station in others:
         if station.name and first.station.name and not _same_name(station.name, first.station.name):
             notes.append(
@@ -98,13 +98,13 @@ def _alike(files: Sequence[_File]) -> tuple[list[_File], list[str]]:
                 "taken as one station"
             )
         notes += _apart(first, _File(name, station))
-        made.append(_File(name, _on_clock(station, first.station.utc_offset)))
-        if made[-1].station is not station:
+        clocked.append(_File(name, _on_clock(station, first.station.utc_offset)))
+        if clocked[-1].station is not station:
             notes.append(
                 f"{name} is moved from UTC{station.utc_offset:+g} h to the clock of {first.name}, "
                 f"UTC{first.station.utc_offset:+g} h"
             )
-    return made, notes
+    return clocked, notes
 
 
 def _same_name(first: str, other: str) -> bool:
@@ -138,7 +138,7 @@ def _on_clock(station: Station, offset: Optional[float]) -> Station:
     return replace(station, rows=rows, utc_offset=offset)
 
 
-def _of_quantity(files: Sequence[_File], name: str, own: Optional[int]) -> list[_Value]:
+def _quantity_values(files: Sequence[_File], name: str, own: Optional[int]) -> list[_Value]:
     """Return the values of a quantity; each day uses the first file with a value."""
     order = list(range(len(files)))
     if own is not None:  # the file of the temperature, which is for nothing else
@@ -168,7 +168,7 @@ def _series_of_depth(files: Sequence[_File]) -> list[int]:
 
     It has the same station and column, and the same values wherever both have one.
     """
-    told = [
+    by_time = [
         {row.time: row.snow_depth for row in file.station.rows if row.snow_depth is not None}
         for file in files
     ]
@@ -180,7 +180,9 @@ def _series_of_depth(files: Sequence[_File]) -> list[int]:
                 file.station.name,
                 file.station.columns.get(DEPTH),
             )
-            if same and all(told[i][time] == told[n][time] for time in told[i].keys() & told[n]):
+            if same and all(
+                by_time[i][time] == by_time[n][time] for time in by_time[i].keys() & by_time[n]
+            ):
                 series[n] = series[i]
                 break
     return series

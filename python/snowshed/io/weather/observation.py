@@ -111,10 +111,10 @@ def changed(row: Observation, **values: Any) -> Observation:
     >>> changed(Observation(1, datetime(2024, 1, 3)), snow_depth=0.5).snow_depth
     0.5
     """
-    made = object.__new__(Observation)
-    made.__dict__.update(row.__dict__)
-    made.__dict__.update(values)
-    return made
+    copy = object.__new__(Observation)
+    copy.__dict__.update(row.__dict__)
+    copy.__dict__.update(values)
+    return copy
 
 
 @dataclass(frozen=True)

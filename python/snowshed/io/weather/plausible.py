@@ -15,19 +15,19 @@ from snowshed._core import InputError
 from snowshed.io.weather.columns import WORDS
 from snowshed.io.weather.observation import DAY, Observation, Station
 
-FEWEST = 5  # values by whose middle a unit is judged
+MIN_VALUES = 5  # values by whose middle a unit is judged
 #: Half of the changes of the snow depth from day to day are smaller, m, as is half of the new snow.
 CHANGE, NEW_SNOW = 0.5, 0.7
 #: Temperatures of the air, degrees C, between which snow falls.
 COLDEST, WARMEST = -40.0, 12.0
-LEAST_NEW, LEAST_RISE = 0.01, 0.1  # m, of snowfalls by which temperatures are judged
+MIN_SNOWFALL, MIN_RISE = 0.01, 0.1  # m, of snowfalls by which temperatures are judged
 #: Half of the amounts of a wet day, and of any shorter time, are smaller, mm.
 WET_DAY, WET_HOURS = 100.0, 50.0
 #: The most rain that was measured in D hours is 491 D^0.452 mm (WMO 2009, Manual on Estimation of
 #: Probable Maximum Precipitation, WMO-No. 1045).
-MOST_RAIN, EXPONENT = 491.0, 0.452
+MAX_RAIN, EXPONENT = 491.0, 0.452
 #: New snow of a cold day is lighter than this, kg/m3; a day is cold below a temperature, degrees C.
-HEAVIEST, COLD = 600.0, -2.0
+MAX_DENSITY, COLD = 600.0, -2.0
 SHALLOW = 0.15  # m
 
 
@@ -41,7 +41,7 @@ def with_plausible_units(station: Station, source: str) -> Station:
     """
     for check in (_check_depths, _check_new_snow, _check_rain, _check_temperatures, _check_density):
         check(station, source)
-    notes = _of_shallow_snow(station)
+    notes = _shallow_snow_notes(station)
     return replace(station, notes=[*station.notes, *notes]) if notes else station
 
 
@@ -52,13 +52,13 @@ def _refused(station: Station, source: str, name: str, what: str) -> InputError:
 
 def _changes(rows: Sequence[Observation]) -> list[tuple[date, float]]:
     """Return the changes of the depth from day to day, without spikes: medians of three days."""
-    told: dict[date, list[float]] = {}
+    by_day: dict[date, list[float]] = {}
     for row in rows:
         if row.snow_depth is not None:
-            told.setdefault(row.time.date(), []).append(row.snow_depth)
+            by_day.setdefault(row.time.date(), []).append(row.snow_depth)
     joints = {row.time.date() for row in rows if row.seam}
-    days = sorted(told)
-    raw = [median(told[day]) for day in days]
+    days = sorted(by_day)
+    raw = [median(by_day[day]) for day in days]
     depths = [median(raw[max(n - 1, 0) : n + 2]) for n in range(len(raw))]
     return [
         (days[n], depths[n] - depths[n - 1])
@@ -69,7 +69,7 @@ def _changes(rows: Sequence[Observation]) -> list[tuple[date, float]]:
 
 def _check_depths(station: Station, source: str) -> None:
     changes = [abs(change) for _, change in _changes(station.rows) if abs(change) > 1e-6]
-    if len(changes) >= FEWEST and median(changes) > CHANGE:
+    if len(changes) >= MIN_VALUES and median(changes) > CHANGE:
         raise _refused(
             station, source, "snow_depth",
             f"half of the changes of the snow depth from day to day are of {median(changes):g} m "
@@ -79,7 +79,7 @@ def _check_depths(station: Station, source: str) -> None:
 
 def _check_new_snow(station: Station, source: str) -> None:
     falls = [row.snowfall for row in station.rows if row.snowfall]
-    if len(falls) >= FEWEST and median(falls) > NEW_SNOW:
+    if len(falls) >= MIN_VALUES and median(falls) > NEW_SNOW:
         raise _refused(
             station, source, "snowfall",
             f"half of the snowfalls are of {median(falls):g} m and more; is it in cm, mm or "
@@ -93,7 +93,7 @@ def _check_rain(station: Station, source: str) -> None:
         if not row.precipitation:
             continue
         hours = row.precipitation_hours or DAY
-        most = MOST_RAIN * max(hours, 0.1) ** EXPONENT
+        most = MAX_RAIN * max(hours, 0.1) ** EXPONENT
         if row.precipitation > most:
             raise InputError(
                 f"{source}, line {row.line}, column "
@@ -103,7 +103,7 @@ def _check_rain(station: Station, source: str) -> None:
             )
         amounts[hours >= DAY].append(row.precipitation)
     for long, most in ((True, WET_DAY), (False, WET_HOURS)):
-        if len(amounts[long]) >= FEWEST and median(amounts[long]) > most:
+        if len(amounts[long]) >= MIN_VALUES and median(amounts[long]) > most:
             raise _refused(
                 station, source, "precipitation",
                 f"half of the amounts are of {median(amounts[long]):g} mm and more; is it in "
@@ -112,18 +112,18 @@ def _check_rain(station: Station, source: str) -> None:
 
 
 def _check_temperatures(station: Station, source: str) -> None:
-    rises = {day for day, change in _changes(station.rows) if change >= LEAST_RISE}
-    told: dict[date, list[float]] = {}
+    rises = {day for day, change in _changes(station.rows) if change >= MIN_RISE}
+    by_day: dict[date, list[float]] = {}
     snowy = []
     for row in station.rows:
         if row.temperature is None:
             continue
         if row.time.date() in rises:
-            told.setdefault(row.time.date(), []).append(row.temperature)
-        elif (row.snowfall or 0.0) >= LEAST_NEW:
+            by_day.setdefault(row.time.date(), []).append(row.temperature)
+        elif (row.snowfall or 0.0) >= MIN_SNOWFALL:
             snowy.append(row.temperature)
-    snowy += [fmean(own) for own in told.values()]
-    if len(snowy) < FEWEST or COLDEST <= median(snowy) <= WARMEST:
+    snowy += [fmean(own) for own in by_day.values()]
+    if len(snowy) < MIN_VALUES or COLDEST <= median(snowy) <= WARMEST:
         return
     unit = "degrees F" if median(snowy) > WARMEST else "tenths of degrees C"
     raise _refused(
@@ -145,7 +145,7 @@ def _check_density(station: Station, source: str) -> None:
     ]
     water = sum(row.precipitation or 0.0 for row in cold)
     snow = sum(row.snowfall or 0.0 for row in cold)
-    if len(cold) >= FEWEST and water > HEAVIEST * snow:
+    if len(cold) >= MIN_VALUES and water > MAX_DENSITY * snow:
         raise _refused(
             station, source, "precipitation",
             f"{water:.4g} mm of water fell as {snow:.3g} m of new snow below {COLD:g} °C, of "
@@ -153,10 +153,10 @@ def _check_density(station: Station, source: str) -> None:
         )  # fmt: skip
 
 
-def _of_shallow_snow(station: Station) -> list[str]:
+def _shallow_snow_notes(station: Station) -> list[str]:
     depths = [row.snow_depth for row in station.rows if row.snow_depth]
     broken = [depth for depth in depths if abs(1000.0 * depth - round(1000.0 * depth)) > 1e-3]
-    if len(depths) < FEWEST or max(depths) > SHALLOW or 2 * len(broken) < len(depths):
+    if len(depths) < MIN_VALUES or max(depths) > SHALLOW or 2 * len(broken) < len(depths):
         return []
     title = station.columns.get("snow_depth", WORDS["snow_depth"])
     return [

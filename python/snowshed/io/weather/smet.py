@@ -134,10 +134,10 @@ def _by_factors(
             factor, offset = factors[place] if factors else 1.0, offsets[place] if offsets else 0.0
             if factor == 0.0:
                 raise InputError(f"{header.where('units_multiplier')}: 0 for {field}")
-            told = (
+            unit = (
                 unit if (factor, offset) == (1.0, 0.0) else f"{unit} by {factor:g} and {offset:g}"
             )
-            quantities[place] = Quantity(name, told, factor, offset + shift, hours)
+            quantities[place] = Quantity(name, unit, factor, offset + shift, hours)
     return quantities
 
 

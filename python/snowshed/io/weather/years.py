@@ -14,8 +14,8 @@ from typing import Optional
 from snowshed._core import InputError
 from snowshed.io.weather.observation import Observation
 
-FIRST = 2001  # the year in which a typical year begins, once it is put together
-NEAR = timedelta(days=1)  # between rows that follow one another in one series
+TYPICAL_YEAR_START = 2001  # the year in which a typical year begins, once it is put together
+MAX_ROW_GAP = timedelta(days=1)  # between rows that follow one another in one series
 YEAR = timedelta(days=365)
 
 
@@ -48,7 +48,7 @@ def arranged(
 
 def _are_actual(rows: Sequence[Observation]) -> bool:
     """Return whether rising rows continue from year to year, or repeat an hour of the year."""
-    steady = all(later.time - earlier.time <= NEAR for earlier, later in zip(rows, rows[1:]))
+    steady = all(later.time - earlier.time <= MAX_ROW_GAP for earlier, later in zip(rows, rows[1:]))
     if steady:
         return not _is_calendar_year(rows)
     return len({_hour_of_year(row.time) for row in rows}) < len(rows)
@@ -57,8 +57,8 @@ def _are_actual(rows: Sequence[Observation]) -> bool:
 def _is_calendar_year(rows: Sequence[Observation]) -> bool:
     """Return whether rows span 1 January to 31 December, so that a winter must be put together."""
     first, last = rows[0].time, rows[-1].time
-    begin = datetime((first + NEAR).year, 1, 1)
-    return abs(first - begin) <= NEAR and abs(last - begin - YEAR) <= 2 * NEAR
+    begin = datetime((first + MAX_ROW_GAP).year, 1, 1)
+    return abs(first - begin) <= MAX_ROW_GAP and abs(last - begin - YEAR) <= 2 * MAX_ROW_GAP
 
 
 def _typical(
@@ -68,23 +68,23 @@ def _typical(
     moved: list[tuple[datetime, Observation]] = []
     for row in rows:
         if (row.time.month, row.time.day) != (2, 29):
-            year = FIRST if south or row.time.month >= 7 else FIRST + 1
+            year = TYPICAL_YEAR_START if south or row.time.month >= 7 else TYPICAL_YEAR_START + 1
             moved.append((row.time.replace(year=year), row))
     moved.sort(key=lambda pair: pair[0])
-    made: list[Observation] = []
+    arranged_rows: list[Observation] = []
     before: Optional[Observation] = None
     for time, row in moved:
-        if before is not None and time == made[-1].time:
+        if before is not None and time == arranged_rows[-1].time:
             first, second = sorted((before.line, row.line))
             raise InputError(
                 f"{source}, line {second}, column date: {time:%m-%d %H:%M} occurs twice, also in "
                 f"line {first}; allowed: a typical year, or actual years in their order"
             )
-        seam = before is not None and not timedelta(0) < row.time - before.time <= NEAR
+        seam = before is not None and not timedelta(0) < row.time - before.time <= MAX_ROW_GAP
         end = row.end and time + (row.end - row.time)
-        made.append(replace(row, time=time, end=end, seam=seam))
+        arranged_rows.append(replace(row, time=time, end=end, seam=seam))
         before = row
-    return made
+    return arranged_rows
 
 
 def _hour_of_year(time: datetime) -> tuple[int, int, int, int]:

@@ -61,9 +61,9 @@ class GrainContacts:
         The second array, (n,), is False for vectors that leave a periodic sample at one side and
         enter it at the other.
         """
-        ways = self.points - self.centres[self.grains[:, side]]
+        arms = self.points - self.centres[self.grains[:, side]]
         half = 0.5 * np.ptp(self.spheres, axis=0)
-        return ways, np.asarray((np.abs(ways) <= half).all(axis=1))
+        return arms, np.asarray((np.abs(arms) <= half).all(axis=1))
 
     @property
     def normal_forces(self) -> Floats:

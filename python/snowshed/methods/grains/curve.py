@@ -160,10 +160,10 @@ class LoadingCurve:
 
     def text(self) -> str:
         """Return the table as CSV; every number reads back to the same bits."""
-        whole = [name in COUNTS for name in self.columns]
+        is_count = [name in COUNTS for name in self.columns]
         lines = [",".join(self.columns)]
         for row in zip(*(values.tolist() for values in self.columns.values())):
-            cells = (str(int(cell)) if count else repr(cell) for cell, count in zip(row, whole))
+            cells = (str(int(cell)) if count else repr(cell) for cell, count in zip(row, is_count))
             lines.append(",".join(cells))
         return "\n".join(lines) + "\n"
 

@@ -27,7 +27,7 @@ BIN = 0.01  # of strain, over which stresses are averaged before hardening is lo
 DOUBLED = math.log(2.0)  # the rise by which hardening counts as such
 EXPLAINED = 0.5  # part of the scatter of the stress that hardening explains at least
 #: Rows that the elastic phase needs for a modulus.
-LEAST_ROWS = 4
+MIN_ROWS = 4
 #: R2 of the line through the elastic phase, below which the phase does not count as linear.
 LINEAR = 0.95
 PEAK_BELOW = 0.05  # strain below which the peak of the brittle phase is looked for
@@ -139,11 +139,11 @@ def mean_stress(strain: Floats, stress: Floats, low: float, high: float) -> Opti
 def _elastic(
     strain: Floats, stress: Floats, broken: Floats
 ) -> tuple[Optional[float], Optional[float], Optional[float]]:
-    whole = np.flatnonzero(broken > broken[0])
-    rows = slice(0, int(whole[0]) if whole.size else len(strain))
+    breaking = np.flatnonzero(broken > broken[0])
+    rows = slice(0, int(breaking[0]) if breaking.size else len(strain))
     x, y = strain[rows], stress[rows]
     limit = float(x[-1])
-    if len(x) < LEAST_ROWS or x[-1] <= x[0]:
+    if len(x) < MIN_ROWS or x[-1] <= x[0]:
         return limit, None, None
     slope, start = np.polyfit(x, y, 1)
     scatter, spread = np.sum((y - start - slope * x) ** 2), np.sum((y - y.mean()) ** 2)

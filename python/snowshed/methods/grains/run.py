@@ -29,7 +29,7 @@ from snowshed.methods.grains.curve import CURVE, loading_curve
 from snowshed.methods.grains.sample_folder import LABELS, SYNTHETIC, find_sample
 from snowshed.methods.grains.summary import GrainsSummary, summarise
 from snowshed.running.method_run import Cell, MethodRun, summary_rows
-from snowshed.running.sequence import say_note, seal_files
+from snowshed.running.sequence import record_note, seal_files
 
 WRITE_INTERVAL = 5.0  # s of wall time between two versions of curve.csv
 
@@ -45,10 +45,10 @@ class GrainsRun(MethodRun):
         self.stages = self.scene.data["loading"]
         self.sample_notes = [note] if (note := self.simulation.label_note()) else []
         for note in self.sample_notes:
-            say_note(self.sequence, note)
+            record_note(self.sequence, note)
         self.written = time.monotonic()
 
-    def doing(self, time_s: float) -> str:
+    def status_line(self, time_s: float) -> str:
         """Return the stage, and the last row of the curve."""
         last = {name: values[-1] for name, values in self.simulation.grains_curve().items()}
         stage = min(int(last["stage"]), len(self.stages))
@@ -103,7 +103,7 @@ class GrainsRun(MethodRun):
         return summary_rows(folder, GrainsSummary)
 
     @classmethod
-    def packed(cls, folder: Path) -> Iterable[tuple[int, bytes]]:
+    def stored_data(cls, folder: Path) -> Iterable[tuple[int, bytes]]:
         """Yield the curve."""
         if (folder / GrainsSummary.FILE).is_file():
             yield 1, (folder / CURVE).read_bytes()

@@ -13,8 +13,8 @@ from snowshed.io.film import Film, FilmFrame
 from snowshed.io.raster.raster import Raster
 
 Singles = NDArray[np.float32]
-MOST_FRAMES = 64
-LEAST_PARTICLES = 1.5  # on average, in a square that holds any
+MAX_FRAMES = 64
+MIN_PARTICLES = 1.5  # on average, in a square that holds any
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ class Frame:
         return heights
 
 
-def slide_frames(film: Film, ground: Raster, most: int = MOST_FRAMES) -> list[Frame]:
+def slide_frames(film: Film, ground: Raster, most: int = MAX_FRAMES) -> list[Frame]:
     """Return maps of the thickness of the snow over time, at the nodes of a slide's grid.
 
     A node has the mean thickness of the particles in the four cells around it, with bilinear
@@ -105,7 +105,7 @@ def _edge(film: Film, frame: FilmFrame, ground: Raster) -> int:
     cells = np.floor(frame.positions[:, :2] / ground.cell).astype(int)
     while film.share < 1.0 and edge < max(ground.heights.shape):
         squares = len(np.unique(cells // edge, axis=0))
-        if len(cells) >= LEAST_PARTICLES * squares:
+        if len(cells) >= MIN_PARTICLES * squares:
             break
         edge *= 2
     return edge
@@ -121,13 +121,13 @@ def _map(frame: FilmFrame, thickness: Singles, ground: Raster, edge: int) -> Fra
         at = (np.minimum(south + row, rows - 1), np.minimum(west + column, columns - 1))
         np.add.at(weight, at, share)
         np.add.at(sums, at, share * thickness)
-    whole = np.divide(sums, weight, out=np.zeros_like(sums), where=weight > 0.0)
-    whole = np.kron(whole, np.ones((edge, edge)))[tuple(map(slice, ground.heights.shape))]
-    snow = whole > 0.0
+    thickness = np.divide(sums, weight, out=np.zeros_like(sums), where=weight > 0.0)
+    thickness = np.kron(thickness, np.ones((edge, edge)))[tuple(map(slice, ground.heights.shape))]
+    snow = thickness > 0.0
     down, across = (np.flatnonzero(snow.any(axis=axis)) for axis in (1, 0))
     if not down.size:
         down = across = np.array([0])
-    cut = whole[down[0] : down[-1] + 1, across[0] : across[-1] + 1].astype(np.float32)
+    cut = thickness[down[0] : down[-1] + 1, across[0] : across[-1] + 1].astype(np.float32)
     return Frame(frame.time, cut, int(down[0]), int(across[0]))
 
 

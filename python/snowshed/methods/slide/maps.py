@@ -190,15 +190,15 @@ class PeakMaps:
 
     def window(self, name: str, begin: int, end: int) -> Singles:
         """Return the rows from `begin` to before `end` of a whole map, zero where no snow was."""
-        whole = np.zeros((end - begin, self.shape[1]), dtype=np.float32)
+        window: Singles = np.zeros((end - begin, self.shape[1]), dtype=np.float32)
         stored: Singles = getattr(self, name)
         rows, columns = stored.shape
         top, bottom = max(begin, self.first_row), min(end, self.first_row + rows)
         if top < bottom:
             across = slice(self.first_column, self.first_column + columns)
             cut = stored[top - self.first_row : bottom - self.first_row]
-            whole[top - begin : bottom - begin, across] = cut
-        return whole
+            window[top - begin : bottom - begin, across] = cut
+        return window
 
     def packed(self) -> bytes:
         """Return the maps as a compressed NumPy archive, which `unpacked` reads."""

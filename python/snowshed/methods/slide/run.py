@@ -49,7 +49,7 @@ class SlideRun(MethodRun):
     UNIT: ClassVar[str] = "slides"
     COLUMNS: ClassVar[Mapping[str, type]] = {"steps": int, **SlideSummary.columns()}
 
-    def doing(self, time_s: float) -> str:
+    def status_line(self, time_s: float) -> str:
         """Return the progress of the slide."""
         return f"{time_s:.2f} s of the slide"
 
@@ -89,7 +89,7 @@ class SlideRun(MethodRun):
         return summary_rows(folder, SlideSummary)
 
     @classmethod
-    def packed(cls, folder: Path) -> Iterable[tuple[int, bytes]]:
+    def stored_data(cls, folder: Path) -> Iterable[tuple[int, bytes]]:
         """Yield the peak maps."""
         if (folder / SlideSummary.FILE).is_file():
             yield 1, (folder / PACKED).read_bytes()
@@ -117,7 +117,7 @@ def _summary(
     x, y = maps.west + columns * maps.cell, maps.south + rows * maps.cell
     distance = np.hypot(x - middle[0], y - middle[1])
     reached = maps.peak_thickness > 0.0
-    lies = maps.terrain[rows, columns]
+    elevations = maps.terrain[rows, columns]
     summary = SlideSummary(
         ended=facts["ended"],
         sim_time_s=facts["sim_time_s"],
@@ -133,7 +133,7 @@ def _summary(
         peak_pressure_kpa=float(maps.peak_pressure.max()),
         reached_m2=float(reached.sum()) * maps.cell**2,
         run_out_m=float(distance.max(initial=0.0)),
-        drop_m=float(maps.terrain[reached].max() - lies.min()) if lies.size else 0.0,
+        drop_m=float(maps.terrain[reached].max() - elevations.min()) if elevations.size else 0.0,
     )
     of_files = str(scene["terrain"].get("notes", "")).splitlines()
     of_border = _border_notes(slide["left_terrain_kg"], maps)

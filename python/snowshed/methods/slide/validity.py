@@ -20,8 +20,8 @@ from snowshed.io.raster.raster import Raster, read_raster
 SLOPES = (28.0, 50.0)  # degrees
 ALTITUDES = (500.0, 1500.0)  # m
 DROPS = (30.0, 80.0)  # m
-AS_ONE = 0.1  # share of the bonds that may break
-OUTSIDE = 0.1  # share of a release that may lie outside the range of slopes
+MAX_BROKEN_SHARE = 0.1  # share of the bonds that may break
+MAX_OUTSIDE_SHARE = 0.1  # share of a release that may lie outside the range of slopes
 
 
 @dataclass(frozen=True)
@@ -121,20 +121,20 @@ def validity_notes(
     >>> validity_notes([], {"bonds": False}, {"drop_m": 50.0, "ended": "rest"})
     ['Without bonds this is a plain avalanche; the validity is stated for slabs with bonds.']
     """
-    notes = [text for area in areas for text in _of_release(area, settings)]
+    notes = [text for area in areas for text in _release_notes(area, settings)]
     drop = figures.get("drop_m", 0.0)
     if drop and not DROPS[0] <= drop <= DROPS[1]:
         notes.append(
             f"The drop is {drop:.0f} m; the method was made for {DROPS[0]:.0f} to {DROPS[1]:.0f} m."
         )
-    made, broken = figures.get("bonds_made", 0), figures.get("bonds_broken", 0)
+    bonds, broken = figures.get("bonds_made", 0), figures.get("bonds_broken", 0)
     if not settings.get("bonds", True):
         notes.append(
             "Without bonds this is a plain avalanche; the validity is stated for slabs with bonds."
         )
-    elif made and broken > AS_ONE * made:
+    elif bonds and broken > MAX_BROKEN_SHARE * bonds:
         notes.append(
-            f"{100.0 * broken / made:.0f} % of the bonds broke: the method was made for snow that "
+            f"{100.0 * broken / bonds:.0f} % of the bonds broke: the method was made for snow that "
             "moves as a unit; this slide does not."
         )
     if figures.get("ended") == "time_limit":
@@ -142,9 +142,9 @@ def validity_notes(
     return notes
 
 
-def _of_release(area: ReleaseArea, settings: Mapping[str, Any]) -> list[str]:
+def _release_notes(area: ReleaseArea, settings: Mapping[str, Any]) -> list[str]:
     notes = []
-    if area.outside > OUTSIDE:
+    if area.outside > MAX_OUTSIDE_SHARE:
         notes.append(
             f"Release {area.name!r}: the method was made for slopes of {SLOPES[0]:.0f} to "
             f"{SLOPES[1]:.0f} degrees; {100.0 * area.outside:.0f} % of the release area are "

@@ -27,7 +27,7 @@ from snowshed.snow.relations.settling import SETTLING_LAWS, settled_densities
 from snowshed.snow.relations.sintering import SINTERING_LAWS
 
 # Loosened snow has a volume without meaning; the laws hold for connected snow.
-LIGHTEST = 50.0  # kg/m3
+MIN_DENSITY = 50.0  # kg/m3
 
 
 class Interval(NamedTuple):
@@ -160,7 +160,7 @@ class Ageing:
         nodes = snow.columns
         if self.settling is None or not snow.yields.any():  # elastic snow has no density to gain
             return np.zeros(nodes.densities.shape)
-        before = np.maximum(nodes.densities, LIGHTEST)
+        before = np.maximum(nodes.densities, MIN_DENSITY)
         stress, after = nodes.stresses(snow.gravity), before
         for interval in self.pauses[event]:
             after = settled_densities(SETTLING_LAWS[self.settling], after, stress, *interval)

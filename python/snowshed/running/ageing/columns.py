@@ -17,8 +17,8 @@ from snowshed._core import InputError
 from snowshed.base.arrays import Floats
 
 EMPTY = 0.05  # of the mass of a cell full of snow
-MOST_NODES = 1.5e8  # as between particles and solids
-THINNEST = 0.25  # part of its base that a column covers at least
+MAX_NODES = 1.5e8  # as between particles and solids
+MIN_COVER = 0.25  # part of its base that a column covers at least
 
 
 class SnowColumns:
@@ -51,8 +51,8 @@ class SnowColumns:
         low = np.floor(place.min(axis=0)) if len(place) else np.zeros(dimension)
         self._place = place - low
         size = np.floor(self._place.max(axis=0)) + 2 if len(place) else np.ones(dimension)
-        if size.prod() > MOST_NODES:
-            raise InputError(f"the stack spreads over more than {MOST_NODES:g} cells of {dx:g} m")
+        if size.prod() > MAX_NODES:
+            raise InputError(f"the stack spreads over more than {MAX_NODES:g} cells of {dx:g} m")
         self._shape = tuple(int(n) for n in size)
         self.masses = self._spread(masses)
         volumes = self._spread(masses / densities)
@@ -61,7 +61,7 @@ class SnowColumns:
         filled = volumes / dx**dimension
         self._snow = self.masses > EMPTY * self.densities * dx**dimension
         # The columns along a wall of snow cover only a part of their base.
-        cover = np.clip(filled.max(axis=-1, keepdims=True), THINNEST, 1.0)
+        cover = np.clip(filled.max(axis=-1, keepdims=True), MIN_COVER, 1.0)
         self._base = cover[..., 0] * dx ** (dimension - 1)
         # Between snow above and below, cells are full, however the particles are scattered.
         inner = np.zeros_like(self._snow)

@@ -16,7 +16,7 @@ from pathlib import Path
 from snowshed._core import InputError
 from snowshed.base.limits import GB, PROJECT_BYTES, PROJECT_DEPTH, PROJECT_FILES
 from snowshed.base.messages import printable, quoted
-from snowshed.base.notes import tell
+from snowshed.base.notes import issue_note
 from snowshed.io.atomic import replacing
 
 #: Endings of files that projects are made of: rasters, polygons and lines, settings, tables.
@@ -71,7 +71,7 @@ def project_inputs(root: Path) -> list[InputFile]:
     others = [str(each.place) for each in files if each.file.suffix.lower() not in KNOWN]
     if others:
         more = f" and {len(others) - 5} others" if len(others) > 5 else ""
-        tell(f"{inputs}: not copied to the results: {', '.join(others[:5])}{more}")
+        issue_note(f"{inputs}: not copied to the results: {', '.join(others[:5])}{more}")
     return supported
 
 

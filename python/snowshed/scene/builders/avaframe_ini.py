@@ -28,8 +28,8 @@ from snowshed.scene.builders.avaframe_keys import (
 from snowshed.scene.schema import schema_of_method
 
 MAX_TIME = 400.0  # s
-SHORTEST_STEP = 1e-6  # s; in shorter ones snow moves by less than numbers can tell
-THICKEST = 100.0  # m, of snow
+MIN_STEP = 1e-6  # s; in shorter ones snow moves by less than numbers can tell
+MAX_THICKNESS = 100.0  # m, of snow
 SIM_TYPES = ("entres", "ent", "res", "null")
 RESULT_TYPES = ("ppr", "pft", "pfv", "P", "FT", "FV")
 
@@ -180,14 +180,14 @@ class _Keys:
         return self.number(
             key,
             default,
-            least=max(least, SHORTEST_STEP) if name == "time_step" else least,
+            least=max(least, MIN_STEP) if name == "time_step" else least,
             above=range_.get("exclusiveMinimum", -math.inf) if name != "time_step" else -math.inf,
             most=range_.get("maximum", math.inf),
         )
 
     def thickness(self, key: str, default: float = math.nan) -> float:
         """Return a thickness of snow, m."""
-        return self.number(key, default, above=0, most=THICKEST)
+        return self.number(key, default, above=0, most=MAX_THICKNESS)
 
     def switch(self, key: str, default: bool = False) -> bool:
         if key not in self:

@@ -12,7 +12,7 @@ from snowshed.scene.builders.slope import (
     BOARD_CELLS,
     Slope,
     check_positive,
-    check_seen,
+    check_resolved,
     upright_box,
 )
 from snowshed.scene.components import Body, Ground, Obstacle, Panel, Slab
@@ -185,7 +185,7 @@ def panel_table(
         raise InputError(f"modules: {modules} is not allowed; give 1 or more")
     for name, size in (("gap", gap), ("lip", lip)):
         if size:
-            check_seen(name, size, dx)
+            check_resolved(name, size, dx)
     scene = single_panel(
         height=height, length=module_length, tilt=tilt, snow=snow, width=width,
         friction=friction, ground_tilt=ground_tilt, dx=dx,
@@ -239,7 +239,7 @@ def _add_posts(
     dx: float,
 ) -> None:
     if posts:
-        check_seen("post_size", size, dx)
+        check_resolved("post_size", size, dx)
     fall = math.tan(math.radians(ground_tilt))
     steep = math.tan(math.radians(slope.tilt))
     below = BOARD_CELLS * dx * math.hypot(1.0, steep) + 0.5 * size * steep

@@ -11,7 +11,7 @@ from snowshed.scene.builders.slope import (
     BOARD_CELLS,
     Slope,
     check_positive,
-    check_seen,
+    check_resolved,
     upright_box,
 )
 from snowshed.scene.components import Obstacle
@@ -195,8 +195,8 @@ def _rails(
     """Return snow guards, of a height and a thickness, at some distances up the slope."""
     height, thickness = size
     for start in guards:
-        check_seen("guard_height", height, dx)
-        check_seen("guard_thickness", thickness, dx)
+        check_resolved("guard_height", height, dx)
+        check_resolved("guard_thickness", thickness, dx)
         if not 0.0 <= start <= length - thickness:
             raise InputError(
                 f"guards: {start:g} m is outside the allowed range "

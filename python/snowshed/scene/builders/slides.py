@@ -28,7 +28,7 @@ from snowshed.scene.components import Area, Events, Hole, ResistanceArea, Terrai
 from snowshed.scene.scene import Scene
 
 MAX_TIME = 400.0  # s, as AvaFrame has it
-THINNEST = 0.01  # m, of snow that is worth a slide
+MIN_THICKNESS = 0.01  # m, of snow that is worth a slide
 MAX_THICKNESS = 10.0  # m, of snow that is believed; as of the core
 #: Options that name the layer of a file.
 LAYER_OPTIONS = {
@@ -236,8 +236,10 @@ def _snow_area(
         snow = float(np.nanmax(depth.heights))
     if snow is None:
         raise InputError(f"{area.name}: the file gives no thickness; give one (--thickness)")
-    if snow < THINNEST:
-        raise InputError(f"{area.name}: {snow:g} m of snow; at least {THINNEST:g} m are needed")
+    if snow < MIN_THICKNESS:
+        raise InputError(
+            f"{area.name}: {snow:g} m of snow; at least {MIN_THICKNESS:g} m are needed"
+        )
     if snow > most and depth is None:  # of a raster the core knows which cells count
         raise InputError(
             f"{area.name}: {snow:g} m of snow; at most {most:g} m are plausible; is it in "

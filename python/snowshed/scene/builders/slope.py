@@ -92,7 +92,7 @@ def upright_box(x: Point, z: Point, dimension: int, y: Point = (-0.5, 0.5)) -> S
     return Shape.box(center, [high - low for low, high in spans])
 
 
-def check_seen(name: str, size: float, dx: float, cells: int = 2) -> None:
+def check_resolved(name: str, size: float, dx: float, cells: int = 2) -> None:
     """Raise InputError if a part is too small for the grid.
 
     Obstacles thinner than two cells are thickened to that, and gaps as narrow are closed.

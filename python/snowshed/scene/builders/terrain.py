@@ -29,7 +29,7 @@ from snowshed.scene.scene import Scene
 from snowshed.scene.shape import Shape
 
 DEEP, HIGH = 6, 3  # cells of the grid below the lowest and above the highest ground
-MOST_SAMPLES = 20_000_000
+MAX_SAMPLES = 20_000_000
 
 Span = tuple[float, float]
 
@@ -112,9 +112,9 @@ def on_terrain(
         np.save(stream, samples.astype(np.float32))
     corner = (xs[0], bottom) if flat else (xs[0], ys[0], bottom)
     shape = Shape.grid(str(Path(file).absolute()), origin=corner, spacing=spacing)
-    made = copy.deepcopy(scene)
-    made.ground = None
-    return made.append(
+    built = copy.deepcopy(scene)
+    built.ground = None
+    return built.append(
         "obstacles",
         Obstacle(name="terrain", shape=shape, condition=condition, friction=friction),
     )
@@ -148,10 +148,10 @@ def signed_distances(
     """
     bottom = float(heights.min()) - DEEP * spacing
     count = math.ceil((float(heights.max()) - bottom) / spacing) + HIGH + 1
-    if len(xs) * len(ys) * count > MOST_SAMPLES:
+    if len(xs) * len(ys) * count > MAX_SAMPLES:
         raise InputError(
             f"spacing: {spacing:g} m makes a grid of {len(xs)} x {len(ys)} x {count} samples; at "
-            f"most {MOST_SAMPLES} are allowed in all"
+            f"most {MAX_SAMPLES} are allowed in all"
         )
     zs = bottom + spacing * np.arange(count)
     points = np.stack(np.meshgrid(xs, ys, zs, indexing="ij"), axis=-1).reshape(-1, 3)

@@ -17,9 +17,9 @@ from snowshed.io.coordinates.systems import are_same, is_in_feet
 from snowshed.io.raster.areas import MapArea
 from snowshed.io.raster.raster import Raster, read_raster
 
-LOWEST, HIGHEST = -430.0, 8850.0  # m, of the Earth's land
-SMALLEST_CELL, LARGEST_CELL = 0.05, 100.0  # m, of terrain that a slide can be seen on
-STEEPEST = 65.0  # degrees, the median of terrain that is in metres
+MIN_ELEVATION, MAX_ELEVATION = -430.0, 8850.0  # m, of the Earth's land
+MIN_CELL, MAX_CELL = 0.05, 100.0  # m, of terrain that a slide can be seen on
+MAX_MEDIAN_SLOPE = 65.0  # degrees, the median of terrain that is in metres
 MAX_SLOPE = 70.0  # degrees, of cliffs that are accepted under a release and beside elevations of 0
 FOOT = 0.3048  # m
 METRE_CELLS = (0.5, 1.0, 2.0, 3.0, 5.0, 10.0, 20.0, 25.0, 30.0)  # m, of usual rasters
@@ -83,7 +83,7 @@ def check_terrain(terrain: Raster, max_slope: float = MAX_SLOPE) -> None:
             "stands for them as NODATA; if there are such cliffs, give a steeper max_slope"
         )
     slope = _median_slope(terrain)
-    if slope > STEEPEST:
+    if slope > MAX_MEDIAN_SLOPE:
         raise InputError(
             f"{terrain.name}: half of the ground is steeper than {slope:.0f} degrees; are the "
             "elevations in feet, or the cells in kilometres?"
@@ -100,14 +100,14 @@ def _check_elevations(terrain: Raster) -> None:
     if np.isnan(z).all():
         raise InputError(f"{terrain.name}: holds no elevation")
     low, high = float(np.nanmin(z)), float(np.nanmax(z))
-    if low < LOWEST or high > HIGHEST:
-        at = np.nanargmin(z) if low < LOWEST else np.nanargmax(z)
+    if low < MIN_ELEVATION or high > MAX_ELEVATION:
+        at = np.nanargmin(z) if low < MIN_ELEVATION else np.nanargmax(z)
         row, column = np.unravel_index(at, z.shape)
         x, y = terrain.east + column * terrain.cell, terrain.north + row * terrain.cell
         raise InputError(
             f"{terrain.name}: elevations from {low:g} to {high:g} m do not occur on Earth "
-            f"({LOWEST:g} to {HIGHEST:g} m), as that at ({x:.10g}, {y:.10g}); are they in feet, or "
-            "is it a missing value that the file does not declare as NODATA?"
+            f"({MIN_ELEVATION:g} to {MAX_ELEVATION:g} m), as that at ({x:.10g}, {y:.10g}); are "
+            "they in feet, or is it a missing value that the file does not declare as NODATA?"
         )
 
 
@@ -118,10 +118,10 @@ def _check_cells(terrain: Raster) -> None:
             f"{terrain.name}: its map is in feet ({terrain.crs}); bring it to a map in metres, for "
             "example by gdalwarp -t_srs EPSG:..."
         )
-    if not SMALLEST_CELL <= cell <= LARGEST_CELL:
+    if not MIN_CELL <= cell <= MAX_CELL:
         raise InputError(
-            f"{terrain.name}: cells of {cell:g} m; terrain needs {SMALLEST_CELL:g} to "
-            f"{LARGEST_CELL:g} m; are they in degrees or feet?"
+            f"{terrain.name}: cells of {cell:g} m; terrain needs {MIN_CELL:g} to "
+            f"{MAX_CELL:g} m; are they in degrees or feet?"
         )
     for metres in METRE_CELLS:
         if math.isclose(cell, metres / FOOT, rel_tol=1e-5):

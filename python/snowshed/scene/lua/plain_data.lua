@@ -4,8 +4,8 @@
 local byte, concat, format, gsub = string.byte, table.concat, string.format, string.gsub
 local integral, length, next, type = math.type, utf8.len, next, type
 
-local DEEPEST = 64 -- as scenes have it
-local LARGEST = 1.7976931348623157e308
+local MAX_DEPTH = 64 -- the same as in scenes
+local MAX_NUMBER = 1.7976931348623157e308
 local ESCAPED = '[%c"\\\127]'
 
 local encode
@@ -29,7 +29,7 @@ local function encode_number(number)
   if integral(number) == "integer" then
     return format("%d", number)
   end
-  if not (number >= -LARGEST and number <= LARGEST) then
+  if not (number >= -MAX_NUMBER and number <= MAX_NUMBER) then
     refuse(format("%g is not a finite number", number))
   end
   return format("%.17g", number)
@@ -76,8 +76,8 @@ local ENCODERS = {
   number = encode_number,
   string = encode_text,
   table = function(value, depth)
-    if depth > DEEPEST then
-      refuse(format("tables are nested more than %d deep", DEEPEST))
+    if depth > MAX_DEPTH then
+      refuse(format("tables are nested more than %d deep", MAX_DEPTH))
     end
     local count = list_length(value)
     if count then

@@ -18,7 +18,7 @@ from snowshed.scene.lua.limits import LuaLimits
 
 PROGRAM = Path(__file__).with_name("child.py")
 START_SECONDS = 60.0  # for the process to start and answer, on a machine that is very busy
-LONGEST_MESSAGE = 500
+MAX_MESSAGE = 500
 OUR_OWN_PLACE = re.compile(r"^(?:host|plain_data):\d+: ")
 SCRIPT_PLACE = re.compile(r"^script(\d+):(\d+): ")
 
@@ -149,7 +149,7 @@ def _failure(error: dict[str, Any], names: list[str], limits: LuaLimits) -> Inpu
 
 
 def _printable(text: str) -> str:
-    """Return text without control characters, shortened to `LONGEST_MESSAGE`."""
-    if len(text) > LONGEST_MESSAGE:
-        text = text[:LONGEST_MESSAGE] + "..."
+    """Return text without control characters, shortened to `MAX_MESSAGE`."""
+    if len(text) > MAX_MESSAGE:
+        text = text[:MAX_MESSAGE] + "..."
     return "".join(c if c.isprintable() else " " for c in text)

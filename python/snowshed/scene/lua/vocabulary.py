@@ -53,7 +53,7 @@ SHAPES = MappingProxyType(
 )
 
 RUN_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._+=-]{0,99}")
-MOST_RUNS = 1000
+MAX_RUNS = 1000
 
 
 def apply(call: Call, builder: Builder) -> None:
@@ -183,8 +183,8 @@ def _run(builder: Builder, call: Call) -> None:
         )
     if any(name == run.name for run in builder.runs):
         raise InputError(f"{call.place}: there is already a run {name!r}")
-    if len(builder.runs) == MOST_RUNS:
-        raise InputError(f"{call.place}: more than {MOST_RUNS} runs; use a study for so many")
+    if len(builder.runs) == MAX_RUNS:
+        raise InputError(f"{call.place}: more than {MAX_RUNS} runs; use a study for so many")
     builder.ask(name, call.place)
 
 

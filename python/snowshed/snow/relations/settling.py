@@ -13,8 +13,8 @@ import numpy as np
 from snowshed.base.arrays import Floats
 from snowshed.snow.relations.relation import ICE_DENSITY
 
-LONGEST_STEP = 3600.0  # s
-LARGEST_STRAIN = 0.01  # in one step
+MAX_STEP = 3600.0  # s
+MAX_STRAIN = 0.01  # in one step
 
 # Density at which snow turns into firn and settling stops; none of the laws is made for firn.
 DENSEST = 0.6 * ICE_DENSITY
@@ -95,7 +95,7 @@ def settled_densities(
     left = seconds
     while left > 0.0 and densities.size:
         rate = law(densities, stresses, temperature)
-        step = min(left, LONGEST_STEP, LARGEST_STRAIN / max(float(rate.max()), 1e-12))
+        step = min(left, MAX_STEP, MAX_STRAIN / max(float(rate.max()), 1e-12))
         settled = densities * np.exp(rate * step)
         densities = np.maximum(densities, np.minimum(settled, DENSEST))
         left -= step

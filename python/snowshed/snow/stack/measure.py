@@ -119,7 +119,7 @@ class StackMeasure(Extent):
         return self.mass / self.volume if self.volume else np.nan
 
 
-def level(positions: Floats, ground_tilt_deg: float) -> Floats:
+def levelled_positions(positions: Floats, ground_tilt_deg: float) -> Floats:
     """Turn positions about y so that tilted ground becomes z = 0 (A.4.4).
 
     The ground passes through the origin and falls in the direction of +x for positive tilt Psi; its
@@ -136,7 +136,7 @@ def level(positions: Floats, ground_tilt_deg: float) -> Floats:
     Examples
     --------
     >>> down_the_slope = np.array([[np.cos(0.5), 0.0, -np.sin(0.5)]])
-    >>> np.allclose(level(down_the_slope, np.degrees(0.5)), [[1, 0, 0]])
+    >>> np.allclose(levelled_positions(down_the_slope, np.degrees(0.5)), [[1, 0, 0]])
     True
     """
     psi = -np.radians(ground_tilt_deg)
@@ -224,7 +224,7 @@ def measure_stack(
         if exclude is None
         else flags("exclude", exclude, len(coordinates))
     )
-    levelled = level(coordinates, finite("ground_tilt_deg", ground_tilt_deg))
+    levelled = levelled_positions(coordinates, finite("ground_tilt_deg", ground_tilt_deg))
     under = (
         np.zeros(len(coordinates)) if ground is None else column("ground", ground, len(coordinates))
     )

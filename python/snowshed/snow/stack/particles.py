@@ -15,7 +15,7 @@ from snowshed.snow.stack.trimming import DEFAULT_TRIMMING
 
 TOUCHES = 1.5  # cells between a structure and snow that lies on it
 NEAR_ENOUGH = 0.01  # cells from the ground at which the search for it ends
-MOST_STEPS = 200
+MAX_STEPS = 200
 
 
 @dataclass(frozen=True)
@@ -121,7 +121,7 @@ def _ground_below(simulation: _core.Simulation, positions: Floats) -> Floats:
     points = np.array(positions, dtype=float)
     left = np.arange(len(points))
     lowest = float(points[:, 2].min()) - np.ptp(points, axis=0).max() - 100.0 * dx
-    for _ in range(MOST_STEPS):
+    for _ in range(MAX_STEPS):
         distance = simulation.resolved_distance(points[left])
         points[left, 2] -= distance  # upward where a particle lies a little inside
         left = left[(np.abs(distance) > NEAR_ENOUGH * dx) & (points[left, 2] > lowest)]

@@ -142,7 +142,7 @@ def fit_material(
             [reading.poissons_ratio for reading, _ in elasticities], logarithmic=False
         ),
     }
-    nu = min(max(ranges["poissons_ratio"].value, 0.0), readings.LARGEST_POISSON)
+    nu = min(max(ranges["poissons_ratio"].value, 0.0), readings.MAX_POISSON)
     elastic = Elasticity(modulus or ranges["youngs_modulus"].value, nu)
     linearity = min(share for _, share in elasticities)
     if linearity < LINEAR:

@@ -16,14 +16,14 @@ from snowshed._core import InputError
 from snowshed.analysis.grains.material.law import Elasticity
 from snowshed.base.arrays import Floats
 from snowshed.methods.grains.curve import LoadingCurve, untouched
-from snowshed.methods.grains.phases import LEAST_ROWS, PEAK_BELOW
+from snowshed.methods.grains.phases import MIN_ROWS, PEAK_BELOW
 
 #: Strain from which a peak counts: earlier peaks come from the plate's impact.
 PEAK_FROM = 5e-4
 #: Plastic compactions, over which stresses are averaged before hardening is fitted.
 HARDENING_BIN = 0.02
 #: Ranges of the law's parameters as scenes take them (`snowshed.Snow`).
-LARGEST_POISSON, LARGEST_HARDENING = 0.49, 1000.0
+MAX_POISSON, MAX_HARDENING = 0.49, 1000.0
 
 
 @dataclass(frozen=True)
@@ -97,9 +97,9 @@ def elasticity(curve: LoadingCurve) -> tuple[Elasticity, float]:
     broken = np.flatnonzero(curve.broken > curve.broken[0])
     rows = slice(0, int(broken[0]) if broken.size else len(curve))
     strain, along = curve["axial_strain"][rows], axial_stress(curve)[rows]
-    if len(strain) < LEAST_ROWS:
+    if len(strain) < MIN_ROWS:
         raise InputError(
-            f"{len(strain)} rows before the first bond breaks; the elastic phase needs {LEAST_ROWS}"
+            f"{len(strain)} rows before the first bond breaks; the elastic phase needs {MIN_ROWS}"
         )
     slope = float(strain @ along / (strain @ strain))
     spread = np.sum((along - along.mean()) ** 2)
@@ -108,7 +108,7 @@ def elasticity(curve: LoadingCurve) -> tuple[Elasticity, float]:
         what = "the stress does not grow in the elastic phase"
         raise InputError(_unknown(curve, "compress", what))
     ratio = max(float(strain @ curve["side_stress_pa"][rows] / (strain @ along)), 0.0)
-    nu = min(ratio / (1 + ratio), LARGEST_POISSON)
+    nu = min(ratio / (1 + ratio), MAX_POISSON)
     modulus = float(slope) * (1 + nu) * (1 - 2 * nu) / (1 - nu)
     return Elasticity(modulus, nu), float(linearity)
 
@@ -223,10 +223,10 @@ def hardening(curve: LoadingCurve, elastic: Elasticity, p0: float) -> Hardening:
         )
     bins = np.floor(plastic / HARDENING_BIN).astype(int)
     used = np.unique(bins[bins >= 0])
-    if len(used) < LEAST_ROWS:
+    if len(used) < MIN_ROWS:
         raise InputError(
             f"compacted by {compaction[-1]:.1%}: too little for a hardening factor; "
-            f"{LEAST_ROWS * HARDENING_BIN:.0%} of plastic compaction at least"
+            f"{MIN_ROWS * HARDENING_BIN:.0%} of plastic compaction at least"
         )
     means = [[values[bins == index].mean() for index in used] for values in (plastic, pressure)]
     x, y = np.array(means)
@@ -238,7 +238,7 @@ def hardening(curve: LoadingCurve, elastic: Elasticity, p0: float) -> Hardening:
     # last stress.
     last = math.asinh(max(y[-1], 1.01 * p0) / elastic.bulk_modulus)
     guess = math.log(max((last - math.asinh(p0 / elastic.bulk_modulus)) / x[-1], 1e-6))
-    ends = (math.log(1e-9), math.log(LARGEST_HARDENING))
+    ends = (math.log(1e-9), math.log(MAX_HARDENING))
     optimum = least_squares(lambda log: (law(math.exp(log[0])) - y) / y.max(), [guess], bounds=ends)
     factor = math.exp(float(optimum.x[0]))
     fitted = law(factor)

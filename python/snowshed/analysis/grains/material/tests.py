@@ -39,7 +39,7 @@ SPEED = 0.02  # m/s, of the compaction
 #: Ice over volume to which snow is compacted: grains whose bonds are broken carry hardly anything
 #: before they are about so dense. Loose snow must be compacted further to get there.
 COMPACTED = 0.51
-LEAST_COMPACTION = 0.12  # strain along each axis
+MIN_COMPACTION = 0.12  # strain along each axis
 
 Curves = Mapping[tuple[str, int], LoadingCurve]
 
@@ -110,7 +110,7 @@ def compaction_strain(ice_fraction: float) -> float:
     (0.12, 0.233)
     """
     strain = 1 - (ice_fraction / COMPACTED) ** (1 / 3)
-    return max(round(float(strain), 3), LEAST_COMPACTION)
+    return max(round(float(strain), 3), MIN_COMPACTION)
 
 
 def read_curves(comparison: Comparison, runs: Path) -> Curves:

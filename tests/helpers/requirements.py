@@ -3,7 +3,7 @@
 import re
 import sys
 
-from paths import ROOT
+from helpers.paths import ROOT
 
 if sys.version_info >= (3, 11):
     import tomllib

@@ -14,15 +14,15 @@ from snowshed.base.extras import require
 from snowshed.base.formatting import number
 
 BINS = 1024  # of a histogram of anything but small whole numbers
-MOST_VALUES = 1 << 16  # whole numbers with a bin each
+MAX_VALUES = 1 << 16  # whole numbers with a bin each
 #: Labels of grains have at least so many numbers above 0, of which none has most of the ice, and
 #: this part of the neighbours in the ice have the same number. Of grey values, few have.
-LEAST_LABELS, MOST_OF_ONE, SAME_NEIGHBOURS = 8, 0.5, 0.75
+MIN_LABELS, MAX_SHARE_OF_LABEL, SAME_NEIGHBOURS = 8, 0.5, 0.75
 
 Parts = Callable[[], Iterable[NDArray[Any]]]
 
 
-def found_threshold(name: str, parts: Parts) -> tuple[float, str]:
+def automatic_threshold(name: str, parts: Parts) -> tuple[float, str]:
     """Return the threshold between ice and air, and its origin: "two values" or "Otsu".
 
     Parameters
@@ -30,7 +30,7 @@ def found_threshold(name: str, parts: Parts) -> tuple[float, str]:
     name
         Name of the image in messages.
     parts
-        Returns the numbers of the image in parts along z, each time anew.
+        Returns the numbers of the image in parts along z, from the first at each call.
 
     Raises
     ------
@@ -39,7 +39,7 @@ def found_threshold(name: str, parts: Parts) -> tuple[float, str]:
 
     Examples
     --------
-    >>> found_threshold("a", lambda: [np.array([[[0, 200], [200, 0]]], dtype=np.uint8)])
+    >>> automatic_threshold("a", lambda: [np.array([[[0, 200], [200, 0]]], dtype=np.uint8)])
     (100.0, 'two values')
     """
     ends = [(part.min().item(), part.max().item()) for part in parts()]
@@ -75,7 +75,7 @@ class _Histogram:
     lowest: Union[int, float]
     width: float  # of a bin
     bins: int
-    whole: bool
+    is_integer: bool
     counts: NDArray[np.int64]
 
     @classmethod
@@ -83,7 +83,7 @@ class _Histogram:
         cls, name: str, lowest: Union[int, float], highest: Union[int, float]
     ) -> _Histogram:
         integers = isinstance(lowest, int) and isinstance(highest, int)
-        if integers and highest - lowest < MOST_VALUES:
+        if integers and highest - lowest < MAX_VALUES:
             bins = int(highest - lowest) + 1
             return cls(lowest, 1.0, bins, True, np.zeros(bins, dtype=np.int64))
         width = (float(highest) - float(lowest)) / BINS
@@ -95,7 +95,7 @@ class _Histogram:
         return cls(lowest, width, BINS, False, np.zeros(BINS, dtype=np.int64))
 
     def add(self, part: NDArray[Any]) -> None:
-        if self.whole:
+        if self.is_integer:
             # Differences of 8 bytes fit, those of fewer bytes may overflow.
             wide = part if part.dtype.itemsize == 8 else part.astype(np.int64)
             bins = (wide - wide.dtype.type(self.lowest)).astype(np.int64)
@@ -107,15 +107,15 @@ class _Histogram:
     @property
     def has_many_values(self) -> bool:
         """Whether many values occur above 0, and none of them dominates."""
-        above = self.counts[1:] if self.whole else self.counts
+        above = self.counts[1:] if self.is_integer else self.counts
         seen = int(np.count_nonzero(above))
-        return seen >= LEAST_LABELS and above.max() < MOST_OF_ONE * above.sum()
+        return seen >= MIN_LABELS and above.max() < MAX_SHARE_OF_LABEL * above.sum()
 
     def otsu(self) -> float:
         """Return Otsu's threshold; it is found in bins, where values may be of any size."""
         filters = require("skimage.filters", "images", "Otsu's threshold")
         place = float(filters.threshold_otsu(hist=(self.counts, np.arange(float(self.bins)))))
-        return float(self.lowest) + self.width * (place + (0.0 if self.whole else 0.5))
+        return float(self.lowest) + self.width * (place + (0.0 if self.is_integer else 0.5))
 
 
 @dataclass
