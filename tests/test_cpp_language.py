@@ -19,8 +19,6 @@ LIMITS = re.compile(
     r"\bconstexpr\b[^=;(){}]*"
     r"\b((?:most|least|largest|longest|smallest|shortest|deepest|highest)(?:_\w+)?)\b"
 )
-#: Rooms whose limits still have other names.
-OTHER_LIMITS = ("snowshed/methods/mpm", "snowshed/material")
 #: Trailing comments are fragments, and begin in lower case.
 FRAGMENTS = re.compile(r"(of|what|that|how|which|whose|where to) ")
 TOKEN = re.compile(
@@ -143,7 +141,6 @@ def test_limits_are_called_max_and_min(folder):
     wrong = [
         f"{path.relative_to(ROOT)}: {name}"
         for path in sources(folder)
-        if not any(room in path.as_posix() for room in OTHER_LIMITS)
         for name in LIMITS.findall(TOKEN.sub(" ", path.read_text(encoding="utf-8")))
     ]
     assert wrong == []

@@ -105,8 +105,8 @@ class ValueBuilder {
     ++keys_read_;
     keys_.back() = std::move(key);
     if (open_.back()->contains(keys_.back()))
-      throw InputError(path(), "this key appears twice, in line " +
-                                   std::to_string(line_of_key(text_, keys_read_)) + " again");
+      throw InputError(path(), "this key appears twice, the second time in line " +
+                                   std::to_string(line_of_key(text_, keys_read_)));
     return true;
   }
 

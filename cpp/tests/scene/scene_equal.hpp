@@ -71,8 +71,8 @@ inline auto tied(const Seeding& s) {
   return std::tie(a, b, c, d);
 }
 inline auto tied(const mpm::Settings& s) {
-  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r] = s;
-  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r);
+  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, t] = s;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, t);
 }
 inline auto tied(const Events& s) {
   auto& [a, b, c, d, e] = s;

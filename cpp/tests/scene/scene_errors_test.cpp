@@ -83,18 +83,17 @@ INSTANTIATE_TEST_SUITE_P(
         {R"(, "numerics": {"damping_rate": -1})", "/numerics/damping_rate",
          "-1 is outside the allowed range (0 <= value <= 1000000000 1/s)"},
         {R"(, "numerics": {"damping_rate": 5, "transfer": "apic"})", "/numerics/damping_rate",
-         R"(the transfer "apic" has no PIC that damps; leave it out)"},
+         R"(the transfer "apic" has no PIC damping; leave damping_rate out)"},
         {R"(, "numerics": {"damping_rate": 5, "damping_length": 0.01})", "/numerics/damping_length",
-         R"(the transfer "flip" damps by itself, over a cell; it takes "affine_flip")"},
+         R"(needs the transfer "affine_flip", not "flip")"},
         {R"(, "numerics": {"transfer": "affine_flip", "damping_length": 0.01})",
-         "/numerics/damping_length",
-         "says over which length to damp, but not how fast; give damping_rate too"},
+         "/numerics/damping_length", "needs a damping_rate, too"},
         {R"(, "numerics": {"scheme": "objective", "transfer": "apic"})", "/numerics/transfer",
-         R"(is "apic", but the scheme "objective" takes "affine_flip"; leave it or the scheme out)"},
+         R"(is "apic", but the scheme "objective" requires "affine_flip"; remove this setting or the scheme)"},
         {R"(, "numerics": {"scheme": "objective", "flip_ratio": 0.9})", "/numerics/damping_length",
-         "says over which length to damp, but not how fast; give damping_rate too"},
+         "needs a damping_rate, too"},
         {R"(, "numerics": {"scheme": "objective", "fields": "one"})", "/numerics/fields",
-         R"(is "one", but the scheme "objective" takes "events"; leave it or the scheme out)"},
+         R"(is "one", but the scheme "objective" requires "events"; remove this setting or the scheme)"},
         {R"(, "numerics": {"dx": 0.01, "crack_band_length": 1})", "/numerics/crack_band_length",
          "is 100 times dx; it must be 0.01 to 10 times"},
         {R"(, "numerics": {"dx": 0.01, "crack_band_length": 5e-5})", "/numerics/crack_band_length",
@@ -200,8 +199,9 @@ INSTANTIATE_TEST_SUITE_P(
         {R"(, "domain": {"min": [0, 0, 0]})", "/domain/max",
          "missing: an array of 3 numbers (x, y, z; the scene is 3D) is required"},
         {R"(, "snow": {"density": 200, "density": 300})", "/snow/density",
-         "this key appears twice, in line 1 again"},
-        {R"(, "snow": {}, "snow": {})", "/snow", "this key appears twice, in line 1 again"},
+         "this key appears twice, the second time in line 1"},
+        {R"(, "snow": {}, "snow": {})", "/snow",
+         "this key appears twice, the second time in line 1"},
         {","
          "\n"
          R"("obstacles": [{}, {"name" : "a:\"",)"
@@ -209,7 +209,7 @@ INSTANTIATE_TEST_SUITE_P(
          R"("name")"
          "\n"
          R"(: "b"}])",
-         "/obstacles/1/name", "this key appears twice, in line 3 again"},
+         "/obstacles/1/name", "this key appears twice, the second time in line 3"},
         {R"(, "obstacles": [{}])", "/obstacles/0/shape", "missing: an object is required"}}));
 
 INSTANTIATE_TEST_SUITE_P(

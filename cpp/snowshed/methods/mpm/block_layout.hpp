@@ -20,7 +20,7 @@ using BlockCoord = std::array<std::int32_t, D>;
 /// neighbours have the same field.
 using BlockKey = std::uint64_t;
 
-inline constexpr int most_fields = 64;
+inline constexpr int max_fields = 64;
 
 /// Bits of a coordinate.
 constexpr int coord_bits(int field) { return field == 0 ? 21 : 19; }
@@ -28,14 +28,14 @@ constexpr int coord_bits(int field) { return field == 0 ? 21 : 19; }
 /// Coordinates are no larger than this.
 constexpr std::int32_t block_coord_limit(int field) { return (1 << (coord_bits(field) - 1)) - 2; }
 
-constexpr int field_of(BlockKey key) { return key >> 63 ? int(key >> 57 & (most_fields - 1)) : 0; }
+constexpr int field_of(BlockKey key) { return key >> 63 ? int(key >> 57 & (max_fields - 1)) : 0; }
 
 template <int D>
 BlockKey block_key(const BlockCoord<D>& c, int field = 0) {
   const int bits = coord_bits(field);
   BlockKey key = 0;
   for (int d = 0; d < D; ++d) key = key << bits | BlockKey(c[d] + (1 << (bits - 1)));
-  return field == 0 ? key : key | BlockKey(most_fields + field) << 57;
+  return field == 0 ? key : key | BlockKey(max_fields + field) << 57;
 }
 
 template <int D>

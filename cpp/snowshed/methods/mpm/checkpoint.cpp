@@ -32,8 +32,8 @@ void visit_particles(Archive& archive, Particles& particles, std::size_t materia
   });
 }
 
-template <class T, int D, class Archive, class Layout, class Progress>
-void visit_rest(Archive& archive, Layout& layout, Stored<T, D>& stored, Progress& p,
+template <class T, int D, class Archive, class Layout, class StepTotals>
+void visit_rest(Archive& archive, Layout& layout, Stored<T, D>& stored, StepTotals& p,
                 const Settings& settings) {
   const std::size_t blocks = archive.size("blocks/keys", layout.particle_blocks);
   archive.array("blocks/keys", layout.particle_blocks, blocks);

@@ -9,7 +9,7 @@ namespace snowshed::mpm {
 
 template <class T, int D>
 void SolverImpl<T, D>::update_energy_balance() noexcept {
-  Progress& p = state_.progress;
+  StepTotals& p = state_.progress;
   double kinetic = 0, elastic = 0, plastic = 0, damping = 0;
   // Energies of sleeping blocks as they fell asleep.
   for (const BlockStats& s : work_.grid.block_stats) {

@@ -29,7 +29,7 @@ struct Grid {
     touched.resize(nodes);
   }
 
-  /// The arrays' contents are not kept: all of it is computed anew after a change of layout.
+  /// The arrays' contents are not kept: all of it is computed again after a change of layout.
   static void make_room(AlignedVector<T>& values, std::size_t n) {
     if (n > values.capacity()) {
       AlignedVector<T>().swap(values);

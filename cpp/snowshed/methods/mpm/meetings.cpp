@@ -11,7 +11,7 @@ namespace snowshed::mpm {
 namespace {
 
 /// kg. Nodes that a field barely reaches say nothing about its surface.
-constexpr double least_shared_mass = 1e-12;
+constexpr double min_shared_mass = 1e-12;
 
 /// Place of an index in an array of `edge` elements along each direction, the first at `low`.
 template <int D>
@@ -124,7 +124,7 @@ void Meetings<T, D>::find_normals(const Masses& a, const Masses& b, Nodes& nodes
   };
   std::vector<Raw> around;
   const auto shared = [&](int place) {
-    return double(a[place]) > least_shared_mass && double(b[place]) > least_shared_mass;
+    return double(a[place]) > min_shared_mass && double(b[place]) > min_shared_mass;
   };
   for_each_index(filled(-smoothing), filled(B + smoothing), [&](const std::array<int, D>& node) {
     const int place = place_in<D>(node, padded_edge, -margin);
@@ -304,7 +304,7 @@ typename Meetings<T, D>::Impulses Meetings<T, D>::impulses_at(const StepParamete
   Impulses i{};
   const int at = c.node * node_values;
   const T first = sums[0][at], second = sums[1][at];
-  if (!(double(first) > least_shared_mass && double(second) > least_shared_mass)) {
+  if (!(double(first) > min_shared_mass && double(second) > min_shared_mass)) {
     c.next_impulse = 0;
     return i;
   }

@@ -1,4 +1,4 @@
-// The material point method, as the rest of the program knows it.
+// The descriptor of the material point method.
 #include "snowshed/core/errors.hpp"
 #include "snowshed/core/message_format.hpp"
 #include "snowshed/methods/descriptor.hpp"
@@ -13,14 +13,13 @@ namespace {
 void check_damping(const Settings& n) {
   const std::string transfer = "the transfer \"" + std::string(name_of(n.transfer)) + "\"";
   if (n.damping_rate && n.transfer == Transfer::apic)
-    throw InputError("/numerics/damping_rate", transfer + " has no PIC that damps; leave it out");
+    throw InputError("/numerics/damping_rate",
+                     transfer + " has no PIC damping; leave damping_rate out");
   if (!n.damps_over_length()) return;
   if (n.transfer != Transfer::affine_flip)
-    throw InputError("/numerics/damping_length",
-                     transfer + " damps by itself, over a cell; it takes \"affine_flip\"");
-  if (!n.damping_rate)
-    throw InputError("/numerics/damping_length",
-                     "says over which length to damp, but not how fast; give damping_rate too");
+    throw InputError("/numerics/damping_length", "needs the transfer \"affine_flip\", not \"" +
+                                                     std::string(name_of(n.transfer)) + "\"");
+  if (!n.damping_rate) throw InputError("/numerics/damping_length", "needs a damping_rate, too");
 }
 
 /// Lengths and rates may differ from those of the scheme, but each of its mechanisms must act.
@@ -29,8 +28,8 @@ void check_scheme(const Settings& n) {
   const auto require = [](bool acts, const char* key, const std::string& is, const char* must) {
     if (!acts)
       throw InputError(std::string("/numerics/") + key,
-                       "is " + is + ", but the scheme \"objective\" takes " + must +
-                           "; leave it or the scheme out");
+                       "is " + is + ", but the scheme \"objective\" requires " + must +
+                           "; remove this setting or the scheme");
   };
   require(n.transfer == Transfer::affine_flip, "transfer",
           "\"" + std::string(name_of(n.transfer)) + "\"", "\"affine_flip\"");
@@ -41,9 +40,9 @@ void check_scheme(const Settings& n) {
   require(n.crack_band_length > 0, "crack_band_length", "0", "a length");
 }
 
-/// The law that softens dx over the crack band's length as fast: on finer grids snow would strain
-/// by more than a particle can follow before it has lost its strength; on coarser ones it would
-/// lose it at once.
+/// Softening is faster by dx / crack_band_length. On much finer grids snow would strain more than a
+/// particle can follow before it loses its strength; on much coarser grids it would lose it at
+/// once.
 void check_crack_band(const Settings& n) {
   constexpr double least = 0.1, most = 100;
   if (n.softening() >= least * (1 - 1e-9) && n.softening() <= most) return;

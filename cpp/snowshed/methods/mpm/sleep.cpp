@@ -10,18 +10,17 @@ namespace snowshed::mpm {
 namespace {
 
 /// Largest speed of a single particle in a slow block, over the limit.
-constexpr double most_over_mean = 5;
+constexpr double max_ratio_to_mean = 5;
 
-/// Growth of the mean velocity from one half of a quiet spell to the other, along the latter and
-/// over the limit, that is still taken for the noise of vibrations.
+/// Largest growth of the mean speed between the halves of a quiet period, relative to the limit,
+/// that counts as vibration.
 constexpr double noise = 0.005;
 
-/// Change of the mean velocity from one half to the other, over that of free fall, of snow that
-/// must be in flight.
+/// Share of the velocity change of a free fall above which snow is in flight.
 constexpr double flight = 0.5;
 
 /// Samples in the mean of a half, for any length of the steps.
-constexpr double least_samples = 4;
+constexpr double min_samples = 4;
 
 template <int D>
 std::vector<std::int32_t> particle_counts(const BlockLayout<D>& layout) {
@@ -63,7 +62,7 @@ template <int D>
 Sleep<D> Sleep<D>::restored(const BlockLayout<D>& layout, std::vector<State> states) const {
   Sleep next(limit_, time_, gravity_);
   const std::size_t blocks = layout.particle_blocks.size(), nodes = layout.grid_blocks.size();
-  for (auto* list : {&next.awake_, &next.border_, &next.fallen_}) list->reserve(blocks);
+  for (auto* list : {&next.awake_, &next.border_, &next.newly_asleep_}) list->reserve(blocks);
   for (auto* list : {&next.active_, &next.idle_}) list->reserve(nodes);
   next.touched_.resize(nodes);
   next.keys_ = layout.particle_blocks;
@@ -93,25 +92,25 @@ const std::vector<std::int32_t>& Sleep<D>::update(const BlockLayout<D>& layout, 
   }
   for (std::size_t b = 0; b < states_.size(); ++b)
     if (states_[b].asleep && block_probe.obstacle_moves(std::int32_t(b))) wake(std::int32_t(b));
-  fallen_.clear();
+  newly_asleep_.clear();
   for (std::int32_t b : awake_) {
     if (!is_slow(block_probe.speed(b), block_probe.fastest(b)) || block_probe.obstacle_moves(b))
       states_[b] = awake_since(now);
     else if (falls_asleep(states_[b], now, block_probe.velocity(b)) &&
              block_probe.holds_its_snow(b))
-      fallen_.push_back(b);
+      newly_asleep_.push_back(b);
   }
-  for (std::int32_t b : fallen_) {
+  for (std::int32_t b : newly_asleep_) {
     states_[b].asleep = true;
     states_[b].sum.setZero();
   }
-  if (woken || !fallen_.empty()) list_blocks(layout);
-  return fallen_;
+  if (woken || !newly_asleep_.empty()) list_blocks(layout);
+  return newly_asleep_;
 }
 
 template <int D>
 bool Sleep<D>::is_slow(double rms_speed, double fastest) const {
-  return rms_speed < limit_ && fastest < most_over_mean * limit_;
+  return rms_speed < limit_ && fastest < max_ratio_to_mean * limit_;
 }
 
 /// Whether the awake snow beside a sleeping block moves it, or presses harder than it withstands.
@@ -130,7 +129,7 @@ template <int D>
 bool Sleep<D>::falls_asleep(State& s, double now, const VecD<D>& velocity) const {
   s.sum += velocity;
   s.samples += 1;
-  if (s.samples < least_samples || now - s.since < 0.5 * time_) return false;
+  if (s.samples < min_samples || now - s.since < 0.5 * time_) return false;
   if (s.halfway && now - s.since < time_) return false;
   const VecD<D> mean = s.sum / s.samples;
   const VecD<D> change = mean - s.first_half;
@@ -186,7 +185,7 @@ template class Sleep<3>;
 
 /// Blocks that fall asleep come to rest: the rest of their motion is lost.
 template <class T, int D>
-void SolverImpl<T, D>::let_sleep() noexcept {
+void SolverImpl<T, D>::update_sleep() noexcept {
   if (!state_.sleep.allowed() || counters().steps % steps_between_checks != 0) return;
   const ParticleView<T> view = state_.particles.view();
   const StepParameters<T> step = parameters(state_.progress.dt);

@@ -91,7 +91,7 @@ class Sleep {
   std::vector<std::int32_t> counts_;  // particles in each of its blocks
   std::vector<State> states_;
   // The lists have room for all blocks, so that no step needs memory for them.
-  std::vector<std::int32_t> awake_, active_, idle_, fallen_;
+  std::vector<std::int32_t> awake_, active_, idle_, newly_asleep_;
   std::vector<bool> touched_;         // whether awake snow touches a grid block
   std::vector<std::int32_t> border_;  // sleeping blocks that share nodes with awake snow
   std::int64_t awake_particles_ = 0;

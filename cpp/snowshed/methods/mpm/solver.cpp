@@ -13,11 +13,11 @@
 namespace snowshed::mpm {
 namespace {
 
-/// Memory of the contacts' friction for fast snow, in cells that it slides over. The impulse of its
-/// push stays at the node, and the part that is not charged when the snow has left is lost. With
-/// half a cell, chunks of two cells and more at 5 to 15 m/s lose at most 2 % of the friction; with
-/// a whole cell, 11 %. Less than half charges the pushes of a chunk that vibrates before the pulls
-/// have come.
+/// Memory of the contact friction for fast snow, as a sliding distance in cells. A stored impulse
+/// stays at its node; the part that has not acted as friction when the snow leaves is lost. With
+/// half a cell, chunks of two or more cells at 5 to 15 m/s lose at most 2 % of the friction; with a
+/// whole cell, 11 %. With less than half a cell, pushes of a vibrating chunk act before its pulls
+/// have reduced them.
 constexpr double friction_reach = 0.5;
 
 }  // namespace
@@ -46,7 +46,7 @@ template <class T, int D>
 void SolverImpl<T, D>::step() {
   soundness_.require();
   if (size() == 0) throw SimulationError("there is no snow to simulate");
-  const Progress before = state_.progress;
+  const StepTotals before = state_.progress;
   const bool tiles_were_valid = work_.tiles_valid;
   double dt;
   try {
@@ -58,7 +58,7 @@ void SolverImpl<T, D>::step() {
   }
   record_step(dt);
   check_particles();
-  let_sleep();
+  update_sleep();
 }
 
 /// The parts of a step that can fail (time step too long, no memory). Particles move last.
@@ -82,10 +82,10 @@ double SolverImpl<T, D>::try_step() {
   return dt;
 }
 
-/// Enters a step that particles have taken.
+/// Records a step after the particles have moved.
 template <class T, int D>
 void SolverImpl<T, D>::record_step(double dt) noexcept {
-  Progress& p = state_.progress;
+  StepTotals& p = state_.progress;
   double speed_squared = 0;
   for (std::int32_t b : state_.sleep.awake()) {
     const BlockStats& s = work_.grid.block_stats[b];
@@ -190,7 +190,7 @@ void SolverImpl<T, D>::update_meeting(const StepParameters<T>& step, std::ptrdif
     if (work_.grid.touched[*g])
       model_.kernels.update_free(step, work_.grid.sum(*g), work_.grid.velocity(*g));
     else
-      leave_empty(*g);
+      clear_block(*g);
   }
   work_.meetings.exchange(step, model_.event_friction(), state_, work_.grid, place);
   for (auto g = begin; g != end; ++g)
@@ -203,7 +203,7 @@ void SolverImpl<T, D>::update_meeting(const StepParameters<T>& step, std::ptrdif
 template <class T, int D>
 void SolverImpl<T, D>::update_block(const StepParameters<T>& step, std::ptrdiff_t g) {
   work_.grid.node_stats[g] = {};
-  if (!work_.grid.touched[g]) return leave_empty(g);
+  if (!work_.grid.touched[g]) return clear_block(g);
   model_.kernels.update(step, work_.grid.sum(g), work_.grid.velocity(g),
                         state_.contacts.of_block(g), state_.contacts.count(g),
                         model_.boundary.laws().data(), work_.grid.node_stats[g]);
@@ -211,7 +211,7 @@ void SolverImpl<T, D>::update_block(const StepParameters<T>& step, std::ptrdiff_
 
 /// No particle touches these nodes, so their velocities are not used.
 template <class T, int D>
-void SolverImpl<T, D>::leave_empty(std::ptrdiff_t g) {
+void SolverImpl<T, D>::clear_block(std::ptrdiff_t g) {
   std::fill_n(work_.grid.node_stats[g].low, D, infinity);
   std::fill_n(work_.grid.node_stats[g].high, D, -infinity);
   Contact<T>* contacts = state_.contacts.of_block(g);
@@ -322,7 +322,7 @@ void SolverImpl<T, D>::average_velocities(double dt) noexcept {
 template <class T, int D>
 void SolverImpl<T, D>::record_damping(double dt) noexcept {
   if (!work_.average) return;
-  Progress& p = state_.progress;
+  StepTotals& p = state_.progress;
   const bool damped = damps_next();
   p.undamped_steps = damped ? 0 : p.undamped_steps + 1;
   p.undamped_time = damped ? 0.0 : p.undamped_time + dt;

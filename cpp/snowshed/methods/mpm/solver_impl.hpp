@@ -77,7 +77,7 @@ class SolverImpl final : public Solver {
   void gather_and_update(double dt);
   void update(double dt);
   void update_block(const StepParameters<T>& step, std::ptrdiff_t block);
-  void leave_empty(std::ptrdiff_t block);
+  void clear_block(std::ptrdiff_t block);
   bool meets(std::int32_t grid_block) const {
     return !state_.layout.meets.empty() && state_.layout.meets[grid_block];
   }
@@ -89,7 +89,7 @@ class SolverImpl final : public Solver {
   void average_velocities(double dt) noexcept;
   void record_step(double dt) noexcept;
   void record_damping(double dt) noexcept;
-  void let_sleep() noexcept;
+  void update_sleep() noexcept;
   typename Sleep<D>::BlockProbe block_probe();
   BlockStats probe(const StepParameters<T>& step, const ParticleView<T>& view, std::int32_t block);
   void clear_idle_nodes();

@@ -17,7 +17,7 @@ namespace {
 constexpr double friction_memory_steps = 40;
 
 /// Largest volume of loose snow in contacts, over its initial volume.
-constexpr double most_expansion = 1.5;
+constexpr double max_expansion = 1.5;
 
 /// Largest number of velocity fields; with more events the oldest share one.
 constexpr int fields_at_once = 8;
@@ -146,7 +146,7 @@ double State<T, D>::volume_ratio(const Model<T, D>& model, std::size_t i) const 
 template <class T, int D>
 double State<T, D>::contact_radius(const Model<T, D>& model, std::size_t i) const {
   const double volume = double(particles.mass[i]) / material_of(model, i).density *
-                        std::min(volume_ratio(model, i), most_expansion);
+                        std::min(volume_ratio(model, i), max_expansion);
   return 0.5 * model.options.settings.contact_radius * std::pow(volume, 1.0 / D);
 }
 
@@ -155,7 +155,7 @@ double State<T, D>::largest_contact_radius(const Model<T, D>& model) const {
   double volume = 0;
   for (std::size_t i = 0; i < particles.size(); ++i)
     volume = std::max(volume, double(particles.mass[i]) / material_of(model, i).density);
-  return 0.5 * model.options.settings.contact_radius * std::pow(volume * most_expansion, 1.0 / D);
+  return 0.5 * model.options.settings.contact_radius * std::pow(volume * max_expansion, 1.0 / D);
 }
 
 template <class T, int D>

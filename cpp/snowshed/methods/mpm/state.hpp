@@ -15,11 +15,11 @@
 
 namespace snowshed::mpm {
 
-/// Part of a cell that snow may move before its contacts by touch are found anew.
+/// Part of a cell that snow may move before its contacts by touch are found again.
 inline constexpr double contact_tolerance = 0.02;
 
 /// The numbers of a state, cheap to copy: a step that fails puts them back.
-struct Progress {
+struct StepTotals {
   double time = 0, dt = 0;  // s; dt: of the last step
   double speed = 0;         // m/s, of the fastest particle
   double stress_power = 0;  // W, see SolverImpl::update_energy_balance
@@ -42,7 +42,7 @@ struct State {
   // Contacts of the layout, once Meetings has updated them.
   std::vector<FieldContact<T>> field_contacts;
   Sleep<D> sleep;
-  Progress progress;
+  StepTotals progress;
 
   std::map<int, int> event_fields;  // field of each event
 

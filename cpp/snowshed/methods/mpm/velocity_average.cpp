@@ -11,7 +11,7 @@ namespace snowshed::mpm {
 namespace {
 
 /// The coarse grid is no finer than this part of a cell.
-constexpr double least_spacing = 0.5;
+constexpr double min_spacing = 0.5;
 
 int nodes_of_tile(int block_cells, double per_cell) {
   // The block with a cell of slack on either side, a spline's nodes, and one for its place.
@@ -22,7 +22,7 @@ int nodes_of_tile(int block_cells, double per_cell) {
 
 template <class T, int D>
 VelocityAverage<T, D>::VelocityAverage(double length, double dx, Basis basis)
-    : spacing_(std::max(length, least_spacing * dx)),
+    : spacing_(std::max(length, min_spacing * dx)),
       per_cell_(dx / spacing_),
       share_of_length_(length * length / (spacing_ * spacing_)),
       slack_(1 - base_offset(basis)),

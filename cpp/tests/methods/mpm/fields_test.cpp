@@ -88,7 +88,7 @@ TEST_P(ParticleFields, AreOfKnownQuantities) {
   EXPECT_THROW(solver_->field("masss"), InputError);
 }
 
-/// Particles that are added take the last places by id, and the order is known anew.
+/// Particles that are added take the last places by id, and the order follows.
 TEST_P(ParticleFields, OrderFollowsParticlesThatAreAdded) {
   const std::size_t old = solver_->order_by_id().size();
   solver_->add(

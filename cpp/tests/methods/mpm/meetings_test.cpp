@@ -363,7 +363,7 @@ TEST(Meetings, AnyNumberOfEventsMayMeet) {
 }
 
 TEST(Meetings, KeysOfBlocksHoldTheirField) {
-  for (const int field : {0, 1, 7, most_fields - 1}) {
+  for (const int field : {0, 1, 7, max_fields - 1}) {
     const std::int32_t limit = block_coord_limit(field);
     for (const BlockCoord<3>& c :
          {BlockCoord<3>{0, 0, 0}, BlockCoord<3>{limit, -limit, 5}, BlockCoord<3>{-1, 2, -limit}}) {

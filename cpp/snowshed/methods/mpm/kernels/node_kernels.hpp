@@ -12,7 +12,7 @@ template <class T, int D, Basis basis, bool takes_change, bool energy>
 struct NodeKernels {
   using Half = NodeHalf<T>;
   /// kg. A node that a particle barely touches may have a mass whose inverse overflows.
-  static constexpr T least_mass = T(1e-30);
+  static constexpr T min_mass = T(1e-30);
 
   static void gather(const T* const* tiles, T* sums) {
     std::memset(sums, 0, block_nodes<D> * node_values * sizeof(T));
@@ -46,7 +46,7 @@ struct NodeKernels {
                      NodeStats& stats) {
     Range range;
     for (int k = 0; k < block_nodes<D>; ++k)
-      if (sums[k * node_values] > least_mass) range.add(load_half(velocities + k * node_values));
+      if (sums[k * node_values] > min_mass) range.add(load_half(velocities + k * node_values));
     constrain(step, sums, velocities, contacts, contact_count, laws, stats, range);
     range.store(stats);
     if constexpr (energy) record_kinetic_energy(step, sums, velocities, stats);
@@ -62,7 +62,7 @@ struct NodeKernels {
         if (!sums[neighbour] || m == 0) continue;
         const T* sum = sums[neighbour] + (node + k) * node_values;
         const T* now = velocities[neighbour] + (node + k) * node_values;
-        if (!(sum[0] > least_mass)) continue;
+        if (!(sum[0] > min_mass)) continue;
         const Half before = velocity(sum);
         for (int d = 0; d < D; ++d) {
           squared += m * double(now[d]) * double(now[d]);
@@ -100,7 +100,7 @@ struct NodeKernels {
     for (int k = 0; k < block_nodes<D>; ++k) {
       const T* sum = sums + k * node_values;
       T* out = velocities + k * node_values;
-      if (!(sum[0] > least_mass)) {
+      if (!(sum[0] > min_mass)) {
         std::memset(out, 0, node_values * sizeof(T));
         continue;
       }
@@ -119,7 +119,7 @@ struct NodeKernels {
       const T* sum = sums + contacts[c].node * node_values;
       T* out = velocities + contacts[c].node * node_values;
       const bool acts = contacts[c].acts || contacts[c].normal_impulse > T(0);
-      if (sum[0] > least_mass && acts) {
+      if (sum[0] > min_mass && acts) {
         Half node = load_half(out);
         apply(step, contacts[c], laws[contacts[c].obstacle], sum, node, stats);
         store_velocity(out, node, velocity(sum));
@@ -147,7 +147,7 @@ struct NodeKernels {
       const T* in = sums + k * node_values;
       const T* out = velocities + k * node_values;
       const double mass = double(in[0]);
-      if (!(mass > double(least_mass))) continue;
+      if (!(mass > double(min_mass))) continue;
       for (int d = 0; d < D; ++d) {
         stats.kinetic_before += 0.5 * double(in[1 + d]) * double(in[1 + d]) / mass;
         stats.kinetic_after += 0.5 * mass * double(out[d]) * double(out[d]);
@@ -195,9 +195,9 @@ struct NodeKernels {
   }
 
   /// The parts of a vector along a normal and across it.
-  struct Parts {
+  struct NormalSplit {
     T normal[D], tangential[D];
-    Parts(const T (&v)[D], const T (&n)[3]) {
+    NormalSplit(const T (&v)[D], const T (&n)[3]) {
       T along = 0;
       for (int d = 0; d < D; ++d) along += v[d] * n[d];
       for (int d = 0; d < D; ++d) {
@@ -217,14 +217,15 @@ struct NodeKernels {
     return std::sqrt(squared);
   }
 
-  /// The part of its store that a contact is charged for in a step: all once snow has come off.
+  /// The share of its stored impulse that acts as friction in a step: all of it once the snow has
+  /// left.
   static T drained_share(const StepParameters<T>& step, const Contact<T>& c, T sliding_speed) {
     return c.acts ? drain_rate(step, sliding_speed) : T(1);
   }
 
   /// The pull that a contact cancels in a step, as a negative push (N s); a larger pull is
   /// released. `stored` is the rest of the push before.
-  static T least_push(const Contact<T>& c, T stored) {
+  static T min_push(const Contact<T>& c, T stored) {
     if (c.release == Release::never) return std::numeric_limits<T>::lowest();
     return c.release == Release::after_push ? -stored : T(0);
   }
@@ -262,7 +263,7 @@ struct NodeKernels {
     const T drained =
         c.normal_impulse * drained_share(step, c, sliding_speed(c, normal_speed, free));
     const T left = c.normal_impulse - drained;
-    const T least = c.acts ? least_push(c, left) : T(0);
+    const T least = c.acts ? min_push(c, left) : T(0);
     T push = c.acts ? -mass * normal_speed : T(0);
     const bool lets_go = !c.acts || push < least;
     if (lets_go) push = least;
@@ -281,7 +282,7 @@ struct NodeKernels {
     const T lost = slip_impulse > friction ? friction / slip_impulse : T(1);
     for (int d = 0; d < D; ++d) node[d] = after[d] = pushed[d] - lost * slip[d];
     if constexpr (energy) {
-      const Parts was(before, c.normal), would(free, c.normal), is(after, c.normal);
+      const NormalSplit was(before, c.normal), would(free, c.normal), is(after, c.normal);
       stats.impact += taken(!lets_go, mass, was.normal, would.normal, is.normal);
       if (!lets_go) stats.stress_work += work(step, sum, was.normal, is.normal);
       if (lost == T(1)) stats.stress_work += work(step, sum, was.tangential, is.tangential);

@@ -201,15 +201,15 @@ struct ParticleKernels {
     Tensor dev = e;
     for (int k = 0; k < D; ++k) dev.c[k] -= third;
     const V dev_squared = norm_squared(dev);
-    V keep = broadcast<V>(T(1)), p_now = -el.bulk * volumetric;
+    V shear_ratio = broadcast<V>(T(1)), p_now = -el.bulk * volumetric;
     if constexpr (Snow::plastic) {
       const V q_trial = sqrt(V(T(6) * dev_squared)) * el.mu;  // q = sqrt(3/2 s:s)
       PQ<V> pq{p_now, q_trial};
       if (!committed && snow.law.return_map(pq, s.plastic, step.overstress)) {
         const auto sheared = q_trial > T(0);
-        keep = select(sheared, V(pq.q / select(sheared, q_trial, keep)), keep);
+        shear_ratio = select(sheared, V(pq.q / select(sheared, q_trial, shear_ratio)), shear_ratio);
         third = pq.p * (T(-1) / (el.bulk * T(D)));
-        for (int k = 0; k < Tensor::size; ++k) e.c[k] = keep * dev.c[k];
+        for (int k = 0; k < Tensor::size; ++k) e.c[k] = shear_ratio * dev.c[k];
         for (int k = 0; k < D; ++k) e.c[k] += third;
         const Tensor returned = cauchy_green_minus_identity(e);
         const auto changed = (pq.p != p_now) | (pq.q != q_trial);
@@ -220,10 +220,10 @@ struct ParticleKernels {
       p_now = pq.p;
     }
     Stress r;
-    const V shear_scale = T(2) * el.mu * keep;
+    const V shear_scale = T(2) * el.mu * shear_ratio;
     for (int k = 0; k < Tensor::size; ++k) r.tau.c[k] = shear_scale * dev.c[k];
     for (int k = 0; k < D; ++k) r.tau.c[k] -= p_now;
-    r.strain_squared = keep * keep * dev_squared + T(D) * third * third;
+    r.strain_squared = shear_ratio * shear_ratio * dev_squared + T(D) * third * third;
     return r;
   }
 
