@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 version: str
-smallest_grain: float
-largest_grain: float
+min_grain_diameter: float
+max_grain_diameter: float
 
 class InputError(ValueError): ...
 class SimulationError(RuntimeError): ...

@@ -54,7 +54,9 @@ def test_files_with_a_repeated_key_are_refused(tmp_path, read):
 def test_texts_with_a_repeated_key_are_refused():
     with pytest.raises(InputError, match=r"run\.json: damaged: /a/b: this key appears twice"):
         parse_object('{"a": {"b": 1, "b": 1}}', "run.json")
-    with pytest.raises(InputError, match=r"/panel: this key appears twice, the second time in line 2"):
+    with pytest.raises(
+        InputError, match=r"/panel: this key appears twice, the second time in line 2"
+    ):
         _core.ParsedScene.parse('{"snowshed": 2, "panel": {},\n"panel": {}}')
     with pytest.raises(click.BadParameter, match=r"/tilt: this key appears twice"):
         json_object('{"tilt": 1, "tilt": 2}')

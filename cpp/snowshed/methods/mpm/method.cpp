@@ -44,11 +44,12 @@ void check_scheme(const Settings& n) {
 /// particle can follow before it loses its strength; on much coarser grids it would lose it at
 /// once.
 void check_crack_band(const Settings& n) {
-  constexpr double least = 0.1, most = 100;
-  if (n.softening() >= least * (1 - 1e-9) && n.softening() <= most) return;
-  throw InputError("/numerics/crack_band_length",
-                   "is " + show_rounded(1 / n.softening()) + " times dx; it must be " +
-                       show_rounded(1 / most) + " to " + show_rounded(1 / least) + " times");
+  constexpr double min_softening = 0.1, max_softening = 100;
+  if (n.softening() >= min_softening * (1 - 1e-9) && n.softening() <= max_softening) return;
+  throw InputError("/numerics/crack_band_length", "is " + show_rounded(1 / n.softening()) +
+                                                      " times dx; it must be " +
+                                                      show_rounded(1 / max_softening) + " to " +
+                                                      show_rounded(1 / min_softening) + " times");
 }
 
 class Descriptor final : public DescriptorBase<Descriptor, Settings> {

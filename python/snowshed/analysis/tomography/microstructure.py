@@ -12,7 +12,7 @@ from snowshed.analysis.tomography.crofton import SLAB, surface_density
 from snowshed.analysis.tomography.ice_image import ICE_DENSITY, IceImage, check_phases
 from snowshed.base.arrays import Booleans, Floats
 
-MIN_GRAIN, MAX_GRAIN = _core.smallest_grain, _core.largest_grain  # m, diameters
+MIN_GRAIN, MAX_GRAIN = _core.min_grain_diameter, _core.max_grain_diameter  # m
 
 
 @dataclass(frozen=True)

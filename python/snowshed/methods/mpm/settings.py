@@ -47,6 +47,9 @@ class MpmSettings(MethodSettings):
         Width of a crack: dilating snow softens dx/width times as fast as its law, so that a crack
         takes the same energy per area on any grid; 0: the law itself [m]. 0 <= value <= 1e+06;
         default 0.
+    relaxation_time : float
+        Time in which stress beyond the yield surface relaxes, a viscosity of snow that yields; 0:
+        at once, the law itself [s]. 0 <= value <= 1e+09; default 0.
     contact : {"kernel", "touch"}
         Snow on which a node of an obstacle acts: all whose splines reach the node (kernel), or
         only if one of its particles touches the obstacle itself (touch). Default "kernel".
@@ -84,6 +87,7 @@ class MpmSettings(MethodSettings):
     damping_rate: Optional[float] = None
     damping_length: Optional[float] = None
     crack_band_length: Optional[float] = None
+    relaxation_time: Optional[float] = None
     contact: Optional[Contact] = None
     contact_radius: Optional[float] = None
     fields: Optional[Fields] = None
@@ -104,6 +108,7 @@ class MpmSettings(MethodSettings):
             "damping_rate",
             "damping_length",
             "crack_band_length",
+            "relaxation_time",
             "contact",
             "contact_radius",
             "fields",
