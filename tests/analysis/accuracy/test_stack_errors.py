@@ -99,7 +99,9 @@ def test_the_sentence_names_the_scheme_and_its_lengths():
     objective = {"numerics.scheme": "objective"}
     text = stack_error(scene(**objective), RECORDED).sentence
     assert "event 5, scheme objective, 2 cells in the slab): height 15 % too small" in text
-    assert text.endswith("single runs scatter by 4 % and 6 %")
+    calibration = Mechanisms("objective").calibration_note
+    assert text.endswith(f"single runs scatter by 4 % and 6 %; {calibration}")
+    assert "calibrated snow" not in stack_error(scene(), RECORDED).sentence
     thick = stack_error(scene(**objective, **{"slab.thickness": 0.04}), RECORDED).sentence
     assert thick.endswith("are 50 % of the recorded slab's thickness, 25 % of this one's")
 
@@ -113,7 +115,8 @@ def test_the_bias_of_all_resolved_grids():
     assert thesis.endswith(f"% too high with 2 to 4{end}")
     objective = recorded_bias(2, 5, Mechanisms("objective"))
     assert objective.startswith("stacks of lab-50 in 2D, event 5, scheme objective were ")
-    assert objective.endswith(f"with 2 to 4{end}")
+    assert f"with 2 to 4{end}" in objective
+    assert objective.endswith("; " + Mechanisms("objective").calibration_note)
     assert "event 2, scheme objective" in recorded_bias(3, 5, Mechanisms("objective"))
 
 

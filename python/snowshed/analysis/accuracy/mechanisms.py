@@ -93,6 +93,22 @@ class Mechanisms:
         departures = settings_label(self.departures)
         return f"scheme {self.scheme}" + (f" with {departures}" if departures else "")
 
+    @property
+    def calibration_note(self) -> str:
+        """A clause that the calibrated snow was found with another scheme; empty for its own.
+
+        Examples
+        --------
+        >>> Mechanisms("objective").calibration_note
+        'the calibrated snow was found with scheme thesis on cells of 1 cm, which stacks it higher'
+        >>> Mechanisms().calibration_note
+        ''
+        """
+        if self.scheme == FIRST_SCHEME:
+            return ""
+        found_with = f"scheme {FIRST_SCHEME} on cells of 1 cm"
+        return f"the calibrated snow was found with {found_with}, which stacks it higher"
+
     def lengths_note(self, recorded: float, thickness: float) -> str:
         """Return that the scheme's lengths are other shares of a slab than in recorded runs.
 

@@ -79,6 +79,7 @@ class StackError:
         cells = f"{number(self.recorded_cells, 2)} cell{'' if self.recorded_cells == 1 else 's'}"
         mechanisms = Mechanisms.of_settings(self.settings)
         lengths = mechanisms.lengths_note(PRESET_THICKNESS, self.thickness)
+        calibration = mechanisms.calibration_note
         mine = (
             ""
             if abs(self.cells / self.recorded_cells - 1) < 0.01
@@ -89,6 +90,7 @@ class StackError:
             f"slab{mine}): {bias}, against the finest recorded grid of this scheme, which "
             "has not converged either"
             + (f"; single runs scatter by {scatter}" if scatter else "")
+            + (f"; {calibration}" if calibration else "")
             + (f"; {lengths}" if lengths else "")
         )
 
@@ -200,6 +202,7 @@ def recorded_bias(dimension: int, events: int, mechanisms: Optional[Mechanisms] 
         f"stacks of {_where(stacks[0].settings)} were {_span(low, high)} with "
         f"{_numbers(min(resolved), max(resolved))} cells in the slab, against the finest recorded "
         "grid of this scheme"
+        + (f"; {mechanisms.calibration_note}" if mechanisms.calibration_note else "")
     )
 
 
