@@ -56,7 +56,7 @@ def _collect(record: type[Record], node: Mapping, nodes: dict[type[Record], dict
 
 
 def written(source: str, classes: Mapping[str, tuple[type[Record], dict]]) -> str:
-    """Return the source of a module whose classes are brought to their description."""
+    """Return a module's source with the fields and docstrings that the schema describes."""
     tree = ast.parse(source)
     lines = source.split("\n")
     for node in reversed(tree.body):

@@ -44,7 +44,7 @@ class ReproductionFolder:
         return self.path / name
 
     def claim(self, identity: Mapping[str, str], former: Mapping[str, str]) -> None:
-        """Take the folder, old or new, for a reproduction.
+        """Create the folder, or check that it belongs to this reproduction.
 
         Parameters
         ----------

@@ -86,7 +86,7 @@ class Reproduction(Generic[Work]):
         return folder / f"{self.alias}.html"
 
     def claim(self, folder: Path, size: str, options: Mapping[str, Any]) -> None:
-        """Take a folder, old or new; raises InputError if it holds something else."""
+        """Create a folder, or check it; raises InputError if it holds something else."""
         identity = {"publication": self.alias, "size": size}
         identity.update({name: str(options[name]) for name in self.identity})
         ReproductionFolder(folder).claim(identity, self.former)

@@ -22,10 +22,10 @@ from snowshed.running.simulation import Simulation
 from snowshed.scene.scene import SceneLike
 
 CHECKPOINT, FAILURE = "checkpoint.bin", "failed.txt"
-#: Particle steps per second, and the usual speed of snow over that of a fall, for estimates of
-#: times.
+#: For estimates of run time: particle steps per second, and typical speed of the snow relative to
+#: free fall.
 SPEED, USUAL = 1e5, 0.3
-TIMES = 64  # parts of the time to the next kept one, between which progress is told
+TIMES = 64  # progress reports between two stored times
 
 
 @dataclass(frozen=True)

@@ -33,14 +33,14 @@ if TYPE_CHECKING:
 #: For a setting's name, how each of its values is drawn.
 StylesOfValues = Mapping[str, Mapping[Optional[Value], Any]]
 
-#: The settings that make a problem, and the ways in which it was solved.
+#: The settings that define a problem, and its solutions.
 Problem = Tuple[CaseSettings, Sequence[Solution]]
 
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
 DASHES = ("-", (0, (5, 2)), (0, (1, 1.4)), (0, (6, 1.5, 1, 1.5)), (0, (9, 3)))
 #: Settings that get colours; others get markers and dashes.
 FIRST = ("transfer", "law", "between", "dimension", "events", "basis", "precision")
-#: Points on a Pareto front closer than this part are not both named.
+#: Of two points on a Pareto front closer than this share only one gets a letter.
 NEARLY = 0.1
 #: Problems of a quantity that get a Pareto front, at most.
 MAX_FRONTS = 3
@@ -51,7 +51,7 @@ ZERO = 1e-17
 
 
 class KeyLine(NamedTuple):
-    """Text beside a diagram about a point; without a letter, about those that follow."""
+    """Text beside a diagram about a point; without a letter, a heading of the following texts."""
 
     letter: str
     cost: str
@@ -86,7 +86,7 @@ class LineStyles:
         choices
             All choices of settings, so that a value looks the same in every figure of a case.
         drawn
-            Those that are drawn: the settings in which they differ are told apart.
+            Choices that are drawn; styles show the settings in which they differ.
         along
             Settings that the lines distinguish. Without any, dashes have no meaning.
         """
@@ -222,7 +222,7 @@ def _draw_convergence(
 
 
 def _draw_slope(axes: Axes, series: Sequence[Convergence], least: Optional[float]) -> None:
-    """Draw a line with the slope that is demanded, or else a whole number near what there is."""
+    """Draw a line with the demanded slope, or else with the nearest whole number."""
     orders = [convergence.order for convergence in series if np.isfinite(convergence.order)]
     order = least or max(1.0, round(float(np.median(orders)))) if orders else 0.0
     if not order:
@@ -354,7 +354,7 @@ def _name_point(axes: Axes, letter: str, time: float, error: float) -> None:
 
 
 def _write_key(axes: Axes, lines: Sequence[KeyLine]) -> None:
-    """List what lies on the Pareto fronts."""
+    """List the points on the Pareto fronts."""
     axes.axis("off")
     if not lines:
         return

@@ -1,7 +1,7 @@
 """Measuring every case over its matrix, one measurement after another.
 
-Nothing runs at the same time, because times are measured. A measurement that fails becomes a result
-that says why.
+Measurements never run at once, because times are measured. The result of a failed measurement
+states the reason.
 """
 
 from __future__ import annotations

@@ -42,7 +42,7 @@ TEMPLATE = "validation.html.j2"
 
 @dataclass(frozen=True)
 class Stress:
-    """Results of the stress suite: one row per run, and the tables that sum them up."""
+    """Results of the stress suite: one row per run, and summary tables."""
 
     runs: pd.DataFrame
     tables: Sequence[SummaryTable]
@@ -73,7 +73,7 @@ class Validation:
     stress: Optional[Stress] = None
 
     def facts(self) -> dict[str, str]:
-        """Return what made the results."""
+        """Return the origin of the results."""
         failed = sum(1 for measurement in self.measurements if measurement.failure)
         return {
             "suite": "full" if self.full else "quick",
@@ -108,7 +108,7 @@ def write_report(validation: Validation, folder: Path) -> list[Bar]:
 
 
 def problems(validation: Validation, bars: Sequence[Bar]) -> list[str]:
-    """Return everything that is not as it should be, a line each."""
+    """Return every failure, a line each."""
     titles = {case.name: case.title for case in validation.cases}
     lines = [
         f"{titles[bar.case]}, {bar.quantity.title}: demanded {sections.demanded(bar)}, "

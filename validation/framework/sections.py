@@ -33,7 +33,7 @@ COSTS: Mapping[str, Callable[[MeasuredSolution], str]] = {
     "10⁶ updates/s": lambda measurement: formatting.number(measurement.updates_per_s / 1e6),
     "memory, MB": lambda measurement: formatting.number(measurement.peak_memory_mb),
 }
-#: Stands for what the cell to the left says.
+#: Stands for the text of the cell to the left.
 SAME = "←"
 CONVERGENCE = "Dashed: the slope of the order named. Red line, if any: the largest allowed error."
 WORK_PRECISION = (

@@ -26,12 +26,12 @@ DEFAULTS: CaseSettings = {
     "shear_strength": STRENGTH,
     "friction": 0.0,
 }
-#: Springs in a row, at both plates and in the bond; how far each gives way, m/Pa: (2 r)²/(E r).
+#: Springs in a row, at both plates and in the bond; compliance of each, m/Pa: (2 r)²/(E r).
 SPRINGS, COMPLIANCE = 3, 4 * (VOXEL / 2) / MODULUS
 
 
 def stage_of(test: str, speed: float) -> LoadingStage:
-    """Return what loads the bond until it breaks, or elastically."""
+    """Return the stage that loads the bond until it breaks, or elastically."""
     to_break = STRENGTH * SPRINGS * COMPLIANCE / (HIGH * VOXEL)
     if test == "pull":
         return LoadingStage(kind="stretch", speed=speed, strain=1.3 * to_break)
@@ -96,7 +96,7 @@ CASE = Case(
     matrix=matrix,
     measure=measure,
     remarks="""
-    The stress is that of a moment, so it swings with the waves that the plate's start sends through
-    the blocks, in proportion to the speed and to the root of the scaled density.
+    The stress is instantaneous, so it oscillates with the waves that the plate's start sends
+    through the blocks, in proportion to the speed and to the root of the scaled density.
     """,
 )

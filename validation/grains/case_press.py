@@ -1,4 +1,4 @@
-"""Synthetic snow that is compressed: what the numerical settings do to its stress."""
+"""Synthetic snow that is compressed: the effect of numerical settings on its stress."""
 
 from __future__ import annotations
 
@@ -87,7 +87,8 @@ CASE = Case(
     matrix=matrix,
     measure=measure,
     remarks="""
-    Without gravity the equations know the scaled density s and the speed v only as s v². Doubling
-    the speed costs as much error as four times the density, and saves as much time.
+    Without gravity the equations contain the scaled density s and the speed v only as s v².
+    Doubling the speed therefore has the same error as four times the density, and saves the same
+    time.
     """,
 )

@@ -1,8 +1,9 @@
 """Recorded stacks of the laboratory: the references of the stack's convergence.
 
 Stacks have no exact answer. They are compared with the mean over seedings on the finest grid that
-was affordable with the same scheme. Those runs take hours, so they were made once, and lie beside
-this module in ``lab_stack.json``, each with its settings, version and date. `record` makes them.
+was affordable with the same scheme. Those runs take hours. They were made once and are stored in
+``lab_stack.json``, beside this module, each with its settings, version and date. `record` makes
+them.
 """
 
 from __future__ import annotations
@@ -47,14 +48,14 @@ class Grid:
 
 @dataclass(frozen=True)
 class Reference:
-    """The runs that are recorded of a scheme.
+    """The recorded runs of a scheme.
 
     Attributes
     ----------
     settings
         Settings of all of them, for `lab_scene`.
     grids
-        The grids; the finest of each dimension is what stacks are compared with.
+        The grids; the finest of each dimension is the reference.
     """
 
     settings: CaseSettings
@@ -133,7 +134,7 @@ class RecordedRun:
         Raises
         ------
         LookupError
-            If the run has not so many events.
+            If the run has fewer events.
         """
         measures = {name: values[:event] for name, values in self.measures.items()}
         if any(len(values) < event for values in measures.values()):
@@ -178,7 +179,7 @@ def noise(name: str, runs: Sequence[Solved], settings: CaseSettings) -> Measured
     name
         One of `COMPARED`.
     runs
-        With the settings, each with a seed of its own.
+        Runs with the settings, each with another seed.
     settings
         For `lab_scene`.
 

@@ -1,4 +1,4 @@
-"""A body that body forces take along a chosen motion."""
+"""A body that body forces move along a chosen motion."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from validation.elastic.bodies import elastic_scene, from_plane, in_plane
 from validation.framework.drive import TimedEventDriver
 from validation.manufactured.motions import DENSITY, YOUNGS_MODULUS, ManufacturedMotion
 
-#: Settings that are the cases' own.
+#: Settings of the cases themselves.
 OWN = frozenset({"motion", "amplitude"})
 
 
@@ -23,9 +23,9 @@ class ForcedBody:
 
     Particle velocities are those in the middle of the last step, as in every leapfrog: the body
     starts with the velocity of half a step before time zero, and a force applied between two steps
-    is that of the time and place where the particles are. It must be given over a step whose length
-    is known only afterwards. The last one's length is taken, and the difference made up for with
-    the next force.
+    belongs to the current time and positions of the particles. The force acts over a step whose
+    length is known only afterwards. The length of the last step is used, and the next force
+    corrects the difference.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ class ForcedBody:
         self._owed = np.zeros_like(self._points)
 
     def _start(self, time: float) -> tuple[TimedEventDriver, Floats]:
-        """Return the body with the velocities of a time, and where its particles are at first."""
+        """Return the body with the velocities of a time, and its particles' initial positions."""
         motion, square = self.motion, Shape.box((0.5, 0.5), (1.0, 1.0))
         material: CaseSettings = {
             "youngs_modulus": YOUNGS_MODULUS,
@@ -92,7 +92,7 @@ class ForcedBody:
         return self.motion.displacement(self._points, self.time if time is None else time)
 
     def residual(self) -> Floats:
-        """Return by how far the particles' displacements are off, m."""
+        """Return the errors of the particles' displacements, m."""
         return in_plane(self.drive.core.positions()) - self._points - self.displacement()
 
 

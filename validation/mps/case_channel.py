@@ -41,7 +41,7 @@ def exact_speed(positions: Floats) -> Floats:
 
 
 def plug_width(positions: Floats, speeds: Floats) -> float:
-    """Return half the width of the plug: where the parabola of the sheared fluid has its top, m.
+    """Return half the width of the plug, m: the top of the sheared fluid's parabola.
 
     Examples
     --------

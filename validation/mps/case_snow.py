@@ -65,7 +65,7 @@ SCALE = 2 * 100.0 / (1000.0 * GRAVITY)
 
 
 def resting_front() -> float:
-    """Return where a heap of this volume ends at rest, m."""
+    """Return the end of a heap of this volume at rest, m."""
     return float((1.5 * HEAP[0] * HEAP[1] / math.sqrt(SCALE)) ** (2 / 3))
 
 

@@ -63,7 +63,7 @@ def column_matrix(full: bool) -> list[CaseSettings]:
 def deviation(
     front: Sequence[tuple[float, float]], known: Sequence[tuple[float, float]], delay: float = 0.0
 ) -> float:
-    """Return the root mean square by which a front is off measured ones, in widths of the dam.
+    """Return the rms difference of a front from a measured one, in widths of the dam.
 
     Examples
     --------
@@ -77,7 +77,7 @@ def deviation(
 
 
 def measure_dam(settings: CaseSettings) -> Outcome:
-    """Let a column of water collapse, and compare where its front is."""
+    """Let a column of water collapse, and compare its front."""
     spacing = DAM / int(settings["across"])
     drive = mps_drive(
         WATER, floor_and_sides(8 * DAM), [block(DAM, 2 * DAM)],
@@ -144,12 +144,11 @@ DAM_BREAK = Case(
         "Nuclear Science and Engineering 123, 421-434"
     ),
     description="""
-    A column of water, 2 1/4 inches wide and twice as high, collapses. The position
-    of the foremost particle is compared, half a distance ahead, in widths of the column over
-    T* = t √(2g/a): with another
-    method for water without friction that is released suddenly (volume of fluid, Gerris), and with
-    two measured series, as they stand and with the origin of time of Martin and Moyce's tables,
-    which bring their runs together at X* = 1.44, T* = 1.19.
+    A column of water, 2 1/4 inches wide and twice as high, collapses. The position of the foremost
+    particle is compared, half a distance ahead, in widths of the column over T* = t √(2g/a): with
+    another method for water without friction that is released suddenly (volume of fluid, Gerris),
+    and with two measured series, as published and with the origin of time of Martin and Moyce's
+    tables, which bring their runs together at X* = 1.44, T* = 1.19.
     """,
     quantities=(
         Quantity(
@@ -181,11 +180,11 @@ DAM_BREAK = Case(
     matrix=dam_matrix,
     measure=measure_dam,
     remarks="""
-    The front is that of water without friction that is released suddenly, and runs ahead of both
-    series as they stand by 0.2 to 0.7. With the origin of time of the tables four of the six points
-    of Martin and Moyce are met to 0.02. The last one, (4.034, 4.944), lies 0.26 behind, and off
-    the line of its own neighbours. Gradients that lose energy come nearer to the series as they
-    stand for the wrong reason, and depart again when particles are nearer to each other.
+    The front is that of water without friction that is released suddenly. It runs 0.2 to 0.7 ahead
+    of both series as published. With the origin of time of the tables it meets four of the six
+    points of Martin and Moyce to 0.02. Their last point, (4.034, 4.944), lies 0.26 behind, and off
+    the line of its own neighbours. Gradients that lose energy come nearer to the published series
+    only by that loss: with a finer spacing they depart again.
     """,
 )
 CASES = (COLUMN, DAM_BREAK)

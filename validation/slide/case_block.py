@@ -51,7 +51,7 @@ def block_motion(law: str, time: float) -> BlockMotion:
 
 
 def measure(settings: CaseSettings) -> Outcome:
-    """Let the middle of a wide block slide from rest, or stop after it was thrown."""
+    """Measure the middle of a wide block that slides from rest, or stops after a throw."""
     stops = settings["law"] == "stop"
     block = rectangle(-HALF, -HALF, HALF, HALF, THICKNESS)
     site = Site(PLANE.height, -24.0, -24.0, 60.0, 24.0, [block])

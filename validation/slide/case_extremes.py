@@ -55,7 +55,7 @@ EXTREMES: tuple[CaseSettings, ...] = (
 
 
 def measure(settings: CaseSettings) -> Outcome:
-    """Run some steps, and check the mass, the numbers and the snow that must not move."""
+    """Run some steps, and check the mass, finite values and the snow that must not move."""
     height = GROUNDS[str(settings["ground"])]
     settings = {"layer_thickness": float(settings["thickness"]) / 2, **settings}
     snow = rectangle(-12.3, -12.3, 12.3, 12.3, float(settings["thickness"]))

@@ -30,9 +30,9 @@ if TYPE_CHECKING:
 
 #: "Sub-centimetre": H/L has no unit, so that its error is compared with the plain number.
 SUB_CENTIMETRE = 0.01
-#: Section 5.3.1, of the RBF kernel.
+#: Validation score of the RBF kernel in section 5.3.1.
 VALIDATION_SCORE = 0.005
-#: Largest relative difference of two numbers that are about equal.
+#: Two numbers are about equal up to this relative difference.
 ABOUT = 0.25
 
 
@@ -76,7 +76,7 @@ def _folds(data: Regressed, model: str) -> pd.DataFrame:
 def _mean_over_folds(of_model: pd.DataFrame, values: Floats) -> Estimate:
     """Return a mean over outer folds, with its standard error.
 
-    Rounds split the same rows again, so that only the folds of one round are independent.
+    Every round splits the same rows again, so only the folds of one round are independent.
     """
     spread = float(values.std(ddof=1)) if len(values) > 1 else math.nan
     folds = len(values) / of_model["round"].nunique()
@@ -98,7 +98,7 @@ def mean_error(data: Regressed, model: str) -> Estimate:
 
 
 def rbf_is_better(data: Regressed) -> Finding:
-    """Test whether the RBF kernel's median absolute error on validation sets is the smaller one."""
+    """Test whether the RBF kernel's median absolute error on validation sets is smaller."""
     lead = validation(data, "linear") - validation(data, "rbf")
     return positive(lead, "validation score, linear minus RBF")
 
@@ -159,7 +159,7 @@ def quartiles_are_the_thesis(data: Regressed) -> Finding:
         scatter = math.hypot(
             data.errors["mean_absolute_error"][model], data.errors["standard_deviation"][model]
         )
-        # The largest belongs to a single panel, the others to many.
+        # The largest prediction, Q4, belongs to a single panel, the other quartiles to many.
         noise = scatter / np.array([*[math.sqrt(data.panels)] * 3, 1.0]) / np.array(printed)
         worst = Estimate(float(off.max()), float(noise[off.argmax()]))
         findings.append(near(worst, 0.0, QUARTILES_OFF, f"{model}, worst quartile off by", "%"))
@@ -168,7 +168,7 @@ def quartiles_are_the_thesis(data: Regressed) -> Finding:
 
 
 def _of_as_many_rows(finding: Finding, data: Regressed) -> Finding:
-    """Leave a finding open whose number is the thesis's only for as many rows."""
+    """Return the finding, or "undecided" if the data do not have as many rows as the thesis's."""
     if data.rows == THESIS_ROWS:
         return finding
     text = f"{finding.sentence}, but of {data.rows} rows, not the thesis's {THESIS_ROWS}"
@@ -184,7 +184,7 @@ REGRESSION: tuple[Claim[Regressed], ...] = (
     ),
     Claim(
         "5.3.1",
-        f"It is about {LINEAR_WORSE} times better.",
+        f"The RBF kernel is about {LINEAR_WORSE} times better.",
         f"ratio of validation scores within {percent(ABOUT)} of {LINEAR_WORSE}",
         rbf_is_so_much_better,
     ),

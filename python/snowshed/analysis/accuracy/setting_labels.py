@@ -11,7 +11,7 @@ from snowshed.scene.accuracy_settings import ACCURACY
 
 
 def setting(name: str, value: Optional[Value]) -> str:
-    """Return one setting; a word needs no name beside it. None: it is not given.
+    """Return the label of a setting: for a text only its value. `None`: not given.
 
     Examples
     --------

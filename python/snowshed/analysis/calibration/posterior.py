@@ -1,7 +1,7 @@
 """The posterior of the parameters, given the measurements, by MCMC on the surrogate.
 
-The mean of what several rounds measured of a stack is normally distributed around the surrogate's
-mean, with the variances of
+The weighted mean over the rounds of a stack is normally distributed around the surrogate's mean,
+with the variances of
 
 - the rounds: the uncertainty of each measurement, and the seeding noise of a single run, because an
   experiment is a single slide-off, too. The weights are the inverse of these variances,
@@ -39,13 +39,13 @@ PURPOSE = "the posterior of the parameters"
 WALKERS_PER_DIMENSION = 8
 STEPS = 2000
 MIN_STEPS = 100  # shorter chains do not even show how correlated they are
-BURN_IN = 0.33  # part of the steps that is thrown away
+BURN_IN = 0.33  # share of the steps that is discarded
 KEPT = 4000  # samples, at most
 STARTS = 4096  # points of the prior among which the walkers start
 DISCREPANCY = 0.1  # scale of its prior
 MAX_DISCREPANCY = 1.0
-EDGE = 0.05  # part of a range that counts as its end
-DENSE = 0.5  # part of the prior's density there that leaves the range open
+EDGE = 0.05  # share of a range that counts as its end
+DENSE = 0.5  # share of the prior's density at an end, above which the range is open there
 LEVELS = {
     "lower_95": 0.025,
     "lower_68": 0.16,

@@ -28,9 +28,9 @@ from snowshed.methods.grains.phases import LINEAR
 from snowshed.scene.components import Snow
 
 Reading = TypeVar("Reading")
-#: Ratio of the law to the grains from which a note reports it.
+#: A note reports stresses of the law above this many times those of the grains.
 POOR = 2.0
-#: Share of the strengths from which a note reports that the yield surface misses them.
+#: A note reports that the yield surface misses the strengths above this residual, relative to them.
 MISSED = 0.25
 #: p0 over K above which the law's elastic strains are no longer small.
 SOFT = 0.1
@@ -97,7 +97,7 @@ class FittedSnow:
 
     @property
     def steps(self) -> float:
-        """Ratio of the time steps of the material point method to those of the calibrated snow.
+        """Number of MPM time steps over that with the calibrated snow.
 
         Their number is proportional to the speed of elastic waves.
         """
@@ -263,7 +263,7 @@ def _note_meaning(fitted: FittedSnow, modulus: Optional[float], few_grains: int)
     own = fitted.ranges["youngs_modulus"].value
     if modulus is not None:
         notes.append(
-            f"E is given; that of the grains is {own:.3g} Pa. The hardening factor makes up for it"
+            f"E is given; that of the grains is {own:.3g} Pa. The hardening factor compensates"
         )
     notes.append(
         f"the material point method takes {fitted.steps:.2g} times as many steps as with the "
