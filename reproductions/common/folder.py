@@ -43,7 +43,7 @@ class ReproductionFolder:
         """Return the folder of a stage's tables and figures."""
         return self.path / name
 
-    def claim(self, identity: Mapping[str, str], former: Mapping[str, str]) -> None:
+    def prepare(self, identity: Mapping[str, str], former: Mapping[str, str]) -> None:
         """Create the folder, or check that it belongs to this reproduction.
 
         Parameters

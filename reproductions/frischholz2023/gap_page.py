@@ -16,7 +16,7 @@ import click
 
 from reproductions.common.hypothesis_tests import SIGMAS
 from reproductions.common.markdown import markdown_table
-from reproductions.frischholz2023.claims.regression import Regressed
+from reproductions.frischholz2023.claims.regression import RegressionResults
 from reproductions.frischholz2023.deviations import DEVIATIONS
 from reproductions.frischholz2023.printed import THESIS_QUARTILES
 from reproductions.frischholz2023.scatter import read_scatter, scatter
@@ -187,7 +187,7 @@ def regressed_rows() -> dict[str, StackRows]:
 
 def _regression_part(data: Path) -> list[str]:
     parts = regressed_rows()
-    regressions: Mapping[str, Regressed] = {
+    regressions: Mapping[str, RegressionResults] = {
         f"{rows.settings['trimming']}, {rows_label(rows)}": read_regressed(
             data / folder, len(rows), rows.panel_count
         )
@@ -225,11 +225,11 @@ def _regression_part(data: Path) -> list[str]:
     ]
 
 
-def _predicted_quartiles(regressed: Regressed) -> list[float]:
+def _predicted_quartiles(regressed: RegressionResults) -> list[float]:
     return [float(value) for value in regressed.quartiles.loc["rbf", list(QUARTILES)].to_numpy()]
 
 
-def _share(regressed: Regressed) -> float:
+def _share(regressed: RegressionResults) -> float:
     """Return the RBF kernel's error over its median prediction."""
     return (
         float(regressed.errors["mean_absolute_error"]["rbf"]) / _predicted_quartiles(regressed)[1]

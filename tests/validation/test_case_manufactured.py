@@ -117,7 +117,7 @@ def test_matrices(case):
             assert manufactured.motion_of(settings).omega > 0
     for quantity in case.quantities:
         for full in (False, True):
-            assert any(quantity.bar_for.items() <= one.items() for one in case.matrix(full))
+            assert any(quantity.limit_for.items() <= one.items() for one in case.matrix(full))
 
 
 @pytest.mark.parametrize("start", [WAVES, VORTEX], ids=["waves", "vortex"])

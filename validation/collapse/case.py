@@ -38,7 +38,7 @@ HARDENING = 10.0
 #: Aspect ratios from which the exponent for tall columns is fitted.
 TALL: Mapping[int, Sequence[float]] = {2: (3.0, 5.0, 7.0, 10.0), 3: (2.0, 3.0, 4.0)}
 SAND, GLASS = 30.0, 22.0  # friction angles of sand and of glass beads, degrees
-OWN = frozenset({"aspect", "friction_angle"})
+CASE_SETTINGS = frozenset({"aspect", "friction_angle"})
 
 
 @dataclass(frozen=True)
@@ -87,7 +87,7 @@ def column_scene(settings: CaseSettings, aspect: float) -> Scene:
         bodies=[Body(shape=shape)],
         events=Events(max_time=10 * math.sqrt(height / GRAVITY)),
     )
-    return apply_settings(scene, settings, own=OWN)
+    return apply_settings(scene, settings, own=CASE_SETTINGS)
 
 
 def collapse(settings: CaseSettings, aspect: float) -> Deposit:
@@ -267,15 +267,15 @@ CASE = Case(
         Quantity(
             "runout",
             "Run-out over radius, against Lube et al.",
-            bar=0.55,
-            bar_for={"friction_angle": SAND},
+            limit=0.55,
+            limit_for={"friction_angle": SAND},
         ),
         # As large as the scatter of the experiments.
         Quantity(
             "height",
             "Final height over radius, against Lube et al.",
-            bar=0.2,
-            bar_for={"friction_angle": SAND},
+            limit=0.2,
+            limit_for={"friction_angle": SAND},
         ),
         Quantity("runout_glass", "Run-out over radius, against Lajeunesse et al."),
         Quantity("exponent", "Exponent of the run-out of tall columns"),

@@ -20,7 +20,7 @@ YOUNGS_MODULUS, POISSONS_RATIO, DENSITY = 1e6, 0.3, 210.0  # Pa, 1, kg/m3
 RATE = 0.2 * math.sqrt(YOUNGS_MODULUS / DENSITY) / RADIUS  # rad/s
 TURN = 2 * math.pi / RATE  # s
 #: Settings of this case that scenes do not have.
-OWN = frozenset({"begins", "turns"})
+CASE_SETTINGS = frozenset({"begins", "turns"})
 #: Steps between two samples, or between two damped velocities.
 STEPS = 4
 #: For bodies that begin in equilibrium: the number of turns in which the radial oscillation is
@@ -52,7 +52,7 @@ def spin_scene(settings: CaseSettings) -> Scene:
         "poissons_ratio": POISSONS_RATIO,
         "density": DENSITY,
     }
-    scene = elastic_scene(shape, {**material, **settings}, OWN)
+    scene = elastic_scene(shape, {**material, **settings}, CASE_SETTINGS)
     scene.set("output.energy", True)
     return scene
 
@@ -208,21 +208,21 @@ CASE = Case(
         Quantity(
             "angular_momentum",
             "change of angular momentum per turn",
-            bar=1e-6,
-            bar_for={"transfer": "apic", "precision": "double"},
+            limit=1e-6,
+            limit_for={"transfer": "apic", "precision": "double"},
         ),
         Quantity(
             "energy",
             "part of the energy lost per turn",
-            bar=0.01,
-            bar_for={"transfer": "apic", "dx": 0.1},
+            limit=0.01,
+            limit_for={"transfer": "apic", "dx": 0.1},
             order_in="dx",
         ),
         Quantity(
             "expansion",
             "mean outward displacement, m",
-            bar=0.03,
-            bar_for={
+            limit=0.03,
+            limit_for={
                 "transfer": "apic",
                 "begins": "equilibrium",
                 "basis": "quadratic",

@@ -22,7 +22,7 @@ from validation.framework.drive import TimedEventDriver, relative
 YOUNGS_MODULUS, DENSITY = 1e6, 210.0  # Pa, kg/m3
 LENGTH = 1.0  # m, of the bar; of the cantilever unless the settings say otherwise
 #: Settings of the cases themselves: distance of a grid node from the body's end, in cells; length.
-OWN = frozenset({"grid_offset", "length"})
+CASE_SETTINGS = frozenset({"grid_offset", "length"})
 DEFAULTS: CaseSettings = {
     "grid_offset": 0.0,
     "basis": "quadratic",
@@ -94,7 +94,7 @@ def bar_scene(settings: CaseSettings) -> Scene:
     corner = np.full(2, float(settings["grid_offset"]) * dx)
     size = np.array([LENGTH, BAR_CELLS * dx])
     shape = Shape.box((corner + size / 2).tolist(), size.tolist())
-    return elastic_scene(shape, _material(settings, poissons_ratio=0.0), OWN)
+    return elastic_scene(shape, _material(settings, poissons_ratio=0.0), CASE_SETTINGS)
 
 
 def measure_bar(settings: CaseSettings) -> Outcome:
@@ -108,12 +108,17 @@ def measure_bar(settings: CaseSettings) -> Outcome:
     swing = bar.swing(BAR_PERIODS, steps=1)
     time_step = drive.core.time_s / drive.core.total_steps
     smoothing = Smoothing.of(settings, wavenumber)
-    explained = smoothing.lost(swing.frequency, time_step)
+    explained = smoothing.loss_per_period(swing.frequency, time_step)
     return drive.outcome(
         [
             relative("frequency", swing.frequency, BAR_FREQUENCY),
-            Measured("lost", swing.lost, 0.0, swing.lost),
-            Measured("lost_in_theory", swing.lost, explained, swing.lost - explained),
+            Measured("loss_per_period", swing.loss_per_period, 0.0, swing.loss_per_period),
+            Measured(
+                "unexplained_loss",
+                swing.loss_per_period,
+                explained,
+                swing.loss_per_period - explained,
+            ),
         ]
     )
 
@@ -130,7 +135,7 @@ def bar_matrix(full: bool) -> list[CaseSettings]:
     return listed
 
 
-BAR = Case(
+ELASTIC_BAR = Case(
     name="bar",
     title="Elastic bar that vibrates along its length",
     source=(
@@ -148,17 +153,17 @@ BAR = Case(
         Quantity(
             "frequency",
             "frequency, Hz",
-            bar=0.01,
-            bar_for={"dx": 0.05, "basis": "quadratic", "pattern": "regular"},
+            limit=0.01,
+            limit_for={"dx": 0.05, "basis": "quadratic", "pattern": "regular"},
             order_in="dx",
             min_order=1.8,
         ),
-        Quantity("lost", "part of the amplitude lost per period", order_in="dx"),
+        Quantity("loss_per_period", "share of the amplitude lost per period", order_in="dx"),
         Quantity(
-            "lost_in_theory",
+            "unexplained_loss",
             "loss per period beyond what smoothing explains",
-            bar=1e-3,
-            bar_for={"dx": 0.05},
+            limit=1e-3,
+            limit_for={"dx": 0.05},
         ),
     ),
     matrix=bar_matrix,
@@ -194,7 +199,7 @@ def cantilever_scene(settings: CaseSettings) -> Scene:
     size = (length + HELD_CELLS * dx, CANTILEVER_HEIGHT)
     shape = Shape.box((face + length - size[0] / 2, CANTILEVER_HEIGHT / 2), size)
     clamp = Obstacle(shape=Shape.plane((face, 0.0), (1.0, 0.0)), condition="sticky")
-    scene = elastic_scene(shape, _material(settings, POISSONS_RATIO), OWN, [clamp])
+    scene = elastic_scene(shape, _material(settings, POISSONS_RATIO), CASE_SETTINGS, [clamp])
     return scene.set("misplaced_snow", "allow")  # the clamp holds what is within it
 
 
@@ -220,7 +225,7 @@ def measure_cantilever(settings: CaseSettings) -> Outcome:
     return drive.outcome(
         [
             relative("frequency", swing.frequency, beam.frequency),
-            Measured("lost", swing.lost, 0.0, swing.lost),
+            Measured("loss_per_period", swing.loss_per_period, 0.0, swing.loss_per_period),
         ]
     )
 
@@ -255,11 +260,11 @@ CANTILEVER = Case(
         Quantity(
             "frequency",
             "frequency, Hz",
-            bar=0.02,
-            bar_for={"dx": 0.025, "transfer": "apic", "grid_offset": 0.0},
+            limit=0.02,
+            limit_for={"dx": 0.025, "transfer": "apic", "grid_offset": 0.0},
             order_in="dx",
         ),
-        Quantity("lost", "part of the amplitude lost per period", order_in="dx"),
+        Quantity("loss_per_period", "share of the amplitude lost per period", order_in="dx"),
     ),
     matrix=cantilever_matrix,
     measure=measure_cantilever,
@@ -286,4 +291,4 @@ def _material(settings: CaseSettings, poissons_ratio: float) -> CaseSettings:
     }
 
 
-CASES = (BAR, CANTILEVER)
+CASES = (ELASTIC_BAR, CANTILEVER)

@@ -72,7 +72,7 @@ class Smoothing:
         lost = (1 - float(settings["flip_ratio"])) * (1 - once**2)
         return cls(remaining=1 - lost, felt=once**2)
 
-    def lost(self, frequency: float, time_step: float) -> float:
+    def loss_per_period(self, frequency: float, time_step: float) -> float:
         """Return the share of the amplitude that is lost per period.
 
         Parameters

@@ -80,13 +80,13 @@ def validate(
         command = _resume_command(quick, names, stress, seed, folder)
         raise Stopped(f"interrupted; resume with: {command}") from None
     validation = Validation(cases, measurements, full=not quick, stress=stressed)
-    bars = write_report(validation, folder)
+    criteria = write_report(validation, folder)
     if not quiet:
-        from validation.framework.display import print_bars
+        from validation.framework.display import print_criteria
 
-        print_bars(bars, cases)
+        print_criteria(criteria, cases)
         click.echo(f"report in {folder / 'validation.html'}")
-    wrong = problems(validation, bars)
+    wrong = problems(validation, criteria)
     for line in wrong:
         click.echo(f"error: {line}", err=True)
     return int(bool(wrong))

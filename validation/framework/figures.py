@@ -111,7 +111,7 @@ class LineStyles:
         """Return the entries of a legend: every value that is drawn."""
         kinds = (("color", self.colours), ("marker", self.markers), ("linestyle", self.dashes))
         return [
-            _entry(keyword, shape, setting_labels.setting(name, value))
+            _entry(keyword, shape, setting_labels.setting_label(name, value))
             for keyword, styles in kinds
             for name, shapes in styles.items()
             for value, shape in shapes.items()
@@ -251,7 +251,7 @@ def _draw_work_precision(
     lines: list[KeyLine] = []
     for problem, solutions in _with_fronts(problems):
         if names:
-            lines.append(KeyLine("", setting_labels.settings(problem, names), ""))
+            lines.append(KeyLine("", setting_labels.settings_label(problem, names), ""))
         lines += _draw_front(axes, quantity, solutions, letters)
     return lines
 
@@ -289,7 +289,9 @@ def _draw_front(
         _name_point(axes, letter, times[i], errors[i])
         error = quantity.error_text(errors[i])
         cost = f"{formatting.duration(times[i])}, {error}"
-        lines.append(KeyLine(letter, cost, setting_labels.settings(solutions[i].settings, names)))
+        lines.append(
+            KeyLine(letter, cost, setting_labels.settings_label(solutions[i].settings, names))
+        )
     return lines
 
 
@@ -371,14 +373,14 @@ def _write_key(axes: Axes, lines: Sequence[KeyLine]) -> None:
 
 
 def _errors_on(axes: Axes, quantity: Quantity) -> None:
-    """Label the axis of the errors, and draw the bar."""
+    """Label the axis of the errors, and draw the limit."""
     axes.set_ylabel("error, relative" if quantity.relative else "error")
     low, high = _widened(*axes.get_ylim())
     axes.set_ylim(low, high)
     in_percent = quantity.relative and low > formatting.SMALL
     _label(axes.yaxis, formatting.percent if in_percent else formatting.number)
-    if quantity.bar is not None:
-        axes.axhline(quantity.bar, color=BODY, linewidth=1.0, linestyle=(0, (6, 3)), zorder=1)
+    if quantity.limit is not None:
+        axes.axhline(quantity.limit, color=BODY, linewidth=1.0, linestyle=(0, (6, 3)), zorder=1)
 
 
 def _label(axis: Axis, words: Callable[[float], str]) -> None:

@@ -14,7 +14,7 @@ from snowshed.scene.loading import LoadingStage
 from validation.framework.case import Case, Outcome, Quantity
 from validation.grains.loading import GRAIN, grains_drive, snow_labels
 
-OWN = frozenset({"sample", "kind", "speed", "strain", "steps_to_take"})
+CASE_SETTINGS = frozenset({"sample", "kind", "speed", "strain", "steps_to_take"})
 STEPS = 200
 VOXEL = GRAIN / 4
 
@@ -81,7 +81,7 @@ def measure(settings: CaseSettings) -> Outcome:
     """Take some steps, and count numbers that are not finite."""
     kind, strain = str(settings["kind"]), float(settings["strain"])
     stage = LoadingStage(kind=kind, speed=float(settings["speed"]), strain=strain)  # type: ignore[arg-type]
-    drive = grains_drive(SAMPLES[str(settings["sample"])], VOXEL, [stage], settings, OWN)
+    drive = grains_drive(SAMPLES[str(settings["sample"])], VOXEL, [stage], settings, CASE_SETTINGS)
     stopped = 0.0
     try:
         drive.step(int(settings["steps_to_take"]))
@@ -123,7 +123,7 @@ CASE = Case(
     and energies must be finite. A test may stop with an error that names its cause.
     """,
     quantities=(
-        Quantity("unsound", "numbers that are not finite", bar=0.0, relative=False),
+        Quantity("unsound", "numbers that are not finite", limit=0.0, relative=False),
         Quantity("stopped", "tests that stopped with an error", relative=False),
     ),
     matrix=matrix,

@@ -16,7 +16,7 @@ from validation.framework.drive import TimedEventDriver, absolute, apply_setting
 TILT = 40.0  # degrees
 THICKNESS, WIDTH = 0.05, 0.1  # m; the width in 3D only
 #: Settings of a slab that are no parameters of the scene.
-OWN = frozenset({"friction", "condition", "length", "speed"})
+CASE_SETTINGS = frozenset({"friction", "condition", "length", "speed"})
 
 DEFAULTS: CaseSettings = {
     "dimension": 2,
@@ -57,7 +57,7 @@ def slab_scene(settings: CaseSettings, tilt: float) -> Scene:
         condition=cast(Condition, settings["condition"]),
         speed=float(settings.get("speed", 0.0)),
     )
-    return apply_settings(scene, settings, OWN)
+    return apply_settings(scene, settings, CASE_SETTINGS)
 
 
 class Sliding:
@@ -158,16 +158,16 @@ SLAB = Case(
     """,
     quantities=(
         Quantity(
-            "acceleration", "acceleration, m/s²", bar=0.01, bar_for={"dx": 0.01, "speed": 0.0}
+            "acceleration", "acceleration, m/s²", limit=0.01, limit_for={"dx": 0.01, "speed": 0.0}
         ),
-        Quantity("effective_friction", "friction that acted", bar=0.01, bar_for={"speed": 0.0}),
+        Quantity("effective_friction", "friction that acted", limit=0.01, limit_for={"speed": 0.0}),
         Quantity(
             "stopping_distance",
             "stopping distance, m",
-            bar=0.01,
-            bar_for={"dx": 0.01, "model": "elastic"},
+            limit=0.01,
+            limit_for={"dx": 0.01, "model": "elastic"},
         ),
-        Quantity("creep", "speed after stopping, m/s", bar=1e-3, relative=False),
+        Quantity("creep", "speed after stopping, m/s", limit=1e-3, relative=False),
     ),
     matrix=slab_matrix,
     measure=measure_slab,
@@ -237,7 +237,7 @@ ANGLE = Case(
     at which that begins to 0.02 degrees. A quarter of a degree is about 1 % of friction.
     """,
     quantities=(
-        Quantity("angle", "tilt, degrees", bar=0.25, bar_for={"dx": 0.01}, relative=False),
+        Quantity("angle", "tilt, degrees", limit=0.25, limit_for={"dx": 0.01}, relative=False),
     ),
     matrix=angle_matrix,
     measure=measure_angle,

@@ -154,13 +154,13 @@ CASE = Case(
     description=DESCRIPTION,
     quantities=[
         # Masses are single precision.
-        Quantity("mass", "Mass of all snow, kg", bar=1e-6),
+        Quantity("mass", "Mass of all snow, kg", limit=1e-6),
         Quantity("conversion_height", "Change of height by a conversion, cells", relative=False),
         # The solid is made of cubes of a cell's size, cut at half their filling.
         Quantity(
             "conversion_body_height",
             "Change of the largest body's height, cells",
-            bar=0.5,
+            limit=0.5,
             relative=False,
         ),
         Quantity("conversion_length", "Change of length by a conversion, cells", relative=False),

@@ -11,7 +11,7 @@ from snowshed.analysis.accuracy.mechanisms import scheme_of
 from validation.framework.case import Case, Outcome, Quantity, Wanted
 from validation.framework.drive import relative
 from validation.laboratory.lab_records import noise, recorded
-from validation.laboratory.lab_stack import COMPARED, Solved, outcome_of, run_seedings
+from validation.laboratory.lab_stack import COMPARED, StackRun, outcome_of, run_seedings
 
 #: 3D over 2D stack height where height and width are comparable (thesis, 5.1.1).
 RULE_OF_THUMB = 2 / 3
@@ -119,7 +119,7 @@ def measure(settings: CaseSettings) -> Outcome:
     return compared(run_seedings(settings), settings)
 
 
-def compared(runs: Sequence[Solved], settings: CaseSettings) -> Outcome:
+def compared(runs: Sequence[StackRun], settings: CaseSettings) -> Outcome:
     """Compare the last stacks of runs, one for each seeding, with the reference of their scheme."""
     measured = [_against_reference(name, runs, settings) for name in COMPARED]
     if len(runs) > 1:
@@ -134,11 +134,11 @@ def compared(runs: Sequence[Solved], settings: CaseSettings) -> Outcome:
     return outcome_of(runs, measured)
 
 
-def _last(name: str, runs: Sequence[Solved]) -> np.ndarray:
+def _last(name: str, runs: Sequence[StackRun]) -> np.ndarray:
     return np.array([run.series(name)[-1] for run in runs])
 
 
-def _against_reference(name: str, runs: Sequence[Solved], settings: CaseSettings) -> Measured:
+def _against_reference(name: str, runs: Sequence[StackRun], settings: CaseSettings) -> Measured:
     """Return the mean over seedings, and the root-mean-square error of a single run.
 
     Both the exact value and the error are NaN after an event that the reference has not.
@@ -150,7 +150,7 @@ def _against_reference(name: str, runs: Sequence[Solved], settings: CaseSettings
     return Measured(name, float(values.mean()), exact, error)
 
 
-def _spread(name: str, runs: Sequence[Solved]) -> Measured:
+def _spread(name: str, runs: Sequence[StackRun]) -> Measured:
     values = _last(name, runs)
     spread = float(values.std(ddof=1) / values.mean())
     return Measured(f"{name}_spread", spread, 0.0, spread)
@@ -271,15 +271,15 @@ CASE = Case(
         Quantity(
             "height_noise",
             "Height less that of recorded runs, standard deviations",
-            bar=NOISE_BAR,
-            bar_for=AS_RECORDED,
+            limit=NOISE_BAR,
+            limit_for=AS_RECORDED,
             relative=False,
         ),
         Quantity(
             "length_noise",
             "Length less that of recorded runs, standard deviations",
-            bar=NOISE_BAR,
-            bar_for=AS_RECORDED,
+            limit=NOISE_BAR,
+            limit_for=AS_RECORDED,
             relative=False,
         ),
         Quantity("height_over_2d", "Height in 3D over height in 2D on the same grid"),

@@ -26,7 +26,7 @@ from snowshed.base.arrays import Floats
 from snowshed.base.machine import cpu_name
 from snowshed.io.atomic import write_text
 from validation.framework.drive import absolute
-from validation.laboratory.lab_stack import COMPARED, Cost, Solved, run_lab
+from validation.laboratory.lab_stack import COMPARED, Cost, StackRun, run_lab
 
 FILE = Path(__file__).with_name("lab_stack.json")
 #: Events of a recorded run that does not name their number.
@@ -143,7 +143,7 @@ class RecordedRun:
 
 
 @dataclass(frozen=True)
-class Recorded:
+class RecordedStacks:
     """Recorded stacks of one scheme, dimension and dx; every series has a value for each event.
 
     Attributes
@@ -171,7 +171,7 @@ class Recorded:
         return float(self.runs[name][:, event - 1].std(ddof=1)) if event <= self.events else nan
 
 
-def noise(name: str, runs: Sequence[Solved], settings: CaseSettings) -> Measured:
+def noise(name: str, runs: Sequence[StackRun], settings: CaseSettings) -> Measured:
     """Compare the mean of the last stacks with the recorded ones of its scheme on the same grid.
 
     Parameters
@@ -196,7 +196,9 @@ def noise(name: str, runs: Sequence[Solved], settings: CaseSettings) -> Measured
     return absolute(f"{name}_noise", departure, 0.0)
 
 
-def recorded(dimension: int, dx: Optional[float] = None, scheme: str = FIRST_SCHEME) -> Recorded:
+def recorded(
+    dimension: int, dx: Optional[float] = None, scheme: str = FIRST_SCHEME
+) -> RecordedStacks:
     """Return the recorded stacks of a scheme on a grid, or on the finest one of that dimension.
 
     Raises
@@ -212,7 +214,9 @@ def recorded(dimension: int, dx: Optional[float] = None, scheme: str = FIRST_SCH
     2
     """
     wanted, runs = _entries(dimension, dx, scheme)
-    return Recorded(wanted, {name: np.array([run[name] for run in runs]) for name in COMPARED})
+    return RecordedStacks(
+        wanted, {name: np.array([run[name] for run in runs]) for name in COMPARED}
+    )
 
 
 def recorded_runs(dimension: int, dx: float, scheme: str) -> list[RecordedRun]:
@@ -324,7 +328,7 @@ def _computed(settings: CaseSettings) -> dict[str, Any]:
 
 def entry(
     settings: CaseSettings,
-    run: Solved,
+    run: StackRun,
     ended: Iterable[str],
     costs: Sequence[Cost],
     origin: tuple[str, str, str],

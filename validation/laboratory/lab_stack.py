@@ -51,7 +51,7 @@ class Cost:
     particles: int
 
 
-class Solved(Protocol):
+class StackRun(Protocol):
     """A run whose stacks are known after each event, made now or read from a record."""
 
     def series(self, name: str) -> Sequence[float]:
@@ -204,7 +204,7 @@ def run_seedings(settings: CaseSettings) -> list[LabRun]:
     return [run_lab({**rest, "seed": seed}) for seed in range(first, first + count)]
 
 
-def outcome_of(runs: Sequence[Solved], measured: Sequence[Measured]) -> Outcome:
+def outcome_of(runs: Sequence[StackRun], measured: Sequence[Measured]) -> Outcome:
     """Return the outcome of several seedings; the cost is the mean of one run."""
     costs = [run.cost for run in runs]
     counted = all(cost.updates for cost in costs)

@@ -31,13 +31,13 @@ SCHEME: CaseSettings = {"basis": "quadratic", "precision": "double", "pattern": 
 def measure(settings: CaseSettings) -> Outcome:
     """Follow a motion; the error is the rms error of displacement over its rms."""
     body = ForcedBody(motion_of(settings), settings)
-    off, moved = [], []
+    errors, displacements = [], []
     while body.time < DURATION:
         body.step()
         if body.drive.core.total_steps % STEPS == 0:
-            off.append(root_mean_square(body.residual()))
-            moved.append(root_mean_square(body.displacement()))
-    error = float(np.linalg.norm(off) / np.linalg.norm(moved))
+            errors.append(root_mean_square(body.residual()))
+            displacements.append(root_mean_square(body.displacement()))
+    error = float(np.linalg.norm(errors) / np.linalg.norm(displacements))
     return body.drive.outcome([Measured("displacement", error, 0.0, error)])
 
 
@@ -102,10 +102,10 @@ MIN_COURANT_FACTOR = 0.9 / 32
 
 def measure_steps(settings: CaseSettings) -> Outcome:
     """Compare the displacements at the end with those of a very small step, and with the motion."""
-    body, off, exact = _end(settings)
+    body, residual, exact = _end(settings)
     _, limit, _ = _end({**settings, "courant_factor": MIN_COURANT_FACTOR})
-    step = root_mean_square(off - limit) / root_mean_square(exact)
-    error = root_mean_square(off) / root_mean_square(exact)
+    step = root_mean_square(residual - limit) / root_mean_square(exact)
+    error = root_mean_square(residual) / root_mean_square(exact)
     return body.drive.outcome(
         [Measured("step", step, 0.0, step), Measured("displacement", error, 0.0, error)]
     )
@@ -118,13 +118,17 @@ def _end(settings: CaseSettings) -> tuple[ForcedBody, Floats, Floats]:
     interpolated, and not the displacement.
     """
     body = ForcedBody(motion_of(settings), settings)
-    before, left = 0.0, body.residual()
+    previous_time, previous_residual = 0.0, body.residual()
     while body.time < DURATION:
         if body.time + 2 * body.drive.core.time_step_s > DURATION:
-            before, left = body.time, body.residual()
+            previous_time, previous_residual = body.time, body.residual()
         body.step()
-    part = (DURATION - before) / (body.time - before)
-    return body, (1 - part) * left + part * body.residual(), body.displacement(DURATION)
+    part = (DURATION - previous_time) / (body.time - previous_time)
+    return (
+        body,
+        (1 - part) * previous_residual + part * body.residual(),
+        body.displacement(DURATION),
+    )
 
 
 def steps_matrix(full: bool) -> list[CaseSettings]:
@@ -159,10 +163,10 @@ FORCED = """
 """
 
 
-def _displacement(bar_for: CaseSettings) -> Quantity:
-    scheme: CaseSettings = {"basis": "quadratic", "precision": "double", **bar_for}
+def _displacement(limit_for: CaseSettings) -> Quantity:
+    scheme: CaseSettings = {"basis": "quadratic", "precision": "double", **limit_for}
     title = "rms error of displacement over its rms"
-    return Quantity("displacement", title, bar_for=scheme, order_in="dx", min_order=1.8)
+    return Quantity("displacement", title, limit_for=scheme, order_in="dx", min_order=1.8)
 
 
 IN_WAVES = Case(
@@ -233,7 +237,7 @@ IN_TIME = Case(
         Quantity(
             "step",
             "rms effect of the time step on the displacement",
-            bar_for={"motion": "vortex", "amplitude": 1.0, "transfer": "flip", "flip_ratio": 1.0},
+            limit_for={"motion": "vortex", "amplitude": 1.0, "transfer": "flip", "flip_ratio": 1.0},
             order_in="courant_factor",
             min_order=0.9,
         ),

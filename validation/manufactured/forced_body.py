@@ -15,7 +15,7 @@ from validation.framework.drive import TimedEventDriver
 from validation.manufactured.motions import DENSITY, YOUNGS_MODULUS, ManufacturedMotion
 
 #: Settings of the cases themselves.
-OWN = frozenset({"motion", "amplitude"})
+CASE_SETTINGS = frozenset({"motion", "amplitude"})
 
 
 class ForcedBody:
@@ -58,7 +58,7 @@ class ForcedBody:
         trial.step()
         self._last_step = trial.core.time_step_s
         self.drive, self._points = self._start(-self._last_step / 2)
-        self._owed = np.zeros_like(self._points)
+        self._velocity_correction = np.zeros_like(self._points)
 
     def _start(self, time: float) -> tuple[TimedEventDriver, Floats]:
         """Return the body with the velocities of a time, and its particles' initial positions."""
@@ -68,7 +68,9 @@ class ForcedBody:
             "poissons_ratio": motion.poissons_ratio,
             "density": DENSITY,
         }
-        drive = TimedEventDriver(elastic_scene(square, {**material, **self._settings}, OWN))
+        drive = TimedEventDriver(
+            elastic_scene(square, {**material, **self._settings}, CASE_SETTINGS)
+        )
         points = in_plane(drive.core.positions())
         drive.core.add_velocity(from_plane(motion.velocity(points, time)))
         return drive, points
@@ -81,10 +83,12 @@ class ForcedBody:
     def step(self) -> None:
         """Apply the body force and take a step."""
         force = self.motion.body_force(self._points, self.time)
-        self.drive.core.add_velocity(from_plane(self._last_step * force + self._owed))
+        self.drive.core.add_velocity(
+            from_plane(self._last_step * force + self._velocity_correction)
+        )
         self.drive.step()
         taken = self.drive.core.time_step_s
-        self._owed = (taken - self._last_step) * force
+        self._velocity_correction = (taken - self._last_step) * force
         self._last_step = taken
 
     def displacement(self, time: Optional[float] = None) -> Floats:

@@ -27,7 +27,7 @@ COARSE = (1e-3, 1e-4, 1e-5)
 FINE = (1e-6, 2.5e-8)
 #: Largest deviation allowed, and the strain increments at which plain and extrapolated backward
 #: Euler must reach it.
-BAR, BAR_AT, EXTRAPOLATED_BAR_AT = 1e-6, 2.5e-8, 1e-5
+MAX_DEVIATION, AT_INCREMENT, EXTRAPOLATED_AT_INCREMENT = 1e-6, 2.5e-8, 1e-5
 
 
 @dataclass(frozen=True)
@@ -85,7 +85,7 @@ class StrainPath:
         return np.array(states), POINTS * each
 
 
-class Solved(NamedTuple):
+class PathSolution(NamedTuple):
     """A path by the core and by the rate equations, and the cost of the former."""
 
     states: Floats
@@ -104,7 +104,7 @@ class Solved(NamedTuple):
         return Outcome(measured, self.wall_s, updates=self.increments)
 
 
-def solve(path: StrainPath, settings: CaseSettings) -> Solved:
+def solve(path: StrainPath, settings: CaseSettings) -> PathSolution:
     """Follow a path in the increments of the settings, extrapolated if they say so."""
     increment = float(settings["increment"])
     reference = path.reference()
@@ -113,10 +113,10 @@ def solve(path: StrainPath, settings: CaseSettings) -> Solved:
     if settings["method"] == "extrapolated":
         halved, more = path.mapped(increment / 2)
         states, count = 2 * halved - states, count + more
-    return Solved(states, reference, time.perf_counter() - started, count)
+    return PathSolution(states, reference, time.perf_counter() - started, count)
 
 
-def stress_error(solved: Solved, settings: CaseSettings) -> Measured:
+def stress_error(solved: PathSolution, settings: CaseSettings) -> Measured:
     """Return the deviation as the quantity of the method, plain or extrapolated."""
     name = "extrapolated_stress" if settings["method"] == "extrapolated" else "stress"
     return Measured(name, solved.deviation, 0.0, solved.deviation)
@@ -202,16 +202,16 @@ def critical_state(consolidation: float) -> tuple[float, float]:
 STRESS = Quantity(
     "stress",
     "largest deviation of p or q over the largest stress",
-    bar=BAR,
-    bar_for={"increment": BAR_AT},
+    limit=MAX_DEVIATION,
+    limit_for={"increment": AT_INCREMENT},
     order_in="increment",
     min_order=0.9,
 )
 EXTRAPOLATED = Quantity(
     "extrapolated_stress",
     "the same, extrapolated from increments and their halves",
-    bar=BAR,
-    bar_for={"increment": EXTRAPOLATED_BAR_AT},
+    limit=MAX_DEVIATION,
+    limit_for={"increment": EXTRAPOLATED_AT_INCREMENT},
     order_in="increment",
     min_order=1.5,
 )
@@ -284,7 +284,7 @@ ISOTROPIC = Case(
     at -beta p0, hardens in compression and in tension softens until it is loose. The error is the
     largest deviation of p or q from the rate equations at 20 points, over the largest stress.
     """,
-    quantities=(Quantity("stress", STRESS.title, bar=BAR),),
+    quantities=(Quantity("stress", STRESS.title, limit=MAX_DEVIATION),),
     matrix=isotropic_matrix,
     measure=measure_isotropic,
     remarks="""
@@ -313,7 +313,7 @@ TRIAXIAL = _case(
     p = (1 - beta) p0/2 and q = M (p + beta p0)/sqrt(1 + 2 beta), which is q = M p without cohesion.
     From 0.8 p0 it compacts on its way there, from no stress it dilates.
     """,
-    Quantity("critical_state", "q at the end, Pa", bar=BAR),
+    Quantity("critical_state", "q at the end, Pa", limit=MAX_DEVIATION),
     matrix=triaxial_matrix,
     measure=measure_triaxial,
 )
@@ -325,7 +325,7 @@ TENSION = _case(
     and loses its strength, all of it after 8.4 %. Beyond that it carries no stress, and all further
     strain is plastic.
     """,
-    Quantity("opening", "volumetric plastic strain at the end", bar=BAR),
+    Quantity("opening", "volumetric plastic strain at the end", limit=MAX_DEVIATION),
     matrix=plane_and_space_matrix,
     measure=measure_tension,
 )

@@ -15,7 +15,7 @@ from validation.framework.case import Case, Outcome, Quantity
 from validation.mps.bodies import mps_drive
 
 SNOW = MpsSettings(density=200.0, friction_angle=24.0)
-OWN = frozenset({"tilt", "board"})
+CASE_SETTINGS = frozenset({"tilt", "board"})
 STEPS = 60
 EDGE = 0.2  # m, of a block of snow that falls by a quarter of it onto a tilted plane
 BOARD_AT, BOARD_HEIGHT = 0.25, 0.3  # m, down the plane from the block's middle; above the plane
@@ -37,7 +37,7 @@ def measure(settings: CaseSettings) -> Outcome:
             _sticky("board", _box(BOARD_AT * down + 0.5 * size[1] * normal, size, tilt))
         )
     snow = Body(shape=_box(0.75 * EDGE * normal, (EDGE, EDGE), tilt))
-    drive = mps_drive(SNOW, obstacles, [snow], settings, OWN)
+    drive = mps_drive(SNOW, obstacles, [snow], settings, CASE_SETTINGS)
     stopped = 0.0
     try:
         drive.step(STEPS)
@@ -99,8 +99,8 @@ CASE = Case(
     every value must be finite and no particle behind or in a wall; a run may stop with an error.
     """,
     quantities=(
-        Quantity("unsound", "values that are no numbers", bar=0.0, relative=False),
-        Quantity("through", "particles behind or in a wall", bar=0.0, relative=False),
+        Quantity("unsound", "values that are no numbers", limit=0.0, relative=False),
+        Quantity("through", "particles behind or in a wall", limit=0.0, relative=False),
         Quantity("stopped", "runs that stopped with an error", relative=False),
         Quantity("density", "largest density over that of a lattice"),
     ),

@@ -125,7 +125,7 @@ COLUMN = Case(
     must stay where it is; its rise is in distances between particles.
     """,
     quantities=(
-        Quantity("slope", "slope of the pressure", bar=0.01, bar_for={"walls": None}),
+        Quantity("slope", "slope of the pressure", limit=0.01, limit_for={"walls": None}),
         Quantity("rise", "rise of the highest particle", relative=False),
         Quantity("speed", "root mean square of speeds, m/s", relative=False),
     ),
@@ -154,8 +154,8 @@ DAM_BREAK = Case(
         Quantity(
             "gerris",
             "rms of X*, volume of fluid",
-            bar=0.1,
-            bar_for={"gradient": None, "walls": None},
+            limit=0.1,
+            limit_for={"gradient": None, "walls": None},
             relative=False,
         ),
         Quantity("martin_moyce", "rms of X*, Martin and Moyce", relative=False),
@@ -164,15 +164,15 @@ DAM_BREAK = Case(
         Quantity(
             "martin_moyce_delayed",
             "rms of X* with the delay, Martin and Moyce",
-            bar=0.15,
-            bar_for={"gradient": None, "walls": None},
+            limit=0.15,
+            limit_for={"gradient": None, "walls": None},
             relative=False,
         ),
         Quantity(
             "koshizuka_oka_delayed",
             "rms of X* with the delay, Koshizuka and Oka",
-            bar=0.15,
-            bar_for={"gradient": None, "walls": None},
+            limit=0.15,
+            limit_for={"gradient": None, "walls": None},
             relative=False,
         ),
         Quantity("front_at_2", "X* at T* = 2", relative=False),

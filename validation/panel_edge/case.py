@@ -19,7 +19,7 @@ TILT, PANEL_LENGTH, PANEL_HEIGHT = 40.0, 2.0, 5.0  # degrees, m, m
 LENGTH, THICKNESS, WIDTH = 0.2, 0.04, 0.1  # of the slab, m; the width in 3D only
 DROP = 1.0  # m below the edge, where it lands
 #: Settings that are no parameters of the scene's numerics.
-OWN = frozenset({"friction", "condition", "length"})
+CASE_SETTINGS = frozenset({"friction", "condition", "length"})
 SLAB: CaseSettings = {
     "dimension": 2,
     "dx": 0.01,
@@ -51,7 +51,7 @@ def panel_scene(settings: CaseSettings) -> Scene:
     panel.friction = float(settings["friction"])
     panel.condition = cast(Condition, settings["condition"])
     slab = Slab(thickness=THICKNESS, length=float(settings["length"]), width=WIDTH)
-    return apply_settings(Scene(dimension=2, panel=panel, slab=slab), settings, OWN)
+    return apply_settings(Scene(dimension=2, panel=panel, slab=slab), settings, CASE_SETTINGS)
 
 
 class Throw:
@@ -175,15 +175,17 @@ CASE = Case(
     snow is three cells past the edge; and the angular velocity.
     """,
     quantities=(
-        Quantity("landing", "distance of landing from the edge, m", bar=0.01),
-        Quantity("flight", "largest distance from the parabola over the distance flown", bar=1e-3),
+        Quantity("landing", "distance of landing from the edge, m", limit=0.01),
+        Quantity(
+            "flight", "largest distance from the parabola over the distance flown", limit=1e-3
+        ),
         # The accuracy of the method (see the remarks), not the desired one.
-        Quantity("spin", "angular velocity on leaving, nose down, rad/s", bar=0.65),
+        Quantity("spin", "angular velocity on leaving, nose down, rad/s", limit=0.65),
         Quantity(
             "spin_kept",
             "angular velocity on landing over that on leaving",
-            bar=1e-3,
-            bar_for={"transfer": "apic"},
+            limit=1e-3,
+            limit_for={"transfer": "apic"},
         ),
     ),
     matrix=matrix,

@@ -24,7 +24,7 @@ DENSITY, GRAVITY = 210.0, 9.81  # kg/m3, m/s2
 YOUNGS_MODULUS, POISSONS_RATIO = 2e4, 0.3
 SLOPE, COHESION, HARDENING, STRENGTH = 0.5, 0.2, 1.0, 200.0
 #: Settings that are the case's own: how far the floor lies above a row of nodes, in cells.
-OWN = frozenset({"floor_offset"})
+CASE_SETTINGS = frozenset({"floor_offset"})
 #: Layers above the floor that count as its neighbourhood.
 FLOOR_LAYERS = 2
 #: Steps after which the velocities are damped again.
@@ -165,7 +165,7 @@ def column_scene(settings: CaseSettings) -> Scene:
             "snow.preconsolidation_pressure": STRENGTH,
         }
     )
-    return apply_settings(scene, settings, OWN)
+    return apply_settings(scene, settings, CASE_SETTINGS)
 
 
 def _wall(corner: Floats, axis: int, side: int, condition: Condition) -> Obstacle:

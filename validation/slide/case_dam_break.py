@@ -119,8 +119,8 @@ CASE = Case(
         Quantity(
             "profile",
             "mean error of thickness over that of the dam",
-            bar=0.08,
-            bar_for={
+            limit=0.08,
+            limit_for={
                 "cell": 2.0,
                 "layer_thickness": LAYERS[2],
                 "time_step": 0.02,
@@ -132,8 +132,8 @@ CASE = Case(
         Quantity(
             "front",
             "front over the length of the fan",
-            bar=0.10,
-            bar_for={
+            limit=0.10,
+            limit_for={
                 "cell": 2.0,
                 "layer_thickness": LAYERS[2],
                 "time_step": 0.02,

@@ -6,7 +6,7 @@ import traceback
 from collections.abc import Callable
 from typing import NamedTuple
 
-from snowshed.base.pool.pool import Ended, Isolation, Pool
+from snowshed.base.pool.pool import Isolation, Pool, TaskEnd
 from validation.stress.solve import Record, solve
 from validation.stress.space import Point
 
@@ -53,7 +53,7 @@ def compute(run: ProcessRun, report: Callable[[float], None]) -> Record:
         return {"ended": "raised", "message": traceback.format_exc(limit=-3)}
 
 
-def _record(ended: Ended[ProcessRun, Record]) -> Record:
+def _record(ended: TaskEnd[ProcessRun, Record]) -> Record:
     if ended.result is not None:
         return ended.result
     if ended.error is not None:

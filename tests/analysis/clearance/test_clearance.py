@@ -143,7 +143,7 @@ def test_its_probability_is_that_of_counting(tmp_path):
     """Known friction and adhesion: burial in 200 synthetic winters and in 200 others."""
     asked = split_winters(SHORT.winters(200, seed=11))
     counted = split_winters(SHORT.winters(200, seed=12))
-    told = answer_of(asked, tmp_path / "runs").buried(HEIGHT)
+    told = answer_of(asked, tmp_path / "runs").burial_probability(HEIGHT)
     buried = []
     for number, case in enumerate(answer_cases(counted)):
         season = run_season(

@@ -100,7 +100,7 @@ def _grid_error(answer: ClearanceResult) -> str:
 
 def assumptions(answer: ClearanceResult) -> list[str]:
     """Return the assumptions of the seasons, a sentence each."""
-    season = answer.cases[0].season
+    season = answer.cases[0].settings
     cover = "from the weather" if season.cover == "weather" else f"{season.cover}"
     return [
         "The panel is long across the slope: the simulation is of a strip (2D).",

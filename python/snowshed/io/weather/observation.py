@@ -103,12 +103,12 @@ class Observation:
         return parts
 
 
-def changed(row: Observation, **values: Any) -> Observation:
+def replace_values(row: Observation, **values: Any) -> Observation:
     """Return a row with other values, as `dataclasses.replace`, but many times as fast.
 
     Examples
     --------
-    >>> changed(Observation(1, datetime(2024, 1, 3)), snow_depth=0.5).snow_depth
+    >>> replace_values(Observation(1, datetime(2024, 1, 3)), snow_depth=0.5).snow_depth
     0.5
     """
     copy = object.__new__(Observation)

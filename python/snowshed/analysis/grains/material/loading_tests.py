@@ -10,7 +10,6 @@ from snowshed.analysis.grains.samples import LabelledSample
 from snowshed.analysis.grains.variants import Comparison, Variant
 from snowshed.methods.grains.curve import LoadingCurve
 from snowshed.methods.grains.settings import GrainsSettings
-from snowshed.methods.grains.summary import FEW_GRAINS
 from snowshed.scene.builders.grains import grains_scene
 from snowshed.scene.loading import LoadingStage
 from snowshed.study.store import Store
@@ -71,10 +70,9 @@ class MaterialTests:
         )
 
     @property
-    def few_grains(self) -> int:
-        """Grains of the smallest sample, if they are few; else 0."""
-        least = min(sample.grains for sample in self.samples)
-        return least if least < FEW_GRAINS else 0
+    def min_grains(self) -> int:
+        """Number of grains of the smallest sample."""
+        return min(sample.grains for sample in self.samples)
 
     def without_shear(self) -> Comparison:
         """Return the tests that do not depend on the results of others."""
