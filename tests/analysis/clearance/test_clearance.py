@@ -62,7 +62,7 @@ def test_stacks_age_between_slide_offs_as_in_a_season(answer, tmp_path):
     rows = table[table["hash"] == run.hash]
     assert len(rows) > 1
     season = run_season(
-        case.winter.days, case.panel(HEIGHT), tmp_path, settings=case.season, pictures=False
+        case.winter.days, case.panel(HEIGHT), tmp_path, settings=case.settings, pictures=False
     )
     assert read_events(SeasonFolder(tmp_path).run.folder)["height_m"].tolist() == pytest.approx(
         rows["height_m"].tolist(), rel=1e-12
@@ -80,7 +80,7 @@ def test_it_counts_the_burials_that_seasons_have(answer, winters, tmp_path):
         for height in {one for name, one in table.index if name == case.winter.name}:
             out = tmp_path / f"{case.winter.name[:4]}-{height:g}"
             season = run_season(
-                case.winter.days, case.panel(height), out, settings=case.season, pictures=False
+                case.winter.days, case.panel(height), out, settings=case.settings, pictures=False
             )
             touched = table.loc[(case.winter.name, height), "touched"]
             assert touched == (season.contact is not None), (case.winter.name, height)
@@ -150,7 +150,7 @@ def test_its_probability_is_that_of_counting(tmp_path):
             case.winter.days,
             case.panel(HEIGHT),
             tmp_path / f"season-{number}",
-            settings=case.season,
+            settings=case.settings,
             pictures=False,
         )
         buried.append(season.contact is not None)
