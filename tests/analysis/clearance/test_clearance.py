@@ -68,7 +68,7 @@ def test_stacks_age_between_slide_offs_as_in_a_season(answer, tmp_path):
         rows["height_m"].tolist(), rel=1e-12
     )
     assert season.simulated >= len(rows)
-    still = replace(case, settings=SeasonSettings(settling=None))
+    still = replace(case, base_settings=SeasonSettings(settling=None))
     assert still.run(HEIGHT).hash != run.hash
 
 
@@ -184,6 +184,15 @@ def test_the_error_of_the_grid_is_that_of_the_scheme(answer, winters):
         cases = [replace(case, base=base) for case in found.cases]
         warning = answer_text.warnings([replace(found, cases=cases)])[0]
         assert warning.startswith(f"the intervals leave out the error of the grid: {text}")
+
+
+def test_relations_that_are_off_have_sentences_of_their_own(answer):
+    found, _ = answer
+    off = SeasonSettings(settling=None, strength=None)
+    cases = [replace(case, base_settings=off) for case in found.cases]
+    texts = answer_text.assumptions(replace(found, cases=cases))
+    assert "Snow does not settle." in texts
+    assert "Strength and stiffness of a slab do not depend on its density." in texts
 
 
 # --- statistics ----------------------------------------------------------------------------
