@@ -13,7 +13,7 @@ from snowshed.season.season_record import whole_percent
 from snowshed.season.settings import SeasonSettings
 
 FIRST_PROBABILITY = 0.9  # of the answer's first sentence
-#: The error of the grid is quoted from recorded runs of so many slide-offs, as a winter may have.
+#: Number of slide-offs in a typical winter, for which recorded runs give the error of the grid.
 TYPICAL_SLIDE_OFFS = 5
 CHANCE = "chance: positions of particles, and interactions of causes"
 

@@ -40,9 +40,9 @@ def material_figure(fitted: FittedSnow, curves: Curves, *, synthetic: bool) -> F
     fitted
         The snow.
     curves
-        Those that it was fitted to.
+        Curves of the tests that it was fitted to.
     synthetic
-        Whether the samples are; the headline says so.
+        Whether the samples are synthetic, which the headline states.
     """
     law = fitted.law
     values = ", ".join(

@@ -1,7 +1,7 @@
 """The cohesive Cam-Clay law of the material point method (thesis 1.2.5-1.2.7).
 
-Hardening is the core's. The yield stress at a pressure and that of confined compression are closed
-forms of (1.2.6), which the core does not need.
+Hardening is computed by the core. The yield stress at a pressure and that of confined compression
+are closed forms of (1.2.6), which the core does not need.
 """
 
 from __future__ import annotations
