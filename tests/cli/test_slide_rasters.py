@@ -154,7 +154,9 @@ def test_nor_are_they_in_a_raster_or_in_a_scene(tmp_path, capsys):
     depth = np.where(STEEP < 890, 50.0, 0.4)
     write_geotiff(tmp_path / "depth.tif", depth, **FORM)
     options = ("--thickness-raster", tmp_path / "depth.tif")
-    refused(tmp_path, capsys, "the thickness raster has 50.000000 m at (20.000000, 40.000000)", *options)
+    refused(
+        tmp_path, capsys, "the thickness raster has 50.000000 m at (20.000000, 40.000000)", *options
+    )
     assert slide(tmp_path, "-q") == 0
     scene = Scene.load(tmp_path / "out/scene.json")
     scene.terrain.release[0].thickness = 50
