@@ -55,8 +55,8 @@ def _collect(record: type[Record], node: Mapping, nodes: dict[type[Record], dict
             _collect(kind, resolve(scene_schema(), full.get("items", full)), nodes)
 
 
-def written(source: str, classes: Mapping[str, tuple[type[Record], dict]]) -> str:
-    """Return the source of a module whose classes are brought to their description."""
+def with_described_fields(source: str, classes: Mapping[str, tuple[type[Record], dict]]) -> str:
+    """Return a module's source with the fields and docstrings that the schema describes."""
     tree = ast.parse(source)
     lines = source.split("\n")
     for node in reversed(tree.body):
@@ -112,7 +112,7 @@ def _annotation(key: str, child: Mapping) -> str:
     raise SystemExit(f"{key}: write this field by hand; it holds {full.get('type')}")
 
 
-def exporting(stub: str) -> str:
+def with_settings_exports(stub: str) -> str:
     """Return a stub that exports the settings of the methods in the registry, and of no others."""
     begin = "from .methods."
     others = [
@@ -140,7 +140,11 @@ def main() -> int:
     different = []
     for file in [*modules, EXPORTS]:
         source = file.read_text(encoding="utf-8")
-        new = exporting(source) if file == EXPORTS else written(source, modules[file])
+        new = (
+            with_settings_exports(source)
+            if file == EXPORTS
+            else with_described_fields(source, modules[file])
+        )
         if new != source:
             different.append(file)
             if not check:

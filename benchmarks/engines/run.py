@@ -40,7 +40,7 @@ def lammps_python() -> Optional[str]:
 def press_with_yade(
     sample: VoxelSample, press: Press, folder: Path, *, steps: int = 0, threads: int = 1
 ) -> Record:
-    """Press with Yade; with `steps` only so many, of hollow grains, for their time."""
+    """Press with Yade; `steps` times only so many steps, with hollow grains."""
     program = [str(yade_program()), "-n", f"-j{threads}", "-x", str(HERE / "yade_press.py")]
     return _run(program, sample, press, folder, [str(steps)] if steps else [])
 

@@ -35,7 +35,7 @@ def command_of(package: str, name: str) -> click.Command:
     ) -> None:
         chosen = declared.size(size)
         work = declared.stages(folder, chosen.settings, **options)
-        declared.claim(folder, size, options)
+        declared.prepare(folder, size, options)
         stages = choose(work.stages, names)
         if not report_only:
             _compute(stages, folder, jobs, quiet=quiet)

@@ -43,8 +43,8 @@ class ReproductionFolder:
         """Return the folder of a stage's tables and figures."""
         return self.path / name
 
-    def claim(self, identity: Mapping[str, str], former: Mapping[str, str]) -> None:
-        """Take the folder, old or new, for a reproduction.
+    def prepare(self, identity: Mapping[str, str], former: Mapping[str, str]) -> None:
+        """Create the folder, or check that it belongs to this reproduction.
 
         Parameters
         ----------

@@ -85,8 +85,8 @@ class Reproduction(Generic[Work]):
         """Return the file of the report."""
         return folder / f"{self.alias}.html"
 
-    def claim(self, folder: Path, size: str, options: Mapping[str, Any]) -> None:
-        """Take a folder, old or new; raises InputError if it holds something else."""
+    def prepare(self, folder: Path, size: str, options: Mapping[str, Any]) -> None:
+        """Create a folder, or check it; raises InputError if it holds something else."""
         identity = {"publication": self.alias, "size": size}
         identity.update({name: str(options[name]) for name in self.identity})
-        ReproductionFolder(folder).claim(identity, self.former)
+        ReproductionFolder(folder).prepare(identity, self.former)

@@ -16,7 +16,7 @@ import click
 
 from reproductions.common.hypothesis_tests import SIGMAS
 from reproductions.common.markdown import markdown_table
-from reproductions.frischholz2023.claims.regression import Regressed
+from reproductions.frischholz2023.claims.regression import RegressionResults
 from reproductions.frischholz2023.deviations import DEVIATIONS
 from reproductions.frischholz2023.printed import THESIS_QUARTILES
 from reproductions.frischholz2023.scatter import read_scatter, scatter
@@ -108,7 +108,7 @@ def _causes_part(stacks: pd.DataFrame, errors: pd.DataFrame) -> list[str]:
     order = by_size(stacks)
     return [
         "## Causes, the largest first",
-        " ".join(deviations_section.sample_text(stacks)),
+        *deviations_section.sample_text(stacks),
         markdown_table(deviations_section.changes_grid(stacks)),
         "\n".join(f"{place}. {_cause(stacks, name)}" for place, name in enumerate(order, 1)),
         *_variations_part(stacks),
@@ -154,17 +154,17 @@ def _left_over(stacks: pd.DataFrame) -> list[str]:
     of_all = stacks[stacks["variant"] == THESIS]
     if of_all.empty:
         return []
-    gaps = [f"by `{name}` {_gaps(quartiles(of_all, name))}" for name in TRIMMINGS]
+    gaps = [f"{_gaps(quartiles(of_all, name))} with `{name}`" for name in TRIMMINGS]
     return [
         "With all deviations undone, the quartiles Q1 to Q4 of this sample's rows differ from the "
-        f"thesis's predictions for all panels {'; '.join(gaps)}. The panel's friction, which the "
-        "thesis does not print, is the same in all of them."
+        f"thesis's predictions for all panels as follows: {'; '.join(gaps)}. The panel's friction, "
+        "which the thesis does not print, is the same in all of them."
     ]
 
 
 def _gaps(ours: list[float]) -> str:
     parts = (quartile / printed - 1 for quartile, printed in zip(ours, THESIS_QUARTILES["rbf"]))
-    return "by " + ", ".join(f"{100 * part:+.0f}" for part in parts) + " %"
+    return ", ".join(f"{100 * part:+.0f}" for part in parts) + " %"
 
 
 def regressed_rows() -> dict[str, StackRows]:
@@ -187,7 +187,7 @@ def regressed_rows() -> dict[str, StackRows]:
 
 def _regression_part(data: Path) -> list[str]:
     parts = regressed_rows()
-    regressions: Mapping[str, Regressed] = {
+    regressions: Mapping[str, RegressionResults] = {
         f"{rows.settings['trimming']}, {rows_label(rows)}": read_regressed(
             data / folder, len(rows), rows.panel_count
         )
@@ -202,7 +202,7 @@ def _regression_part(data: Path) -> list[str]:
         if rows.most_seeds == 1
     }
     gaps = [
-        f"by `{name}` {_gaps(_predicted_quartiles(regressed))}"
+        f"{_gaps(_predicted_quartiles(regressed))} with `{name}`"
         for name, regressed in of_one_seed.items()
     ]
     shares = [
@@ -216,7 +216,7 @@ def _regression_part(data: Path) -> list[str]:
         "predictions, and its rows are single stacks: compare them with our predictions from rows "
         "of one seed.",
         markdown_table(quartiles_grid(regressions)),
-        f"The RBF kernel's predictions from rows of one seed differ {'; '.join(gaps)}.",
+        f"The RBF kernel's predictions from rows of one seed differ as follows: {'; '.join(gaps)}.",
         markdown_table(rows_grid(geometry_table())),
         markdown_table(errors_grid(regressions)),
         f"The RBF kernel's error is {' and '.join(shares)} of its median prediction; the thesis's "
@@ -225,11 +225,11 @@ def _regression_part(data: Path) -> list[str]:
     ]
 
 
-def _predicted_quartiles(regressed: Regressed) -> list[float]:
+def _predicted_quartiles(regressed: RegressionResults) -> list[float]:
     return [float(value) for value in regressed.quartiles.loc["rbf", list(QUARTILES)].to_numpy()]
 
 
-def _share(regressed: Regressed) -> float:
+def _share(regressed: RegressionResults) -> float:
     """Return the RBF kernel's error over its median prediction."""
     return (
         float(regressed.errors["mean_absolute_error"]["rbf"]) / _predicted_quartiles(regressed)[1]

@@ -27,7 +27,7 @@ GEOMETRY_ROWS = "geometry.csv"  # the rows that were simulated for chapter 5
 
 
 class GeometryRows:
-    """The rows of chapter 5: out of a table, or of the panels that were simulated."""
+    """The rows of chapter 5, from a table or from the simulated panels."""
 
     def __init__(
         self, folder: ReproductionFolder, table: Optional[Path], panels: Optional[StudyStage]

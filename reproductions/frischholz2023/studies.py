@@ -36,8 +36,8 @@ VARIANTS: Mapping[str, Sequence[str]] = {
     **{deviation.name: (deviation.name,) for deviation in DEVIATIONS.values()},
     THESIS: (ALL,),
 }
-#: Settings of ours that are varied on the same sample, beside the defaults; of cells by their size
-#: over that of the defaults.
+#: Settings of our own, varied one by one on the same sample. The cell size is a factor on the
+#: default.
 COARSE_CELLS = 4 / 3
 VARIATIONS: Mapping[str, Mapping[str, float]] = {
     "coarse-cells": {"numerics.dx": COARSE_CELLS},
@@ -47,7 +47,7 @@ VARIATIONS: Mapping[str, Mapping[str, float]] = {
     "short-steps-damped-each": {"numerics.courant_factor": 0.6, "numerics.flip_ratio": 0.99},
 }
 PANEL = ("panel.tilt", "panel.height", "panel.length")
-#: Seed of the synthetic truth: one that no run of the grid has.
+#: Seed of the synthetic truth; no run of the grid has it.
 TRUTH_SEED = 101
 #: Tilts of the laboratory's panel from which snow slid in chapters 2 and 4, degrees.
 LAB_TILTS = (40.0, 50.0)

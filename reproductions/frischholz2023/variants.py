@@ -149,6 +149,6 @@ def by_size(stacks: pd.DataFrame) -> list[str]:
 
 
 def is_unswitched(stacks: pd.DataFrame, name: str) -> bool:
-    """Return whether the scenes of a deviation that is simulated are those of our settings."""
+    """Return whether a simulated deviation has the same scenes as our settings."""
     same = stacks.loc[stacks["variant"] == name, "same_runs"]
     return DEVIATIONS[name].simulated and bool(same.all())

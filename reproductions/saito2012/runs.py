@@ -22,10 +22,10 @@ from snowshed.running.simulation import Simulation
 from snowshed.scene.scene import SceneLike
 
 CHECKPOINT, FAILURE = "checkpoint.bin", "failed.txt"
-#: Particle steps per second, and the usual speed of snow over that of a fall, for estimates of
-#: times.
-SPEED, USUAL = 1e5, 0.3
-TIMES = 64  # parts of the time to the next kept one, between which progress is told
+#: For estimates of run time: particle steps per second, and typical speed of the snow relative to
+#: free fall.
+PARTICLE_STEPS_PER_S, SPEED_OVER_FREE_FALL = 1e5, 0.3
+PROGRESS_PARTS = 64  # progress reports between two stored times
 
 
 @dataclass(frozen=True)
@@ -58,13 +58,13 @@ class CaseStage:
 
     def state(self) -> State:
         """Return its progress."""
-        reason = self._reason()
+        reason = self._failure_reason()
         done, count = len(self._stored_files()), len(self.case.times)
         return State(done, count - done if reason else 0, count, "times", reason)
 
     def failure(self) -> str:
         """Return the reason of its failure; empty if it did not fail."""
-        reason = self._reason()
+        reason = self._failure_reason()
         return f"{self.case.name}: {reason}" if reason else ""
 
     def expected_s(self, jobs: Optional[int]) -> float:
@@ -75,9 +75,9 @@ class CaseStage:
             return 0.0
         simulation = self._simulation(0)
         spacing = float(getattr(self.case.scene.numerics, "spacing", 0) or 0.01)
-        speed = USUAL * math.sqrt(2 * 9.81 * self.case.path.corners[0][1])
+        speed = SPEED_OVER_FREE_FALL * math.sqrt(2 * 9.81 * self.case.path.corners[0][1])
         steps = left * self.case.every * speed / (0.2 * spacing)
-        return steps * simulation.particle_count / SPEED
+        return steps * simulation.particle_count / PARTICLE_STEPS_PER_S
 
     def snow(self) -> list[Snow]:
         """Return the snow at all stored times."""
@@ -97,17 +97,17 @@ class CaseStage:
             return
         self.folder.mkdir(parents=True, exist_ok=True)
         try:
-            self._go_on(state.done, report)
+            self._resume(state.done, report)
         except SimulationError as error:
             write_text(self.folder / FAILURE, f"{error}\n")
 
-    def _go_on(self, done: int, report: StageReporter) -> None:
+    def _resume(self, done: int, report: StageReporter) -> None:
         simulation = self._simulation(done)
         times = self.case.times
         for number in range(done, len(times)):
             start = simulation.time
-            for part in range(1, TIMES + 1):
-                simulation.run(until=start + (times[number] - start) * part / TIMES)
+            for part in range(1, PROGRESS_PARTS + 1):
+                simulation.run(until=start + (times[number] - start) * part / PROGRESS_PARTS)
                 text = f"{self.case.name}: {simulation.time:.2f} of {times[-1]:g} s"
                 report(min(1.0, simulation.time / times[-1]), text)
             self._keep(simulation, number)
@@ -134,7 +134,7 @@ class CaseStage:
         with replacing(self.folder / f"{number:03d}.npz") as written:
             written.write_bytes(file.getvalue())
 
-    def _reason(self) -> str:
+    def _failure_reason(self) -> str:
         """Return the error that ended it, or nothing."""
         file = self.folder / FAILURE
         return file.read_text(encoding="utf-8").strip() if file.is_file() else ""

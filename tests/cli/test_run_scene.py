@@ -7,7 +7,7 @@ from snowshed import Scene
 from snowshed.base.formatting import about
 from snowshed.base.progress import Progress
 from snowshed.cli.main import main
-from snowshed.cli.run_scene import LONG, announcing_long_run
+from snowshed.cli.run_scene import ANNOUNCED_FROM_S, announcing_long_run
 from snowshed.scene.builders.slides import example_slide
 
 LAB = Scene.preset("lab-50").update({"dimension": 2, "numerics.dx": 0.02}).resolve()
@@ -29,7 +29,9 @@ def test_a_long_run_is_announced_once_at_its_first_measured_speed(capsys):
     assert line.startswith(f"note: this takes {about(7200)}; Ctrl-C stops it") and "--dx" in line
 
 
-@pytest.mark.parametrize(("seconds", "lines"), [(0.99 * LONG, 0), (1.01 * LONG, 1)])
+@pytest.mark.parametrize(
+    ("seconds", "lines"), [(0.99 * ANNOUNCED_FROM_S, 0), (1.01 * ANNOUNCED_FROM_S, 1)]
+)
 def test_only_runs_over_the_limit_are_announced(capsys, seconds, lines):
     assert len(announced(capsys, LAB, WORK / seconds)) == lines
 

@@ -6,7 +6,7 @@ import typing
 
 import pytest
 from helpers.paths import ROOT
-from tools.components import components, exporting, written
+from tools.components import components, with_described_fields, with_settings_exports
 
 from snowshed.base.field_type import alternatives_of
 from snowshed.methods.registry import METHODS, NAME_KEY
@@ -47,18 +47,18 @@ class Panel(Record):
 
 def test_fields_are_added_removed_and_explained_and_all_else_stays():
     panel = next(record for record in NODES if record.__name__ == "Panel")
-    new = written(SOURCE, {"Panel": (panel, NODES[panel])})
+    new = with_described_fields(SOURCE, {"Panel": (panel, NODES[panel])})
     assert "removed" not in new
     assert "    tilt: Optional[float] = None\n" in new
     assert "        Tilt from the horizontal [degrees]. 0 <= value < 90; default 40" in new
     assert "    By hand.\n" in new
     assert new.endswith(SOURCE[SOURCE.index("    lower_edge_height") :])
-    assert written(new, {"Panel": (panel, NODES[panel])}) == new
+    assert with_described_fields(new, {"Panel": (panel, NODES[panel])}) == new
 
 
 def test_the_package_exports_the_settings_of_the_methods_in_the_registry_alone():
     stub = "from ._core import X as X\nfrom .methods.old.settings import O as O\nfrom .pv import P"
-    first, *settings, last = exporting(stub).split("\n")
+    first, *settings, last = with_settings_exports(stub).split("\n")
     assert [line.rpartition(" ")[2] for line in settings] == sorted(
         method.settings.__name__ for method in METHODS.values()
     )

@@ -51,7 +51,7 @@ def matrix(full):
 
 
 HEIGHT = Quantity(
-    "height", "height, m", bar=0.06, bar_for={"transfer": "apic", "dx": 0.1}, order_in="dx"
+    "height", "height, m", limit=0.06, limit_for={"transfer": "apic", "dx": 0.1}, order_in="dx"
 )
 DRIFT = Quantity("drift", "drift, kg m2/s", relative=False, order_in="dx", min_order=1.9)
 

@@ -6,10 +6,10 @@ from math import inf, isnan, nan
 import numpy as np
 import pytest
 from made_up import made_up_case
-from validation.framework.bars import compare
 from validation.framework.case import Quantity
 from validation.framework.cheapest import by_problem, cheapest, pareto_front
 from validation.framework.convergence import convergences, observed_order, pairwise_orders
+from validation.framework.criteria import compare
 from validation.framework.schemes import varying
 from validation.framework.sections import meant
 
@@ -164,7 +164,7 @@ def test_an_easier_problem_buys_no_accuracy():
     ]
 
 
-def test_a_bar_holds_if_the_worst_it_is_for_is_small_enough():
+def test_a_criterion_holds_if_the_worst_it_is_for_is_small_enough():
     table = table_of(
         ({"dx": 0.1, "transfer": "apic", "seed": 1}, -0.04, 1.0),
         ({"dx": 0.1, "transfer": "apic", "seed": 2}, 0.01, 1.0),
@@ -172,29 +172,34 @@ def test_a_bar_holds_if_the_worst_it_is_for_is_small_enough():
         ({"dx": 0.2, "transfer": "apic"}, 0.5, 1.0),
     )
     meant = {"dx": 0.1, "transfer": "apic"}
-    (bar,) = compare(table, [case_with(bar=0.05, bar_for=meant)])
-    assert (bar.kind, bar.demanded, bar.worst, bar.count) == ("error", 0.05, 0.04, 2)
-    assert bar.settings == {"dx": 0.1, "transfer": "apic", "seed": 1}
-    assert bar.holds is True
-    (strict,) = compare(table, [case_with(bar=0.03, bar_for=meant)])
+    (criterion,) = compare(table, [case_with(limit=0.05, limit_for=meant)])
+    assert (criterion.kind, criterion.demanded, criterion.worst, criterion.count) == (
+        "error",
+        0.05,
+        0.04,
+        2,
+    )
+    assert criterion.settings == {"dx": 0.1, "transfer": "apic", "seed": 1}
+    assert criterion.holds is True
+    (strict,) = compare(table, [case_with(limit=0.03, limit_for=meant)])
     assert strict.holds is False
-    (other,) = compare(table, [case_with(bar=0.03, bar_for={"basis": "cubic"})])
+    (other,) = compare(table, [case_with(limit=0.03, limit_for={"basis": "cubic"})])
     assert (other.holds, other.worst, other.count) == (None, None, 0)
 
 
-def test_a_bar_may_be_for_several_values_of_a_setting():
+def test_a_criterion_may_be_for_several_values_of_a_setting():
     flip, apic, none = {"transfer": "flip"}, {"transfer": "apic"}, {"scheme": "objective"}
     table = table_of((flip, 0.01, 1.0), (apic, 0.5, 1.0), (none, 0.02, 1.0))
-    (bar,) = compare(table, [case_with(bar=0.1, bar_for={"transfer": ("flip", None)})])
-    assert (bar.holds, bar.count, bar.worst) == (True, 2, 0.02)
-    assert meant(bar) == "flip or transfer default"
+    (criterion,) = compare(table, [case_with(limit=0.1, limit_for={"transfer": ("flip", None)})])
+    assert (criterion.holds, criterion.count, criterion.worst) == (True, 2, 0.02)
+    assert meant(criterion) == "flip or transfer default"
 
 
 @pytest.mark.parametrize("error", [nan, inf])
-def test_a_failed_measurement_holds_no_bar(error):
+def test_a_failed_measurement_holds_no_criterion(error):
     table = table_of(({"dx": 0.2}, 0.04, 1.0), ({"dx": 0.1}, error, 0.0), ({"dx": 0.4}, 0.1, 1.0))
-    facts = {"bar": 9.0, "order_in": "dx", "min_order": 0.1}
-    assert [bar.holds for bar in compare(table, [case_with(**facts)])] == [False, False]
+    facts = {"limit": 9.0, "order_in": "dx", "min_order": 0.1}
+    assert [criterion.holds for criterion in compare(table, [case_with(**facts)])] == [False, False]
 
 
 def test_every_series_must_converge_fast_enough():
@@ -204,16 +209,16 @@ def test_every_series_must_converge_fast_enough():
         ({"dx": 0.4, "transfer": "flip"}, 0.1, 1.0),
     )
     facts = {"order_in": "dx", "min_order": 1.8}
-    (bar,) = compare(table, [case_with(**facts)])
-    assert (bar.kind, bar.worst, bar.count) == ("order", pytest.approx(1.0), 2)
-    assert bar.settings == {"transfer": "pic"}
-    assert bar.holds is False
-    # A bar on the finest grid's error leaves the order one over all grids.
+    (criterion,) = compare(table, [case_with(**facts)])
+    assert (criterion.kind, criterion.worst, criterion.count) == ("order", pytest.approx(1.0), 2)
+    assert criterion.settings == {"transfer": "pic"}
+    assert criterion.holds is False
+    # A criterion on the finest grid's error leaves the order one over all grids.
     meant = {"dx": 0.1, "transfer": "apic"}
-    error, order = compare(table, [case_with(bar=0.02, bar_for=meant, **facts)])
+    error, order = compare(table, [case_with(limit=0.02, limit_for=meant, **facts)])
     assert error.holds and order.holds
     assert order.meant == {"transfer": "apic"}
-    (one_size,) = compare(table, [case_with(bar_for={"transfer": "flip"}, **facts)])
+    (one_size,) = compare(table, [case_with(limit_for={"transfer": "flip"}, **facts)])
     assert one_size.holds is None
 
 
@@ -225,6 +230,8 @@ def test_cases_and_quantities_are_kept_apart():
             MeasuredSolution("other", {"dx": 0.1}, [Measured("height", 1.0, 1.0, 0.5)]),
         ]
     )
-    case = case_with(bar=0.1)
-    assert [bar.holds for bar in compare(table, [case])] == [True]
-    assert [bar.holds for bar in compare(table, [replace(case, name="other")])] == [False]
+    case = case_with(limit=0.1)
+    assert [criterion.holds for criterion in compare(table, [case])] == [True]
+    assert [criterion.holds for criterion in compare(table, [replace(case, name="other")])] == [
+        False
+    ]

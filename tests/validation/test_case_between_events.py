@@ -33,8 +33,8 @@ def runs():
 def test_reseeding_measures_all_quantities_within_their_bars(reseeded):
     assert set(reseeded) == {quantity.name for quantity in CASE.quantities}
     for quantity in CASE.quantities:
-        if quantity.bar is not None:
-            assert abs(reseeded[quantity.name].error) <= quantity.bar, quantity.name
+        if quantity.limit is not None:
+            assert abs(reseeded[quantity.name].error) <= quantity.limit, quantity.name
 
 
 def test_carrying_over_converts_nothing():

@@ -104,7 +104,7 @@ def test_all_of_a_force_is_applied_although_steps_vary(monkeypatch):
     assert len(steps) > 5
     gained = body.drive.mean(body.drive.core.velocities()) - begun
     # The last step's change of length is still owed.
-    still = body._owed.mean(axis=0)
+    still = body._velocity_correction.mean(axis=0)
     assert gained[[0, 2]] + still == pytest.approx(np.array([3.0, -1.0]) * body.time)
 
 
@@ -117,7 +117,7 @@ def test_matrices(case):
             assert manufactured.motion_of(settings).omega > 0
     for quantity in case.quantities:
         for full in (False, True):
-            assert any(quantity.bar_for.items() <= one.items() for one in case.matrix(full))
+            assert any(quantity.limit_for.items() <= one.items() for one in case.matrix(full))
 
 
 @pytest.mark.parametrize("start", [WAVES, VORTEX], ids=["waves", "vortex"])

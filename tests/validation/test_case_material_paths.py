@@ -120,7 +120,7 @@ def test_matrices_list_no_entry_twice_and_reach_the_bars(case, full):
     entries = case.matrix(full)
     assert len({tuple(sorted(one.items())) for one in entries}) == len(entries)
     for quantity in case.quantities if full else ():
-        assert any(quantity.bar_for.items() <= one.items() for one in entries)
+        assert any(quantity.limit_for.items() <= one.items() for one in entries)
 
 
 @pytest.mark.parametrize("case", CASES[1:], ids=lambda case: case.name)
@@ -148,14 +148,14 @@ def test_entries_measure_what_the_case_lists(case):
 
 
 def test_another_law_would_be_noticed(monkeypatch):
-    """A core with a slightly different slope is not within the bar, however small the steps."""
+    """A core with a slightly different slope is not within the limit, however small the steps."""
     changed = CONSTANTS._replace(critical_state_slope=CONSTANTS.critical_state_slope * 1.0001)
     reference = StrainPath(-0.06, lateral=0.0).reference()
     monkeypatch.setattr(material_paths, "calibrated", lambda: (changed, STRENGTH))
     monkeypatch.setattr(StrainPath, "reference", lambda self: reference)
     settings = {"dimension": 3, "increment": 1e-5, "method": "extrapolated"}
     error = measured(material_paths.measure_oedometer(settings))["extrapolated_stress"].error
-    assert error > 10 * material_paths.BAR
+    assert error > 10 * material_paths.MAX_DEVIATION
 
 
 def test_softened_snow_takes_all_that_it_opens():

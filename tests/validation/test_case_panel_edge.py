@@ -73,7 +73,7 @@ def test_a_coarse_throw():
     assert abs(found["landing"].error) < 0.01
     assert found["flight"].error < 1e-3
     for quantity in CASE.quantities:
-        assert abs(found[quantity.name].error) <= quantity.bar, quantity.name
+        assert abs(found[quantity.name].error) <= quantity.limit, quantity.name
     assert found["spin"].error > 0.1  # too fast; see the remarks
 
 

@@ -94,7 +94,7 @@ def test_every_entry_makes_a_scene_and_none_comes_twice(case):
             assert data["seeding"]["pattern"] == settings["pattern"]
             assert data["snow"]["youngs_modulus"] == settlement.YOUNGS_MODULUS
     for quantity in case.quantities:
-        assert any(quantity.bar_for.items() <= one.items() for one in case.matrix(True))
+        assert any(quantity.limit_for.items() <= one.items() for one in case.matrix(True))
 
 
 @pytest.mark.parametrize("dimension", [2, 3])

@@ -69,7 +69,7 @@ def test_every_entry_makes_a_scene_and_none_comes_twice(full):
         assert data["gravity"] == 0
         assert data["numerics"]["sleep_speed"] == 0
     for quantity in CASE.quantities:
-        assert any(quantity.bar_for.items() <= one.items() for one in entries)
+        assert any(quantity.limit_for.items() <= one.items() for one in entries)
 
 
 @pytest.mark.parametrize("settings", [COARSE, COARSE_CYLINDER], ids=["disc", "cylinder"])

@@ -219,11 +219,11 @@ def test_three_dimensions_are_compared_with_two(monkeypatch):
 
 def test_stacks_of_the_default_scheme_are_within_their_bar():
     outcome = CASE.measure({**QUICK, "transfer": "flip", "seedings": 4, "events": 3})
-    bars = {one.name: one for one in CASE.quantities if one.bar is not None}
-    assert set(bars) == {"height_noise", "length_noise"}
+    criteria = {one.name: one for one in CASE.quantities if one.limit is not None}
+    assert set(criteria) == {"height_noise", "length_noise"}
     for one in outcome.measured:
-        if one.quantity in bars:
-            assert abs(one.error) <= bars[one.quantity].bar, one
+        if one.quantity in criteria:
+            assert abs(one.error) <= criteria[one.quantity].limit, one
 
 
 @pytest.mark.parametrize("full", [True, False])

@@ -8,7 +8,7 @@ from scipy.integrate import trapezoid
 from validation.elastic import case_vibration as vibration
 from validation.elastic.bodies import TRANSFERS
 from validation.elastic.cantilever import Cantilever
-from validation.elastic.case_vibration import BAR, BAR_DEFAULTS, CANTILEVER_DEFAULTS, CASES
+from validation.elastic.case_vibration import BAR_DEFAULTS, CANTILEVER_DEFAULTS, CASES, ELASTIC_BAR
 from validation.elastic.smoothing import Smoothing
 from validation.elastic.swing import Swing
 
@@ -55,7 +55,7 @@ def test_swing_of_a_vibration_with_another_on_top():
     swing = Swing.fit(t, slow + 1e-3 * np.sin(2 * np.pi * 17 * t), frequency=2.1)
     assert swing.frequency == pytest.approx(2.0, rel=1e-4)
     assert swing.decay == pytest.approx(0.3, rel=1e-2)
-    assert swing.lost == pytest.approx(1 - math.exp(-0.15), rel=1e-2)
+    assert swing.loss_per_period == pytest.approx(1 - math.exp(-0.15), rel=1e-2)
 
 
 def spline(basis, u):
@@ -104,12 +104,14 @@ def test_what_smoothing_takes_per_period_is_what_its_recurrence_takes(transfer):
         v = smoothing.remaining * v + smoothing.felt * dt * force
         values.append(q)
     swing = Swing.fit(dt * np.arange(1, 1501), np.array(values), frequency)
-    assert smoothing.lost(frequency, dt) == pytest.approx(swing.lost, rel=2e-2, abs=1e-6)
+    assert smoothing.loss_per_period(frequency, dt) == pytest.approx(
+        swing.loss_per_period, rel=2e-2, abs=1e-6
+    )
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
 def test_every_entry_makes_a_scene_and_none_comes_twice(case):
-    make = vibration.bar_scene if case is BAR else vibration.cantilever_scene
+    make = vibration.bar_scene if case is ELASTIC_BAR else vibration.cantilever_scene
     for full in (False, True):
         entries = case.matrix(full)
         assert len({tuple(sorted(one.items())) for one in entries}) == len(entries)
@@ -117,9 +119,9 @@ def test_every_entry_makes_a_scene_and_none_comes_twice(case):
             data = make(settings).resolve().data
             assert data["numerics"]["dx"] == settings["dx"]
             assert data["numerics"]["sleep_speed"] == 0
-            assert len(data["obstacles"]) == (case is not BAR)
+            assert len(data["obstacles"]) == (case is not ELASTIC_BAR)
         for quantity in case.quantities:
-            assert any(quantity.bar_for.items() <= one.items() for one in entries)
+            assert any(quantity.limit_for.items() <= one.items() for one in entries)
 
 
 @pytest.mark.parametrize("offset", [0.0, 0.3])
@@ -139,12 +141,13 @@ def test_where_the_bodies_are(offset):
 
 def test_a_coarse_bar_rings_as_it_should_and_fades_as_explained():
     found = {
-        str(transfer): measured(BAR.measure({**BAR_DEFAULTS, **transfer})) for transfer in TRANSFERS
+        str(transfer): measured(ELASTIC_BAR.measure({**BAR_DEFAULTS, **transfer}))
+        for transfer in TRANSFERS
     }
     for one in found.values():
         assert abs(one["frequency"].error) < 0.01
-        assert abs(one["lost_in_theory"].error) < 5e-4
-    lost = [one["lost"].value for one in found.values()]
+        assert abs(one["unexplained_loss"].error) < 5e-4
+    lost = [one["loss_per_period"].value for one in found.values()]
     flip, flip_99, flip_95, apic, pic = lost
     assert apic < flip < flip_99 < flip_95 < pic
 
@@ -153,4 +156,4 @@ def test_a_coarse_cantilever():
     settings = {**CANTILEVER_DEFAULTS, **APIC, "dx": 0.05}
     found = measured(vibration.CANTILEVER.measure(settings))
     assert abs(found["frequency"].error) < 0.04
-    assert 0 < found["lost"].value < 0.02
+    assert 0 < found["loss_per_period"].value < 0.02

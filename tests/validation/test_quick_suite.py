@@ -1,8 +1,8 @@
-"""The quick suite: every case over its quick matrix, and every bar on what was measured."""
+"""The quick suite: every case over its quick matrix, and every criterion on what was measured."""
 
 import pytest
-from validation.framework.bars import compare
 from validation.framework.cases import case_modules, cases_of
+from validation.framework.criteria import compare
 from validation.framework.measure import measure_cases
 from validation.framework.measurement_file import MeasurementFile
 from validation.framework.report import Validation, problems

@@ -69,8 +69,8 @@ def test_the_page_can_be_read(report):
 
 def test_the_page_says_what_holds_and_what_does_not(page):
     text = " ".join(" ".join(page.text).split())
-    assert "0 of 2 bars" not in text
-    assert "1 of 2 bars does not hold" in text
+    assert "0 of 2 criteria" not in text
+    assert "1 of 2 criteria does not hold" in text
     assert "Of 3 runs of the stress suite 1 failed" in text
     held = row_with(page, "holds", "A made-up case", "height, m")
     assert held[3:6] == ["apic, dx 0.1", "≤ 6 %", "4.4 %"]
@@ -129,7 +129,7 @@ def test_tables_and_numbers_are_files_too(report):
     assert list(table) == columns.split()
     data = json.loads((report / "results.json").read_text(encoding="utf-8"))
     assert data["about"]["suite"] == "full"
-    assert [bar["holds"] for bar in data["bars"]] == [True, False]
+    assert [criterion["holds"] for criterion in data["criteria"]] == [True, False]
     assert len(data["measurements"]) == 7
     assert [one["order"] for one in data["orders"]] == pytest.approx([2.0] * 4)
     reached = [one["reached"] for one in data["cheapest"]]
@@ -139,8 +139,8 @@ def test_tables_and_numbers_are_files_too(report):
 def test_a_suite_in_which_everything_failed_has_a_report(tmp_path):
     case = made_up_case(entries=[{"mode": "raises", "dx": 0.1}])
     measurements = measure_cases([case], MeasurementFile(tmp_path / "m.jsonl"))
-    bars = write_report(Validation([case], measurements, full=False), tmp_path)
-    assert [bar.holds for bar in bars] == [None, False]
+    criteria = write_report(Validation([case], measurements, full=False), tmp_path)
+    assert [criterion.holds for criterion in criteria] == [None, False]
     page = Page((tmp_path / "validation.html").read_text(encoding="utf-8"))
     assert not page.images
     assert "stress" not in page.ids
@@ -188,7 +188,7 @@ def test_errors_are_drawn_against_time_where_they_say_which_way_is_better(tmp_pa
             (HEIGHT, several, True),
             (HEIGHT, one, False),
             (diagnostic, several, False),
-            (replace(diagnostic, bar=1.0), several, True),
+            (replace(diagnostic, limit=1.0), several, True),
         ]
     ):
         folder = tmp_path / str(number)

@@ -14,7 +14,9 @@ from validation.framework.case import Quantity
 from snowshed.analysis.accuracy.recorded import load_recorded
 from snowshed.base.progress import Progress
 
-HOLDING = (Quantity("height", "height, m", bar=0.2, bar_for={"transfer": "apic"}, order_in="dx"),)
+HOLDING = (
+    Quantity("height", "height, m", limit=0.2, limit_for={"transfer": "apic"}, order_in="dx"),
+)
 
 
 def made_up_measure_of_height_only(settings):
@@ -61,7 +63,7 @@ def test_full_takes_the_full_matrix(cases, tmp_path):
 
 
 def test_the_exit_code_is_1_if_a_bar_does_not_hold(cases, tmp_path, capsys):
-    cases["quantities"] = (Quantity("height", "height, m", bar=0.1),)
+    cases["quantities"] = (Quantity("height", "height, m", limit=0.1),)
     assert validate(tmp_path / "out", "-q") == 1
     assert capsys.readouterr() == (
         "",

@@ -38,7 +38,7 @@ HARDENING = 10.0
 #: Aspect ratios from which the exponent for tall columns is fitted.
 TALL: Mapping[int, Sequence[float]] = {2: (3.0, 5.0, 7.0, 10.0), 3: (2.0, 3.0, 4.0)}
 SAND, GLASS = 30.0, 22.0  # friction angles of sand and of glass beads, degrees
-OWN = frozenset({"aspect", "friction_angle"})
+CASE_SETTINGS = frozenset({"aspect", "friction_angle"})
 
 
 @dataclass(frozen=True)
@@ -87,11 +87,11 @@ def column_scene(settings: CaseSettings, aspect: float) -> Scene:
         bodies=[Body(shape=shape)],
         events=Events(max_time=10 * math.sqrt(height / GRAVITY)),
     )
-    return apply_settings(scene, settings, own=OWN)
+    return apply_settings(scene, settings, own=CASE_SETTINGS)
 
 
 def collapse(settings: CaseSettings, aspect: float) -> Deposit:
-    """Let a column collapse and measure what lies there at the end.
+    """Let a column collapse and measure the deposit.
 
     Examples
     --------
@@ -117,7 +117,7 @@ def collapse(settings: CaseSettings, aspect: float) -> Deposit:
 
 
 def measure(settings: CaseSettings) -> Outcome:
-    """Let one column collapse, or the tall ones for their exponent."""
+    """Measure one column, or the exponent of the tall ones."""
     dimension = int(settings["dimension"])
     if settings["aspect"] == "tall":
         return _measure_exponent(settings, TALL[dimension])
@@ -207,51 +207,51 @@ SOURCE = (
 DESCRIPTION = """
 A column of loose snow, a times as high as its radius (in the plane: as half its width), stands on
 rough ground and is released at once. Sand, rice and sugar leave nearly the same deposit, which
-depends on a alone: in the plane the run-out (r∞ - r0) / r0 is 1.2 a for a < 1.8 and 1.9 a^(2/3) for
+depends on a alone. In the plane the run-out (r∞ - r0) / r0 is 1.2 a for a < 1.8 and 1.9 a^(2/3) for
 a > 2.8; for round columns 1.24 a for a < 1.7 and 1.6 a^(1/2) above. The height h∞ / r0 is that of
-the column as long as its middle stays, then a^(2/5) in the plane and 0.88 a^(1/6) for round
-columns. Glass beads, more slippery (22 degrees), run out 1.8 a in the plane below a = 3. The
-experiments scatter by 10 to 20 % about their own laws. The error is the departure from the law.
-"Tall" fits the exponent of the run-out to a = 3, 5, 7, 10 in the plane and 2, 3, 4 in space; the
-laws say 2/3 and 1/2.
+the column as long as its middle does not sink; for taller columns it is a^(2/5) in the plane and
+0.88 a^(1/6) for round columns. Glass beads, more slippery (22 degrees), run out 1.8 a in the plane
+below a = 3. The experiments scatter by 10 to 20 % about their own laws. The error is the departure
+from the law. "Tall" fits the exponent of the run-out to a = 3, 5, 7, 10 in the plane and 2, 3, 4 in
+space; the laws say 2/3 and 1/2.
 
-How snow is made to act as sand: no cohesion (beta = 0); an initial preconsolidation pressure of 2 %
-of the column's weight, so that it has no strength of its own; and a hardening factor of 10, with
-which p0 follows the pressure within volume changes of a thousandth. Sheared snow is then at its
-critical state q = M p at once, flows at constant volume, carries no tension, and parts freely. M is
-that of Coulomb friction of 30 degrees (sand): sqrt(3) sin(phi) in the plane, where the match is
-exact, and 6 sin(phi) / (3 - sin(phi)), the match in triaxial compression, in space. Neither of the
-two constants matters for the deposit: preconsolidation from 0.2 to 20 % and hardening factors from
-1 to 100 change the run-out by less than 1 %. The analogy ends there: the friction of sand grows
-with the rate of shear, sand dilates before it flows and loses energy where grains collide; this
-snow does nothing of the kind, and its grains have no size.
+Three settings make snow act as sand: no cohesion (beta = 0); an initial preconsolidation pressure
+of 2 % of the column's weight, so that it has no strength of its own; and a hardening factor of 10,
+with which p0 follows the pressure within volume changes of a thousandth. Sheared snow is then at
+its critical state q = M p at once, flows at constant volume, carries no tension, and parts freely.
+M is that of Coulomb friction of 30 degrees (sand): sqrt(3) sin(phi) in the plane, where the match
+is exact, and 6 sin(phi) / (3 - sin(phi)), the match in triaxial compression, in space. Neither of
+the two constants matters for the deposit: preconsolidation from 0.2 to 20 % and hardening factors
+from 1 to 100 change the run-out by less than 1 %. The analogy ends there: the friction of sand
+grows with the rate of shear, sand dilates before it flows and loses energy where grains collide.
+This snow does neither, and has no grain size.
 """
 
 REMARKS = """
 Heights agree with the laws within 18 %; most are 10 to 16 % low, and they hardly depend on grid or
-scheme. They are what can be asked of the method here.
+scheme. The heights are therefore the reliable result of this case.
 
-The run-out is less certain, because the front decides it. A deposit thins out towards its edge, and
-where it is thinner than about a cell it cannot slide over ground that holds the nodes below it: the
-front stops two to four cells short. At ten cells to the radius the default scheme is 12 to 20 %
+The run-out is less certain, because the front decides it. A deposit thins out towards its edge.
+Where it is thinner than about a cell, it cannot slide, because the ground holds the nodes below it;
+the front stops two to four cells short. At ten cells to the radius the default scheme is 12 to 20 %
 below the law in the plane, 40 % for the lowest column, and at twenty cells it meets the law (a =
-1.5). That is not convergence: with less numerical damping the front creeps on as the grid is
-refined, APIC to 35 % beyond the law. Other continuum models in the plane do the same (Lagrée et al.
-2.2 a; S. Dunatunga and K. Kamrin, J. Fluid Mech. 779 (2015) 483, 2.3 a). The experiments have side
-walls, and a front that cannot be thinner than a grain. The linear regime also reaches to higher
-columns than in the experiments, so the exponent of tall ones comes out too large.
+1.5). This agreement is not convergence: with less numerical damping the front creeps on as the grid
+is refined, APIC to 35 % beyond the law. Other continuum models in the plane do the same (Lagrée et
+al. 2.2 a; S. Dunatunga and K. Kamrin, J. Fluid Mech. 779 (2015) 483, 2.3 a). The experiments have
+side walls, and a front that cannot be thinner than a grain. The linear regime also reaches to
+higher columns than in the experiments, so the exponent of tall ones comes out too large.
 
 In space a deposit of the same volume is thinner, a fifth of the radius in the mean, so at six cells
 to the radius the run-out is only half the law's. With 16 cells, APIC and M = 0.866 it was 86 % of
-the law (a = 1; measured once, not part of the suite). Besides, M matched in triaxial compression
-makes snow in plane shear as strong as sand of 44 degrees; M = 0.866, matched in plane shear, runs
-out further and leaves the middle too low.
+the law (a = 1; measured once, not part of the suite). In addition, M matched in triaxial
+compression makes snow in plane shear as strong as sand of 44 degrees; M = 0.866, matched in plane
+shear, runs out further and leaves the middle too low.
 
 FLIP damps per step. The share of PIC, 1 - flip_ratio, is taken in every step, whatever its length,
 so smaller steps, and stiffer snow, which needs them, damp more: a third of the time step shortens
-the run-out by 17 %. If flip_ratio is brought to 0.9967 along with it, so that the share of PIC per
-second stays, the run-out stays too, within 2 %. The solution does not converge in the time step
-alone. APIC loses some energy in every step as well, with the same effect on the run-out.
+the run-out by 17 %. If flip_ratio is raised to 0.9967 as well, so that the share of PIC per second
+stays the same, the run-out changes by less than 2 %. The solution does not converge in the time
+step alone. APIC loses some energy in every step as well, with the same effect on the run-out.
 
 Snow that comes to rest may sleep without harm: with a sleep_speed of 5 or 20 mm/s the run-out and
 the height change by less than a thousandth (a = 1.5). All other columns never sleep.
@@ -267,15 +267,15 @@ CASE = Case(
         Quantity(
             "runout",
             "Run-out over radius, against Lube et al.",
-            bar=0.55,
-            bar_for={"friction_angle": SAND},
+            limit=0.55,
+            limit_for={"friction_angle": SAND},
         ),
-        # No smaller than the experiments' own scatter.
+        # As large as the scatter of the experiments.
         Quantity(
             "height",
             "Final height over radius, against Lube et al.",
-            bar=0.2,
-            bar_for={"friction_angle": SAND},
+            limit=0.2,
+            limit_for={"friction_angle": SAND},
         ),
         Quantity("runout_glass", "Run-out over radius, against Lajeunesse et al."),
         Quantity("exponent", "Exponent of the run-out of tall columns"),

@@ -14,9 +14,8 @@ SECTORS = 24  # in which the front of a round deposit is looked for
 def runout_law(aspect: float, dimension: int) -> float:
     """Return (r_inf - r_0) / r_0 of a collapsed column of grains.
 
-    Plane (Lube et al. 2005): 1.2 a for a < 1.8, 1.9 a^(2/3) for a > 2.8; between them the
-    experiments change over, and powers of a are interpolated. Round (Lube et al. 2004): 1.24 a for
-    a < 1.7, 1.6 a^(1/2) above.
+    Plane (Lube et al. 2005): 1.2 a for a < 1.8, 1.9 a^(2/3) for a > 2.8; between these limits
+    powers of a are interpolated. Round (Lube et al. 2004): 1.24 a for a < 1.7, 1.6 a^(1/2) above.
 
     Examples
     --------
@@ -36,8 +35,8 @@ def runout_law(aspect: float, dimension: int) -> float:
 def height_law(aspect: float, dimension: int) -> float:
     """Return h_inf / r_0 of a collapsed column of grains.
 
-    The column's own height as long as its middle stays; above, a^(2/5) in the plane (Lube et al.
-    2005) and 0.88 a^(1/6) for round columns (Lube et al. 2004).
+    The column's own height as long as its middle does not sink; above, a^(2/5) in the plane (Lube
+    et al. 2005) and 0.88 a^(1/6) for round columns (Lube et al. 2004).
 
     Examples
     --------
@@ -92,7 +91,7 @@ def front(positions: Floats) -> float:
     """
     x, y, _ = positions.T
     sectors = SECTORS if np.any(y) else 2
-    # Half a sector on, so that the two directions of a plane deposit are sectors' middles.
+    # Sectors are shifted by half, so that the two directions of a plane deposit are their middles.
     turn = (np.arctan2(y, x) / (2 * np.pi) + 0.5 / sectors) % 1.0
     sector = np.minimum((turn * sectors).astype(int), sectors - 1)
     farthest = np.zeros(sectors)

@@ -1,4 +1,4 @@
-"""An elastic body that moves freely, for the cases of small and of chosen motions."""
+"""A free elastic body, for the cases with vibrations and with manufactured motions."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def elastic_scene(
         As for `apply_settings`; with ``youngs_modulus`` (Pa), ``poissons_ratio``, ``density``
         (kg/m3).
     own
-        Names among the settings that are the case's own.
+        Names of settings that belong to the case, not to the scene.
     obstacles
         Obstacles that hold the body, if any.
 

@@ -22,8 +22,8 @@ class Cantilever:
         w' = psi + Q/(k G H),  psi' = M/(E I),  M' = -Q - rho I omega^2 psi,  Q' = -rho H omega^2 w,
 
     and Cowper's shear coefficient k = 10 (1 + nu')/(12 + 11 nu') (G. R. Cowper, *The shear
-    coefficient in Timoshenko's beam theory*, Journal of Applied Mechanics 33, 1966). A frequency is
-    one for which w = psi = 0 at the clamp and M = Q = 0 at the free end are possible together.
+    coefficient in Timoshenko's beam theory*, Journal of Applied Mechanics 33, 1966). At an
+    eigenfrequency w = psi = 0 at the clamp and M = Q = 0 at the free end hold together.
 
     Attributes
     ----------
@@ -34,7 +34,7 @@ class Cantilever:
 
     Examples
     --------
-    A slender beam vibrates as Euler has it.
+    A slender beam vibrates at Euler's frequency.
 
     >>> slender = Cantilever(1.0, 0.001, 1e6, 0.3, 210.0)
     >>> round(slender.frequency / slender.euler_frequency, 5)

@@ -20,7 +20,7 @@ YOUNGS_MODULUS, POISSONS_RATIO, DENSITY = 1e6, 0.3, 210.0  # Pa, 1, kg/m3
 RATE = 0.2 * math.sqrt(YOUNGS_MODULUS / DENSITY) / RADIUS  # rad/s
 TURN = 2 * math.pi / RATE  # s
 #: Settings of this case that scenes do not have.
-OWN = frozenset({"begins", "turns"})
+CASE_SETTINGS = frozenset({"begins", "turns"})
 #: Steps between two samples, or between two damped velocities.
 STEPS = 4
 #: For bodies that begin in equilibrium: the number of turns in which the radial oscillation is
@@ -52,13 +52,13 @@ def spin_scene(settings: CaseSettings) -> Scene:
         "poissons_ratio": POISSONS_RATIO,
         "density": DENSITY,
     }
-    scene = elastic_scene(shape, {**material, **settings}, OWN)
+    scene = elastic_scene(shape, {**material, **settings}, CASE_SETTINGS)
     scene.set("output.energy", True)
     return scene
 
 
 def expansion(radius: Floats) -> Floats:
-    """Return by how far a spinning disc pushes its particles outwards, m.
+    """Return the outward displacement of the particles of a spinning disc, m.
 
     Equilibrium for small strains in plane strain, (lambda + 2 mu)(u'' + u'/r - u/r^2)
     = -rho omega^2 r with no traction at the rim R:
@@ -80,7 +80,7 @@ def expansion(radius: Floats) -> Floats:
 
 
 class Spinning:
-    """A body that has been set spinning about the y axis."""
+    """A body that spins about the y axis."""
 
     def __init__(self, settings: CaseSettings) -> None:
         self.drive = TimedEventDriver(spin_scene(settings))
@@ -91,7 +91,7 @@ class Spinning:
 
     @staticmethod
     def _moment_of_inertia_in_cell(settings: CaseSettings) -> float:
-        """Return what an affine velocity field carries, over its mass: dx^2/4 or dx^2/3."""
+        """Return the moment of inertia of an affine field over mass: dx^2/4 or dx^2/3."""
         return float(settings["dx"]) ** 2 / (4 if settings["basis"] == "quadratic" else 3)
 
     @property
@@ -113,7 +113,7 @@ class Spinning:
 
     @property
     def expansion(self) -> float:
-        """The mean of how far particles have moved outwards, m."""
+        """The mean outward displacement of the particles, m."""
         x, z = in_plane(self.drive.core.positions()).T
         return float(self.drive.mean(np.hypot(x, z) - self.radii))
 
@@ -129,7 +129,7 @@ class Spinning:
 
 
 def per_turn(ratio: float, time: float) -> float:
-    """Return the relative change per turn from the ratio to the start after a time (s).
+    """Return the relative change per turn from the ratio to the initial value after a time (s).
 
     Examples
     --------
@@ -142,13 +142,13 @@ def per_turn(ratio: float, time: float) -> float:
 
 
 def measure(settings: CaseSettings) -> Outcome:
-    """Let a body spin for some turns and see what it keeps."""
+    """Let a body spin for some turns and measure the changes of momentum and energy."""
     body = Spinning(settings)
     drive, turns = body.drive, float(settings["turns"])
     momentum = body.angular_momentum
     if settings["begins"] == "equilibrium":
         body.settle()
-    drive.step()  # only after its first step does APIC know how velocities vary within a cell
+    drive.step()  # APIC has affine velocities only after its first step
     energy, begun, grown = body.energy, drive.core.time_s, []
     while drive.core.time_s - begun < turns * TURN:
         drive.step(STEPS)
@@ -208,21 +208,21 @@ CASE = Case(
         Quantity(
             "angular_momentum",
             "change of angular momentum per turn",
-            bar=1e-6,
-            bar_for={"transfer": "apic", "precision": "double"},
+            limit=1e-6,
+            limit_for={"transfer": "apic", "precision": "double"},
         ),
         Quantity(
             "energy",
             "part of the energy lost per turn",
-            bar=0.01,
-            bar_for={"transfer": "apic", "dx": 0.1},
+            limit=0.01,
+            limit_for={"transfer": "apic", "dx": 0.1},
             order_in="dx",
         ),
         Quantity(
             "expansion",
             "mean outward displacement, m",
-            bar=0.03,
-            bar_for={
+            limit=0.03,
+            limit_for={
                 "transfer": "apic",
                 "begins": "equilibrium",
                 "basis": "quadratic",
@@ -243,8 +243,8 @@ CASE = Case(
     0.95 loses 40 % per turn, with 0.99 11 % (5 % at twenty cells: first order in dx, because there
     are more steps). Snowballs of a few cells rotate far too slowly with the default.
 
-    Pure FLIP loses only what its interpolated changes of velocity miss: 2.6 % per turn at five
-    cells, 0.4 % at ten, 0.05 % at twenty. The cylinder behaves like the disc.
+    Pure FLIP loses only the rotation that interpolated changes of velocity do not resolve: 2.6 %
+    per turn at five cells, 0.4 % at ten, 0.05 % at twenty. The cylinder behaves like the disc.
 
     The energy loss follows the square of the momentum. APIC loses less than 0.1 % per turn at ten
     cells, through the radial oscillation; a disc in equilibrium loses 0.003 %.

@@ -21,8 +21,8 @@ from validation.framework.drive import TimedEventDriver, relative
 
 YOUNGS_MODULUS, DENSITY = 1e6, 210.0  # Pa, kg/m3
 LENGTH = 1.0  # m, of the bar; of the cantilever unless the settings say otherwise
-#: Settings that are the case's own: where a grid node lies from the body's end, in cells; length.
-OWN = frozenset({"grid_offset", "length"})
+#: Settings of the cases themselves: distance of a grid node from the body's end, in cells; length.
+CASE_SETTINGS = frozenset({"grid_offset", "length"})
 DEFAULTS: CaseSettings = {
     "grid_offset": 0.0,
     "basis": "quadratic",
@@ -30,7 +30,7 @@ DEFAULTS: CaseSettings = {
     "pattern": "regular",
     "particles_per_voxel": 4,
 }
-#: Variants besides resolutions and transfers, with APIC.
+#: Variants of other settings.
 VARIANTS: Sequence[CaseSettings] = (
     {"basis": "cubic"},
     {"precision": "float"},
@@ -41,7 +41,7 @@ VARIANTS: Sequence[CaseSettings] = (
 
 
 class Vibrating:
-    """A body that has been set vibrating in a mode of its own.
+    """A body that vibrates in an eigenmode.
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ class Vibrating:
         drive.core.add_velocity(from_plane(2 * math.pi * frequency * height * mode))
 
     def swing(self, periods: float, steps: int) -> Swing:
-        """Let it vibrate and return its deflection, sampled every so many steps."""
+        """Let it vibrate and return the vibration fitted to samples every `steps` steps."""
         times, values = [], []
         while self.drive.core.time_s < periods / self._frequency:
             self.drive.step(steps)
@@ -73,7 +73,7 @@ class Vibrating:
         return Swing.fit(np.array(times), np.array(values), self._frequency)
 
     def _deflection(self) -> float:
-        """Return how far it is in its mode; what other modes do does not count."""
+        """Return the amplitude of its mode, without the parts of other modes."""
         moved = in_plane(self.drive.core.positions()) - self._start
         return float(self.drive.masses @ np.sum(self._mode * moved, axis=1)) / self._norm
 
@@ -94,7 +94,7 @@ def bar_scene(settings: CaseSettings) -> Scene:
     corner = np.full(2, float(settings["grid_offset"]) * dx)
     size = np.array([LENGTH, BAR_CELLS * dx])
     shape = Shape.box((corner + size / 2).tolist(), size.tolist())
-    return elastic_scene(shape, _material(settings, poissons_ratio=0.0), OWN)
+    return elastic_scene(shape, _material(settings, poissons_ratio=0.0), CASE_SETTINGS)
 
 
 def measure_bar(settings: CaseSettings) -> Outcome:
@@ -108,12 +108,17 @@ def measure_bar(settings: CaseSettings) -> Outcome:
     swing = bar.swing(BAR_PERIODS, steps=1)
     time_step = drive.core.time_s / drive.core.total_steps
     smoothing = Smoothing.of(settings, wavenumber)
-    explained = smoothing.lost(swing.frequency, time_step)
+    explained = smoothing.loss_per_period(swing.frequency, time_step)
     return drive.outcome(
         [
             relative("frequency", swing.frequency, BAR_FREQUENCY),
-            Measured("lost", swing.lost, 0.0, swing.lost),
-            Measured("lost_in_theory", swing.lost, explained, swing.lost - explained),
+            Measured("loss_per_period", swing.loss_per_period, 0.0, swing.loss_per_period),
+            Measured(
+                "unexplained_loss",
+                swing.loss_per_period,
+                explained,
+                swing.loss_per_period - explained,
+            ),
         ]
     )
 
@@ -130,7 +135,7 @@ def bar_matrix(full: bool) -> list[CaseSettings]:
     return listed
 
 
-BAR = Case(
+ELASTIC_BAR = Case(
     name="bar",
     title="Elastic bar that vibrates along its length",
     source=(
@@ -139,38 +144,41 @@ BAR = Case(
     ),
     description="""
     A bar 1 m long, four cells high, of Poisson's ratio 0, so that its height does not matter,
-    floats freely and vibrates in its slowest mode, v = cos(π x/L), with strains up to 0.1 %.
-    A damped sine is fitted to six periods of its displacement in that mode. It should lose nothing;
-    what it does lose is compared with what the smoothing between particles and grid explains.
+    floats freely and vibrates in its slowest mode, v = cos(π x/L), with strains up to 0.1 %. A
+    damped sine is fitted to six periods of its displacement in that mode. It should lose no
+    amplitude; the actual loss is compared with the loss that smoothing between particles and grid
+    explains.
     """,
     quantities=(
         Quantity(
             "frequency",
             "frequency, Hz",
-            bar=0.01,
-            bar_for={"dx": 0.05, "basis": "quadratic", "pattern": "regular"},
+            limit=0.01,
+            limit_for={"dx": 0.05, "basis": "quadratic", "pattern": "regular"},
             order_in="dx",
             min_order=1.8,
         ),
-        Quantity("lost", "part of the amplitude lost per period", order_in="dx"),
+        Quantity("loss_per_period", "share of the amplitude lost per period", order_in="dx"),
         Quantity(
-            "lost_in_theory",
+            "unexplained_loss",
             "loss per period beyond what smoothing explains",
-            bar=1e-3,
-            bar_for={"dx": 0.05},
+            limit=1e-3,
+            limit_for={"dx": 0.05},
         ),
     ),
     matrix=bar_matrix,
     measure=measure_bar,
     remarks="""
-    Frequencies are too low, in second order: at 20 cells by 0.6 % with FLIP, 0.3 % with APIC, with
-    cubic splines by a quarter more. Forces reach the velocities smoothed.
+    At 20 cells frequencies are 0.6 % too low with FLIP and 0.3 % with APIC, because the grid
+    smooths the forces that particles feel; cubic splines add a quarter. The error is of second
+    order.
 
-    What is lost is what the theory says, to a hundredth of a percent of the amplitude at 20 cells.
-    Pure FLIP loses 0.2 % per period there and APIC 0.07 %, less with the third power of dx or more.
-    Whatever is mixed in of PIC acts in every step, however short: the part (1 - a)(k dx)² T/(8 dt)
-    per period T, that is 0.4 % with 0.99, 1.3 % with 0.95 and 21 % with PIC. It halves as the cells
-    do, but doubles as the step is halved alone. Below 5e-5 per period the fit is the limit.
+    The loss agrees with the theory to a hundredth of a percent of the amplitude at 20 cells. Pure
+    FLIP loses 0.2 % per period there and APIC 0.07 %; both losses fall with at least the third
+    power of dx. A share of PIC damps in every step, however short. A FLIP ratio a loses (1 - a)(k
+    dx)² T/(8 dt) per period T, that is 0.4 % with 0.99, 1.3 % with 0.95 and 21 % with PIC. This
+    loss halves with the cells, but doubles if only the step is halved. Losses below 5e-5 per period
+    are not resolved by the fit.
     """,
 )
 
@@ -191,7 +199,7 @@ def cantilever_scene(settings: CaseSettings) -> Scene:
     size = (length + HELD_CELLS * dx, CANTILEVER_HEIGHT)
     shape = Shape.box((face + length - size[0] / 2, CANTILEVER_HEIGHT / 2), size)
     clamp = Obstacle(shape=Shape.plane((face, 0.0), (1.0, 0.0)), condition="sticky")
-    scene = elastic_scene(shape, _material(settings, POISSONS_RATIO), OWN, [clamp])
+    scene = elastic_scene(shape, _material(settings, POISSONS_RATIO), CASE_SETTINGS, [clamp])
     return scene.set("misplaced_snow", "allow")  # the clamp holds what is within it
 
 
@@ -217,7 +225,7 @@ def measure_cantilever(settings: CaseSettings) -> Outcome:
     return drive.outcome(
         [
             relative("frequency", swing.frequency, beam.frequency),
-            Measured("lost", swing.lost, 0.0, swing.lost),
+            Measured("loss_per_period", swing.loss_per_period, 0.0, swing.loss_per_period),
         ]
     )
 
@@ -252,11 +260,11 @@ CANTILEVER = Case(
         Quantity(
             "frequency",
             "frequency, Hz",
-            bar=0.02,
-            bar_for={"dx": 0.025, "transfer": "apic", "grid_offset": 0.0},
+            limit=0.02,
+            limit_for={"dx": 0.025, "transfer": "apic", "grid_offset": 0.0},
             order_in="dx",
         ),
-        Quantity("lost", "part of the amplitude lost per period", order_in="dx"),
+        Quantity("loss_per_period", "share of the amplitude lost per period", order_in="dx"),
     ),
     matrix=cantilever_matrix,
     measure=measure_cantilever,
@@ -283,4 +291,4 @@ def _material(settings: CaseSettings, poissons_ratio: float) -> CaseSettings:
     }
 
 
-CASES = (BAR, CANTILEVER)
+CASES = (ELASTIC_BAR, CANTILEVER)

@@ -7,15 +7,15 @@ that the grid would have without smoothing. A step is
 
     w = V - dt Omega^2 q,  q <- q + dt w,  V <- g V - f dt Omega^2 q.
 
-FLIP with the ratio a hands back the change of velocity, smoothed twice, and of the rest the part a
-as it was: f = s^2, g = 1 - (1 - a)(1 - s^2). With APIC all of w goes to the particles and back,
-with the slope within each cell: f = g = s^2 + (ds/dk)^2/D, D = h^2/4 or h^2/3. The amplitude falls
-by the root of the step's determinant,
+FLIP with the ratio a returns the change of velocity, smoothed twice, and keeps the share a of the
+unresolved rest: f = s^2, g = 1 - (1 - a)(1 - s^2). With APIC all of w goes to the particles and
+back, with the slope within each cell: f = g = s^2 + (ds/dk)^2/D, D = h^2/4 or h^2/3. The amplitude
+falls by the root of the step's determinant,
 
     g - dt^2 Omega^2 (g - f),  Omega^2 = omega^2/f,
 
-that is 1 - (1 - s^2) dt^2 Omega^2 even for pure FLIP: forces move the particles' positions at once,
-but reach their velocities smoothed.
+that is 1 - (1 - s^2) dt^2 Omega^2 even for pure FLIP: forces move the particles' positions without
+smoothing, but change their velocities smoothed.
 """
 
 from __future__ import annotations
@@ -28,14 +28,14 @@ from snowshed.analysis.accuracy.measurements import CaseSettings
 
 @dataclass(frozen=True)
 class Smoothing:
-    """The effect of one way of transferring velocities on a wave of small amplitude.
+    """The effect of a transfer of velocities on a wave of small amplitude.
 
     Attributes
     ----------
     remaining
-        g, the part of the velocity that a step hands on.
+        g, the share of the velocity that remains after a step.
     felt
-        f, the part of the forces that reaches the velocity.
+        f, the share of the forces that changes the velocity.
     """
 
     remaining: float
@@ -72,8 +72,8 @@ class Smoothing:
         lost = (1 - float(settings["flip_ratio"])) * (1 - once**2)
         return cls(remaining=1 - lost, felt=once**2)
 
-    def lost(self, frequency: float, time_step: float) -> float:
-        """Return the part of the amplitude that is lost in a period.
+    def loss_per_period(self, frequency: float, time_step: float) -> float:
+        """Return the share of the amplitude that is lost per period.
 
         Parameters
         ----------

@@ -26,8 +26,8 @@ class Swing:
     decay: float
 
     @property
-    def lost(self) -> float:
-        """The part of its amplitude that it loses in a period."""
+    def loss_per_period(self) -> float:
+        """Share of its amplitude that it loses per period."""
         return -math.expm1(-self.decay / self.frequency)
 
     @classmethod

@@ -40,11 +40,11 @@ class Quantity:
         Key, such as ``"acceleration"``.
     title:
         Name in texts, with the unit if it has one.
-    bar:
+    limit:
         Largest error allowed; `None` where nothing is demanded.
-    bar_for:
-        The settings that the bar is for: every name given here must have this value; None: it must
-        not be given.
+    limit_for:
+        The settings that the limit is for: every name given here must have this value; None: it
+        must not be given.
     order_in:
         The setting whose power law the error follows (``"dx"``, ``"courant_factor"``), if any.
     min_order:
@@ -55,8 +55,8 @@ class Quantity:
 
     name: str
     title: str
-    bar: Optional[float] = None
-    bar_for: Wanted = field(default_factory=dict)
+    limit: Optional[float] = None
+    limit_for: Wanted = field(default_factory=dict)
     order_in: Optional[str] = None
     min_order: Optional[float] = None
     relative: bool = True

@@ -1,4 +1,4 @@
-"""The cost of accuracy: Pareto fronts, and the quickest way to each accuracy."""
+"""The cost of accuracy: Pareto fronts, and the quickest settings for each accuracy."""
 
 from __future__ import annotations
 
@@ -30,12 +30,12 @@ WANTED = (0.10, 0.05, 0.02, 0.01)
 
 @dataclass(frozen=True)
 class Cheapest:
-    """The quickest way to a wanted accuracy; the best there is where none reached it.
+    """The quickest settings for a wanted accuracy; the most accurate ones if none reach it.
 
     Attributes
     ----------
     problem
-        The settings that make the problem.
+        The settings that define the problem.
     error
         Assured by all finer solutions (`assured_errors`).
     """
@@ -66,7 +66,7 @@ def pareto_front(costs: Sequence[float], errors: Sequence[float]) -> Booleans:
 
 
 def by_problem(case: Case, listed: Iterable[Solution]) -> list[tuple[CaseSettings, list[Solution]]]:
-    """Return the problems among solutions, each with all ways in which it was solved."""
+    """Return the problems among solutions, each with all of its solutions."""
     groups: dict[Hashable, tuple[CaseSettings, list[Solution]]] = {}
     for solution in listed:
         problem = problem_of(case, solution.settings)
@@ -77,7 +77,7 @@ def by_problem(case: Case, listed: Iterable[Solution]) -> list[tuple[CaseSetting
 def cheapest(
     table: pd.DataFrame, cases: Iterable[Case], wanted: Sequence[float] = WANTED
 ) -> list[Cheapest]:
-    """Return the quickest way to each accuracy.
+    """Return the quickest settings for each accuracy.
 
     For each quantity with a relative error and each problem that was solved in several ways.
     """

@@ -24,13 +24,15 @@ PATH = click.Path(path_type=Path)
 @click.option(
     "--quick/--full", "quick", default=True, help="About a minute, or some hours.  [default: quick]"
 )
-@click.option("--case", "names", multiple=True, metavar="NAME", help="Only this; may be repeated.")
+@click.option(
+    "--case", "names", multiple=True, metavar="NAME", help="Run only this case; repeatable."
+)
 @click.option(
     "--stress/--no-stress",
     default=None,
     help="Whether to run the stress suite too.  [default: unless there is a --case]",
 )
-@click.option("--seed", default=1, help="Of the stress suite's random scenes.  [default: 1]")
+@click.option("--seed", default=1, help="Random seed of the stress suite's scenes.  [default: 1]")
 @click.option("--resume", is_flag=True, help="Keep what the folder holds, and measure the rest.")
 @click.option(
     "--record", "recorded", type=PATH, help="File to keep the measurements in for --accuracy."
@@ -65,7 +67,7 @@ def validate(
 
     cases = load_cases(names)
     if recorded is not None:
-        load_recorded(recorded)  # so that a damaged file is known before hours have passed
+        load_recorded(recorded)  # a damaged file must be reported before hours have passed
     stress = not names if stress is None else stress
     open_folder = ValidationFolder.reopen if resume else ValidationFolder.create
     results = open_folder(folder)
@@ -78,13 +80,13 @@ def validate(
         command = _resume_command(quick, names, stress, seed, folder)
         raise Stopped(f"interrupted; resume with: {command}") from None
     validation = Validation(cases, measurements, full=not quick, stress=stressed)
-    bars = write_report(validation, folder)
+    criteria = write_report(validation, folder)
     if not quiet:
-        from validation.framework.display import print_bars
+        from validation.framework.display import print_criteria
 
-        print_bars(bars, cases)
+        print_criteria(criteria, cases)
         click.echo(f"report in {folder / 'validation.html'}")
-    wrong = problems(validation, bars)
+    wrong = problems(validation, criteria)
     for line in wrong:
         click.echo(f"error: {line}", err=True)
     return int(bool(wrong))

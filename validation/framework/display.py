@@ -1,4 +1,4 @@
-"""The output of ``python -m validation``: the progress bar, and which bars hold."""
+"""The output of ``python -m validation``: the progress display, and which criteria hold."""
 
 from __future__ import annotations
 
@@ -10,20 +10,20 @@ from snowshed.base.progress import Reporter
 from snowshed.cli.progress import progress_bar
 from snowshed.cli.terminal import plain_table, wide_console
 from validation.framework import sections
-from validation.framework.bars import Bar as Demand
 from validation.framework.case import Case
+from validation.framework.criteria import Criterion
 
 STYLES = {"holds": "none", "does not hold": "bold red", "not measured": "dim"}
 
 
 def validation_bar(*, quiet: bool) -> AbstractContextManager[Optional[Reporter]]:
-    """Show one bar on stderr, which vanishes at the end."""
+    """Show one progress display on stderr, which vanishes at the end."""
     return progress_bar(quiet=quiet, width=24, transient=True)
 
 
-def print_bars(bars: Sequence[Demand], cases: Sequence[Case]) -> None:
+def print_criteria(criteria: Sequence[Criterion], cases: Sequence[Case]) -> None:
     """Print the demands and their results, if there are any."""
-    grid = sections.bars_grid(bars, cases)
+    grid = sections.criteria_grid(criteria, cases)
     if not grid.rows:
         return
     table = plain_table("What holds", padding=(0, 1, 0, 0))

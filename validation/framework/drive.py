@@ -32,7 +32,7 @@ def apply_settings(
     settings
         Names without their section, and values.
     own
-        Names that are the case's own business and left out.
+        Names of settings that belong to the case, not to the scene; left out.
     sleeping
         Whether snow at rest sleeps as it does by default.
 
@@ -98,7 +98,7 @@ class TimedEventDriver(drive.EventDriver):
         self.wall_s += time.perf_counter() - started
 
     def outcome(self, measured: Sequence[Measured]) -> Outcome:
-        """Return what was measured together with what it cost."""
+        """Return the measurements with their cost."""
         return Outcome(
             measured=measured,
             wall_s=self.wall_s,

@@ -33,14 +33,14 @@ if TYPE_CHECKING:
 #: For a setting's name, how each of its values is drawn.
 StylesOfValues = Mapping[str, Mapping[Optional[Value], Any]]
 
-#: The settings that make a problem, and the ways in which it was solved.
+#: The settings that define a problem, and its solutions.
 Problem = Tuple[CaseSettings, Sequence[Solution]]
 
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
 DASHES = ("-", (0, (5, 2)), (0, (1, 1.4)), (0, (6, 1.5, 1, 1.5)), (0, (9, 3)))
 #: Settings that get colours; others get markers and dashes.
 FIRST = ("transfer", "law", "between", "dimension", "events", "basis", "precision")
-#: Points on a Pareto front closer than this part are not both named.
+#: Of two points on a Pareto front closer than this share only one gets a letter.
 NEARLY = 0.1
 #: Problems of a quantity that get a Pareto front, at most.
 MAX_FRONTS = 3
@@ -51,7 +51,7 @@ ZERO = 1e-17
 
 
 class KeyLine(NamedTuple):
-    """Text beside a diagram about a point; without a letter, about those that follow."""
+    """Text beside a diagram about a point; without a letter, a heading of the following texts."""
 
     letter: str
     cost: str
@@ -86,7 +86,7 @@ class LineStyles:
         choices
             All choices of settings, so that a value looks the same in every figure of a case.
         drawn
-            Those that are drawn: the settings in which they differ are told apart.
+            Choices that are drawn; styles show the settings in which they differ.
         along
             Settings that the lines distinguish. Without any, dashes have no meaning.
         """
@@ -111,7 +111,7 @@ class LineStyles:
         """Return the entries of a legend: every value that is drawn."""
         kinds = (("color", self.colours), ("marker", self.markers), ("linestyle", self.dashes))
         return [
-            _entry(keyword, shape, setting_labels.setting(name, value))
+            _entry(keyword, shape, setting_labels.setting_label(name, value))
             for keyword, styles in kinds
             for name, shapes in styles.items()
             for value, shape in shapes.items()
@@ -222,7 +222,7 @@ def _draw_convergence(
 
 
 def _draw_slope(axes: Axes, series: Sequence[Convergence], least: Optional[float]) -> None:
-    """Draw a line with the slope that is demanded, or else a whole number near what there is."""
+    """Draw a line with the demanded slope, or else with the nearest whole number."""
     orders = [convergence.order for convergence in series if np.isfinite(convergence.order)]
     order = least or max(1.0, round(float(np.median(orders)))) if orders else 0.0
     if not order:
@@ -251,7 +251,7 @@ def _draw_work_precision(
     lines: list[KeyLine] = []
     for problem, solutions in _with_fronts(problems):
         if names:
-            lines.append(KeyLine("", setting_labels.settings(problem, names), ""))
+            lines.append(KeyLine("", setting_labels.settings_label(problem, names), ""))
         lines += _draw_front(axes, quantity, solutions, letters)
     return lines
 
@@ -289,7 +289,9 @@ def _draw_front(
         _name_point(axes, letter, times[i], errors[i])
         error = quantity.error_text(errors[i])
         cost = f"{formatting.duration(times[i])}, {error}"
-        lines.append(KeyLine(letter, cost, setting_labels.settings(solutions[i].settings, names)))
+        lines.append(
+            KeyLine(letter, cost, setting_labels.settings_label(solutions[i].settings, names))
+        )
     return lines
 
 
@@ -354,7 +356,7 @@ def _name_point(axes: Axes, letter: str, time: float, error: float) -> None:
 
 
 def _write_key(axes: Axes, lines: Sequence[KeyLine]) -> None:
-    """List what lies on the Pareto fronts."""
+    """List the points on the Pareto fronts."""
     axes.axis("off")
     if not lines:
         return
@@ -371,14 +373,14 @@ def _write_key(axes: Axes, lines: Sequence[KeyLine]) -> None:
 
 
 def _errors_on(axes: Axes, quantity: Quantity) -> None:
-    """Label the axis of the errors, and draw the bar."""
+    """Label the axis of the errors, and draw the limit."""
     axes.set_ylabel("error, relative" if quantity.relative else "error")
     low, high = _widened(*axes.get_ylim())
     axes.set_ylim(low, high)
     in_percent = quantity.relative and low > formatting.SMALL
     _label(axes.yaxis, formatting.percent if in_percent else formatting.number)
-    if quantity.bar is not None:
-        axes.axhline(quantity.bar, color=BODY, linewidth=1.0, linestyle=(0, (6, 3)), zorder=1)
+    if quantity.limit is not None:
+        axes.axhline(quantity.limit, color=BODY, linewidth=1.0, linestyle=(0, (6, 3)), zorder=1)
 
 
 def _label(axis: Axis, words: Callable[[float], str]) -> None:

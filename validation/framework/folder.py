@@ -1,8 +1,8 @@
 """The folder of a validation while its cases are measured.
 
 ==================== ========================================================================
-measurements.jsonl   every measurement, written the moment it is there
-stress.json          the runs of the stress suite, once it is through
+measurements.jsonl   every measurement, written as soon as it is made
+stress.json          the runs of the stress suite, once it has ended
 ==================== ========================================================================
 
 `validation.report` adds the report.

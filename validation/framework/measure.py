@@ -1,7 +1,7 @@
 """Measuring every case over its matrix, one measurement after another.
 
-Nothing runs at the same time, because times are measured. A measurement that fails becomes a result
-that says why.
+Measurements never run at once, because times are measured. The result of a failed measurement
+states the reason.
 """
 
 from __future__ import annotations
@@ -88,7 +88,7 @@ def measure_cases(
             if progress is not None:
                 fraction, left_s = estimate.after(done)
                 before = len(tasks) - len(due)
-                label = f"{task.case.name}: {setting_labels.settings(task.settings)}"
+                label = f"{task.case.name}: {setting_labels.settings_label(task.settings)}"
                 doing = label[:MAX_LABEL_LENGTH]
                 report = Progress(
                     fraction, before + done, len(tasks), "measured", doing, left_s=left_s

@@ -1,7 +1,7 @@
 """Measurements as lines of a file that grows.
 
-A measurement is written the moment it is there, so an interrupted suite loses nothing, and what has
-been measured is not measured again.
+Every measurement is written as soon as it is made, so an interrupted suite loses nothing and
+repeats none.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ class MeasurementFile:
         Raises
         ------
         InputError
-            If a line that is whole holds none, naming file and line.
+            If a complete line is no measurement; the error names file and line.
         """
         lines = self._content().split(b"\n")[:-1]
         locations = [f"{self.path}:{number}" for number in range(1, len(lines) + 1)]
@@ -58,7 +58,7 @@ class MeasurementFile:
             with self.path.open("ab") as file:
                 file.truncate(len(self._content()))
                 file.write(line.encode())
-        except OSError as error:  # writing does not say in which file
+        except OSError as error:  # errors of writing do not name the file
             error.filename = error.filename or str(self.path)
             raise
 

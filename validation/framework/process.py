@@ -1,7 +1,7 @@
-"""Measures each time in a fork of a process that has computed nothing.
+"""Makes every measurement in a fork of a process that has computed nothing.
 
-A measurement must not see what another left behind, least of all its memory, yet starting Python
-and importing libraries takes longer than many a measurement.
+No measurement may depend on the memory or the caches of another. A new process of Python for each
+would take longer than most measurements.
 """
 
 from __future__ import annotations

@@ -3,7 +3,7 @@
 ==================== ========================================================================
 validation.html      the report
 results.csv          one row per measured quantity, from `to_table`
-results.json         the same, with orders of convergence, cheapest settings and bars
+results.json         the same, with orders of convergence, cheapest settings and criteria
 stress.csv           one row per run of the stress suite, if it ran
 figures/             the figures of the report (.png)
 ==================== ========================================================================
@@ -27,10 +27,10 @@ from snowshed.io.atomic import write_text
 from snowshed.io.csv_table import write_csv
 from snowshed.plot.html_page import template, write_pictures
 from validation.framework import sections
-from validation.framework.bars import Bar, compare
 from validation.framework.case import Case
 from validation.framework.cheapest import Cheapest, cheapest
 from validation.framework.convergence import convergences
+from validation.framework.criteria import Criterion, compare
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -42,7 +42,7 @@ TEMPLATE = "validation.html.j2"
 
 @dataclass(frozen=True)
 class Stress:
-    """Results of the stress suite: one row per run, and the tables that sum them up."""
+    """Results of the stress suite: one row per run, and summary tables."""
 
     runs: pd.DataFrame
     tables: Sequence[SummaryTable]
@@ -73,7 +73,7 @@ class Validation:
     stress: Optional[Stress] = None
 
     def facts(self) -> dict[str, str]:
-        """Return what made the results."""
+        """Return the origin of the results."""
         failed = sum(1 for measurement in self.measurements if measurement.failure)
         return {
             "suite": "full" if self.full else "quick",
@@ -87,10 +87,10 @@ class Validation:
         }
 
 
-def write_report(validation: Validation, folder: Path) -> list[Bar]:
+def write_report(validation: Validation, folder: Path) -> list[Criterion]:
     """Write the report's files into a folder; return the demands and their results."""
     table = to_table(validation.measurements)
-    bars = compare(table, validation.cases)
+    criteria = compare(table, validation.cases)
     answers = cheapest(table, validation.cases)
     about_cases = [
         sections.section(case, [m for m in validation.measurements if m.case == case.name], table)
@@ -99,25 +99,26 @@ def write_report(validation: Validation, folder: Path) -> list[Bar]:
     pictures = [picture for about in about_cases for picture in about.pictures]
     write_pictures(pictures, folder / "figures")
     write_csv(table, folder / "results.csv", float_format="%.9g")
-    write_text(folder / "results.json", json_text(validation, table, bars, answers))
+    write_text(folder / "results.json", json_text(validation, table, criteria, answers))
     if validation.stress is not None:
         write_csv(validation.stress.runs, folder / "stress.csv", float_format="%.9g")
-    page = render(validation, bars, answers, about_cases)
+    page = render(validation, criteria, answers, about_cases)
     write_text(folder / "validation.html", page)
-    return bars
+    return criteria
 
 
-def problems(validation: Validation, bars: Sequence[Bar]) -> list[str]:
-    """Return everything that is not as it should be, a line each."""
+def problems(validation: Validation, criteria: Sequence[Criterion]) -> list[str]:
+    """Return every failure, a line each."""
     titles = {case.name: case.title for case in validation.cases}
     lines = [
-        f"{titles[bar.case]}, {bar.quantity.title}: demanded {sections.demanded(bar)}, "
-        f"worst {sections.worst_error(bar)}, {setting_labels.settings(bar.settings)}"
-        for bar in bars
-        if bar.holds is False
+        f"{titles[criterion.case]}, {criterion.quantity.title}: "
+        f"demanded {sections.demanded(criterion)}, worst {sections.worst_error(criterion)}, "
+        f"{setting_labels.settings_label(criterion.settings)}"
+        for criterion in criteria
+        if criterion.holds is False
     ]
     lines += [
-        f"{titles[measurement.case]}, {setting_labels.settings(measurement.settings)}: "
+        f"{titles[measurement.case]}, {setting_labels.settings_label(measurement.settings)}: "
         f"{measurement.failure}"
         for measurement in validation.measurements
         if measurement.failure
@@ -129,16 +130,16 @@ def problems(validation: Validation, bars: Sequence[Bar]) -> list[str]:
 
 def render(
     validation: Validation,
-    bars: Sequence[Bar],
+    criteria: Sequence[Criterion],
     answers: Sequence[Cheapest],
     about_cases: Sequence[sections.Section],
 ) -> str:
     """Return the report as HTML."""
     return template("validation.framework", TEMPLATE).render(
         facts=validation.facts(),
-        counts=Counter(bar.holds for bar in bars),
-        problems=problems(validation, bars),
-        bars=sections.bars_grid(bars, validation.cases),
+        counts=Counter(criterion.holds for criterion in criteria),
+        problems=problems(validation, criteria),
+        criteria=sections.criteria_grid(criteria, validation.cases),
         cheapest=sections.cheapest_grid(answers, validation.cases, validation.measurements),
         sections=about_cases,
         stress=validation.stress,
@@ -149,14 +150,15 @@ def render(
 def json_text(
     validation: Validation,
     table: pd.DataFrame,
-    bars: Sequence[Bar],
+    criteria: Sequence[Criterion],
     answers: Sequence[Cheapest],
 ) -> str:
     """Return the results as JSON; numbers that are not finite are null."""
     data = {
         "about": validation.facts(),
-        "bars": [
-            {**asdict(bar), "quantity": bar.quantity.name, "holds": bar.holds} for bar in bars
+        "criteria": [
+            {**asdict(criterion), "quantity": criterion.quantity.name, "holds": criterion.holds}
+            for criterion in criteria
         ],
         "cheapest": [asdict(answer) for answer in answers],
         "orders": _orders(validation, table),

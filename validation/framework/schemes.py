@@ -1,4 +1,4 @@
-"""Settings that say how a problem is solved; all others make another problem.
+"""Settings of the method, which decide how a problem is solved; all others define the problem.
 
 An accuracy may be bought with a better scheme, not with an easier problem, so only ways of solving
 the same problem are compared with each other.
@@ -15,7 +15,7 @@ from validation.framework.case import Case
 
 
 def problem_of(case: Case, settings: CaseSettings) -> CaseSettings:
-    """Return the settings that make the problem.
+    """Return the settings that define the problem.
 
     Examples
     --------

@@ -15,10 +15,10 @@ from snowshed.analysis.accuracy.solutions import Solution, rows_of, settings_key
 from snowshed.base import formatting
 from snowshed.plot.html_page import HtmlTable, Picture
 from validation.framework import figures
-from validation.framework.bars import Bar
 from validation.framework.case import Case, Quantity, alternatives
 from validation.framework.cheapest import Cheapest, by_problem
 from validation.framework.convergence import Convergence, convergences
+from validation.framework.criteria import Criterion
 from validation.framework.schemes import problem_of, varying
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ COSTS: Mapping[str, Callable[[MeasuredSolution], str]] = {
     "10⁶ updates/s": lambda measurement: formatting.number(measurement.updates_per_s / 1e6),
     "memory, MB": lambda measurement: formatting.number(measurement.peak_memory_mb),
 }
-#: Stands for what the cell to the left says.
+#: Stands for the text of the cell to the left.
 SAME = "←"
 CONVERGENCE = "Dashed: the slope of the order named. Red line, if any: the largest allowed error."
 WORK_PRECISION = (
@@ -91,7 +91,7 @@ def section(case: Case, measurements: Sequence[MeasuredSolution], table: pd.Data
         case=case,
         paragraphs=_paragraphs(case.description),
         remarks=_paragraphs(case.remarks),
-        common=setting_labels.settings(shared),
+        common=setting_labels.settings_label(shared),
         results=results_grid(case, measurements),
         orders=orders_grid(case, series),
         extremes=extremes_grid(case, solution_lists),
@@ -134,7 +134,7 @@ def orders_grid(case: Case, series: Mapping[str, Sequence[Convergence]]) -> Html
     rows = [
         [
             titles[name],
-            setting_labels.settings(
+            setting_labels.settings_label(
                 convergence.settings, varying([other.settings for other in listed])
             )
             or "all",
@@ -162,7 +162,7 @@ def extremes_grid(case: Case, solution_lists: Mapping[str, Sequence[Solution]]) 
         ends = [
             (
                 quantity.error_text(abs(solution.error)),
-                setting_labels.settings(solution.settings, names),
+                setting_labels.settings_label(solution.settings, names),
             )
             for solution in (listed[0], listed[-1])
         ]
@@ -172,53 +172,53 @@ def extremes_grid(case: Case, solution_lists: Mapping[str, Sequence[Solution]]) 
     return HtmlTable(head, rows, "lrlrrl")
 
 
-def bars_grid(bars: Sequence[Bar], cases: Sequence[Case]) -> HtmlTable:
+def criteria_grid(criteria: Sequence[Criterion], cases: Sequence[Case]) -> HtmlTable:
     """Return the demands and their results, those that do not hold first."""
     titles = {case.name: case.title for case in cases}
     rank = {False: 0, True: 1, None: 2}
     rows = [
         [
-            {True: "holds", False: "does not hold", None: "not measured"}[bar.holds],
-            titles[bar.case],
-            bar.quantity.title,
-            meant(bar),
-            demanded(bar),
-            worst_error(bar),
-            setting_labels.settings(bar.settings),
+            {True: "holds", False: "does not hold", None: "not measured"}[criterion.holds],
+            titles[criterion.case],
+            criterion.quantity.title,
+            meant(criterion),
+            demanded(criterion),
+            worst_error(criterion),
+            setting_labels.settings_label(criterion.settings),
         ]
-        for bar in sorted(bars, key=lambda bar: rank[bar.holds])
+        for criterion in sorted(criteria, key=lambda criterion: rank[criterion.holds])
     ]
     head = ("", "case", "quantity", "for", "demanded", "worst", "with")
     return HtmlTable(head, rows, "llllrrl")
 
 
-def meant(bar: Bar) -> str:
-    """Return the text for the settings that a bar is for."""
+def meant(criterion: Criterion) -> str:
+    """Return the text for the settings that a criterion is for."""
     wanted = [
         " or ".join(
-            setting_labels.setting(name, alternative) for alternative in alternatives(value)
+            setting_labels.setting_label(name, alternative) for alternative in alternatives(value)
         )
-        for name, value in bar.meant.items()
+        for name, value in criterion.meant.items()
     ]
     return ", ".join(wanted) or "all settings"
 
 
-def demanded(bar: Bar) -> str:
+def demanded(criterion: Criterion) -> str:
     """Return the text for a demand."""
-    if bar.kind == "order":
-        return f"order ≥ {bar.demanded:g} in {bar.quantity.order_in}".replace("_", " ")
-    return f"≤ {bar.quantity.error_text(bar.demanded)}"
+    if criterion.kind == "order":
+        return f"order ≥ {criterion.demanded:g} in {criterion.quantity.order_in}".replace("_", " ")
+    return f"≤ {criterion.quantity.error_text(criterion.demanded)}"
 
 
-def worst_error(bar: Bar) -> str:
+def worst_error(criterion: Criterion) -> str:
     """Return the text for the worst result."""
-    if bar.worst is None:
+    if criterion.worst is None:
         return formatting.MISSING
-    if np.isnan(bar.worst):
+    if np.isnan(criterion.worst):
         return "failed"
-    if bar.kind == "order":
-        return _order(bar.worst)
-    return bar.quantity.error_text(bar.worst)
+    if criterion.kind == "order":
+        return _order(criterion.worst)
+    return criterion.quantity.error_text(criterion.worst)
 
 
 def cheapest_grid(
@@ -306,7 +306,7 @@ def _compared(
 
     There must be several solutions of one problem, and a measure of a small error.
     """
-    measured_by = quantity.relative or quantity.order_in or quantity.bar is not None
+    measured_by = quantity.relative or quantity.order_in or quantity.limit is not None
     return bool(measured_by) and any(len(group) > 1 for _, group in problems)
 
 
@@ -344,7 +344,7 @@ def _cheapest_rows(
             [
                 "" if rows else case.title,
                 titles[group[0].quantity],
-                setting_labels.settings(group[0].problem, problems),
+                setting_labels.settings_label(group[0].problem, problems),
                 *(SAME if text == left else text for left, text in zip(["", *texts], texts)),
             ]
         )
@@ -354,18 +354,18 @@ def _cheapest_rows(
 def _cheapest_cell(answer: Cheapest, solution_settings: Sequence[str]) -> str:
     if not answer.reached:
         return f"not reached; best {formatting.percent(answer.error)}"
-    with_what = setting_labels.settings(answer.solution.settings, solution_settings)
+    with_what = setting_labels.settings_label(answer.solution.settings, solution_settings)
     return f"{formatting.duration(answer.solution.wall_s)}: {with_what}".rstrip(": ")
 
 
 def _cell(settings: CaseSettings, name: str) -> str:
     value: Optional[Any] = settings.get(name)
     if value is None:
-        return setting_labels.unset(name)
+        return setting_labels.missing_label(name)
     if isinstance(value, bool):
         return "yes" if value else "no"
     if name == "dimension":
-        return setting_labels.setting(name, value)
+        return setting_labels.setting_label(name, value)
     return value.replace("_", " ") if isinstance(value, str) else formatting.number(value, 4)
 
 

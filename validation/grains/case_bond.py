@@ -13,7 +13,7 @@ from validation.grains.loading import grains_drive, load_all, residual
 VOXEL = 5e-5  # m
 WIDE, HIGH = 5, 6  # voxels; the bond lies in the middle
 MODULUS, RATIO, STRENGTH = 1e9, 0.3, 1e6  # Pa, 1, Pa
-OWN = frozenset({"test", "speed"})
+CASE_SETTINGS = frozenset({"test", "speed"})
 DEFAULTS: CaseSettings = {
     "test": "pull",
     "speed": 0.005,
@@ -26,12 +26,12 @@ DEFAULTS: CaseSettings = {
     "shear_strength": STRENGTH,
     "friction": 0.0,
 }
-#: Springs in a row, at both plates and in the bond; how far each gives way, m/Pa: (2 r)²/(E r).
+#: Springs in a row, at both plates and in the bond; compliance of each, m/Pa: (2 r)²/(E r).
 SPRINGS, COMPLIANCE = 3, 4 * (VOXEL / 2) / MODULUS
 
 
 def stage_of(test: str, speed: float) -> LoadingStage:
-    """Return what loads the bond until it breaks, or elastically."""
+    """Return the stage that loads the bond until it breaks, or elastically."""
     to_break = STRENGTH * SPRINGS * COMPLIANCE / (HIGH * VOXEL)
     if test == "pull":
         return LoadingStage(kind="stretch", speed=speed, strain=1.3 * to_break)
@@ -49,7 +49,7 @@ def measure(settings: CaseSettings) -> Outcome:
     if test == "shear":  # it tilts no further than its springs let it, and breaks in shear alone
         settings["tensile_strength"] = 1e3 * STRENGTH
     stages = [stage_of(test, float(settings["speed"]))]
-    drive = grains_drive(labels, VOXEL, stages, settings, OWN)
+    drive = grains_drive(labels, VOXEL, stages, settings, CASE_SETTINGS)
     curve = load_all(drive, stages, HIGH * VOXEL)
     missing = residual(curve)
     measured = [Measured("residual", missing, 0.0, missing)]
@@ -89,14 +89,14 @@ CASE = Case(
     stress are compared, and the energy residual at the end relative to the work of the plate.
     """,
     quantities=(
-        Quantity("strength", "strength, Pa", bar=0.02, bar_for={"speed": 0.005}),
-        Quantity("modulus", "modulus, Pa", bar=0.01, bar_for={"speed": 0.005}),
-        Quantity("residual", "energy that is missing", bar=0.01),
+        Quantity("strength", "strength, Pa", limit=0.02, limit_for={"speed": 0.005}),
+        Quantity("modulus", "modulus, Pa", limit=0.01, limit_for={"speed": 0.005}),
+        Quantity("residual", "energy that is missing", limit=0.01),
     ),
     matrix=matrix,
     measure=measure,
     remarks="""
-    The stress is that of a moment, so it swings with the waves that the plate's start sends through
-    the blocks, in proportion to the speed and to the root of the scaled density.
+    The stress is instantaneous, so it oscillates with the waves that the plate's start sends
+    through the blocks, in proportion to the speed and to the root of the scaled density.
     """,
 )

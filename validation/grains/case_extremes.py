@@ -14,7 +14,7 @@ from snowshed.scene.loading import LoadingStage
 from validation.framework.case import Case, Outcome, Quantity
 from validation.grains.loading import GRAIN, grains_drive, snow_labels
 
-OWN = frozenset({"sample", "kind", "speed", "strain", "steps_to_take"})
+CASE_SETTINGS = frozenset({"sample", "kind", "speed", "strain", "steps_to_take"})
 STEPS = 200
 VOXEL = GRAIN / 4
 
@@ -81,11 +81,11 @@ def measure(settings: CaseSettings) -> Outcome:
     """Take some steps, and count numbers that are not finite."""
     kind, strain = str(settings["kind"]), float(settings["strain"])
     stage = LoadingStage(kind=kind, speed=float(settings["speed"]), strain=strain)  # type: ignore[arg-type]
-    drive = grains_drive(SAMPLES[str(settings["sample"])], VOXEL, [stage], settings, OWN)
+    drive = grains_drive(SAMPLES[str(settings["sample"])], VOXEL, [stage], settings, CASE_SETTINGS)
     stopped = 0.0
     try:
         drive.step(int(settings["steps_to_take"]))
-    except SimulationError:  # it names its cause, and the grains are as they were
+    except SimulationError:  # the error names its cause, and the grains are unchanged
         stopped = 1.0
     energies = [value for name, value in drive.core.energy().items() if name.endswith("_j")]
     spheres = drive.core.grains_spheres()[0]
@@ -119,18 +119,18 @@ CASE = Case(
     Snow, a single voxel, a block, two balls that touch nothing, grains of one voxel and a layer of
     one voxel are compressed, stretched, sheared, pressed from all sides and penetrated; and snow is
     compressed with stiffness, strength, friction, density, damping, time step, speed and scaled
-    inertia at the extremes of what is allowed, some by nine tenths of its height. No coordinate and
-    no energy may be other than finite. A test may stop with an error that names its cause.
+    inertia at the extremes of what is allowed, some by nine tenths of its height. All coordinates
+    and energies must be finite. A test may stop with an error that names its cause.
     """,
     quantities=(
-        Quantity("unsound", "numbers that are not finite", bar=0.0, relative=False),
+        Quantity("unsound", "numbers that are not finite", limit=0.0, relative=False),
         Quantity("stopped", "tests that stopped with an error", relative=False),
     ),
     matrix=matrix,
     measure=measure,
     remarks="""
-    Spheres that are pressed through each other push on to the far side: the contact law does not
-    know inside from outside. Such a test goes on with numbers that mean nothing; that the overlap
-    is large beside the spheres shows in the stress, which is far above the strength of ice.
+    Spheres that are pressed past each other's centres are pushed apart on the far side, because the
+    contact law depends on the distance alone. Such a test continues with meaningless values. The
+    stress shows this, because it is then far above the strength of ice.
     """,
 )

@@ -1,4 +1,4 @@
-"""Synthetic snow that is compressed: what the numerical settings do to its stress."""
+"""Synthetic snow that is compressed: the effect of numerical settings on its stress."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from validation.grains.loading import (
 )
 
 STRAIN = 0.05
-OWN = frozenset({"across", "voxels", "speed", "seed"})
+CASE_SETTINGS = frozenset({"across", "voxels", "speed", "seed"})
 DEFAULTS: CaseSettings = {
     "across": 3,
     "voxels": 5,
@@ -36,7 +36,7 @@ def measure(settings: CaseSettings) -> Outcome:
     across, voxels = int(settings["across"]), int(settings["voxels"])
     labels = snow_labels(across, voxels, int(settings["seed"]))
     stages = [LoadingStage(kind="compress", speed=float(settings["speed"]), strain=STRAIN)]
-    drive = grains_drive(labels, GRAIN / voxels, stages, settings, OWN)
+    drive = grains_drive(labels, GRAIN / voxels, stages, settings, CASE_SETTINGS)
     curve = load_all(drive, stages, across * GRAIN)
     stress, missing = mean_stress(curve, STRAIN - 0.01, STRAIN), residual(curve)
     between = abs(
@@ -81,13 +81,14 @@ CASE = Case(
     """,
     quantities=(
         Quantity("stress", "mean stress from 4 to 5 % strain, Pa"),
-        Quantity("residual", "energy that is missing", bar=0.005),
+        Quantity("residual", "energy that is missing", limit=0.005),
         Quantity("bottom", "stress on the bottom plate over that on the top plate"),
     ),
     matrix=matrix,
     measure=measure,
     remarks="""
-    Without gravity the equations know the scaled density s and the speed v only as s v². Doubling
-    the speed costs as much error as four times the density, and saves as much time.
+    Without gravity the equations contain the scaled density s and the speed v only as s v².
+    Doubling the speed therefore has the same error as four times the density, and saves the same
+    time.
     """,
 )

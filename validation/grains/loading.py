@@ -1,4 +1,4 @@
-"""Snow of grains for the cases: one microstructure on voxels of any size, and what loads it."""
+"""Snow of grains for the cases: one microstructure on voxels of any size, and its loading tests."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def grains_drive(
     settings
         Parameters of `GrainsSettings`; one thread computes.
     own
-        Names in `settings` that are the case's own business.
+        Names of settings that belong to the case, not to the method.
     cone_radius
         Radius of the cone in stages that penetrate, m.
     """

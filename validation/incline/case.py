@@ -16,7 +16,7 @@ from validation.framework.drive import TimedEventDriver, absolute, apply_setting
 TILT = 40.0  # degrees
 THICKNESS, WIDTH = 0.05, 0.1  # m; the width in 3D only
 #: Settings of a slab that are no parameters of the scene.
-OWN = frozenset({"friction", "condition", "length", "speed"})
+CASE_SETTINGS = frozenset({"friction", "condition", "length", "speed"})
 
 DEFAULTS: CaseSettings = {
     "dimension": 2,
@@ -57,7 +57,7 @@ def slab_scene(settings: CaseSettings, tilt: float) -> Scene:
         condition=cast(Condition, settings["condition"]),
         speed=float(settings.get("speed", 0.0)),
     )
-    return apply_settings(scene, settings, OWN)
+    return apply_settings(scene, settings, CASE_SETTINGS)
 
 
 class Sliding:
@@ -89,12 +89,12 @@ class Sliding:
 
 #: The time over which acceleration is averaged, s; before it, contact sets in.
 WINDOW = (0.1, 0.3)
-#: From when on a slab that was thrown is watched as it stops, s.
+#: Time from which the speed of a thrown slab after stopping is measured, s.
 CONTACT = 0.05
 
 
 def measure_slab(settings: CaseSettings) -> Outcome:
-    """Let a slab slide where friction cannot hold it; elsewhere watch it stop, and stay."""
+    """Measure a slab that slides; if friction holds it, measure how it stops and stays."""
     friction = float(settings["friction"])
     sliding = Sliding(settings, TILT)
     exact = sliding.incline.coulomb(friction)
@@ -113,7 +113,7 @@ def _slide(sliding: Sliding, friction: float) -> Iterator[Measured]:
 
 
 def _stop(sliding: Sliding, deceleration: float, settings: CaseSettings) -> Iterator[Measured]:
-    """Contact takes some time to set in, so counting starts a little later than the throw."""
+    """Contact takes some time to develop, so measuring starts a little after the throw."""
     sliding.drive.run_to(CONTACT)
     speed, place = sliding.speed, sliding.place
     sliding.drive.run_to(CONTACT + 1.2 * max(speed, 0.0) / deceleration + 0.1)
@@ -124,7 +124,7 @@ def _stop(sliding: Sliding, deceleration: float, settings: CaseSettings) -> Iter
 
 
 def slab_matrix(full: bool) -> list[CaseSettings]:
-    """Return the trap of the usual nodal rule, and in full variations of method and resolution."""
+    """Return the friction at which the usual nodal rule fails, and in full other variations."""
     slides = (0.0, 0.3, 0.6, 0.8)
     trap: CaseSettings = {**DEFAULTS, "length": 2.0, "speed": 0.0}
     short: CaseSettings = {**trap, "length": 0.25}
@@ -147,26 +147,27 @@ SLAB = Case(
     title="Slab on an incline with Coulomb friction",
     source="Coulomb's law for a block: acceleration g (sin φ - μ cos φ); stopping in v²/(2 a)",
     description="""
-    A slab 5 cm thick on a plane of 40 degrees, 2 m long unless another length is given. Below
-    tan 40° = 0.84 friction cannot hold it: its mean acceleration from 0.1 to 0.3 s is compared with
-    Coulomb's, and from it follows the friction that acted. Above, it must stay where it is; thrown
-    at 1 m/s, it must stop after the right distance.
+    A slab 5 cm thick on a plane of 40 degrees, 2 m long unless another length is given. With a
+    friction below tan 40° = 0.84 it slides: its mean acceleration from 0.1 to 0.3 s is compared
+    with Coulomb's, and gives the friction that acted. With a higher friction it must stay in place,
+    or, if thrown at 1 m/s, stop after the right distance.
 
-    This slab is a trap. It vibrates through its thickness as it slides, and the usual rule, which
-    takes friction from the inward part of each step's normal impulse, holds it at μ = 0.6 already.
+    This slab is a hard test. It vibrates through its thickness as it slides, and the usual rule,
+    which takes friction from the inward part of each step's normal impulse, holds it at μ = 0.6
+    already.
     """,
     quantities=(
         Quantity(
-            "acceleration", "acceleration, m/s²", bar=0.01, bar_for={"dx": 0.01, "speed": 0.0}
+            "acceleration", "acceleration, m/s²", limit=0.01, limit_for={"dx": 0.01, "speed": 0.0}
         ),
-        Quantity("effective_friction", "friction that acted", bar=0.01, bar_for={"speed": 0.0}),
+        Quantity("effective_friction", "friction that acted", limit=0.01, limit_for={"speed": 0.0}),
         Quantity(
             "stopping_distance",
             "stopping distance, m",
-            bar=0.01,
-            bar_for={"dx": 0.01, "model": "elastic"},
+            limit=0.01,
+            limit_for={"dx": 0.01, "model": "elastic"},
         ),
-        Quantity("creep", "speed after stopping, m/s", bar=1e-3, relative=False),
+        Quantity("creep", "speed after stopping, m/s", limit=1e-3, relative=False),
     ),
     matrix=slab_matrix,
     measure=measure_slab,
@@ -175,20 +176,20 @@ SLAB = Case(
     error of 0.04 % in friction is one of 1 % in acceleration. Seedings differ by that much there.
 
     Fast slabs meet too little friction. Friction follows the normal force with a delay of 40
-    elastic time steps, 2.4 ms at dx 1 cm, and what nodes still owe is lost once the slab has left
-    them. A slab 25 cm long loses 0.1 % of its friction at 1 m/s, 0.5 % at 3 m/s and 4 % at
-    10 m/s; twice that at dx 2 cm, and less the longer the slab is. Snow on a panel 2 m long,
-    tilted by 40 degrees, does not exceed 5 m/s.
+    elastic time steps, 2.4 ms at dx 1 cm, and impulses still stored at nodes are lost once the slab
+    has left them. A slab 25 cm long loses 0.1 % of its friction at 1 m/s, 0.5 % at 3 m/s and 4 % at
+    10 m/s; twice that at dx 2 cm, and less the longer the slab is. Snow on a panel 2 m long, tilted
+    by 40 degrees, does not exceed 5 m/s.
 
     Where the plane is rougher than snow is inside (μ = 1.2 against M = 0.5), thrown snow does not
-    stop as a block: at dx 1 cm it goes 2 % too far, and at 5 mm its lowest layer breaks up, stays
-    behind, and the rest slides on over it. The bar is therefore for an elastic slab.
+    stop as a block. At dx 1 cm it goes 2 % too far; at 5 mm its lowest layer breaks up and stays
+    behind, and the rest slides on over it. The limit is therefore for an elastic slab.
     """,
 )
 
 # --- the stopping angle -----------------------------------------------------------------------
 
-#: Half the range of tilts that is searched, and how near the answer is brought, degrees.
+#: Half the range of tilts that is searched, and the width at which the search ends, degrees.
 SEARCHED, ANGLE_TOLERANCE = 4.0, 0.02
 #: A slab slides if its speed grows by more than this, m/s2: a ten-thousandth of g.
 GROWING = 1e-4 * GRAVITY
@@ -236,17 +237,17 @@ ANGLE = Case(
     at which that begins to 0.02 degrees. A quarter of a degree is about 1 % of friction.
     """,
     quantities=(
-        Quantity("angle", "tilt, degrees", bar=0.25, bar_for={"dx": 0.01}, relative=False),
+        Quantity("angle", "tilt, degrees", limit=0.25, limit_for={"dx": 0.01}, relative=False),
     ),
     matrix=angle_matrix,
     measure=measure_angle,
     remarks="""
     The answer is right to the width of the search as long as the slab is no thicker than five
-    cells. At ten cells (dx 5 mm) it slides half a degree too early: within that range it never
+    cells. At ten cells (dx 5 mm) it slides half a degree too early: in that half degree it never
     stops, but creeps at 1 to 3 cm/s. The delay of friction, 40 elastic time steps, is then shorter
     than the slowest vibration through the slab's thickness (4 thickness/c); the two feed each other
-    and the slab keeps shaking. With a delay twice as long it stops. Seedings at μ = 0.9 differ by
-    a tenth of a degree.
+    and the slab keeps shaking. With a delay twice as long it stops. Seedings at μ = 0.9 differ by a
+    tenth of a degree.
     """,
 )
 

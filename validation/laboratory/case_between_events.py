@@ -1,4 +1,4 @@
-"""The way between events: particles carried over, against the stack reseeded as a solid."""
+"""The transition between events: particles carried over, against the stack reseeded as a solid."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def matrix(full: bool) -> list[CaseSettings]:
 
 
 def measure(settings: CaseSettings) -> Outcome:
-    """Run every seeding; compare the conversions' two sides, and the last stacks with the noise."""
+    """Run every seeding; compare stacks before and after conversions, and with the noise."""
     runs = run_seedings(settings)
     measured = [_mass(runs)]
     conversions = _conversions(runs)
@@ -69,12 +69,12 @@ def _conversions(runs: Sequence[LabRun]) -> list[Conversion]:
 
 
 def _largest(name: str, changes: Iterable[float]) -> Measured:
-    """Return the largest change, which should be none."""
+    """Return the largest change, which should be zero."""
     return absolute(name, max(changes, key=abs), 0.0)
 
 
 def _space(runs: Sequence[LabRun]) -> float:
-    """Return the space that stacks fill after their last conversion over their snow's volume.
+    """Return the volume of stacks after their last conversion over that of their snow.
 
     A solid is seeded as densely as a slab. The more of it was void, the less mass is left for each
     particle.
@@ -111,9 +111,9 @@ by the rule that leaves out the outermost 3 % of the mass, those of the largest 
 alone, the outline (root mean square of its shift in height), and the part of the snow that lies
 outside the largest body. The largest change in any conversion is shown, lengths in grid cells. The
 space that the stack fills after the last conversion is compared with the volume of its snow at the
-initial density: what is more than 1 is void that has become snow. Only the height of the largest
-body has a bar: it is half a cell, because the solid is made of cubes of a cell's size. A length has
-none, because it depends on single grains, see "Where the method is poor".
+initial density: the excess over 1 is void that has become snow. Only the height of the largest body
+has a limit: half a cell, because the solid is made of cubes of a cell's size. Lengths have none,
+because they depend on single grains, see "Where the method is poor".
 
 The last stacks, means over the seedings, are compared with the mean of the recorded runs on the
 same grid, whose snow was carried over: as a part of it, and in standard deviations between single
@@ -123,24 +123,25 @@ ones, the departure is noise: the mean of four departs by half a deviation on av
 
 REMARKS = """
 A conversion hardly moves the stack's surface: heights stay within a quarter of a cell, outlines
-within one cell. What it changes is inside. Gaps between layers, hollows under folds and loose
-debris become part of the solid, which is then filled evenly. The mass stays, so before the fifth
-slab the stack fills 2.3, 1.8 and 1.5 times the volume of its snow at dx 0.02, 0.01 and 0.005 m in
-the plane, and 2.5 times at 0.02 m in space: at 0.01 m it is as if made of foam of 120 kg/m3 that is
-as strong as snow of 210 kg/m3. Nothing can close these voids any more, and the bonds are whole
-again, so reseeded stacks become higher: by 90 % at dx 0.02 m, 30 % at 0.01 m and 8 % at 0.005 m in
-the plane, and 92 % at 0.02 m in space, which is 6, 1.9, 1.0 and 16 standard deviations. The coarser
-the grid, the larger the voids.
+within one cell. It changes the interior. Gaps between layers, hollows under folds and loose debris
+become part of the solid, which is then filled evenly. The mass stays, so before the fifth slab the
+stack fills 2.3, 1.8 and 1.5 times the volume of its snow at dx 0.02, 0.01 and 0.005 m in the plane,
+and 2.5 times at 0.02 m in space: at 0.01 m it is as if made of foam of 120 kg/m3 that is as strong
+as snow of 210 kg/m3. Nothing can close these voids any more, and the bonds are whole again, so
+reseeded stacks become higher: by 90 % at dx 0.02 m, 30 % at 0.01 m and 8 % at 0.005 m in the plane,
+and 92 % at 0.02 m in space, which is 6, 1.9, 1.0 and 16 standard deviations. The coarser the grid,
+the larger the voids.
 
-Grains that lie apart, too small for the grid to show, go through the solid as balls about half a
-cell in radius. So the ends of the snow stay where they are, but not quite its mass there: the
-measured length, which leaves out 3 % of the mass, changes by up to three cells in one conversion.
-The largest body changes more. Where a thin trail of grains joins two parts, a conversion may
-interrupt the trail, and one of the parts no longer counts; or it fills a gap and joins two bodies.
-The body became longer by up to 8.5 cells at dx 0.01 m. Up to 6 % of the snow changed sides in this
-way in the plane, 2 % in space.
+Separate grains, too small for the grid, become balls about half a cell in radius in the solid. The
+ends of the snow therefore stay in place, but the mass there changes slightly: the measured length,
+which leaves out 3 % of the mass, changes by up to three cells in one conversion. The largest body
+changes more. Where a thin trail of grains joins two parts, a conversion may interrupt the trail,
+and one of the parts no longer counts; or it fills a gap and joins two bodies. The body became
+longer by up to 8.5 cells at dx 0.01 m. Up to 6 % of the snow joined or left the largest body in
+this way in the plane, 2 % in space.
 
-Stacks carried over have none of this. Reseed only to compare with results that were made so.
+Stacks that are carried over show none of these effects. Reseed only to compare with reseeded
+results.
 """
 
 CASE = Case(
@@ -153,13 +154,13 @@ CASE = Case(
     description=DESCRIPTION,
     quantities=[
         # Masses are single precision.
-        Quantity("mass", "Mass of all snow, kg", bar=1e-6),
+        Quantity("mass", "Mass of all snow, kg", limit=1e-6),
         Quantity("conversion_height", "Change of height by a conversion, cells", relative=False),
         # The solid is made of cubes of a cell's size, cut at half their filling.
         Quantity(
             "conversion_body_height",
             "Change of the largest body's height, cells",
-            bar=0.5,
+            limit=0.5,
             relative=False,
         ),
         Quantity("conversion_length", "Change of length by a conversion, cells", relative=False),

@@ -11,7 +11,7 @@ from snowshed.analysis.accuracy.mechanisms import scheme_of
 from validation.framework.case import Case, Outcome, Quantity, Wanted
 from validation.framework.drive import relative
 from validation.laboratory.lab_records import noise, recorded
-from validation.laboratory.lab_stack import COMPARED, Solved, outcome_of, run_seedings
+from validation.laboratory.lab_stack import COMPARED, StackRun, outcome_of, run_seedings
 
 #: 3D over 2D stack height where height and width are comparable (thesis, 5.1.1).
 RULE_OF_THUMB = 2 / 3
@@ -67,7 +67,7 @@ AS_RECORDED: Wanted = {
 #: Standard deviations between seedings by which a mean of stacks may differ from the recorded one.
 NOISE_BAR = 3.0
 
-#: Below which speed snow may sleep, m/s; 0: never.
+#: Speeds below which snow may sleep, m/s; 0: never.
 SLEEP_SPEEDS = (0.0, 0.002, 0.005, 0.02)
 #: Stacks that are made with each of them.
 SLEEPERS: Sequence[CaseSettings] = (
@@ -119,7 +119,7 @@ def measure(settings: CaseSettings) -> Outcome:
     return compared(run_seedings(settings), settings)
 
 
-def compared(runs: Sequence[Solved], settings: CaseSettings) -> Outcome:
+def compared(runs: Sequence[StackRun], settings: CaseSettings) -> Outcome:
     """Compare the last stacks of runs, one for each seeding, with the reference of their scheme."""
     measured = [_against_reference(name, runs, settings) for name in COMPARED]
     if len(runs) > 1:
@@ -134,12 +134,12 @@ def compared(runs: Sequence[Solved], settings: CaseSettings) -> Outcome:
     return outcome_of(runs, measured)
 
 
-def _last(name: str, runs: Sequence[Solved]) -> np.ndarray:
+def _last(name: str, runs: Sequence[StackRun]) -> np.ndarray:
     return np.array([run.series(name)[-1] for run in runs])
 
 
-def _against_reference(name: str, runs: Sequence[Solved], settings: CaseSettings) -> Measured:
-    """Return the mean over seedings, and by how much a single run errs: root mean square.
+def _against_reference(name: str, runs: Sequence[StackRun], settings: CaseSettings) -> Measured:
+    """Return the mean over seedings, and the root-mean-square error of a single run.
 
     Both the exact value and the error are NaN after an event that the reference has not.
     """
@@ -150,7 +150,7 @@ def _against_reference(name: str, runs: Sequence[Solved], settings: CaseSettings
     return Measured(name, float(values.mean()), exact, error)
 
 
-def _spread(name: str, runs: Sequence[Solved]) -> Measured:
+def _spread(name: str, runs: Sequence[StackRun]) -> Measured:
     values = _last(name, runs)
     spread = float(values.std(ddof=1) / values.mean())
     return Measured(f"{name}_spread", spread, 0.0, spread)
@@ -181,10 +181,11 @@ and five slabs it is 0.048, 0.070, 0.109, 0.141, 0.136 m at dx 0.01 m, 0.039, 0.
 0.134 m at 0.005 m and 0.030, 0.057, 0.077, 0.091, 0.106 m at 0.0025 m (2D, means of 12, 6 and 4
 seedings). It still falls by 10 to 22 % from 0.005 to 0.0025 m, so the reference itself errs by
 about as much again, and the fall is too irregular to be extrapolated. At dx 0.01 m, two cells to
-the slab, heights are 22 to 58 % too large. The cause can be seen in pictures of the particles: snow
-rests on the ground and on snow with a gap of one to one and a half cells below it, for every layer,
-and folds of the slab bridge hollows that finer grids let break and fill. At dx 0.02 m, one cell to
-the slab, heights are 43 to 97 % too large, and the error does not even fall steadily from there.
+the slab, heights are 22 to 58 % too large. Pictures of the particles show the cause: every layer of
+snow rests on the ground or on other snow with a gap of one to one and a half cells, and folds of
+the slab bridge hollows. On finer grids these folds break and fill the hollows. At dx 0.02 m, one
+cell to the slab, heights are 43 to 97 % too large, and the error does not even fall steadily from
+there.
 
 Lengths depend less on the grid: 0.217, 0.292, 0.329, 0.361, 0.424 m at dx 0.01 m and 0.258, 0.322,
 0.345, 0.369, 0.397 m at 0.0025 m, a difference of 2 to 16 % that is largest after the first slab.
@@ -196,10 +197,10 @@ slab and at 0.005 m it does not. Lengths are 2 to 9 % larger.
 The damping of FLIP is the second large error. The share of PIC, 1 - flip_ratio, is taken in every
 step, so the damping per second depends on the time step. At dx 0.01 m after five slabs a flip_ratio
 of 0.95, 0.99 or 0.999 gives heights of 0.20, 0.14 and 0.11 m, and lengths of 0.31, 0.41 and 0.72 m.
-A third of the time step (courant_factor 0.3) does almost what 0.95 does: 0.20 and 0.33 m. With
-flip_ratio raised to 0.9967, too, the same share per second, the stack does not change. APIC is less
-sensitive: 0.14 and 0.44 m, and with a third of the step 0.15 and 0.39 m. Stacks can be
-compared only at equal flip_ratio and equal time step.
+A third of the time step (courant_factor 0.3) has almost the effect of 0.95: 0.20 and 0.33 m. If
+flip_ratio is raised to 0.9967 as well, which is the same share per second, the stack does not
+change. APIC is less sensitive: 0.14 and 0.44 m, and with a third of the step 0.15 and 0.39 m.
+Stacks can be compared only at equal flip_ratio and equal time step.
 
 Random seeding moves the height by 2 to 5 % and the length by 2 to 11 % (one standard deviation, 2D)
 after one to four slabs. After the fifth, when a 2D pile may or may not give way, it is 8 to 16 % in
@@ -208,15 +209,15 @@ height and 3 to 8 % in length. In space piles give way more evenly: 0.5 to 4 % i
 means nothing. Neither precision nor basis nor the number of particles per voxel changes the stack
 by more than the noise.
 
-Snow that is slower than sleep_speed may drop out of the steps. What that saves and what it changes
-depends on this speed. The same seeds with sleep and without were compared, five slabs in the plane
-at dx 0.01 m (12 seeds). At 2 mm/s sleep saved 30 % of the time, at 5 mm/s 38 % and at 20 mm/s, the
-default, 56 %. Up to 5 mm/s mean height and length changed by 0.6 % at most. At 20 mm/s the height
-grew by 5 % and the length fell by 3 %, a third and two fifths of a standard deviation between
-seedings. APIC's snow creeps more: 11 % and 7 % at 20 mm/s (0.7 and 1 standard deviations), 4 % and
-2 % at 5 mm/s; a first stack stays the same to 0.5 %. In space at dx 0.01 m one stack became 1.5 %
-lower and 0.9 % shorter and took half of the time. At dx 0.02 m, one cell to the slab, stacks in
-space became 8 % higher and 3 % shorter at 20 mm/s, which is more than another seeding does; at 5
+Snow that is slower than sleep_speed may sleep, that is, leave the time steps. The savings and the
+changes depend on this speed. The same seeds with sleep and without were compared, five slabs in the
+plane at dx 0.01 m (12 seeds). At 2 mm/s sleep saved 30 % of the time, at 5 mm/s 38 % and at 20
+mm/s, the default, 56 %. Up to 5 mm/s mean height and length changed by 0.6 % at most. At 20 mm/s
+the height grew by 5 % and the length fell by 3 %, a third and two fifths of a standard deviation
+between seedings. APIC's snow creeps more: 11 % and 7 % at 20 mm/s (0.7 and 1 standard deviations),
+4 % and 2 % at 5 mm/s; a first stack stays the same to 0.5 %. In space at dx 0.01 m one stack became
+1.5 % lower and 0.9 % shorter and took half of the time. At dx 0.02 m, one cell to the slab, stacks
+in space became 8 % higher and 3 % shorter at 20 mm/s, which is more than another seeding does; at 5
 mm/s they did not change, but only 8 % of the time was saved.
 
 3D stacks at dx 0.01 m are as high as 2D ones after up to three slabs (ratio 1.03, 1.02, 1.03), then
@@ -243,9 +244,9 @@ and 0.030 m with thesis. After five slabs it is 0.115 and 0.106 m, which is with
 In space the runs of the scheme objective have two slabs. The stack is 0.036 and 0.065 m high at dx
 0.02 m, 0.052 and 0.059 m at 0.01 m and 0.052 and 0.068 m at 0.005 m (means of 8, 4 and 4 seedings):
 32 and 4 % too low at 0.02 m and 1 and 13 % too low at 0.01 m, where it is 32 and 27 % too high with
-thesis. The error of the first changes its sign between these grids and those of the plane, so that
-its small value at 0.01 m assures nothing. Single runs scatter by 1 % in height at 0.01 m. Nothing
-is known of the error after three slabs and more.
+thesis. The error of the first stack changes its sign between these grids, so its small value at
+0.01 m is no evidence of accuracy. Single runs scatter by 1 % in height at 0.01 m. The error after
+three and more slabs is unknown.
 
 Chunks that roll metres away, and grains more than two or three cells from their neighbours that no
 longer feel them (numerical fracture), count for the length by the 3 % rule; the largest body leaves
@@ -270,15 +271,15 @@ CASE = Case(
         Quantity(
             "height_noise",
             "Height less that of recorded runs, standard deviations",
-            bar=NOISE_BAR,
-            bar_for=AS_RECORDED,
+            limit=NOISE_BAR,
+            limit_for=AS_RECORDED,
             relative=False,
         ),
         Quantity(
             "length_noise",
             "Length less that of recorded runs, standard deviations",
-            bar=NOISE_BAR,
-            bar_for=AS_RECORDED,
+            limit=NOISE_BAR,
+            limit_for=AS_RECORDED,
             relative=False,
         ),
         Quantity("height_over_2d", "Height in 3D over height in 2D on the same grid"),

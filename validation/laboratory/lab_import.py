@@ -1,9 +1,9 @@
-"""Results folders of the laboratory taken up among the recorded stacks.
+"""Imports results folders of the laboratory into the recorded stacks.
 
 ``python -m validation.laboratory.lab_import --machine NAME --date DAY FOLDER...`` reads runs that
 other programs made, such as ``snowshed-run`` on a larger machine, and writes them into
-``lab_stack.json``. A folder is taken only if its scene is that of `record`, so that `record` makes
-the same run again. Stacks are measured from the stored particles.
+``lab_stack.json``. A folder is accepted only if its scene is that of `record`, so that `record`
+makes the same run again. Stacks are measured from the stored particles.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from validation.laboratory.lab_records import (
 )
 from validation.laboratory.lab_stack import Cost, LabRun, lab_scene, measure_lab
 
-#: Settings by which an entry is told from others.
+#: Settings that identify an entry.
 SETTINGS = ("dimension", "dx", "seed", "events", "scheme", "sleep_speed")
 
 
@@ -74,7 +74,7 @@ def settings_of(scene: ResolvedScene, where: str) -> CaseSettings:
     Raises
     ------
     InputError
-        If it would make none that is the same.
+        If no recorded run has this scene.
     """
     numerics = scene.data["numerics"]
     place = (scene.data["dimension"], numerics["dx"], scene.data["seeding"]["seed"])
@@ -116,7 +116,7 @@ def _costs(
 @click.option("--date", default=datetime.date.today().isoformat(), help="Day of the runs.")
 @click.argument("folders", nargs=-1, type=click.Path(exists=True, path_type=Path))
 def main(machine: str, date: str, folders: tuple[Path, ...]) -> None:
-    """Take results folders up among the recorded stacks."""
+    """Import results folders into the recorded stacks."""
     runs = read_entries(FILE)
     for folder in folders:
         new = imported(folder, machine, date)

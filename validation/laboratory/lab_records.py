@@ -1,8 +1,9 @@
 """Recorded stacks of the laboratory: the references of the stack's convergence.
 
 Stacks have no exact answer. They are compared with the mean over seedings on the finest grid that
-was affordable with the same scheme. Those runs take hours, so they were made once, and lie beside
-this module in ``lab_stack.json``, each with its settings, version and date. `record` makes them.
+was affordable with the same scheme. Those runs take hours. They were made once and are stored in
+``lab_stack.json``, beside this module, each with its settings, version and date. `record` makes
+them.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ from snowshed.base.arrays import Floats
 from snowshed.base.machine import cpu_name
 from snowshed.io.atomic import write_text
 from validation.framework.drive import absolute
-from validation.laboratory.lab_stack import COMPARED, Cost, Solved, run_lab
+from validation.laboratory.lab_stack import COMPARED, Cost, StackRun, run_lab
 
 FILE = Path(__file__).with_name("lab_stack.json")
 #: Events of a recorded run that does not name their number.
@@ -47,14 +48,14 @@ class Grid:
 
 @dataclass(frozen=True)
 class Reference:
-    """The runs that are recorded of a scheme.
+    """The recorded runs of a scheme.
 
     Attributes
     ----------
     settings
         Settings of all of them, for `lab_scene`.
     grids
-        The grids; the finest of each dimension is what stacks are compared with.
+        The grids; the finest of each dimension is the reference.
     """
 
     settings: CaseSettings
@@ -133,7 +134,7 @@ class RecordedRun:
         Raises
         ------
         LookupError
-            If the run has not so many events.
+            If the run has fewer events.
         """
         measures = {name: values[:event] for name, values in self.measures.items()}
         if any(len(values) < event for values in measures.values()):
@@ -142,7 +143,7 @@ class RecordedRun:
 
 
 @dataclass(frozen=True)
-class Recorded:
+class RecordedStacks:
     """Recorded stacks of one scheme, dimension and dx; every series has a value for each event.
 
     Attributes
@@ -170,7 +171,7 @@ class Recorded:
         return float(self.runs[name][:, event - 1].std(ddof=1)) if event <= self.events else nan
 
 
-def noise(name: str, runs: Sequence[Solved], settings: CaseSettings) -> Measured:
+def noise(name: str, runs: Sequence[StackRun], settings: CaseSettings) -> Measured:
     """Compare the mean of the last stacks with the recorded ones of its scheme on the same grid.
 
     Parameters
@@ -178,7 +179,7 @@ def noise(name: str, runs: Sequence[Solved], settings: CaseSettings) -> Measured
     name
         One of `COMPARED`.
     runs
-        With the settings, each with a seed of its own.
+        Runs with the settings, each with another seed.
     settings
         For `lab_scene`.
 
@@ -195,7 +196,9 @@ def noise(name: str, runs: Sequence[Solved], settings: CaseSettings) -> Measured
     return absolute(f"{name}_noise", departure, 0.0)
 
 
-def recorded(dimension: int, dx: Optional[float] = None, scheme: str = FIRST_SCHEME) -> Recorded:
+def recorded(
+    dimension: int, dx: Optional[float] = None, scheme: str = FIRST_SCHEME
+) -> RecordedStacks:
     """Return the recorded stacks of a scheme on a grid, or on the finest one of that dimension.
 
     Raises
@@ -211,7 +214,9 @@ def recorded(dimension: int, dx: Optional[float] = None, scheme: str = FIRST_SCH
     2
     """
     wanted, runs = _entries(dimension, dx, scheme)
-    return Recorded(wanted, {name: np.array([run[name] for run in runs]) for name in COMPARED})
+    return RecordedStacks(
+        wanted, {name: np.array([run[name] for run in runs]) for name in COMPARED}
+    )
 
 
 def recorded_runs(dimension: int, dx: float, scheme: str) -> list[RecordedRun]:
@@ -323,7 +328,7 @@ def _computed(settings: CaseSettings) -> dict[str, Any]:
 
 def entry(
     settings: CaseSettings,
-    run: Solved,
+    run: StackRun,
     ended: Iterable[str],
     costs: Sequence[Cost],
     origin: tuple[str, str, str],

@@ -20,7 +20,7 @@ from snowshed.snow.stack.quantities import MEASURES
 from validation.framework.case import Outcome
 from validation.framework.drive import apply_settings
 
-#: The trimming rule by which the recorded stacks were measured; others are compared with them.
+#: The trimming rule of the recorded stacks, and so of all stacks that are compared with them.
 TRIMMING = "equal_pace"
 #: Columns of events.csv that are compared, by the names they have here.
 COMPARED: Mapping[str, str] = {
@@ -51,7 +51,7 @@ class Cost:
     particles: int
 
 
-class Solved(Protocol):
+class StackRun(Protocol):
     """A run whose stacks are known after each event, made now or read from a record."""
 
     def series(self, name: str) -> Sequence[float]:
@@ -204,7 +204,7 @@ def run_seedings(settings: CaseSettings) -> list[LabRun]:
     return [run_lab({**rest, "seed": seed}) for seed in range(first, first + count)]
 
 
-def outcome_of(runs: Sequence[Solved], measured: Sequence[Measured]) -> Outcome:
+def outcome_of(runs: Sequence[StackRun], measured: Sequence[Measured]) -> Outcome:
     """Return the outcome of several seedings; the cost is the mean of one run."""
     costs = [run.cost for run in runs]
     counted = all(cost.updates for cost in costs)
@@ -230,7 +230,7 @@ class _Tape:
         return self._measure(now.positions(), now.masses(), now.on_panel(), now.densities())
 
     def measure_conversion(self, reseeded: Mapping[str, Any]) -> Conversion:
-        """Measure what the core says of a conversion: the snow before and after."""
+        """Measure the snow before and after a conversion, as the core reports it."""
         masses = {when: reseeded[f"masses_{when}"] for when in ("before", "after")}
         stacks = {
             when: self._measure(
@@ -264,7 +264,7 @@ def measure_lab(
     dimension: int,
     dx: float,
 ) -> StackMeasure:
-    """Measure a stack of the laboratory as all that are compared with each other."""
+    """Measure a stack of the laboratory by the common trimming rule."""
     return measure_stack(
         positions,
         masses,

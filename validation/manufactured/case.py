@@ -13,7 +13,7 @@ from validation.framework.case import Case, Outcome, Quantity
 from validation.manufactured.forced_body import ForcedBody, root_mean_square
 from validation.manufactured.motions import WAVE_SPEED, AxialWaves, ManufacturedMotion, Vortex
 
-#: From rest through the largest displacement and back to the largest one the other way, s.
+#: Time from rest to the largest displacement, back, and to the largest one the other way, s.
 DURATION = 1.5 / WAVE_SPEED
 #: Steps between two samples of the error.
 STEPS = 4
@@ -29,15 +29,15 @@ SCHEME: CaseSettings = {"basis": "quadratic", "precision": "double", "pattern": 
 
 
 def measure(settings: CaseSettings) -> Outcome:
-    """Follow a motion; its error is the rms over particles and times, over that of the motion."""
+    """Follow a motion; the error is the rms error of displacement over its rms."""
     body = ForcedBody(motion_of(settings), settings)
-    off, moved = [], []
+    errors, displacements = [], []
     while body.time < DURATION:
         body.step()
         if body.drive.core.total_steps % STEPS == 0:
-            off.append(root_mean_square(body.residual()))
-            moved.append(root_mean_square(body.displacement()))
-    error = float(np.linalg.norm(off) / np.linalg.norm(moved))
+            errors.append(root_mean_square(body.residual()))
+            displacements.append(root_mean_square(body.displacement()))
+    error = float(np.linalg.norm(errors) / np.linalg.norm(displacements))
     return body.drive.outcome([Measured("displacement", error, 0.0, error)])
 
 
@@ -95,17 +95,17 @@ def vortex_matrix(full: bool) -> list[CaseSettings]:
 
 # --- in time ----------------------------------------------------------------------------------
 
-#: Where the effect of the step's size is studied, and the step of the reference.
+#: Grid and particles of the study of time steps, and the Courant factor of its reference.
 STEP_STUDY: CaseSettings = {"dx": 1 / 16, "particles_per_voxel": 9}
 MIN_COURANT_FACTOR = 0.9 / 32
 
 
 def measure_steps(settings: CaseSettings) -> Outcome:
     """Compare the displacements at the end with those of a very small step, and with the motion."""
-    body, off, exact = _end(settings)
+    body, residual, exact = _end(settings)
     _, limit, _ = _end({**settings, "courant_factor": MIN_COURANT_FACTOR})
-    step = root_mean_square(off - limit) / root_mean_square(exact)
-    error = root_mean_square(off) / root_mean_square(exact)
+    step = root_mean_square(residual - limit) / root_mean_square(exact)
+    error = root_mean_square(residual) / root_mean_square(exact)
     return body.drive.outcome(
         [Measured("step", step, 0.0, step), Measured("displacement", error, 0.0, error)]
     )
@@ -118,17 +118,21 @@ def _end(settings: CaseSettings) -> tuple[ForcedBody, Floats, Floats]:
     interpolated, and not the displacement.
     """
     body = ForcedBody(motion_of(settings), settings)
-    before, left = 0.0, body.residual()
+    previous_time, previous_residual = 0.0, body.residual()
     while body.time < DURATION:
         if body.time + 2 * body.drive.core.time_step_s > DURATION:
-            before, left = body.time, body.residual()
+            previous_time, previous_residual = body.time, body.residual()
         body.step()
-    part = (DURATION - before) / (body.time - before)
-    return body, (1 - part) * left + part * body.residual(), body.displacement(DURATION)
+    part = (DURATION - previous_time) / (body.time - previous_time)
+    return (
+        body,
+        (1 - part) * previous_residual + part * body.residual(),
+        body.displacement(DURATION),
+    )
 
 
 def steps_matrix(full: bool) -> list[CaseSettings]:
-    """Return step factors for pure FLIP, and in full for other transfers and small motions."""
+    """Return Courant factors for pure FLIP, and in full for other transfers and small motions."""
     variants: list[CaseSettings] = [{"motion": "vortex", "amplitude": 1.0, **FLIP}]
     factors: Sequence[float] = (0.45, 0.225)
     if full:
@@ -152,17 +156,17 @@ SOURCE = (
     "b = u'' - Div P/rho0 in closed form (docstring of validation.manufactured.motions)"
 )
 FORCED = """
-    A unit square of elastic snow (E = 1 MPa, Hencky) is taken along a chosen motion by the body
-    force that this motion needs, applied to every particle in every step. It swings from rest to
-    its largest displacement, back, and to the largest one the other way. The error is the root mean
-    square over particles and times of the error of displacement, over that of the displacement.
+    A unit square of elastic snow (E = 1 MPa, Hencky) is forced into a chosen motion: the body force
+    that the motion needs acts on every particle in every step. It swings from rest to its largest
+    displacement, back, and to the largest one the other way. The error is the root mean square over
+    particles and times of the error of displacement, over that of the displacement.
 """
 
 
-def _displacement(bar_for: CaseSettings) -> Quantity:
-    scheme: CaseSettings = {"basis": "quadratic", "precision": "double", **bar_for}
+def _displacement(limit_for: CaseSettings) -> Quantity:
+    scheme: CaseSettings = {"basis": "quadratic", "precision": "double", **limit_for}
     title = "rms error of displacement over its rms"
-    return Quantity("displacement", title, bar_for=scheme, order_in="dx", min_order=1.8)
+    return Quantity("displacement", title, limit_for=scheme, order_in="dx", min_order=1.8)
 
 
 IN_WAVES = Case(
@@ -180,20 +184,22 @@ IN_WAVES = Case(
     remarks="""
     Second order needs many particles. The forces on the nodes are sums over particles in place of
     integrals, of gradients that for quadratic splines have kinks at every row of nodes. As
-    particles of stretched snow move across, the sums err by a part that depends on how many
-    particles a cell holds, and not on its size. Where that error is met, finer cells do not help:
+    particles of stretched snow cross these rows, the sums get a relative error that depends on the
+    number of particles per cell, and not on the cell's size. Finer cells do not reduce this part:
     at stretches of 0.75 to 1.25 the order of APIC from 16 to 48 cells is 1.3 with 4 particles per
-    cell, 1.5 with 9 and 1.9 with 36; at 0.5 to 1.5 its error grows with finer cells with 4 (5.4 to
-    7.6 %), stops at 2.2 % with 9, and falls with the order 1.75 with 36 and 1.9 with 64. Hence the
-    bar is for 64. Cubic splines, whose gradients have no kinks, need only 9 (1.9 to 2.1).
+    cell, 1.5 with 9 and 1.9 with 36; at 0.5 to 1.5 its error grows from 5.4 to 7.6 % with 4, stops
+    at 2.2 % with 9, and falls with the order 1.75 with 36 and 1.9 with 64. Hence the limit is for
+    64. Cubic splines, whose gradients have no kinks, need only 9 (1.9 to 2.1).
 
     With FLIP the order between 32 and 48 cells at 0.5 to 1.5 is 2.4 with 36 particles per cell, but
-    the error at 16 cells is 70 %, and it stays four to five times that of APIC. It feels forces
-    smoothed twice, an error of second order with a larger factor. FLIP with 0.99 differs little
-    here. PIC is of the order 0.9: it smooths in every step, and finer cells mean more steps.
+    the error at 16 cells is 70 %, and it stays four to five times that of APIC. Its forces are
+    smoothed twice, which is an error of second order with a larger factor. FLIP with 0.99 differs
+    little here. PIC has the order 0.9, because it smooths in every step and finer cells need more
+    steps.
 
-    Random seeding has no order to speak of: with 9 particles per cell its errors are 7 to 50 %, ten
-    times those of a lattice. Nothing parts here: no two neighbours come to be a cell apart.
+    Random seeding has no clear order of convergence: with 9 particles per cell its errors are 7 to
+    50 %, ten times those of a lattice. The snow does not come apart: no two neighbours move a cell
+    apart.
     """,
 )
 IN_VORTEX = Case(
@@ -224,14 +230,14 @@ IN_TIME = Case(
     source=SOURCE + "; self-convergence against a step 32 times smaller",
     description="""
     The same motions with 16 cells along the square's side, with smaller and smaller steps. Their
-    displacements at the end are compared with those of a step factor of 0.9/32, and with the exact
-    ones. (What the reference itself is off raises the observed orders by 0.05 to 0.1.)
+    displacements at the end are compared with those of a Courant factor of 0.9/32, and with the
+    exact ones. The reference's own error raises the observed orders by 0.05 to 0.1.
     """,
     quantities=(
         Quantity(
             "step",
             "rms effect of the time step on the displacement",
-            bar_for={"motion": "vortex", "amplitude": 1.0, "transfer": "flip", "flip_ratio": 1.0},
+            limit_for={"motion": "vortex", "amplitude": 1.0, "transfer": "flip", "flip_ratio": 1.0},
             order_in="courant_factor",
             min_order=0.9,
         ),
@@ -248,17 +254,17 @@ IN_TIME = Case(
     (1 - s²) dt v, with 1 - s² = (k dx)²/4 for a wave of wave number k (docstring of
     validation.elastic.smoothing): first order in the step, but vanishing with dx². And steps become
     shorter as particles become faster, by up to a fifth here. For pure FLIP the effect is 4 % in
-    the vortex at the default step factor (2.8 % at 0.1 rad, where steps hardly vary), a tenth of
+    the vortex at the default Courant factor (2.8 % at 0.1 rad, where steps hardly vary), a tenth of
     the error of 16 cells: in practice space decides.
 
-    Squeezed and stretched, the order is lower (0.6 to 0.8), because particles that cross rows of
-    nodes excite short vibrations, whose phase depends on every step.
+    In the axial waves the order is lower (0.6 to 0.8), because particles that cross rows of nodes
+    excite short vibrations, whose phase depends on every step.
 
     No other transfer has the right limit as the step goes to zero: they smooth in each step, and
     more steps smooth more. Compared with a step 32 times smaller the vortex with FLIP 0.99 differs
-    by 28 %, with APIC by 55 % and with PIC by 73 %. It is the small step that is wrong, as the
-    errors of displacement show: PIC's goes from 34 to 86 % as the step becomes four times smaller.
-    A small step factor is no way to more accuracy.
+    by 28 %, with APIC by 55 % and with PIC by 73 %. The small steps are the wrong ones, as the
+    errors of displacement show: PIC's rises from 34 to 86 % as the step becomes four times smaller.
+    A small Courant factor therefore does not make these transfers more accurate.
     """,
 )
 

@@ -1,4 +1,4 @@
-"""A body that body forces take along a chosen motion."""
+"""A body that body forces move along a chosen motion."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from validation.elastic.bodies import elastic_scene, from_plane, in_plane
 from validation.framework.drive import TimedEventDriver
 from validation.manufactured.motions import DENSITY, YOUNGS_MODULUS, ManufacturedMotion
 
-#: Settings that are the cases' own.
-OWN = frozenset({"motion", "amplitude"})
+#: Settings of the cases themselves.
+CASE_SETTINGS = frozenset({"motion", "amplitude"})
 
 
 class ForcedBody:
@@ -23,9 +23,9 @@ class ForcedBody:
 
     Particle velocities are those in the middle of the last step, as in every leapfrog: the body
     starts with the velocity of half a step before time zero, and a force applied between two steps
-    is that of the time and place where the particles are. It must be given over a step whose length
-    is known only afterwards. The last one's length is taken, and the difference made up for with
-    the next force.
+    belongs to the current time and positions of the particles. The force acts over a step whose
+    length is known only afterwards. The length of the last step is used, and the next force
+    corrects the difference.
 
     Parameters
     ----------
@@ -58,17 +58,19 @@ class ForcedBody:
         trial.step()
         self._last_step = trial.core.time_step_s
         self.drive, self._points = self._start(-self._last_step / 2)
-        self._owed = np.zeros_like(self._points)
+        self._velocity_correction = np.zeros_like(self._points)
 
     def _start(self, time: float) -> tuple[TimedEventDriver, Floats]:
-        """Return the body with the velocities of a time, and where its particles are at first."""
+        """Return the body with the velocities of a time, and its particles' initial positions."""
         motion, square = self.motion, Shape.box((0.5, 0.5), (1.0, 1.0))
         material: CaseSettings = {
             "youngs_modulus": YOUNGS_MODULUS,
             "poissons_ratio": motion.poissons_ratio,
             "density": DENSITY,
         }
-        drive = TimedEventDriver(elastic_scene(square, {**material, **self._settings}, OWN))
+        drive = TimedEventDriver(
+            elastic_scene(square, {**material, **self._settings}, CASE_SETTINGS)
+        )
         points = in_plane(drive.core.positions())
         drive.core.add_velocity(from_plane(motion.velocity(points, time)))
         return drive, points
@@ -81,10 +83,12 @@ class ForcedBody:
     def step(self) -> None:
         """Apply the body force and take a step."""
         force = self.motion.body_force(self._points, self.time)
-        self.drive.core.add_velocity(from_plane(self._last_step * force + self._owed))
+        self.drive.core.add_velocity(
+            from_plane(self._last_step * force + self._velocity_correction)
+        )
         self.drive.step()
         taken = self.drive.core.time_step_s
-        self._owed = (taken - self._last_step) * force
+        self._velocity_correction = (taken - self._last_step) * force
         self._last_step = taken
 
     def displacement(self, time: Optional[float] = None) -> Floats:
@@ -92,7 +96,7 @@ class ForcedBody:
         return self.motion.displacement(self._points, self.time if time is None else time)
 
     def residual(self) -> Floats:
-        """Return by how far the particles' displacements are off, m."""
+        """Return the errors of the particles' displacements, m."""
         return in_plane(self.drive.core.positions()) - self._points - self.displacement()
 
 

@@ -1,14 +1,14 @@
-"""Motions with large strains that are chosen, and the body forces that bring them about.
+"""Chosen motions with large strains, and the body forces that cause them.
 
-The method of manufactured solutions: a displacement u(X, t) of an elastic body is chosen, and what
-Newton's law then leaves over, b = u'' - Div P/rho0, is applied to every particle. The two motions
-are those of K. Kamojjala, R. Brannon, A. Sadeghirad, J. Guilkey, *Verification tests in solid
-mechanics*, Engineering with Computers 31 (2015), with profiles that are smoother at the ends of
-what moves, and with the Hencky elasticity of the snow: Kirchhoff stress
-tau = 2 mu e + lambda tr(e) I of the logarithmic strain e, P = tau F^-T.
+The method of manufactured solutions: a displacement u(X, t) of an elastic body is chosen, and the
+body force that Newton's law then requires, b = u'' - Div P/rho0, is applied to every particle. The
+two motions are those of K. Kamojjala, R. Brannon, A. Sadeghirad, J. Guilkey, *Verification tests in
+solid mechanics*, Engineering with Computers 31 (2015), with profiles that are smoother at the ends
+of the moving part, and with the Hencky elasticity of the snow: Kirchhoff stress tau = 2 mu e +
+lambda tr(e) I of the logarithmic strain e, P = tau F^-T.
 
-Points, displacements, velocities and forces are arrays (n, 2) of (x, z), in SI units. X is where a
-particle was at first; all bodies are the unit square from (0, 0) to (1, 1) m.
+Points, displacements, velocities and forces are arrays (n, 2) of (x, z), in SI units. X is a
+particle's initial position; all bodies are the unit square from (0, 0) to (1, 1) m.
 """
 
 from __future__ import annotations
@@ -53,9 +53,9 @@ class AxialWaves(ManufacturedMotion):
     """Stretching and squeezing along the axes, by turns: u_x = g(t) f(X), u_z = -g(t) f(Z).
 
     With g = A sin(omega t) and f(X) = sin kX - sin(2 kX)/2, k = 2 pi. f, f' and f'' vanish at the
-    square's sides. As Poisson's ratio is 0, the two directions do not know of each other, and no
-    traction is needed at the sides. F' below is dF/dX of the stretch F = 1 + g f'; the only stress
-    in its direction is P = E ln(F)/F, hence dP/dX = E (1 - ln F)/F^2 F'.
+    square's sides. As Poisson's ratio is 0, the two directions are uncoupled, and no traction is
+    needed at the sides. F' below is dF/dX of the stretch F = 1 + g f'; the only stress in its
+    direction is P = E ln(F)/F, hence dP/dX = E (1 - ln F)/F^2 F'.
 
     Attributes
     ----------
@@ -114,8 +114,8 @@ class Vortex(ManufacturedMotion):
 
         P = mu kappa [[-s/2, 1 + s^2/2], [1, -s/2]],  kappa = 2 asinh(s/2)/sqrt(1 + s^2/4)
 
-    (rows: radial and tangential force, columns: radial and tangential face). What P does to a ring
-    is radially -mu (d(kappa s/2)/dR + kappa s/R), tangentially mu (dkappa/dR + 2 kappa/R).
+    (rows: radial and tangential force, columns: radial and tangential face). The divergence of P is
+    -mu (d(kappa s/2)/dR + kappa s/R) radially and mu (dkappa/dR + 2 kappa/R) tangentially.
 
     Attributes
     ----------

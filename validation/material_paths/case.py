@@ -25,8 +25,9 @@ SOURCE = (
 POINTS = 20
 COARSE = (1e-3, 1e-4, 1e-5)
 FINE = (1e-6, 2.5e-8)
-#: Where backward Euler itself, and where it extrapolated, is asked for the bar.
-BAR, BAR_AT, EXTRAPOLATED_BAR_AT = 1e-6, 2.5e-8, 1e-5
+#: Largest deviation allowed, and the strain increments at which plain and extrapolated backward
+#: Euler must reach it.
+MAX_DEVIATION, AT_INCREMENT, EXTRAPOLATED_AT_INCREMENT = 1e-6, 2.5e-8, 1e-5
 
 
 @dataclass(frozen=True)
@@ -65,7 +66,7 @@ class StrainPath:
         return np.column_stack([*snow.invariants(states), states[:, -1]])
 
     def mapped(self, increment: float) -> tuple[Floats, int]:
-        """Return the same by the core, in strain increments, and how many of them it took."""
+        """Return the states by the core's return mapping, and the number of strain increments."""
         constants, strength = calibrated()
         law = _core.CamClay(*constants, self.dimension)
         step = increment * self.rate
@@ -84,8 +85,8 @@ class StrainPath:
         return np.array(states), POINTS * each
 
 
-class Solved(NamedTuple):
-    """A path by the core and by the rate equations, and what the former cost."""
+class PathSolution(NamedTuple):
+    """A path by the core and by the rate equations, and the cost of the former."""
 
     states: Floats
     reference: Floats
@@ -99,11 +100,11 @@ class Solved(NamedTuple):
         return float(np.abs(stress - exact).max() / np.abs(exact).max())
 
     def outcome(self, *measured: Measured) -> Outcome:
-        """Return what was measured together with what it cost."""
+        """Return the measurements with their cost."""
         return Outcome(measured, self.wall_s, updates=self.increments)
 
 
-def solve(path: StrainPath, settings: CaseSettings) -> Solved:
+def solve(path: StrainPath, settings: CaseSettings) -> PathSolution:
     """Follow a path in the increments of the settings, extrapolated if they say so."""
     increment = float(settings["increment"])
     reference = path.reference()
@@ -112,11 +113,11 @@ def solve(path: StrainPath, settings: CaseSettings) -> Solved:
     if settings["method"] == "extrapolated":
         halved, more = path.mapped(increment / 2)
         states, count = 2 * halved - states, count + more
-    return Solved(states, reference, time.perf_counter() - started, count)
+    return PathSolution(states, reference, time.perf_counter() - started, count)
 
 
-def stress_error(solved: Solved, settings: CaseSettings) -> Measured:
-    """Return the deviation under the name that belongs to the settings."""
+def stress_error(solved: PathSolution, settings: CaseSettings) -> Measured:
+    """Return the deviation as the quantity of the method, plain or extrapolated."""
     name = "extrapolated_stress" if settings["method"] == "extrapolated" else "stress"
     return Measured(name, solved.deviation, 0.0, solved.deviation)
 
@@ -139,7 +140,7 @@ def measure_oedometer(settings: CaseSettings) -> Outcome:
 
 
 def measure_triaxial(settings: CaseSettings) -> Outcome:
-    """Consolidate, then compress in one direction and let the others give as much."""
+    """Consolidate, then compress in one direction and stretch the others at constant volume."""
     path = StrainPath(-0.16, lateral=-0.5, pressure=float(settings["consolidation"]))
     solved = solve(path, settings)
     q = float(solved.states[-1, 1])
@@ -162,7 +163,8 @@ def critical_state(consolidation: float) -> tuple[float, float]:
     """Return p and q, Pa, of calibrated snow sheared at constant volume for ever, in 3D.
 
     Flow is purely deviatoric at the centre of the ellipse, p = (1 - beta) p0/2, whose height there
-    is q = M (p + beta p0)/sqrt(1 + 2 beta). What p gains in elastic volume e_v loses.
+    is q = M (p + beta p0)/sqrt(1 + 2 beta). The volume is constant, so the plastic strain e_v
+    changes by the opposite of the elastic volumetric strain.
 
     Parameters
     ----------
@@ -200,31 +202,31 @@ def critical_state(consolidation: float) -> tuple[float, float]:
 STRESS = Quantity(
     "stress",
     "largest deviation of p or q over the largest stress",
-    bar=BAR,
-    bar_for={"increment": BAR_AT},
+    limit=MAX_DEVIATION,
+    limit_for={"increment": AT_INCREMENT},
     order_in="increment",
     min_order=0.9,
 )
 EXTRAPOLATED = Quantity(
     "extrapolated_stress",
     "the same, extrapolated from increments and their halves",
-    bar=BAR,
-    bar_for={"increment": EXTRAPOLATED_BAR_AT},
+    limit=MAX_DEVIATION,
+    limit_for={"increment": EXTRAPOLATED_AT_INCREMENT},
     order_in="increment",
     min_order=1.5,
 )
 REMARKS = """
-Backward Euler is of first order: an increment ten times smaller brings one more digit, and no more.
-While snow yields, stress is off by about ten to twenty times the strain increment: 0.1 to 0.2 % at
-an increment of 1e-4. Agreement to 1e-6 takes increments of some 5e-8, millions of them for a few
+Backward Euler is of first order: an increment ten times smaller brings only one more digit. While
+snow yields, stress is off by about ten to twenty times the strain increment: 0.1 to 0.2 % at an
+increment of 1e-4. Agreement to 1e-6 takes increments of some 5e-8, millions of them for a few
 percent of strain, which no simulation takes. With one extrapolation, from increments and their
 halves, 1e-5 is enough; the solver does not extrapolate. Snow's constants are known to a tenth at
-best, so all this is far below what they leave open.
+best, so these errors are far below their uncertainty.
 """
 
 
 def _matrix(full: bool, variants: list[CaseSettings]) -> list[CaseSettings]:
-    """Return every increment for every variant; the finest only where everything is asked for."""
+    """Return every increment for every variant; else coarse ones for the first."""
     listed: list[CaseSettings] = []
     for variant in variants if full else variants[:1]:
         plain: CaseSettings = {**variant, "method": "backward Euler"}
@@ -282,7 +284,7 @@ ISOTROPIC = Case(
     at -beta p0, hardens in compression and in tension softens until it is loose. The error is the
     largest deviation of p or q from the rate equations at 20 points, over the largest stress.
     """,
-    quantities=(Quantity("stress", STRESS.title, bar=BAR),),
+    quantities=(Quantity("stress", STRESS.title, limit=MAX_DEVIATION),),
     matrix=isotropic_matrix,
     measure=measure_isotropic,
     remarks="""
@@ -311,7 +313,7 @@ TRIAXIAL = _case(
     p = (1 - beta) p0/2 and q = M (p + beta p0)/sqrt(1 + 2 beta), which is q = M p without cohesion.
     From 0.8 p0 it compacts on its way there, from no stress it dilates.
     """,
-    Quantity("critical_state", "q at the end, Pa", bar=BAR),
+    Quantity("critical_state", "q at the end, Pa", limit=MAX_DEVIATION),
     matrix=triaxial_matrix,
     measure=measure_triaxial,
 )
@@ -320,10 +322,10 @@ TENSION = _case(
     "Material path: tension to full softening",
     """
     Calibrated snow is pulled by 10 % in one direction and held in the others. It yields, dilates
-    and loses its strength, all of it after 8.4 %; from there on it carries nothing, and the
-    volumetric plastic strain takes all that it opens.
+    and loses its strength, all of it after 8.4 %. Beyond that it carries no stress, and all further
+    strain is plastic.
     """,
-    Quantity("opening", "volumetric plastic strain at the end", bar=BAR),
+    Quantity("opening", "volumetric plastic strain at the end", limit=MAX_DEVIATION),
     matrix=plane_and_space_matrix,
     measure=measure_tension,
 )

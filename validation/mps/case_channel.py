@@ -41,7 +41,7 @@ def exact_speed(positions: Floats) -> Floats:
 
 
 def plug_width(positions: Floats, speeds: Floats) -> float:
-    """Return half the width of the plug: where the parabola of the sheared fluid has its top, m.
+    """Return half the width of the plug, m: the top of the sheared fluid's parabola.
 
     Examples
     --------
@@ -112,9 +112,9 @@ CASE = Case(
     a channel without ends, which is a unit test, is exact to 1.8 % with 20 particles across.
     """,
     quantities=(
-        Quantity("speed", "speed of the plug, m/s", bar=0.05, bar_for={"across": 40}),
-        Quantity("discharge", "mean speed, m/s", bar=0.05, bar_for={"across": 40}),
-        Quantity("width", "half the width of the plug, m", bar=0.05, bar_for={"across": 40}),
+        Quantity("speed", "speed of the plug, m/s", limit=0.05, limit_for={"across": 40}),
+        Quantity("discharge", "mean speed, m/s", limit=0.05, limit_for={"across": 40}),
+        Quantity("width", "half the width of the plug, m", limit=0.05, limit_for={"across": 40}),
     ),
     matrix=matrix,
     measure=measure,

@@ -15,7 +15,7 @@ from validation.framework.case import Case, Outcome, Quantity
 from validation.mps.bodies import mps_drive
 
 SNOW = MpsSettings(density=200.0, friction_angle=24.0)
-OWN = frozenset({"tilt", "board"})
+CASE_SETTINGS = frozenset({"tilt", "board"})
 STEPS = 60
 EDGE = 0.2  # m, of a block of snow that falls by a quarter of it onto a tilted plane
 BOARD_AT, BOARD_HEIGHT = 0.25, 0.3  # m, down the plane from the block's middle; above the plane
@@ -25,7 +25,7 @@ VALUES = (0.0, 1.0, 1e2, 1e4)
 
 
 def measure(settings: CaseSettings) -> Outcome:
-    """Let a block slide against a board; count numbers that are not finite, and find its place."""
+    """Let a block slide to a board; count values not finite and particles in walls."""
     tilt, board = float(settings["tilt"]), float(settings["board"])
     angle = math.radians(tilt)
     down = np.array([math.cos(angle), 0.0, -math.sin(angle)])
@@ -37,11 +37,11 @@ def measure(settings: CaseSettings) -> Outcome:
             _sticky("board", _box(BOARD_AT * down + 0.5 * size[1] * normal, size, tilt))
         )
     snow = Body(shape=_box(0.75 * EDGE * normal, (EDGE, EDGE), tilt))
-    drive = mps_drive(SNOW, obstacles, [snow], settings, OWN)
+    drive = mps_drive(SNOW, obstacles, [snow], settings, CASE_SETTINGS)
     stopped = 0.0
     try:
         drive.step(STEPS)
-    except SimulationError:  # it names its cause, and the snow is as it was
+    except SimulationError:  # the error names its cause, and the snow is unchanged
         stopped = 1.0
     positions, speeds = drive.core.positions(), drive.core.velocities()
     fields = [drive.core.field_by_id(name) for name in ("pressure", "apparent_viscosity")]
@@ -91,23 +91,23 @@ def matrix(full: bool) -> list[CaseSettings]:
 CASE = Case(
     name="mps_extremes",
     title="Fluids of particles at the extremes of their settings",
-    source="nothing but numbers, nothing behind a wall",
+    source="all values are finite, no particle is behind a wall",
     description="""
     A block of snow falls a little and slides down a plane, against a board that stands on it or
     not. Viscosity and yield stress go up to 1e4 Pa s and Pa, tilts to 85 degrees, boards are
     thinner than a particle (their thickness is in distances between particles). After 60 steps
-    everything must be a number and no particle behind or in a wall; a run may stop with an error.
+    every value must be finite and no particle behind or in a wall; a run may stop with an error.
     """,
     quantities=(
-        Quantity("unsound", "values that are no numbers", bar=0.0, relative=False),
-        Quantity("through", "particles behind or in a wall", bar=0.0, relative=False),
+        Quantity("unsound", "values that are no numbers", limit=0.0, relative=False),
+        Quantity("through", "particles behind or in a wall", limit=0.0, relative=False),
         Quantity("stopped", "runs that stopped with an error", relative=False),
         Quantity("density", "largest density over that of a lattice"),
     ),
     matrix=matrix,
     measure=measure,
     remarks="""
-    Stiff fluids are compressed, and snow that falls on a plane is for a moment: the density is
-    reported without a bar.
+    Stiff fluids are compressed, and so is snow for a moment as it lands. The density is therefore
+    reported without a limit.
     """,
 )

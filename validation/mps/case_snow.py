@@ -65,7 +65,7 @@ SCALE = 2 * 100.0 / (1000.0 * GRAVITY)
 
 
 def resting_front() -> float:
-    """Return where a heap of this volume ends at rest, m."""
+    """Return the end of a heap of this volume at rest, m."""
     return float((1.5 * HEAP[0] * HEAP[1] / math.sqrt(SCALE)) ** (2 / 3))
 
 
@@ -119,7 +119,7 @@ CASES = (
         compared.
         """,
         quantities=(
-            Quantity("speed", "speed, m/s", bar=0.02, bar_for={"spacing": 0.01}),
+            Quantity("speed", "speed, m/s", limit=0.02, limit_for={"spacing": 0.01}),
         ),
         matrix=slab_matrix,
         measure=measure_slab,
@@ -135,8 +135,8 @@ CASES = (
         """,
         quantities=(
             Quantity(
-                "profile", "L2 of the height over it", bar=0.1,
-                bar_for={"spacing": 0.02}, relative=False,
+                "profile", "L2 of the height over it", limit=0.1,
+                limit_for={"spacing": 0.02}, relative=False,
             ),
             Quantity("front", "front, m"),
             Quantity("density", "largest error of the density", relative=False),

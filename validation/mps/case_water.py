@@ -63,7 +63,7 @@ def column_matrix(full: bool) -> list[CaseSettings]:
 def deviation(
     front: Sequence[tuple[float, float]], known: Sequence[tuple[float, float]], delay: float = 0.0
 ) -> float:
-    """Return the root mean square by which a front is off measured ones, in widths of the dam.
+    """Return the rms difference of a front from a measured one, in widths of the dam.
 
     Examples
     --------
@@ -77,7 +77,7 @@ def deviation(
 
 
 def measure_dam(settings: CaseSettings) -> Outcome:
-    """Let a column of water collapse, and compare where its front is."""
+    """Let a column of water collapse, and compare its front."""
     spacing = DAM / int(settings["across"])
     drive = mps_drive(
         WATER, floor_and_sides(8 * DAM), [block(DAM, 2 * DAM)],
@@ -125,7 +125,7 @@ COLUMN = Case(
     must stay where it is; its rise is in distances between particles.
     """,
     quantities=(
-        Quantity("slope", "slope of the pressure", bar=0.01, bar_for={"walls": None}),
+        Quantity("slope", "slope of the pressure", limit=0.01, limit_for={"walls": None}),
         Quantity("rise", "rise of the highest particle", relative=False),
         Quantity("speed", "root mean square of speeds, m/s", relative=False),
     ),
@@ -144,19 +144,18 @@ DAM_BREAK = Case(
         "Nuclear Science and Engineering 123, 421-434"
     ),
     description="""
-    A column of water, 2 1/4 inches wide and twice as high, collapses. The position
-    of the foremost particle is compared, half a distance ahead, in widths of the column over
-    T* = t √(2g/a): with another
-    method for water without friction that is released suddenly (volume of fluid, Gerris), and with
-    two measured series, as they stand and with the origin of time of Martin and Moyce's tables,
-    which bring their runs together at X* = 1.44, T* = 1.19.
+    A column of water, 2 1/4 inches wide and twice as high, collapses. The position of the foremost
+    particle is compared, half a distance ahead, in widths of the column over T* = t √(2g/a): with
+    another method for water without friction that is released suddenly (volume of fluid, Gerris),
+    and with two measured series, as published and with the origin of time of Martin and Moyce's
+    tables, which bring their runs together at X* = 1.44, T* = 1.19.
     """,
     quantities=(
         Quantity(
             "gerris",
             "rms of X*, volume of fluid",
-            bar=0.1,
-            bar_for={"gradient": None, "walls": None},
+            limit=0.1,
+            limit_for={"gradient": None, "walls": None},
             relative=False,
         ),
         Quantity("martin_moyce", "rms of X*, Martin and Moyce", relative=False),
@@ -165,15 +164,15 @@ DAM_BREAK = Case(
         Quantity(
             "martin_moyce_delayed",
             "rms of X* with the delay, Martin and Moyce",
-            bar=0.15,
-            bar_for={"gradient": None, "walls": None},
+            limit=0.15,
+            limit_for={"gradient": None, "walls": None},
             relative=False,
         ),
         Quantity(
             "koshizuka_oka_delayed",
             "rms of X* with the delay, Koshizuka and Oka",
-            bar=0.15,
-            bar_for={"gradient": None, "walls": None},
+            limit=0.15,
+            limit_for={"gradient": None, "walls": None},
             relative=False,
         ),
         Quantity("front_at_2", "X* at T* = 2", relative=False),
@@ -181,11 +180,11 @@ DAM_BREAK = Case(
     matrix=dam_matrix,
     measure=measure_dam,
     remarks="""
-    The front is that of water without friction that is released suddenly, and runs ahead of both
-    series as they stand by 0.2 to 0.7. With the origin of time of the tables four of the six points
-    of Martin and Moyce are met to 0.02. The last one, (4.034, 4.944), lies 0.26 behind, and off
-    the line of its own neighbours. Gradients that lose energy come nearer to the series as they
-    stand for the wrong reason, and depart again when particles are nearer to each other.
+    The front is that of water without friction that is released suddenly. It runs 0.2 to 0.7 ahead
+    of both series as published. With the origin of time of the tables it meets four of the six
+    points of Martin and Moyce to 0.02. Their last point, (4.034, 4.944), lies 0.26 behind, and off
+    the line of its own neighbours. Gradients that lose energy come nearer to the published series
+    only by that loss: with a finer spacing they depart again.
     """,
 )
 CASES = (COLUMN, DAM_BREAK)

@@ -2,8 +2,8 @@
 
 A point mass would leave the panel the moment it passes the edge. A slab is held up by the edge
 until its last part has passed, so it flies a little further and turns. Newton's equations of a
-rigid rectangle, its bottom face sliding over a fixed edge, give both; nothing here has to do with
-the material point method.
+rigid rectangle, its bottom face sliding over a fixed edge, give both, independently of the material
+point method.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from snowshed.base.arrays import Floats
 
 @dataclass(frozen=True)
 class Landing:
-    """The place, time and motion with which a slab comes down.
+    """The place, time and spin of a slab as it lands.
 
     Attributes
     ----------
@@ -73,7 +73,7 @@ class RigidSlab:
     gravity: float = 9.81
 
     def landing(self, drop: float) -> Landing:
-        """Return where the centre of mass is when it has come to `drop` m below the edge.
+        """Return the landing: the centre of mass is `drop` m below the edge.
 
         Raises
         ------

@@ -24,7 +24,7 @@ DENSITY, GRAVITY = 210.0, 9.81  # kg/m3, m/s2
 YOUNGS_MODULUS, POISSONS_RATIO = 2e4, 0.3
 SLOPE, COHESION, HARDENING, STRENGTH = 0.5, 0.2, 1.0, 200.0
 #: Settings that are the case's own: how far the floor lies above a row of nodes, in cells.
-OWN = frozenset({"floor_offset"})
+CASE_SETTINGS = frozenset({"floor_offset"})
 #: Layers above the floor that count as its neighbourhood.
 FLOOR_LAYERS = 2
 #: Steps after which the velocities are damped again.
@@ -80,7 +80,7 @@ class ElasticColumn:
         return bulk * self.compression(depth)
 
     def settlement(self, depth: Floats) -> Floats:
-        """Return by how much the snow down to a depth has become shorter, m.
+        """Return the shortening of the snow down to a depth, m.
 
         The integral of 1 - exp(-x), with exp(-W(w)) = W(w)/w.
         """
@@ -90,7 +90,7 @@ class ElasticColumn:
 
 @dataclass(frozen=True)
 class YieldingColumn:
-    """The same of snow that yields and hardens: its stress from the rate equations.
+    """The column of snow that yields and hardens, with stresses from the rate equations.
 
     Attributes
     ----------
@@ -131,7 +131,7 @@ class YieldingColumn:
         return np.interp(depth, known, pressure)
 
     def settlement(self, depth: Floats) -> Floats:
-        """Return by how much the snow down to a depth has become shorter, m."""
+        """Return the shortening of the snow down to a depth, m."""
         known, _, settlement = self._table
         return np.interp(depth, known, settlement)
 
@@ -165,7 +165,7 @@ def column_scene(settings: CaseSettings) -> Scene:
             "snow.preconsolidation_pressure": STRENGTH,
         }
     )
-    return apply_settings(scene, settings, OWN)
+    return apply_settings(scene, settings, CASE_SETTINGS)
 
 
 def _wall(corner: Floats, axis: int, side: int, condition: Condition) -> Obstacle:
@@ -177,10 +177,10 @@ def _wall(corner: Floats, axis: int, side: int, condition: Condition) -> Obstacl
 
 
 def settle(drive: TimedEventDriver, periods: float) -> None:
-    """Let a column come to rest, damped so strongly that it nowhere sinks too far and comes back.
+    """Let a column come to rest, damped so strongly that no layer overshoots.
 
-    Snow that yields would keep the mark of a swing. Velocities fall at the rate 2 omega, critical
-    for the slowest swing, omega = pi c/(2 H): all others are too quick to matter.
+    An overshoot would remain in snow that yields. Velocities fall at the rate 2 omega, critical for
+    the slowest swing, omega = pi c/(2 H): all others are too quick to matter.
     """
     speed = math.sqrt(ElasticColumn(drive.core.dimension).modulus / DENSITY)
     omega = math.pi * speed / (2 * HEIGHT)
@@ -191,7 +191,7 @@ def settle(drive: TimedEventDriver, periods: float) -> None:
 
 
 def measure(settings: CaseSettings, column: Column, periods: float) -> Outcome:
-    """Settle a column and compare the means over its layers, one cell thick, with what is exact."""
+    """Settle a column and compare means over layers one cell thick with the exact ones."""
     drive = TimedEventDriver(column_scene(settings))
     dx = float(settings["dx"])
     start = drive.core.positions()[:, 2]
@@ -309,11 +309,11 @@ large, at three quarters of a cell fourteen times.
 """
 RANDOM_SEEDING = """
 Random seeding, the default, makes snow softer. Where particles are sparse the grid strains too
-much, and denser places do not make up for it. At 6 particles per voxel the column settles by
-another 1 to 3 % if it is elastic and by 4 to 6 % if it yields. A finer grid does not help, because
-a cell holds as many particles as before. With 24 or more particles the excess is about half a
-percent. The pressure of single particles scatters by 8 % of the bottom's, on a lattice by 2 to 4 %.
-Use means over a cell.
+much, and denser places do not compensate. At 6 particles per voxel the column settles by another 1
+to 3 % if it is elastic and by 4 to 6 % if it yields. A finer grid does not help, because a cell
+holds as many particles as before. With 24 or more particles the excess is about half a percent. The
+pressure of single particles scatters by 8 % of the bottom's, on a lattice by 2 to 4 %. Use means
+over a cell.
 """
 
 ELASTIC = Case(

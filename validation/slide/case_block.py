@@ -19,7 +19,7 @@ MIDDLE = 3.0  # m, from the block's middle: particles whose motion is measured
 SLIDING = 3.0  # s; edges make themselves felt in the middle only later
 #: Friction that stops a block, and the speed at which it starts down the slope, m/s.
 STOPPING, THROWN = 1.1, 4.0
-OWN = frozenset({"law"})
+CASE_SETTINGS = frozenset({"law"})
 
 DEFAULTS: CaseSettings = {"cell": 2.0, "layer_thickness": 0.06, "time_step": 0.01}
 
@@ -51,7 +51,7 @@ def block_motion(law: str, time: float) -> BlockMotion:
 
 
 def measure(settings: CaseSettings) -> Outcome:
-    """Let the middle of a wide block slide from rest, or stop after it was thrown."""
+    """Measure the middle of a wide block that slides from rest, or stops after a throw."""
     stops = settings["law"] == "stop"
     block = rectangle(-HALF, -HALF, HALF, HALF, THICKNESS)
     site = Site(PLANE.height, -24.0, -24.0, 60.0, 24.0, [block])
@@ -63,7 +63,7 @@ def measure(settings: CaseSettings) -> Outcome:
             "turbulence": TURBULENCE,
             **settings,
         },
-        OWN,
+        CASE_SETTINGS,
     )
     start = drive.core.positions()
     centre = start.mean(axis=0)
@@ -110,9 +110,11 @@ CASE = Case(
     the slope at 4 m/s must stop after v²/(2 a), and must not move afterwards.
     """,
     quantities=(
-        Quantity("distance", "distance down the slope, m", bar=0.005, bar_for={"time_step": 0.01}),
-        Quantity("speed", "speed, m/s", bar=0.005, bar_for={"time_step": 0.01}),
-        Quantity("creep", "speed after stopping, m/s", bar=1e-9, relative=False),
+        Quantity(
+            "distance", "distance down the slope, m", limit=0.005, limit_for={"time_step": 0.01}
+        ),
+        Quantity("speed", "speed, m/s", limit=0.005, limit_for={"time_step": 0.01}),
+        Quantity("creep", "speed after stopping, m/s", limit=1e-9, relative=False),
     ),
     matrix=matrix,
     measure=measure,

@@ -50,7 +50,7 @@ def exact_thickness(s: Floats, time: float) -> Floats:
 
 
 def exact_front(time: float) -> float:
-    """Return how far down the slope the thickness is `SEEN` of the dam's, m."""
+    """Return the distance down the slope at which the thickness is `SEEN` of the dam's, m."""
     c = wave_speed()
     ahead = c * (2 - 3 * math.sqrt(SEEN)) * time
     return 0.5 * PLANE.coulomb(FRICTION) * time**2 + ahead
@@ -119,8 +119,8 @@ CASE = Case(
         Quantity(
             "profile",
             "mean error of thickness over that of the dam",
-            bar=0.08,
-            bar_for={
+            limit=0.08,
+            limit_for={
                 "cell": 2.0,
                 "layer_thickness": LAYERS[2],
                 "time_step": 0.02,
@@ -132,8 +132,8 @@ CASE = Case(
         Quantity(
             "front",
             "front over the length of the fan",
-            bar=0.10,
-            bar_for={
+            limit=0.10,
+            limit_for={
                 "cell": 2.0,
                 "layer_thickness": LAYERS[2],
                 "time_step": 0.02,
@@ -147,10 +147,10 @@ CASE = Case(
     remarks="""
     The error falls with the number of particles within a cell, that is within the kernel: about
     with the distance of particles, which is the square root of the layer's thickness. Four
-    particles to a cell are too few: where snow thins to a third they have no neighbours any more,
-    and the front stays behind. Cells alone do not help.
+    particles per cell are too few: where snow thins to a third, they have no neighbours any more,
+    and the front stays behind. Smaller cells alone do not help.
 
-    Artificial viscosity (the default, after SamosAT) holds the front back far more than all else.
-    It is for rough ground, where it damps the noise of particles.
+    Artificial viscosity (the default, after SamosAT) slows the front far more than anything else.
+    Its purpose is rough ground, where it damps the noise of particles.
     """,
 )

@@ -13,7 +13,7 @@ from validation.slide.site import Height, Site, rectangle, slide_drive
 
 SLOPE = math.tan(math.radians(38.0))
 STEPS = 300
-OWN = frozenset({"ground", "thickness", "steps_to_take"})
+CASE_SETTINGS = frozenset({"ground", "thickness", "steps_to_take"})
 
 GROUNDS: Mapping[str, Height] = {
     "slope": lambda x, y: -SLOPE * x,
@@ -55,11 +55,11 @@ EXTREMES: tuple[CaseSettings, ...] = (
 
 
 def measure(settings: CaseSettings) -> Outcome:
-    """Run some steps, and check the mass, the numbers and the snow that must not move."""
+    """Run some steps, and check the mass, finite values and the snow that must not move."""
     height = GROUNDS[str(settings["ground"])]
     settings = {"layer_thickness": float(settings["thickness"]) / 2, **settings}
     snow = rectangle(-12.3, -12.3, 12.3, 12.3, float(settings["thickness"]))
-    drive = slide_drive(Site(height, -30.0, -30.0, 60.0, 30.0, [snow]), settings, OWN)
+    drive = slide_drive(Site(height, -30.0, -30.0, 60.0, 30.0, [snow]), settings, CASE_SETTINGS)
     released = drive.masses.sum()
     while drive.core.total_steps < int(settings["steps_to_take"]) and drive.core.particle_count:
         drive.step()
@@ -102,9 +102,9 @@ CASE = Case(
     move.
     """,
     quantities=(
-        Quantity("unsound", "coordinates that are not finite", bar=0.0, relative=False),
-        Quantity("mass", "change of mass", bar=1e-12),
-        Quantity("creep", "median speed that friction holds, m/s", bar=0.0, relative=False),
+        Quantity("unsound", "coordinates that are not finite", limit=0.0, relative=False),
+        Quantity("mass", "change of mass", limit=1e-12),
+        Quantity("creep", "median speed that friction holds, m/s", limit=0.0, relative=False),
     ),
     matrix=matrix,
     measure=measure,

@@ -19,7 +19,7 @@ DURATION = 3.0  # s
 HALF_WIDTH = 14.0  # m, of a ridge
 MEASURED = 3.0  # m, half the width of the strip of a ridge that is compared
 TERRACES = 10  # of equal width, from the middle to the rim
-OWN = frozenset({"shape"})
+CASE_SETTINGS = frozenset({"shape"})
 #: Coulomb friction; the round cap has none, as its direction would differ from place to place.
 FRICTION = {"ridge": math.tan(math.radians(20.0)), "cap": 0.0}
 LAYERS = (0.25, 0.11, 0.0625, 0.028)
@@ -59,7 +59,7 @@ def measure(settings: CaseSettings) -> Outcome:
     """Let the snow spread, and compare its half length and its profile."""
     shape = str(settings["shape"])
     site = Site(PLANE.height, -20.0, -28.0, 44.0, 28.0, terraces(shape))
-    drive = slide_drive(site, {"friction": FRICTION[shape], **settings}, OWN)
+    drive = slide_drive(site, {"friction": FRICTION[shape], **settings}, CASE_SETTINGS)
     drive.run_to(DURATION)
     exact = spread(shape, drive.core.time_s)
     profile = _profile_error(drive, shape, exact)
@@ -174,15 +174,15 @@ CASE = Case(
         Quantity(
             "half_length",
             "half length, m",
-            bar=0.03,
-            bar_for={"cell": 2.0, "layer_thickness": LAYERS[2], "time_step": 0.01},
+            limit=0.03,
+            limit_for={"cell": 2.0, "layer_thickness": LAYERS[2], "time_step": 0.01},
             order_in="layer_thickness",
         ),
         Quantity(
             "profile",
             "mean error of thickness over the largest",
-            bar=0.10,
-            bar_for={"cell": 2.0, "layer_thickness": LAYERS[2], "time_step": 0.01},
+            limit=0.10,
+            limit_for={"cell": 2.0, "layer_thickness": LAYERS[2], "time_step": 0.01},
             order_in="layer_thickness",
         ),
     ),

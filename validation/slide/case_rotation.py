@@ -21,7 +21,7 @@ BEND, LEVEL = 0.0, 30.0  # m, where the slope begins to run out and where the gr
 CORNERS = ((-52.0, -9.0), (-36.0, -12.0), (-34.0, 3.0), (-38.0, 12.0), (-54.0, 8.0))
 THICKNESS = 1.0  # m
 REST = 12.0  # s, by when nearly all lies still
-OWN = frozenset({"turned", "shape"})
+CASE_SETTINGS = frozenset({"turned", "shape"})
 
 DEFAULTS: CaseSettings = {
     "cell": 2.0,
@@ -65,7 +65,7 @@ def peaks(settings: CaseSettings, degrees: float) -> tuple[TimedEventDriver, Sli
         HALF,
         [Area(outline=[(float(x), float(y)) for x, y in corners], thickness=THICKNESS)],
     )
-    drive = slide_drive(site, settings, OWN)
+    drive = slide_drive(site, settings, CASE_SETTINGS)
     drive.run_to(REST)
     return drive, maps_of(drive)
 
@@ -133,7 +133,7 @@ CASE = Case(
         Quantity(
             f"{name}{ending}",
             f"change of peak {name} over the error of interpolation, {norm} norm",
-            bar=1.0,
+            limit=1.0,
             relative=False,
         )
         for name in ("thickness", "speed")

@@ -100,7 +100,7 @@ def slide_drive(site: Site, settings: CaseSettings, own: Collection[str] = ()) -
         Parameters of `SlideSettings`. Unless they say otherwise there are no bonds and no
         artificial viscosity, friction is Coulomb's, and one thread computes.
     own
-        Names in `settings` that are the case's own business.
+        Names of settings that belong to the case, not to the method.
     """
     bare = SlideSettings(
         bonds=False, artificial_viscosity=0.0, friction_law="coulomb", stop_ratio=0.0, threads=1

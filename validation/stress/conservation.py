@@ -1,4 +1,4 @@
-"""Balances of momentum and energy, kept from outside the solver during a run."""
+"""Balances of momentum and energy, computed outside the solver during a run."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ import numpy as np
 
 from snowshed import _core
 
-#: Heights are known to rounding only: energies below the work of lifting all snow by this part of
-#: a cell are no measure for an error.
+#: Heights have rounding errors: errors are not taken relative to energies below the work of lifting
+#: all snow by this share of a cell.
 MIN_DROP = 1e-2
 
 _SPENT = (
@@ -27,9 +27,9 @@ _SPENT = (
 class Conservation:
     """The balances of momentum and energy of a simulation.
 
-    Energy comes in with thrown snow and as work of gravity. What is stored in motion and elastic
-    strain can never be more; and with what was spent it must be exactly that. Errors are relative
-    to all that came in over the run.
+    Energy enters with thrown snow and as work of gravity. Kinetic and elastic energy can never
+    exceed the input; together with the spent energy they must equal it. Errors are relative to the
+    whole input of the run.
     """
 
     def __init__(self, simulation: _core.Simulation, gravity: float, dx: float) -> None:
@@ -58,7 +58,7 @@ class Conservation:
         self._momenta = float(masses @ np.linalg.norm(velocities, axis=1))
 
     def sample(self) -> None:
-        """Compare the present mass, momentum and energy with those that came in."""
+        """Compare the present mass, momentum and energy with their inputs."""
         energy = self.simulation.energy()
         work = self._laid - energy["gravitational_j"]
         excess = _in_motion(energy) - self._brought - work
@@ -70,14 +70,14 @@ class Conservation:
         self._residual = (min(self._residual[0], residual), max(self._residual[1], residual))
 
     def energy_errors(self) -> dict[str, float]:
-        """Return how far the balance did not close, relative to what came in.
+        """Return the errors of the balance, relative to the input.
 
         Returns
         -------
         dict
-            ``energy_error``: largest |stored + spent - came in|; ``energy_gain``: the same where
-            it is positive; ``stored_excess``: largest (stored - came in), ``final_excess``: the
-            last one.
+            ``energy_error``: largest |stored + spent - input|; ``energy_gain``: largest (stored +
+            spent - input); ``stored_excess``: largest (stored - input); ``final_excess``: the last
+            (stored - input).
         """
         least = self._mass * self.gravity * self.dx * MIN_DROP
         scale = max(self._thrown + self._dropped, least)
@@ -90,7 +90,7 @@ class Conservation:
         }
 
     def momentum_error(self, time_s: float) -> float:
-        """Return how far the momentum is from that of free flight for `time_s`, relative."""
+        """Return the relative error of the momentum after a free flight of `time_s`."""
         now = self.simulation.masses() @ self.simulation.velocities()
         fallen = self._mass * self.gravity * time_s
         expected = self._momentum - np.array([0.0, 0.0, fallen])

@@ -1,4 +1,4 @@
-"""Computes stress runs in a process of their own: a crash or a hang is an answer, not the end."""
+"""Computes stress runs in a process of their own: a crash or a hang is recorded."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ import traceback
 from collections.abc import Callable
 from typing import NamedTuple
 
-from snowshed.base.pool.pool import Ended, Isolation, Pool
+from snowshed.base.pool.pool import Isolation, Pool, TaskEnd
 from validation.stress.solve import Record, solve
 from validation.stress.space import Point
 
-LIMIT_S = 60.0  # s that a run may take
+LIMIT_S = 60.0  # time limit of a run, s
 
 
 class ProcessRun(NamedTuple):
@@ -34,7 +34,7 @@ def stress_pool(limit_s: float = LIMIT_S) -> Pool[ProcessRun, Record]:
 
 
 def record(pool: Pool[ProcessRun, Record], run: ProcessRun) -> Record:
-    """Return the record of a run, with ``ended`` "crashed", "hung" or "raised" where it is so.
+    """Return the record of a run, with ``ended`` "crashed", "hung" or "raised" if applicable.
 
     "raised" is an exception that is neither `InputError` nor `SimulationError`.
     """
@@ -49,11 +49,11 @@ def compute(run: ProcessRun, report: Callable[[float], None]) -> Record:
     try:
         return solve(run.point, run.steps)
     except Exception:
-        # Whatever it is, it belongs into the table of the suite.
+        # Every exception is a result of the suite.
         return {"ended": "raised", "message": traceback.format_exc(limit=-3)}
 
 
-def _record(ended: Ended[ProcessRun, Record]) -> Record:
+def _record(ended: TaskEnd[ProcessRun, Record]) -> Record:
     if ended.result is not None:
         return ended.result
     if ended.error is not None:

@@ -24,8 +24,8 @@ from snowshed.scene.scene import Scene
 from snowshed.scene.shape import Shape
 from validation.stress.space import Point
 
-#: Snow is kept waiting this many cells from what it is thrown at: bodies act on each other from
-#: about a cell, so that contact comes soon but does not start inside each other.
+#: Distance of snow from the target of its throw, in cells: bodies act on each other within about a
+#: cell, so that contact comes soon but no body starts inside another.
 GAP = 2.0
 
 #: Time limit of an event, s: snow of these sizes has fallen and settled by then.
@@ -45,14 +45,14 @@ def build(point: Point, max_time: float = MAX_DURATION) -> Scene:
 
 
 def max_event_duration(point: Point) -> float:
-    """Return how long an event of a point's scene may be at all, s."""
+    """Return the longest time that an event of a point's scene may take, s."""
     if point["kind"] not in ("collide", "plate"):
         return MAX_DURATION
     return min(MAX_DURATION, FLIGHT * float(point["thickness"]) / float(point["speed"]))
 
 
 class _SceneOf:
-    """A point of the space on its way to a scene; lengths in metres."""
+    """Builds the scene of a point; lengths in metres."""
 
     def __init__(self, point: Point) -> None:
         self.point = point
@@ -226,5 +226,5 @@ class _SceneOf:
         return (x, z) if self.dimension == 2 else (x, y, z)
 
     def _text(self, name: str) -> Any:
-        """Return one of the words that the space of points lists for a parameter."""
+        """Return the value of a parameter that is a text."""
         return self.point[name]

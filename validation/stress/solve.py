@@ -1,4 +1,4 @@
-"""One run: a point's scene is built, run to its end, and everything about it measured."""
+"""One run: builds a point's scene, runs it to its end, and measures it."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from validation.stress.space import Point
 #: Steps between two samples of the balances.
 STEPS_PER_SAMPLE = 16
 
-#: An event may take this many times the planned steps, where steps shorten, before it is cut.
+#: An event may take this many times the planned steps, because steps may shorten.
 PATIENCE = 4
 
 Record = dict[str, Any]
@@ -125,7 +125,7 @@ class _Run:
         return "step_limit" if ended == "interrupted" else ended
 
     def measures(self) -> Record:
-        """Return the numbers of the run as far as it came, and whether it can be saved."""
+        """Return the measures of the run up to its end, and whether it can be saved."""
         simulation = self.simulation
         speeds = np.linalg.norm(simulation.velocities(), axis=1)
         return {
@@ -145,7 +145,7 @@ class _Run:
         }
 
     def _leaves_a_checkpoint(self) -> bool:
-        """Tell whether a sound checkpoint is left: of now, or of before where now there is none.
+        """Return whether a sound checkpoint remains: the present one, or else the one before.
 
         A simulation whose particles are no longer sound refuses to be saved, so that the checkpoint
         from before stays.

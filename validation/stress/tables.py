@@ -30,7 +30,7 @@ class SummaryTable:
     name, title:
         Key and heading.
     remark:
-        A paragraph: what the columns are and what to make of them.
+        A paragraph on the columns and their meaning.
     frame:
         The table; its columns carry their units.
     """
@@ -95,13 +95,13 @@ def _outcomes(frame: pd.DataFrame) -> SummaryTable:
 
 
 def _errors(frame: pd.DataFrame) -> SummaryTable:
-    """Errors that differ in their numbers only are one row."""
+    """Count messages; those that differ only in their numbers share a row."""
     wrong = frame[frame.outcome.isin(["refused", "stopped"])]
     kinds = wrong.message.str.replace(r"-?\d+(\.\d+)?(e[+-]?\d+)?", "#", regex=True)
     grouped = wrong.groupby([wrong.outcome, kinds.rename("kind")])
     table = grouped.message.agg(["size", "first"]).reset_index().drop(columns="kind")
     table = table.rename(columns={"size": "runs", "first": "message (first of its kind)"})
-    remark = "What runs that did not go to their end said."
+    remark = "Messages of runs that stopped early."
     return SummaryTable("errors", "Errors", remark, table.sort_values("runs", ascending=False))
 
 
@@ -128,7 +128,7 @@ def _balances(frame: pd.DataFrame) -> SummaryTable:
     remark = (
         "Largest error of each run, looked at every 16 steps. Energy is relative to all that came "
         "in with thrown snow and as work of gravity, momentum to the sum of all momenta. The last "
-        "rows matter most: energy that comes from nowhere. What the balance misses is of first "
+        "rows matter most: they show energy without a source. The error of the balance is of first "
         "order in the time step; it is largest where few steps cover the whole motion, in soft "
         "snow, and in blows at many times the speed of sound in the snow."
     )

@@ -34,7 +34,8 @@ class ThreadChoice {
     const double spent = std::chrono::duration<double>(Clock::now() - begin_).count();
     seconds_[step_ / trials][step_ % trials] = spent;
     if (step_ + 1 == trials) with_one_ = median(seconds_[0]);
-    // Cores that other programs use make threads wait for long: twice is enough.
+    // On cores that other programs use, threads wait long: give up after two trials that took twice
+    // the time.
     if (step_ == trials + 1) gave_up_ = std::min(spent, seconds_[1][0]) > 2 * with_one_;
     if (step_ + 1 == 2 * trials) many_ = median(seconds_[1]) < worthwhile * with_one_;
     trial_ = false;

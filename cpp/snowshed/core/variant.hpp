@@ -14,7 +14,7 @@
   }                          \
   }
 
-// The same of a method, in its namespace.
+// The same within the namespace of a method.
 #define SNOWSHED_METHOD_VARIANT_BEGIN(method) \
   namespace snowshed {                        \
   namespace method {                          \

@@ -17,7 +17,7 @@ std::array<double, 4> cubic_weights(double t) {
           0.5 * t3 - 0.5 * t2};
 }
 
-/// A node, or one continued from the two at the border in a straight line.
+/// The height at a node; outside the grid, extrapolated linearly from the two nodes at the border.
 double height_beyond(const HeightField& f, int column, int row) {
   if (column < 0) return 2 * height_beyond(f, 0, row) - height_beyond(f, 1, row);
   if (column >= f.columns)

@@ -36,7 +36,8 @@ class LevelSet {
 
   virtual Bounds bounds() const = 0;
 
-  /// Returns bounds of where the solid is more than a plane: finite for a half-space with a pit.
+  /// Returns bounds of the part in which the surface is not a plane: finite for a half-space with a
+  /// pit.
   virtual Bounds varied_bounds() const { return bounds(); }
 
   /// Returns the greatest depth below the surface, metres (infinite for a half-space).

@@ -6,7 +6,7 @@
 
 namespace snowshed {
 
-/// A hash (FNV-1a, 64 bits): other bytes give another number, except by a rare accident.
+/// A hash (FNV-1a, 64 bits): different bytes give different numbers, barring rare collisions.
 class Fingerprint {
  public:
   template <class T>

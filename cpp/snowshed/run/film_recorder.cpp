@@ -14,8 +14,8 @@ namespace {
 constexpr double max_quantum = 1.0 / 1024;  // m
 constexpr double max_quanta = 1 << 30;
 
-/// The smallest length that matters in a picture, m: a part of a radius, or the resolution; zero if
-/// a raster decides it, which is coarse.
+/// The smallest length that matters in a picture, m: an eighth of the smallest radius, or the
+/// resolution; zero if a raster sets the resolution.
 double smallest_length(const Scene& scene, const Method& method, bool has_radius) {
   if (!has_radius || method.size() == 0) return scene.numerics->resolution();
   const FieldView radii = method.field("equivalent_radius");

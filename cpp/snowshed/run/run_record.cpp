@@ -5,6 +5,7 @@
 #include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "snowshed/core/kernel_variant.hpp"
 #include "snowshed/core/memory.hpp"
@@ -121,7 +122,10 @@ std::optional<double> EventRecord::energy_residual() const {
   return largest > 0 ? std::abs(residual->second) / largest : 0.0;
 }
 
-std::string name_of(RunEnd end) { return end == RunEnd::rest ? "rest" : "time_limit"; }
+std::string name_of(RunEnd end) {
+  if (end == RunEnd::paused) throw std::logic_error("an event that is paused has not ended");
+  return end == RunEnd::rest ? "rest" : "time_limit";
+}
 
 std::string name_of(RunStatus status) {
   switch (status) {

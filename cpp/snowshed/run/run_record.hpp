@@ -41,7 +41,8 @@ struct FileMark {
 /// Residuals of the energy above this share give a warning.
 inline constexpr double max_energy_residual = 0.01;
 
-/// Returns the names that run.json has for the two ends of events.
+/// Returns the name of an ended event's `RunEnd` in run.json: "rest" or "time_limit". Throws
+/// std::logic_error for `paused`, because such an event has not ended.
 std::string name_of(RunEnd);
 
 enum class RunStatus { running, interrupted, failed, finished };

@@ -174,10 +174,10 @@ def best_of(stacks: Sequence[RecordedStack], wanted: float) -> RecordedStack:
 def _settings_text(stack: RecordedStack, name: str) -> str:
     """Return the scheme of a recorded stack, and its further settings except `name`."""
     from snowshed.analysis.accuracy.mechanisms import SCHEME
-    from snowshed.analysis.accuracy.setting_labels import settings
+    from snowshed.analysis.accuracy.setting_labels import settings_label
 
     further = {k: v for k, v in stack.settings.items() if k in ACCURACY and k not in (name, SCHEME)}
-    return ", ".join(filter(None, [f"scheme {_scheme(stack)}", settings(further)]))
+    return ", ".join(filter(None, [f"scheme {_scheme(stack)}", settings_label(further)]))
 
 
 def _scheme(stack: RecordedStack) -> str:
@@ -254,12 +254,16 @@ def _differences(stack: RecordedStack, data: Mapping[str, Any], thickness: float
     """Return how the scene differs from the recorded one, in sentences."""
     from snowshed.analysis.accuracy.mechanisms import Mechanisms
     from snowshed.analysis.accuracy.recorded_stacks import PRESET_THICKNESS, circumstances
-    from snowshed.analysis.accuracy.setting_labels import settings
+    from snowshed.analysis.accuracy.setting_labels import settings_label
 
     mine = circumstances(data)
     other = {k: v for k, v in stack.settings.items() if k in mine and v != mine[k]}
     lengths = Mechanisms(_scheme(stack)).lengths_note(PRESET_THICKNESS, thickness)
     return [
-        *([f"Unlike this scene, those runs were made with {settings(other)}."] if other else []),
+        *(
+            [f"Unlike this scene, those runs were made with {settings_label(other)}."]
+            if other
+            else []
+        ),
         *([f"{lengths[0].upper()}{lengths[1:]}."] if lengths else []),
     ]

@@ -16,7 +16,7 @@ from snowshed.cli.terminal import say
 from snowshed.methods.registry import DEFAULT, SETTINGS_KEY, method_of
 from snowshed.scene.scene import ResolvedScene
 
-LONG = 600.0  # s; longer runs are announced
+ANNOUNCED_FROM_S = 600.0  # s; longer runs are announced
 
 
 def run_scene(resolved: ResolvedScene, folder: Path, resume: bool, quiet: bool) -> None:
@@ -85,7 +85,7 @@ def announcing_long_run(resolved: ResolvedScene, show: Reporter) -> Reporter:
             unknown = False
             with suppress(_core.InputError):  # a file that the run has read may be away by now
                 work = _core.expected_work(resolved.core, resolved.base_dir)
-                if (seconds := work / progress.updates_per_s) >= LONG:
+                if (seconds := work / progress.updates_per_s) >= ANNOUNCED_FROM_S:
                     say(_long_run(resolved, seconds), err=True)
 
     return report

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 #: Tables with more rows than this are folded.
-LONG = 12
+FOLDED_FROM_ROWS = 12
 DPI = 130
 CSS_PIXELS = 96  # per inch
 PNG, HEADER = b"\x89PNG", 24  # how a PNG file begins; bytes up to the end of its size
@@ -56,7 +56,7 @@ class HtmlTable:
     @property
     def long(self) -> bool:
         """True if it should be folded."""
-        return len(self.rows) > LONG
+        return len(self.rows) > FOLDED_FROM_ROWS
 
 
 @dataclass(frozen=True)

@@ -1,9 +1,9 @@
 """The grid of a run at a moment: computed from the particles, as a Dataset and for ParaView.
 
 The solver stores no grid between steps. This is the same transfer from particles to grid, by the
-same B-splines at the same nodes (docs/methods/mpm-step.md), outside of the steps. It is written
-in NumPy, because the solver's transfer takes sorted tiles of particles in packs; tests compare the
-two, which are thus witnesses of each other.
+same B-splines at the same nodes (docs/methods/mpm-step.md), outside of the steps. It is written in
+NumPy, because the solver's transfer takes sorted tiles of particles in packs; tests compare the
+two, so each checks the other.
 """
 
 from __future__ import annotations

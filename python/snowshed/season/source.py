@@ -18,7 +18,7 @@ class SnowSource(Enum):
     HAND = "new snow"  # measured as such: on a board, or by the provider
     DEPTH = "snow depth"  # the rise of the depth sensor or the stake
     GAUGE = "precipitation"  # the water of a gauge, turned into snow by the temperature
-    MODEL = "typical year"  # precipitation and temperature of a year that never was
+    MODEL = "typical year"  # precipitation and temperature of a year assembled from several
     FILLED = "filled"  # by a rule, from a less trusted column or over a gap
     MISSING = "missing"  # unknown; no snow is laid on that day
 

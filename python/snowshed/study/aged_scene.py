@@ -34,7 +34,7 @@ def with_ageing(scene: Mapping[str, Any], ageing: Optional[Ageing]) -> dict[str,
     return dict(scene) if ageing is None else {**scene, KEY: ageing.data}
 
 
-def taken_apart(text: str) -> tuple[dict[str, Any], Optional[Ageing]]:
+def split_ageing(text: str) -> tuple[dict[str, Any], Optional[Ageing]]:
     """Return the scene of a run, as JSON data, and the ageing of its stack.
 
     Parameters
@@ -49,7 +49,7 @@ def taken_apart(text: str) -> tuple[dict[str, Any], Optional[Ageing]]:
 
     Examples
     --------
-    >>> taken_apart('{"dimension": 2}')
+    >>> split_ageing('{"dimension": 2}')
     ({'dimension': 2}, None)
     """
     data: dict[str, Any] = parse_object(text, "scene")
@@ -59,4 +59,4 @@ def taken_apart(text: str) -> tuple[dict[str, Any], Optional[Ageing]]:
 
 def without_ageing(text: str) -> str:
     """Return the scene of a run alone, as JSON."""
-    return json.dumps(taken_apart(text)[0]) if f'"{KEY}"' in text else text
+    return json.dumps(split_ageing(text)[0]) if f'"{KEY}"' in text else text

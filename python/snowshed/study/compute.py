@@ -21,7 +21,7 @@ from snowshed.methods.registry import method_of
 from snowshed.results.folder import RunFolder
 from snowshed.running.run import run
 from snowshed.scene.resolved import ResolvedScene, scene_data
-from snowshed.study.aged_scene import taken_apart
+from snowshed.study.aged_scene import split_ageing
 from snowshed.study.locks import holding
 from snowshed.study.outcome import RunOutcome, RunTask
 from snowshed.study.scene_hash import content_hash
@@ -81,7 +81,7 @@ def _compute(task: RunTask, folder: Path, report: Optional[FractionReporter]) ->
 
 def _run_or_resume(task: RunTask, folder: Path, report: Optional[Reporter]) -> None:
     """Run the events; an earlier attempt without a checkpoint is removed."""
-    data, ageing = taken_apart(task.scene)
+    data, ageing = split_ageing(task.scene)
     options: dict[str, Any] = {
         "ageing": ageing, "progress": report, "pictures": False, "compact": True,
     }  # fmt: skip
@@ -101,7 +101,7 @@ def _run_or_resume(task: RunTask, folder: Path, report: Optional[Reporter]) -> N
 def _outcome(task: RunTask, folder: Path, error: Optional[str]) -> RunOutcome:
     """Return the outcome recorded in the results folder."""
     results = RunFolder(folder)
-    runs = method_of(taken_apart(task.scene)[0]).run_class()
+    runs = method_of(split_ageing(task.scene)[0]).run_class()
     events = runs.rows(folder)
     status = "done" if error is None else "failed"
     begun = (folder / "scene.json").is_file()  # else it failed before there was anything

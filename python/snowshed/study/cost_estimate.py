@@ -12,7 +12,7 @@ from collections.abc import Iterable, Sequence
 
 import snowshed._core as _core
 from snowshed._core import InputError, SimulationError
-from snowshed.study.aged_scene import taken_apart, without_ageing
+from snowshed.study.aged_scene import split_ageing, without_ageing
 
 THIRDS = (1 / 6, 3 / 6, 5 / 6)  # the middle of each third
 ROUNDS = 9  # of measuring speeds
@@ -44,7 +44,7 @@ def work(scene: str) -> float:
 
 def speed(scene: str, threads: int) -> float:
     """Return the particle updates per second of a scene on this machine at present."""
-    data = taken_apart(scene)[0]
+    data = split_ageing(scene)[0]
     data["numerics"]["threads"] = threads
     try:
         return max(float(_core.plan(json.dumps(data))["updates_per_s"]), 1.0)

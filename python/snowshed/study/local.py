@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Optional
 
-from snowshed.base.pool.pool import Ended, Pool
+from snowshed.base.pool.pool import Pool, TaskEnd
 from snowshed.study.compute import compute
 from snowshed.study.outcome import RunOutcome, RunTask
 
@@ -58,7 +58,7 @@ class LocalWorkers:
         self.pool.close()
 
 
-def _outcome(ended: Ended[RunTask, RunOutcome]) -> RunOutcome:
+def _outcome(ended: TaskEnd[RunTask, RunOutcome]) -> RunOutcome:
     if ended.result is not None:
         return ended.result
     if ended.error is not None:  # `compute` foresees all errors but its own

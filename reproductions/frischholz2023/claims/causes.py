@@ -47,7 +47,7 @@ CAUSES: Mapping[str, str] = {
         "3 %. The thesis says that the height is affected in proportion but to a lesser extent, "
         "which may also mean that it falls."
     ),
-    "It falls with the same slope at every event.": (
+    "H/L falls with the same slope at every event.": (
         "H/L falls less steeply after later events, by both trimming rules and with reseeded "
         "stacks. The thesis judges by eye, panel by panel. Our criterion, a difference of at most "
         "a quarter, may be stricter than its figure."

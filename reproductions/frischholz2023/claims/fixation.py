@@ -168,7 +168,7 @@ def _ends(rows: pd.DataFrame) -> tuple[Estimate, Estimate]:
 
 
 def _mean(rows: pd.DataFrame) -> Estimate:
-    """Return the mean over the values of the first parameter, which covers all of its group."""
+    """Return the mean over the values of the first parameter, and so over its group."""
     rows = rows[rows["parameter"] == rows["parameter"].iloc[0]]
     return mean_of([Estimate(m, n) for m, n in zip(rows["mean_m"], rows["noise_m"])])
 

@@ -228,7 +228,7 @@ GEOMETRY: tuple[Claim[pd.DataFrame], ...] = (
     _grows("H/L grows with the panel's length.", "panel_length", "ratio"),
     Claim(
         "5.1.2",
-        "It grows like a logarithm.",
+        "H/L grows with the logarithm of the panel's length.",
         f"a logarithm leaves {FITS_BETTER} times less variance than a straight line (no noise)",
         is_logarithmic,
     ),
@@ -238,13 +238,13 @@ GEOMETRY: tuple[Claim[pd.DataFrame], ...] = (
     _falls("H/L falls with the panel's height.", "panel_height", "ratio"),
     Claim(
         "5.1.2",
-        "It falls linearly.",
+        "H/L falls linearly with the panel's height.",
         f"a parabola departs from the line by less than {percent(STRAIGHT)} of the line's change",
         is_linear_in_height,
     ),
     Claim(
         "5.1.2",
-        "It falls with the same slope at every event.",
+        "H/L falls with the same slope at every event.",
         f"no two events' slopes differ by more than {percent(SAME)} of the mean slope",
         slopes_are_the_same,
     ),

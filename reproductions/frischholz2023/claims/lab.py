@@ -29,7 +29,7 @@ from snowshed.base.formatting import percent
 if TYPE_CHECKING:
     import pandas as pd
 
-#: Thesis 5.1, and how far "about" may be.
+#: Ratio of thesis 5.1, and its largest deviation that counts as "about".
 RATIO_3D_2D, RATIO_ABOUT = 2 / 3, 0.1
 #: Section 4.3: mean errors of 0.010 m, about 10 %, and 0.061 m, about 20 %, give the mean stack.
 MEAN_HEIGHT, HEIGHT_ABOUT = 0.10, 0.010

@@ -30,14 +30,14 @@ if TYPE_CHECKING:
 
 #: "Sub-centimetre": H/L has no unit, so that its error is compared with the plain number.
 SUB_CENTIMETRE = 0.01
-#: Section 5.3.1, of the RBF kernel.
+#: Validation score of the RBF kernel in section 5.3.1.
 VALIDATION_SCORE = 0.005
-#: Largest relative difference of two numbers that are about equal.
+#: Two numbers are about equal up to this relative difference.
 ABOUT = 0.25
 
 
 @dataclass(frozen=True)
-class Regressed:
+class RegressionResults:
     """The results of the nested cross-validation for H/L.
 
     Attributes
@@ -60,13 +60,13 @@ class Regressed:
     quartiles: pd.DataFrame
 
 
-def validation(data: Regressed, model: str) -> Estimate:
+def validation(data: RegressionResults, model: str) -> Estimate:
     """Return the mean validation score of a model, with its standard error over the folds."""
     of_model = _folds(data, model)
     return _mean_over_folds(of_model, of_model["validation_score"].to_numpy(float))
 
 
-def _folds(data: Regressed, model: str) -> pd.DataFrame:
+def _folds(data: RegressionResults, model: str) -> pd.DataFrame:
     of_model = data.scores[data.scores["model"] == model]
     if of_model.empty:
         raise LookupError(f"the model {model}")
@@ -76,34 +76,34 @@ def _folds(data: Regressed, model: str) -> pd.DataFrame:
 def _mean_over_folds(of_model: pd.DataFrame, values: Floats) -> Estimate:
     """Return a mean over outer folds, with its standard error.
 
-    Rounds split the same rows again, so that only the folds of one round are independent.
+    Every round splits the same rows again, so only the folds of one round are independent.
     """
     spread = float(values.std(ddof=1)) if len(values) > 1 else math.nan
     folds = len(values) / of_model["round"].nunique()
     return Estimate(float(values.mean()), spread / math.sqrt(folds) * widening(folds - 1))
 
 
-def overfitting(data: Regressed, model: str) -> Estimate:
+def overfitting(data: RegressionResults, model: str) -> Estimate:
     """Return the excess of validation scores over those on the development sets."""
     folds = _folds(data, model)
     lost = folds["validation_score"] - folds["development_score"]
     return _mean_over_folds(folds, lost.to_numpy(float))
 
 
-def mean_error(data: Regressed, model: str) -> Estimate:
+def mean_error(data: RegressionResults, model: str) -> Estimate:
     """Return the mean absolute error of a model; panels are independent, their events are not."""
     deviation = float(data.errors["standard_deviation"][model])
     error = float(data.errors["mean_absolute_error"][model])
     return Estimate(error, deviation / math.sqrt(data.panels))
 
 
-def rbf_is_better(data: Regressed) -> Finding:
-    """Test whether the RBF kernel's median absolute error on validation sets is the smaller one."""
+def rbf_is_better(data: RegressionResults) -> Finding:
+    """Test whether the RBF kernel's median absolute error on validation sets is smaller."""
     lead = validation(data, "linear") - validation(data, "rbf")
     return positive(lead, "validation score, linear minus RBF")
 
 
-def rbf_is_so_much_better(data: Regressed) -> Finding:
+def rbf_is_better_by_ratio(data: RegressionResults) -> Finding:
     """Test whether the linear kernel's validation score is about 2.5 times the RBF kernel's."""
     linear, rbf = validation(data, "linear"), validation(data, "rbf")
     ratio = linear.value / rbf.value
@@ -112,21 +112,21 @@ def rbf_is_so_much_better(data: Regressed) -> Finding:
     return near(Estimate(ratio, noise), LINEAR_WORSE, ABOUT * LINEAR_WORSE, text)
 
 
-def score_is_the_thesis(data: Regressed) -> Finding:
+def score_agrees(data: RegressionResults) -> Finding:
     """Test whether the RBF kernel's validation score is about 0.005."""
     finding = near(
         validation(data, "rbf"), VALIDATION_SCORE, ABOUT * VALIDATION_SCORE, "validation score, RBF"
     )
-    return _of_as_many_rows(finding, data)
+    return _undecided_unless_all_rows(finding, data)
 
 
-def rbf_overfits_more(data: Regressed) -> Finding:
+def rbf_overfits_more(data: RegressionResults) -> Finding:
     """Test whether the RBF kernel loses more from the development sets to the validation sets."""
     more = overfitting(data, "rbf") - overfitting(data, "linear")
     return positive(more, "validation minus development score, RBF minus linear")
 
 
-def linear_chooses_more_widely(data: Regressed) -> Finding:
+def linear_chooses_more_widely(data: RegressionResults) -> Finding:
     """Test whether the chosen C varies more for the linear kernel than for the RBF kernel."""
     linear, rbf = (float(np.log10(_folds(data, kernel)["C"]).std()) for kernel in ("linear", "rbf"))
     text = f"deviation of log₁₀ C: {linear:.2f} for the linear kernel, {rbf:.2f} for RBF"
@@ -135,22 +135,22 @@ def linear_chooses_more_widely(data: Regressed) -> Finding:
     return Finding(CONFIRMED if linear > rbf else CONTRADICTED, text)
 
 
-def is_sub_centimetre(data: Regressed) -> Finding:
+def is_sub_centimetre(data: RegressionResults) -> Finding:
     """Test whether the RBF models' mean absolute error is below 0.01."""
     error = mean_error(data, "rbf")
     left = Estimate(SUB_CENTIMETRE, 0.0) - error
     return Finding(positive(left, "").verdict, f"mean absolute error of H/L: {error.text()}")
 
 
-def error_is_the_thesis(data: Regressed, model: str) -> Finding:
+def error_agrees(data: RegressionResults, model: str) -> Finding:
     """Test whether a model's mean absolute error is about that of Table 5.3.2."""
     aim = THESIS_ERRORS[model][0]
     text = f"mean absolute error (thesis {aim})"
     finding = near(mean_error(data, model), aim, ABOUT * aim, text)
-    return _of_as_many_rows(finding, data)
+    return _undecided_unless_all_rows(finding, data)
 
 
-def quartiles_are_the_thesis(data: Regressed) -> Finding:
+def quartiles_agree(data: RegressionResults) -> Finding:
     """Test whether the quartiles of the predictions are those of Table 5.3.1."""
     findings = []
     for model, printed in THESIS_QUARTILES.items():
@@ -159,23 +159,23 @@ def quartiles_are_the_thesis(data: Regressed) -> Finding:
         scatter = math.hypot(
             data.errors["mean_absolute_error"][model], data.errors["standard_deviation"][model]
         )
-        # The largest belongs to a single panel, the others to many.
+        # The largest prediction, Q4, belongs to a single panel, the other quartiles to many.
         noise = scatter / np.array([*[math.sqrt(data.panels)] * 3, 1.0]) / np.array(printed)
         worst = Estimate(float(off.max()), float(noise[off.argmax()]))
         findings.append(near(worst, 0.0, QUARTILES_OFF, f"{model}, worst quartile off by", "%"))
     finding = all_of(findings)
-    return _of_as_many_rows(finding, data)
+    return _undecided_unless_all_rows(finding, data)
 
 
-def _of_as_many_rows(finding: Finding, data: Regressed) -> Finding:
-    """Leave a finding open whose number is the thesis's only for as many rows."""
+def _undecided_unless_all_rows(finding: Finding, data: RegressionResults) -> Finding:
+    """Return the finding, or "undecided" if the data do not have as many rows as the thesis's."""
     if data.rows == THESIS_ROWS:
         return finding
     text = f"{finding.sentence}, but of {data.rows} rows, not the thesis's {THESIS_ROWS}"
     return Finding(UNDECIDED, text)
 
 
-REGRESSION: tuple[Claim[Regressed], ...] = (
+REGRESSION: tuple[Claim[RegressionResults], ...] = (
     Claim(
         "5.3.1",
         "The RBF kernel predicts better than the linear one.",
@@ -184,15 +184,15 @@ REGRESSION: tuple[Claim[Regressed], ...] = (
     ),
     Claim(
         "5.3.1",
-        f"It is about {LINEAR_WORSE} times better.",
+        f"The RBF kernel is about {LINEAR_WORSE} times better.",
         f"ratio of validation scores within {percent(ABOUT)} of {LINEAR_WORSE}",
-        rbf_is_so_much_better,
+        rbf_is_better_by_ratio,
     ),
     Claim(
         "5.3.1",
         f"The RBF kernel's validation score is about {VALIDATION_SCORE}.",
         f"within {percent(ABOUT)}, for a data set of {THESIS_ROWS} rows",
-        score_is_the_thesis,
+        score_agrees,
     ),
     Claim(
         "5.3.1",
@@ -216,18 +216,18 @@ REGRESSION: tuple[Claim[Regressed], ...] = (
         "Table 5.3.2",
         f"The RBF kernel's mean absolute error is {THESIS_ERRORS['rbf'][0]}.",
         f"within {percent(ABOUT)}, for a data set of {THESIS_ROWS} rows",
-        lambda data: error_is_the_thesis(data, "rbf"),
+        lambda data: error_agrees(data, "rbf"),
     ),
     Claim(
         "Table 5.3.2",
         f"The linear kernel's mean absolute error is {THESIS_ERRORS['linear'][0]}.",
         f"within {percent(ABOUT)}, for a data set of {THESIS_ROWS} rows",
-        lambda data: error_is_the_thesis(data, "linear"),
+        lambda data: error_agrees(data, "linear"),
     ),
     Claim(
         "Table 5.3.1",
         "The quartiles of the predicted H/L.",
         f"all within {percent(QUARTILES_OFF)}, for a data set of {THESIS_ROWS} rows",
-        quartiles_are_the_thesis,
+        quartiles_agree,
     ),
 )

@@ -64,21 +64,28 @@ def sample_text(stacks: pd.DataFrame) -> list[str]:
     ours = stacks[stacks["variant"] == DEFAULTS]
     stacks = stacks[stacks["variant"].isin(VARIANTS)]
     panels, seeds = len(ours[list(PANEL)].drop_duplicates()), ours["seed"].nunique()
-    cells = " and ".join(f"{100 * dx:.3g} cm" for dx in sorted(stacks["dx"].unique(), reverse=True))
     longest, events = ours["panel.length"].max(), ours["event"].max()
     return [
         f"The sample has {panels} of the 122 panels of chapter 5, up to {longest:g} m long, with "
         f"{events:g} events and {seeds} seeding{'s' if seeds > 1 else ''} each. They were chosen "
         "by their geometry alone, and simulated with our settings, with each deviation undone, "
-        f"and with all undone. Cells have {cells}; undoing the grid takes the smaller ones.",
+        "and with all undone.",
+        f"{_cells_sentence(stacks)} Stacks are measured by outermost_first, except for the "
+        "deviation in the trimming and for all together.",
         "A change is the change of the mean stack below a panel, relative to our settings with "
-        "the same seed; its noise is the standard error over the panels. Stacks are measured by "
-        "outermost_first, except for the deviation in the trimming and for all together. A change "
-        f"of up to {SIGMAS:g} standard errors may be chance.",
+        "the same seed; its noise is the standard error over the panels. A change of up to "
+        f"{SIGMAS:g} standard errors may be chance.",
         f"Table 5.3.1 holds quartiles of predictions for {THESIS_ROWS} rows. The quartiles here "
         "are those of rows of a sample: compare them only with each other.",
         f"Frames are counted at {FRAME_RATE:g} per second; the thesis prints only their number.",
     ]
+
+
+def _cells_sentence(stacks: pd.DataFrame) -> str:
+    sizes = [f"{100 * dx:.3g} cm" for dx in sorted(stacks["dx"].unique(), reverse=True)]
+    if len(sizes) < 2:
+        return f"Cells are {sizes[0]} wide."
+    return f"Cells are {sizes[0]} wide, and {sizes[1]} where the deviation `grid` is undone."
 
 
 def deviations_grid() -> HtmlTable:

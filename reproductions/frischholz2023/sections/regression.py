@@ -12,7 +12,7 @@ from reproductions.common.section import Content
 from reproductions.frischholz2023.claims.regression import (
     REGRESSION,
     VALIDATION_SCORE,
-    Regressed,
+    RegressionResults,
     validation,
 )
 from reproductions.frischholz2023.printed import THESIS_ERRORS, THESIS_QUARTILES, THESIS_ROWS
@@ -84,11 +84,11 @@ def rows_label(rows: StackRows) -> str:
     return "rows of one seed" if rows.most_seeds == 1 else f"means of up to {rows.most_seeds} seeds"
 
 
-def _regressed(part: Part) -> Regressed:
+def _regressed(part: Part) -> RegressionResults:
     return read_regressed(part.folder, len(part.rows), part.rows.panel_count)
 
 
-def read_regressed(folder: Path, rows: int, panels: int) -> Regressed:
+def read_regressed(folder: Path, rows: int, panels: int) -> RegressionResults:
     """Read what `snowshed.analysis.regression.regress` has written.
 
     Raises
@@ -99,7 +99,7 @@ def read_regressed(folder: Path, rows: int, panels: int) -> Regressed:
     scores = _by_model(folder / "scores.csv", ("development_score", "validation_score", "C"))
     errors = _by_model(folder / TARGET / "errors.csv", ERRORS)
     quartiles = _by_model(folder / TARGET / "quartiles.csv", QUARTILES, ("data", *KINDS))
-    return Regressed(rows, panels, scores.reset_index(), errors, quartiles)
+    return RegressionResults(rows, panels, scores.reset_index(), errors, quartiles)
 
 
 def _by_model(file: Path, columns: Sequence[str], models: Sequence[str] = KINDS) -> pd.DataFrame:
@@ -113,7 +113,7 @@ def _by_model(file: Path, columns: Sequence[str], models: Sequence[str] = KINDS)
     return table.set_index("model")
 
 
-def quartiles_grid(data: Mapping[str, Regressed]) -> HtmlTable:
+def quartiles_grid(data: Mapping[str, RegressionResults]) -> HtmlTable:
     """Return Table 5.3.1, which holds predictions, and the rows beside them."""
     rows = []
     for model in KINDS:
@@ -142,7 +142,7 @@ def rows_grid(file: Path) -> HtmlTable:
     return HtmlTable(["the stack is", "of", *QUARTILES], rows, "ll" + "r" * len(QUARTILES))
 
 
-def errors_grid(data: Mapping[str, Regressed]) -> HtmlTable:
+def errors_grid(data: Mapping[str, RegressionResults]) -> HtmlTable:
     """Return Table 5.3.2, with parts of the median and scores on rows that were not trained on."""
     rows = []
     for model in KINDS:

@@ -62,13 +62,13 @@ def test_stacks_age_between_slide_offs_as_in_a_season(answer, tmp_path):
     rows = table[table["hash"] == run.hash]
     assert len(rows) > 1
     season = run_season(
-        case.winter.days, case.panel(HEIGHT), tmp_path, settings=case.season, pictures=False
+        case.winter.days, case.panel(HEIGHT), tmp_path, settings=case.settings, pictures=False
     )
     assert read_events(SeasonFolder(tmp_path).run.folder)["height_m"].tolist() == pytest.approx(
         rows["height_m"].tolist(), rel=1e-12
     )
     assert season.simulated >= len(rows)
-    still = replace(case, settings=SeasonSettings(settling=None))
+    still = replace(case, base_settings=SeasonSettings(settling=None))
     assert still.run(HEIGHT).hash != run.hash
 
 
@@ -80,7 +80,7 @@ def test_it_counts_the_burials_that_seasons_have(answer, winters, tmp_path):
         for height in {one for name, one in table.index if name == case.winter.name}:
             out = tmp_path / f"{case.winter.name[:4]}-{height:g}"
             season = run_season(
-                case.winter.days, case.panel(height), out, settings=case.season, pictures=False
+                case.winter.days, case.panel(height), out, settings=case.settings, pictures=False
             )
             touched = table.loc[(case.winter.name, height), "touched"]
             assert touched == (season.contact is not None), (case.winter.name, height)
@@ -143,14 +143,14 @@ def test_its_probability_is_that_of_counting(tmp_path):
     """Known friction and adhesion: burial in 200 synthetic winters and in 200 others."""
     asked = split_winters(SHORT.winters(200, seed=11))
     counted = split_winters(SHORT.winters(200, seed=12))
-    told = answer_of(asked, tmp_path / "runs").buried(HEIGHT)
+    told = answer_of(asked, tmp_path / "runs").burial_probability(HEIGHT)
     buried = []
     for number, case in enumerate(answer_cases(counted)):
         season = run_season(
             case.winter.days,
             case.panel(HEIGHT),
             tmp_path / f"season-{number}",
-            settings=case.season,
+            settings=case.settings,
             pictures=False,
         )
         buried.append(season.contact is not None)
@@ -184,6 +184,15 @@ def test_the_error_of_the_grid_is_that_of_the_scheme(answer, winters):
         cases = [replace(case, base=base) for case in found.cases]
         warning = answer_text.warnings([replace(found, cases=cases)])[0]
         assert warning.startswith(f"the intervals leave out the error of the grid: {text}")
+
+
+def test_relations_that_are_off_have_sentences_of_their_own(answer):
+    found, _ = answer
+    off = SeasonSettings(settling=None, strength=None)
+    cases = [replace(case, base_settings=off) for case in found.cases]
+    texts = answer_text.assumptions(replace(found, cases=cases))
+    assert "Snow does not settle." in texts
+    assert "Strength and stiffness of a slab do not depend on its density." in texts
 
 
 # --- statistics ----------------------------------------------------------------------------

@@ -11,8 +11,8 @@ from snowshed.analysis.grains.material import readings
 from snowshed.analysis.grains.material.figures import material_figure
 from snowshed.analysis.grains.material.fit import Range, fit_material
 from snowshed.analysis.grains.material.law import CamClayFit, Elasticity
+from snowshed.analysis.grains.material.loading_tests import NORMAL_STRESSES
 from snowshed.analysis.grains.material.report import write_snow
-from snowshed.analysis.grains.material.tests import NORMAL_STRESSES
 from snowshed.analysis.grains.material.yield_surface import fit_yield_surface
 from snowshed.methods.grains.curve import COLUMNS, LoadingCurve
 
@@ -113,7 +113,7 @@ def test_hardening_is_its_closed_form(factor):
     expected = bulk * np.sinh(np.arcsinh(P0 / bulk) + factor * compaction)
     law = CamClayFit(300.0, Elasticity(E, NU), M, P0, BETA, factor)
     assert law.hardened(compaction) == pytest.approx(expected, rel=1e-12)
-    assert law.lost_after == pytest.approx(np.arcsinh(P0 / bulk) / factor, rel=1e-12)
+    assert law.dilation_at_strength_loss == pytest.approx(np.arcsinh(P0 / bulk) / factor, rel=1e-12)
 
 
 def test_confined_compression_yields_where_the_rate_equations_do():

@@ -361,7 +361,7 @@ def regressed(
         orient="index",
         columns=["Q1", "Q2", "Q3", "Q4"],
     )
-    return regression.Regressed(rows, rows // 5, pd.DataFrame(scores), table, quartiles)
+    return regression.RegressionResults(rows, rows // 5, pd.DataFrame(scores), table, quartiles)
 
 
 @pytest.mark.parametrize("claim", regression.REGRESSION, ids=lambda one: one.text)

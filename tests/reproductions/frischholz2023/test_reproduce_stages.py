@@ -92,33 +92,33 @@ def test_a_table_takes_the_place_of_the_panels(tmp_path):
     assert len(found.rows.read()) == found.rows.count() == 72
 
 
-def claim(folder, size="quick", condition="separate"):
-    REPRODUCTION.claim(folder, size, {"condition": condition})
+def prepare(folder, size="quick", condition="separate"):
+    REPRODUCTION.prepare(folder, size, {"condition": condition})
 
 
 def test_a_folder_is_for_one_size_and_one_condition(tmp_path):
-    claim(tmp_path / "out")
-    claim(tmp_path / "out")
+    prepare(tmp_path / "out")
+    prepare(tmp_path / "out")
     with pytest.raises(InputError, match="with --quick; take a new folder for --full"):
-        claim(tmp_path / "out", "full")
+        prepare(tmp_path / "out", "full")
     with pytest.raises(InputError, match="with --condition separate; take a new folder for"):
-        claim(tmp_path / "out", condition="slip")
+        prepare(tmp_path / "out", condition="slip")
     (tmp_path / "other").mkdir()
     (tmp_path / "other" / "file").touch()
     with pytest.raises(InputError, match="not empty, and holds no reproduction"):
-        claim(tmp_path / "other")
+        prepare(tmp_path / "other")
     for content in (b"", b"\xff", b"[]", b"[" * 100_000):
         (tmp_path / "out" / "reproduction.json").write_bytes(content)
         with pytest.raises(InputError, match=r"reproduction\.json: damaged: "):
-            claim(tmp_path / "out")
+            prepare(tmp_path / "out")
 
 
 def test_a_folder_of_former_days_is_gone_on_with(tmp_path):
     """Folders named neither the publication nor the condition at first."""
     (tmp_path / "reproduction.json").write_text('{"size": "quick"}')
-    claim(tmp_path)
+    prepare(tmp_path)
     with pytest.raises(InputError, match="take a new folder for --condition slip"):
-        claim(tmp_path, condition="slip")
+        prepare(tmp_path, condition="slip")
 
 
 @pytest.mark.parametrize(

@@ -248,10 +248,10 @@ def test_output_is_bounded_and_harmless(tmp_path):
     assert all(len(line) < 600 and line.isprintable() for line in printed)
 
 
-GIVEN_UP = """
+REDUCED_LIMITS = """
 import os, sys
 from snowshed.scene.lua import child
-child._give_up({"hard_seconds": 10, "wall_seconds": 10})
+child._drop_rights({"hard_seconds": 10, "wall_seconds": 10})
 try:
     os.open(os.devnull, os.O_RDONLY)
 except OSError as error:
@@ -264,7 +264,7 @@ except MemoryError:
 
 
 def test_the_process_gives_up_files_and_memory():
-    done = subprocess.run([sys.executable, "-c", GIVEN_UP], capture_output=True, text=True)
+    done = subprocess.run([sys.executable, "-c", REDUCED_LIMITS], capture_output=True, text=True)
     assert done.stdout.splitlines() == [os.strerror(errno.EMFILE), "no memory"], done.stderr
 
 

@@ -27,8 +27,8 @@ struct GrainPose {
 /// Sphere number of an entry that only fills up its group.
 inline constexpr std::uint32_t no_sphere_index = 0xffffffff;
 
-/// Key of a pair: bodies (grains, then `Partner`s), periods by which the second's image is away,
-/// spheres. Spheres of plates are numbered by their places in the grid.
+/// Key of a pair: bodies (grains, then `Partner`s), shift of the second body's periodic image (in
+/// periods), spheres. Spheres of plates are numbered by their places in the grid.
 struct PairKey {
   std::uint32_t first, second;
   std::int32_t shift[2];

@@ -74,8 +74,9 @@ struct State {
   }
   /// Current over initial volume of a particle.
   double volume_ratio(const Model<T, D>& model, std::size_t particle) const;
-  /// The radius (m) within which a particle touches; none is larger than that of the second.
+  /// Contact radius of a particle, m.
   double contact_radius(const Model<T, D>& model, std::size_t particle) const;
+  /// An upper bound of all contact radii, m.
   double largest_contact_radius(const Model<T, D>& model) const;
   double kinetic_energy(const Model<T, D>& model) const;
   double gravitational_energy(const Model<T, D>& model) const;

@@ -12,8 +12,8 @@
 namespace snowshed::mps {
 
 /// Fills a body with as many particles as its volume holds cells of the spacing. They share its
-/// mass, so that it is exact, and are as heavy as their cells, to half a particle. Notes report on
-/// a body that is too small for that. Throws as `fill_lattice`.
+/// mass, so that it is exact, and are as heavy as their cells, to half a particle. Adds a note if
+/// the body is too small for that. Throws as `fill_lattice`.
 void seed_on_lattice(const Settings&, const LevelSet& shape, int dimension, const StopRequest& stop,
                      ParticleBatch& batch, std::vector<std::string>& notes);
 

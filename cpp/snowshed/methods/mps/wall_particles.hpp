@@ -16,10 +16,10 @@ namespace snowshed::mps {
 /// They stand in layers half a spacing, one and a half, ... below the surface. Those of the first
 /// are inner walls, the others dummy walls, as many as fill the radius of the particles at the
 /// surface [P]. They are the points of a lattice, moved along the normal to the middle of their
-/// layer; the lattice follows the faces of boxes and planes, which are so covered evenly. Where
-/// others lie nearer than `closest`, they push each other apart along the surface (ours). Obstacles
-/// thinner than a particle have one layer, in the middle. Those too thin for dummies between the
-/// inner walls of both sides have dummies only: no pressure goes through them (ours).
+/// layer; the lattice follows the faces of boxes and planes, so that these are covered evenly.
+/// Where others lie nearer than `closest`, they push each other apart along the surface (ours).
+/// Obstacles thinner than a particle have one layer, in the middle. Those too thin for dummies
+/// between the inner walls of both sides have dummies only: no pressure goes through them (ours).
 template <int D>
 class WallParticles {
  public:

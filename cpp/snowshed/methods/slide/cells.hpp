@@ -25,8 +25,8 @@ class CellLists {
   int columns() const { return columns_; }
   int rows() const { return rows_; }
 
-  /// The first entry of a cell, counted from the rectangle's corner; those of the cells after it
-  /// follow, up to the end of the row and beyond.
+  /// The first entry of a cell, counted from the rectangle's corner; the entries of the following
+  /// cells come next, row after row.
   std::uint32_t begin(int column, int row) const {
     return begin_[std::size_t(row) * std::size_t(columns_) + std::size_t(column)];
   }

@@ -12,7 +12,7 @@ from typing import Any, Optional
 
 from snowshed.analysis.accuracy.measurements import CaseSettings, Value
 from snowshed.analysis.accuracy.recorded_stacks import PRESET
-from snowshed.analysis.accuracy.setting_labels import settings as settings_label
+from snowshed.analysis.accuracy.setting_labels import settings_label
 from snowshed.base.formatting import percent
 from snowshed.methods.mpm.settings import MpmSettings
 from snowshed.methods.registry import SETTINGS_KEY, settings_of

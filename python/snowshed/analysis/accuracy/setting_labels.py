@@ -10,20 +10,21 @@ from snowshed.base.formatting import MISSING, number
 from snowshed.scene.accuracy_settings import ACCURACY
 
 
-def setting(name: str, value: Optional[Value]) -> str:
-    """Return one setting; a word needs no name beside it. None: it is not given.
+def setting_label(name: str, value: Optional[Value]) -> str:
+    """Return the label of a setting: for a text only its value. `None`: not given.
 
     Examples
     --------
-    >>> [setting("dx", 0.01), setting("transfer", "apic"), setting("sleeping", False)]
+    >>> settings = {"dx": 0.01, "transfer": "apic", "sleeping": False}
+    >>> [setting_label(name, value) for name, value in settings.items()]
     ['dx 0.01', 'apic', 'no sleeping']
-    >>> setting("dimension", 2)
+    >>> setting_label("dimension", 2)
     '2D'
-    >>> setting("flip_ratio", None)
+    >>> setting_label("flip_ratio", None)
     'flip ratio default'
     """
     if value is None:
-        return f"{name.replace('_', ' ')} {unset(name)}"
+        return f"{name.replace('_', ' ')} {missing_label(name)}"
     if name == "dimension":
         return f"{value}D"
     name = name.replace("_", " ")
@@ -32,24 +33,26 @@ def setting(name: str, value: Optional[Value]) -> str:
     return value.replace("_", " ") if isinstance(value, str) else f"{name} {number(value, 4)}"
 
 
-def unset(name: str) -> str:
+def missing_label(name: str) -> str:
     """Return the label of a missing setting: a scene's settings have defaults.
 
     Examples
     --------
-    >>> unset("flip_ratio"), unset("aspect") == MISSING
+    >>> missing_label("flip_ratio"), missing_label("aspect") == MISSING
     ('default', True)
     """
     return "default" if name in ACCURACY else MISSING
 
 
-def settings(chosen: Mapping[str, Optional[Value]], names: Optional[Iterable[str]] = None) -> str:
+def settings_label(
+    chosen: Mapping[str, Optional[Value]], names: Optional[Iterable[str]] = None
+) -> str:
     """Return settings in a line: all, or those with the given names.
 
     Examples
     --------
-    >>> settings({"dx": 0.01, "transfer": "apic", "seed": 2}, ["transfer", "dx"])
+    >>> settings_label({"dx": 0.01, "transfer": "apic", "seed": 2}, ["transfer", "dx"])
     'apic, dx 0.01'
     """
     labelled = chosen if names is None else [name for name in names if name in chosen]
-    return ", ".join(setting(name, chosen[name]) for name in labelled)
+    return ", ".join(setting_label(name, chosen[name]) for name in labelled)

@@ -23,7 +23,9 @@ KEYS = ("tilt_deg", "event")
 ROUND = "round"
 MAX_TILT = 90.0  # degrees, not allowed itself
 MAX_DISTANCE = 100.0  # m, of anything that is measured of a stack
-FAR = 3.0  # largest difference between length and tail - head, in standard deviations
+MAX_LENGTH_DEVIATIONS = (
+    3.0  # largest difference between length and tail - head, in standard deviations
+)
 
 TEMPLATE_TILTS = (40, 50)
 TEMPLATE_EVENTS = 5
@@ -231,10 +233,12 @@ class _Row:
             raise self._error(f"tail_m: {tail[0]:g} is not beyond head_m, {head[0]:g}")
         if length is not None:
             between = tail[0] - head[0]
-            if abs(between - length[0]) > FAR * math.hypot(head[1], tail[1], length[1]):
+            if abs(between - length[0]) > MAX_LENGTH_DEVIATIONS * math.hypot(
+                head[1], tail[1], length[1]
+            ):
                 raise self._error(
                     f"length_m: {length[0]:g} is not tail_m - head_m = {between:.4g}, even within "
-                    f"{FAR:g} standard deviations"
+                    f"{MAX_LENGTH_DEVIATIONS:g} standard deviations"
                 )
 
     def _tilt(self) -> float:

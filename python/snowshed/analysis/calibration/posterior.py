@@ -1,7 +1,7 @@
 """The posterior of the parameters, given the measurements, by MCMC on the surrogate.
 
-The mean of what several rounds measured of a stack is normally distributed around the surrogate's
-mean, with the variances of
+The weighted mean over the rounds of a stack is normally distributed around the surrogate's mean,
+with the variances of
 
 - the rounds: the uncertainty of each measurement, and the seeding noise of a single run, because an
   experiment is a single slide-off, too. The weights are the inverse of these variances,
@@ -39,13 +39,15 @@ PURPOSE = "the posterior of the parameters"
 WALKERS_PER_DIMENSION = 8
 STEPS = 2000
 MIN_STEPS = 100  # shorter chains do not even show how correlated they are
-BURN_IN = 0.33  # part of the steps that is thrown away
-KEPT = 4000  # samples, at most
-STARTS = 4096  # points of the prior among which the walkers start
+BURN_IN = 0.33  # share of the steps that is discarded
+MAX_SAMPLES = 4000  # samples, at most
+PRIOR_POINTS = 4096  # points of the prior among which the walkers start
 DISCREPANCY = 0.1  # scale of its prior
 MAX_DISCREPANCY = 1.0
-EDGE = 0.05  # part of a range that counts as its end
-DENSE = 0.5  # part of the prior's density there that leaves the range open
+END_SHARE = 0.05  # share of a range that counts as its end
+OPEN_DENSITY_RATIO = (
+    0.5  # share of the prior's density at an end, above which the range is open there
+)
 LEVELS = {
     "lower_95": 0.025,
     "lower_68": 0.16,
@@ -55,7 +57,7 @@ LEVELS = {
 }
 #: Convergence of the chains: independent samples that quantiles of 95 % need, and the largest
 #: r_hat of chains that have forgotten where they began.
-ENOUGH = 400
+MIN_EFFECTIVE_SAMPLES = 400
 MAX_R_HAT = 1.1
 DIAGNOSTICS = ("ess_bulk", "ess_tail", "r_hat")
 
@@ -92,7 +94,7 @@ class Posterior:
 
     def _thinned(self, names: Sequence[str]) -> Floats:
         columns = [self.draws[name].transpose("draw", "chain").to_numpy().ravel() for name in names]
-        return np.column_stack(columns)[:: max(1, self.draws[names[0]].size // KEPT)]
+        return np.column_stack(columns)[:: max(1, self.draws[names[0]].size // MAX_SAMPLES)]
 
     @cached_property
     def diagnostics(self) -> pd.DataFrame:
@@ -145,7 +147,7 @@ class Posterior:
     @property
     def converged(self) -> bool:
         """True if the draws suffice for the quantiles of 95 % and the chains agree."""
-        enough = self.effective >= ENOUGH
+        enough = self.effective >= MIN_EFFECTIVE_SAMPLES
         return bool(enough and (self.diagnostics["r_hat"] <= MAX_R_HAT).all())
 
     @property
@@ -307,13 +309,13 @@ class _Density:
     def starts(self, count: int, random: np.random.RandomState) -> Floats:
         """Return points for the walkers: drawn from the prior, weighted by the likelihood."""
         parameters = len(self.surrogate.parameters)
-        unit = random.uniform(size=(STARTS, parameters))
-        size = (STARTS, len(self.quantities))
+        unit = random.uniform(size=(PRIOR_POINTS, parameters))
+        size = (PRIOR_POINTS, len(self.quantities))
         discrepancy = np.minimum(np.abs(random.normal(0, DISCREPANCY, size)), MAX_DISCREPANCY)
         points = np.hstack([unit, discrepancy])
         likelihood = self._log_density(unit, discrepancy)
         likelihood += 0.5 * ((discrepancy / DISCREPANCY) ** 2).sum(axis=1)
-        best = np.argsort(likelihood + random.gumbel(size=STARTS))[-count:]
+        best = np.argsort(likelihood + random.gumbel(size=PRIOR_POINTS))[-count:]
         return np.asarray(points[best])
 
 
@@ -326,8 +328,8 @@ def _weighted(rounds: Sequence[Measurement], seeding: float) -> tuple[float, flo
 
 def _open_ends(fractions: Floats) -> str:
     """Return the ends of the range 0 to 1 at which the density of the samples stays high."""
-    below = bool(np.mean(fractions < EDGE) >= DENSE * EDGE)
-    above = bool(np.mean(fractions > 1 - EDGE) >= DENSE * EDGE)
+    below = bool(np.mean(fractions < END_SHARE) >= OPEN_DENSITY_RATIO * END_SHARE)
+    above = bool(np.mean(fractions > 1 - END_SHARE) >= OPEN_DENSITY_RATIO * END_SHARE)
     return {(True, True): "both", (True, False): "below", (False, True): "above"}.get(
         (below, above), ""
     )

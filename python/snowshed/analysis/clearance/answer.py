@@ -101,11 +101,11 @@ class ClearanceResult:
         return shares_of(self.required, self._winter_numbers, values)
 
     @property
-    def worst(self) -> int:
-        """The case that needs the highest edge."""
+    def worst_case_index(self) -> int:
+        """Index of the case that needs the highest edge."""
         return int(np.argmax(self.required))
 
-    def buried(self, height: float) -> float:
+    def burial_probability(self, height: float) -> float:
         """Return the probability that snow reaches a lower edge at a height, m, in a winter."""
         return float((self.required > height).mean())
 
@@ -225,10 +225,10 @@ def required_clearance(
     values = (ranges or Ranges()).drawn(len(winters))
     cases = cases_of(design, winters, values, settings or SeasonSettings(), scene or {})
     search = _Search(cases, candidates)
-    while search.open():
+    while search.undecided():
         runs = search.runs()
         compute_runs(folder, STUDY, [], list(runs.values()), jobs=jobs, progress=progress)
-        search.take(read_table(folder, STUDY))
+        search.record_outcomes(read_table(folder, STUDY))
     complete = [number for number, outcomes in enumerate(search.outcomes) if outcomes]
     if not complete:
         raise InputError(f"{folder}: all runs failed; see its table")
@@ -280,7 +280,7 @@ class _Search:
         """Approximate number of simulations of each case."""
         return max(1, int(np.ceil(np.log2(len(self.heights) + 1) - 1e-9)))
 
-    def open(self) -> list[tuple[int, int]]:
+    def undecided(self) -> list[tuple[int, int]]:
         """Return the undecided cases, each with the index of the height to simulate next."""
         return [
             (number, (low + high) // 2)
@@ -290,16 +290,16 @@ class _Search:
 
     def runs(self) -> dict[tuple[int, int], Any]:
         """Return all runs so far, and those that are needed next."""
-        for number, index in self.open():
+        for number, index in self.undecided():
             if self.cases[number].slides and (number, index) not in self._runs:
                 self._runs[number, index] = self.cases[number].run(self.heights[index])
         return self._runs
 
-    def take(self, table: pd.DataFrame) -> None:
+    def record_outcomes(self, table: pd.DataFrame) -> None:
         """Read the outcomes of the runs, and halve the open intervals."""
         events = dict(tuple(table.groupby("hash"))) if len(table) else {}
         nothing = table.iloc[:0]
-        for number, index in self.open():
+        for number, index in self.undecided():
             run = self._runs.get((number, index))
             rows = nothing if run is None else events.get(run.hash, nothing)
             if (rows["ended"] == "failed").any() or (run is not None and rows.empty):

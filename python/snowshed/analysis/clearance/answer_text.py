@@ -10,9 +10,10 @@ from snowshed.analysis.clearance.answer import ClearanceResult
 from snowshed.analysis.clearance.design import MEANING, Ranges
 from snowshed.base.formatting import plural
 from snowshed.season.season_record import whole_percent
+from snowshed.season.settings import SeasonSettings
 
 FIRST_PROBABILITY = 0.9  # of the answer's first sentence
-#: The error of the grid is quoted from recorded runs of so many slide-offs, as a winter may have.
+#: Number of slide-offs in a typical winter, for which recorded runs give the error of the grid.
 TYPICAL_SLIDE_OFFS = 5
 CHANCE = "chance: positions of particles, and interactions of causes"
 
@@ -99,20 +100,31 @@ def _grid_error(answer: ClearanceResult) -> str:
 
 def assumptions(answer: ClearanceResult) -> list[str]:
     """Return the assumptions of the seasons, a sentence each."""
-    season = answer.cases[0].season
+    season = answer.cases[0].settings
     cover = "from the weather" if season.cover == "weather" else f"{season.cover}"
     return [
         "The panel is long across the slope: the simulation is of a strip (2D).",
         f"Grid cells are {100 * answer.design.dx:.3g} cm wide. Releases thinner than "
         f"{1000 * season.pool_below:.0f} mm slide with those that follow.",
         f"The stack lies on the natural snow cover (its depth: {cover}), and nobody clears it.",
-        f"Snow settles ({season.settling or 'not at all'}) on the panel, in the stack and on the "
-        "ground.",
-        f"Strength and stiffness of a slab follow from its density ({season.strength or 'no'}).",
+        _settling(season),
+        _strength(season),
         "Melt of the stack, rain, wind drift and snowfall on the stack (except on the cover) are "
         "left out.",
         "Winters are independent of each other: the climate does not change.",
     ]
+
+
+def _settling(season: SeasonSettings) -> str:
+    if season.settling is None:
+        return "Snow does not settle."
+    return f"Snow settles on the panel, in the stack and on the ground ({season.settling})."
+
+
+def _strength(season: SeasonSettings) -> str:
+    if season.strength is None:
+        return "Strength and stiffness of a slab do not depend on its density."
+    return f"Strength and stiffness of a slab follow from its density ({season.strength})."
 
 
 def range_rows(ranges: Ranges) -> list[tuple[str, str, str]]:

@@ -71,7 +71,7 @@ def clearance(
 
     Returns
     -------
-    Answer
+    ClearanceResult
         `ClearanceResult.at` gives the height and its 90 % interval.
 
     Raises

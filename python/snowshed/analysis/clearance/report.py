@@ -77,7 +77,8 @@ def summary(
                 "winters": list(answer.winters),
                 "levels": [vars(level) for level in answer.levels],
                 "heights": [
-                    {"height": height, "buried": answer.buried(height)} for height in answer.heights
+                    {"height": height, "buried": answer.burial_probability(height)}
+                    for height in answer.heights
                 ],
                 "shares": {share.cause: share.part for share in answer.shares},
             }
@@ -141,7 +142,7 @@ def _level_grid(answer: ClearanceResult) -> HtmlTable:
 def _height_grid(answer: ClearanceResult) -> HtmlTable:
     rows = []
     for height in answer.heights:
-        buried = answer.buried(height)
+        buried = answer.burial_probability(height)
         low, high = burial_interval(buried, len(answer.winters))
         years = f"{1 / buried:.1f}" if buried else f"more than {len(answer.winters)}"
         rows.append(
@@ -152,7 +153,7 @@ def _height_grid(answer: ClearanceResult) -> HtmlTable:
 
 
 def _worst(answer: ClearanceResult) -> str:
-    case, outcomes = answer.cases[answer.worst], answer.outcomes[answer.worst]
+    case, outcomes = answer.cases[answer.worst_case_index], answer.outcomes[answer.worst_case_index]
     first = next((outcome for outcome in outcomes if outcome.contact), None)
     snowfall = f"{case.winter.name}: {case.winter.snowfall:.1f} m of new snow in all. "
     if first is None or first.contact is None:
@@ -160,7 +161,7 @@ def _worst(answer: ClearanceResult) -> str:
     contact = first.contact
     return (
         f"{snowfall}At {first.height:g} m, {contact.text} on {contact.date[:10]}; an edge at "
-        f"{answer.required[answer.worst]:.2f} m would have stayed clear."
+        f"{answer.required[answer.worst_case_index]:.2f} m would have stayed clear."
     )
 
 
@@ -171,13 +172,13 @@ def _worst_picture(answer: ClearanceResult, view: Path) -> Optional[Picture]:
     from snowshed.results.view import write_view
     from snowshed.season.driver import run_season
 
-    case, outcomes = answer.cases[answer.worst], answer.outcomes[answer.worst]
+    case, outcomes = answer.cases[answer.worst_case_index], answer.outcomes[answer.worst_case_index]
     if not case.slides:
         return None
     reached = [outcome.height for outcome in outcomes if outcome.contact] or [outcomes[0].height]
     with TemporaryDirectory() as folder:
         out = Path(folder) / "season"
-        run_season(case.winter.days, case.panel(reached[-1]), out, settings=case.season)
+        run_season(case.winter.days, case.panel(reached[-1]), out, settings=case.settings)
         write_view(out, view)
         return Picture.read(
             out / "season.png",

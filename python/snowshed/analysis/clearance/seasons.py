@@ -58,8 +58,8 @@ class SeasonCase:
         The drawn values.
     seed
         Random seed of the particles' positions.
-    settings
-        Settings of the season, except the drawn values.
+    base_settings
+        Settings of the season, before the drawn values replace some.
     base
         Values of the scene that replace the defaults.
     """
@@ -68,18 +68,18 @@ class SeasonCase:
     winter: Winter
     values: Mapping[str, float]
     seed: int
-    settings: SeasonSettings
+    base_settings: SeasonSettings
     base: Mapping[str, Any]
 
     @cached_property
-    def season(self) -> SeasonSettings:
+    def settings(self) -> SeasonSettings:
         """The settings of the season."""
-        return season_settings(self.settings, self.values, self.design.dx)
+        return season_settings(self.base_settings, self.values, self.design.dx)
 
     @cached_property
     def days(self) -> list[WinterDay]:
         """The snow on the panel, row after row."""
-        return accumulate(self.winter.days, self.season, self.design.tilt)
+        return accumulate(self.winter.days, self.settings, self.design.tilt)
 
     @property
     def slides(self) -> bool:
@@ -92,8 +92,8 @@ class SeasonCase:
 
     def run(self, height: float) -> RunKey:
         """Return the slide-offs of the season as a run of a study."""
-        scene = season_scene(self.panel(height), self.days, self.season)
-        return RunKey.of(scene, stack_ageing(self.days, self.season))
+        scene = season_scene(self.panel(height), self.days, self.settings)
+        return RunKey.of(scene, stack_ageing(self.days, self.settings))
 
     def outcome(self, height: float, events: pd.DataFrame) -> SeasonOutcome:
         """Return the outcome at a height.
@@ -108,7 +108,7 @@ class SeasonCase:
         import pandas as pd
 
         outlines = pd.DataFrame({"event": [], "x": [], "z": []})
-        table = season_table(self.panel(height).data, self.days, self.season, events, outlines)
+        table = season_table(self.panel(height).data, self.days, self.settings, events, outlines)
         dx = self.design.dx
         contact = first_contact(table, dx)
         sunk = table["stack_height_m"] - table["settled_height_m"]

@@ -27,7 +27,7 @@ CONFIDENCE = 0.95
 
 @dataclass(frozen=True)
 class LogMean:
-    """The mean of logarithms, with the standard error that the scatter between samples gives it.
+    """The mean of logarithms, with its standard error from the scatter between samples.
 
     Attributes
     ----------
@@ -45,7 +45,7 @@ class LogMean:
 
     @classmethod
     def of(cls, values: Sequence[float]) -> LogMean:
-        """Return the mean of the logarithms of those values that are positive."""
+        """Return the mean of the logarithms of the positive values."""
         positive = np.array([value for value in values if np.isfinite(value) and value > 0])
         if not positive.size:
             return cls(np.nan, np.nan, 0)

@@ -120,7 +120,7 @@ class Comparison:
         return pd.DataFrame(rows, columns=list(dict.fromkeys([*KEYS, "hash", *done.columns])))
 
 
-#: Tried changes of the settings: label, paths, and factors.
+#: Changes of the settings in a sensitivity study: label, paths, and factors.
 SETTINGS = (
     ("friction", ("friction",), (0.5, 2.5)),
     ("elastic modulus", ("elastic_modulus",), (0.1, 0.3)),

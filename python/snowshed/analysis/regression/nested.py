@@ -16,7 +16,7 @@ from snowshed.analysis.regression.rows import StackRows
 from snowshed.analysis.regression.scaling import Scaling
 from snowshed.analysis.regression.task import FoldTask, compute
 from snowshed.base.interrupt import InterruptRequest, deferred_interrupts
-from snowshed.base.pool.pool import Ended, Pool
+from snowshed.base.pool.pool import Pool, TaskEnd
 from snowshed.base.pool.threads import one_thread
 from snowshed.base.progress import Progress, Reporter
 from snowshed.io.atomic import remove_leftovers
@@ -173,7 +173,7 @@ def _computed(
             _end(pool, folder)
 
 
-def _outcome(ended: Ended[FoldTask, None]) -> FoldTask:
+def _outcome(ended: TaskEnd[FoldTask, None]) -> FoldTask:
     if ended.error is not None:
         raise ended.error
     if ended.death:

@@ -63,7 +63,7 @@ SHARED = Isolation()
 
 
 @dataclass(frozen=True)
-class Ended(Generic[Task, Result]):
+class TaskEnd(Generic[Task, Result]):
     """The end of a task: a result, an exception, or the death of its process.
 
     Attributes
@@ -153,7 +153,7 @@ class Pool(Generic[Task, Result]):
                 return
             self._discard(idle)  # it died while it was idle
 
-    def collect(self, timeout: float) -> list[Ended[Task, Result]]:
+    def collect(self, timeout: float) -> list[TaskEnd[Task, Result]]:
         """Wait until a task ends, at most `timeout` s; return the ended tasks."""
         give_up = time.monotonic() + timeout
         while True:
@@ -161,11 +161,11 @@ class Pool(Generic[Task, Result]):
             if ended or not self._busy() or time.monotonic() >= give_up:
                 return ended
 
-    def stop(self) -> list[Ended[Task, Result]]:
+    def stop(self) -> list[TaskEnd[Task, Result]]:
         """Ask all tasks to stop at a safe point; return the tasks that ended meanwhile."""
         for process in self._busy():
             process.interrupt()
-        ended: list[Ended[Task, Result]] = []
+        ended: list[TaskEnd[Task, Result]] = []
         give_up = time.monotonic() + STOP_S
         while self._busy() and time.monotonic() < give_up:
             ended += self.collect(0.1)
@@ -179,7 +179,7 @@ class Pool(Generic[Task, Result]):
         while self._processes:
             self._discard(self._processes[-1])
 
-    def _receive(self, timeout: float) -> list[Ended[Task, Result]]:
+    def _receive(self, timeout: float) -> list[TaskEnd[Task, Result]]:
         """Take a message of each process that has one within `timeout`; end those that hang."""
         busy = self._busy()
         left = min((process.left_s for process in busy), default=timeout)
@@ -252,7 +252,7 @@ class _Process(Generic[Task, Result]):
         self.task, self.done, self._began = task, 0.0, time.monotonic()
         return True
 
-    def receive(self) -> Optional[Ended[Task, Result]]:
+    def receive(self) -> Optional[TaskEnd[Task, Result]]:
         """Receive a message; return the end of the task if it reports one."""
         assert self.task is not None
         try:
@@ -267,21 +267,21 @@ class _Process(Generic[Task, Result]):
             return None
         task, self.task = self.task, None
         if isinstance(message, Died):
-            return Ended(task, death=_ending(message.code), last_words=self._last_error_line())
+            return TaskEnd(task, death=_ending(message.code), last_words=self._last_error_line())
         if isinstance(message, Raised):
-            return Ended(task, error=message.error)
-        return Ended(task, cast(Result, message.result))
+            return TaskEnd(task, error=message.error)
+        return TaskEnd(task, cast(Result, message.result))
 
     def interrupt(self) -> None:
         """Ask the task to stop."""
         self._signal(signal.SIGTERM)
 
-    def give_up(self) -> Ended[Task, Result]:
+    def give_up(self) -> TaskEnd[Task, Result]:
         """Kill the process after a timeout."""
         assert self.task is not None
         task, self.task, self.dead = self.task, None, True
         self._signal(signal.SIGKILL)
-        return Ended(task, death=f"took more than {self._limit_s:g} s", hung=True)
+        return TaskEnd(task, death=f"took more than {self._limit_s:g} s", hung=True)
 
     def end(self) -> None:
         """End the process, which its closed socket has told to end."""
@@ -297,11 +297,11 @@ class _Process(Generic[Task, Result]):
             self._signal(signal.SIGKILL)
             return self._process.wait()
 
-    def _death(self, task: Task) -> Ended[Task, Result]:
+    def _death(self, task: Task) -> TaskEnd[Task, Result]:
         self.dead, self.task = True, None
         code = self._wait()
         never_began = code >= 0 and not self._ready
-        return Ended(
+        return TaskEnd(
             task, death=_ending(code), last_words=self._last_error_line(), never_began=never_began
         )
 

@@ -1,4 +1,4 @@
-"""GDAL without network requests, in addition to readers of named formats only.
+"""Keeps GDAL from making network requests: a second barrier behind the checks of formats.
 
 Every file is checked before GDAL opens it, and opened in one format. If a format still leads GDAL
 to another machine, these options block it: no allowed suffix matches a remote file, and all

@@ -8,7 +8,7 @@ from datetime import datetime, timedelta, timezone
 
 from snowshed._core import InputError
 from snowshed.io.weather.amounts import HOUR, usual_step
-from snowshed.io.weather.observation import DAY, Observation, Station, changed
+from snowshed.io.weather.observation import DAY, Observation, Station, replace_values
 
 YEARS = (1700, 2200)  # older than any thermometer, later than any scenario
 SUNDAY = 6
@@ -53,7 +53,7 @@ def on_one_clock(station: Station, source: str) -> Station:
 def _moved(row: Observation, offset: timedelta, source: str) -> Observation:
     try:
         time = row.time.astimezone(timezone(offset)).replace(tzinfo=None)
-        return changed(row, time=time)
+        return replace_values(row, time=time)
     except OverflowError:
         raise InputError(
             f"{source}, line {row.line}, column date: {row.time.isoformat(' ')} has no universal "

@@ -9,7 +9,7 @@ from statistics import median
 from typing import Optional
 
 from snowshed.io.weather.amounts import HOUR, hours_before
-from snowshed.io.weather.observation import Observation, Station, changed
+from snowshed.io.weather.observation import Observation, Station, replace_values
 
 #: A quantity, the field of its hours, and its unit and name in notes.
 AMOUNTS = (
@@ -58,7 +58,7 @@ def _drop_first(
     amount = getattr(row, name)
     if amount is None or row.time.date() in row.shares(getattr(row, hours)):
         return []
-    rows[first] = changed(row, **{name: None, hours: None})
+    rows[first] = replace_values(row, **{name: None, hours: None})
     if amount == 0.0:
         return []
     return [
@@ -82,7 +82,7 @@ def _fill_in(
         )
     for n, (i, span) in enumerate(zip(own, hours_before(times))):
         amount = values[n] if added is None else added[n]
-        rows[i] = changed(rows[i], **{name: amount, hours: span})
+        rows[i] = replace_values(rows[i], **{name: amount, hours: span})
     return notes
 
 
@@ -133,7 +133,7 @@ def _thin_out(
     left = 0
     for i, span in zip(own, hours):
         if last is not None and (rows[i].time - last) / HOUR < span - MINUTE:
-            rows[i] = changed(rows[i], precipitation=None, precipitation_hours=None)
+            rows[i] = replace_values(rows[i], precipitation=None, precipitation_hours=None)
         else:
             last, left = rows[i].time, left + 1
     return (

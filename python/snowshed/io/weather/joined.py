@@ -12,12 +12,15 @@ from typing import Any, NamedTuple, Optional
 from snowshed._core import InputError
 from snowshed.io.weather.amounts import usual_step
 from snowshed.io.weather.columns import HOURS, WORDS
-from snowshed.io.weather.observation import RANGES, Observation, Station, changed
+from snowshed.io.weather.observation import RANGES, Observation, Station, replace_values
 from snowshed.io.weather.plain import read_plain
 from snowshed.io.weather.recognise import read_station
 
 MAX_FILES = 200
-FAR, HIGHER = 2.0, 100.0  # km and m between the positions of what should be one station
+MAX_STATION_DISTANCE_KM, MAX_STATION_HEIGHT_M = (
+    2.0,
+    100.0,
+)  # km and m between the positions of what should be one station
 DEGREE = 111.2  # km of latitude
 TEMPERATURE, DEPTH = "temperature", "snow_depth"
 
@@ -117,11 +120,11 @@ def _apart(first: _File, other: _File) -> Iterator[str]:
         north = ((a.latitude or 0.0) - (b.latitude or 0.0)) * DEGREE
         east = ((a.longitude or 0.0) - (b.longitude or 0.0)) * DEGREE
         distance = math.hypot(north, east * math.cos(math.radians(a.latitude or 0.0)))
-        if distance > FAR:
+        if distance > MAX_STATION_DISTANCE_KM:
             yield f"the stations of {first.name} and {other.name} are {distance:.3g} km apart"
     if a.altitude is not None and b.altitude is not None:
         higher = abs(a.altitude - b.altitude)
-        if higher > HIGHER:
+        if higher > MAX_STATION_HEIGHT_M:
             yield f"the altitudes of {first.name} and {other.name} differ by {higher:.0f} m"
 
 
@@ -133,7 +136,8 @@ def _on_clock(station: Station, offset: Optional[float]) -> Station:
         return station
     shift = timedelta(hours=offset - (station.utc_offset or 0.0))
     rows = [
-        changed(row, time=row.time + shift, end=row.end and row.end + shift) for row in station.rows
+        replace_values(row, time=row.time + shift, end=row.end and row.end + shift)
+        for row in station.rows
     ]
     return replace(station, rows=rows, utc_offset=offset)
 

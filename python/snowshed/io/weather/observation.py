@@ -50,8 +50,8 @@ class Observation:
         except those of `Station.rolling`. Amounts of whole days end with the day of `time`, amounts
         of hours with `end`.
     seam
-        Whether the row continues another series (another source year, sensor or file), so that a
-        difference of the snow depth to the row before is no weather.
+        Whether the row continues another series (another source year, sensor or file), so that the
+        change of snow depth since the row before means nothing.
     end
         End of the hours of the amounts. [default: `time`]
     """
@@ -103,12 +103,12 @@ class Observation:
         return parts
 
 
-def changed(row: Observation, **values: Any) -> Observation:
+def replace_values(row: Observation, **values: Any) -> Observation:
     """Return a row with other values, as `dataclasses.replace`, but many times as fast.
 
     Examples
     --------
-    >>> changed(Observation(1, datetime(2024, 1, 3)), snow_depth=0.5).snow_depth
+    >>> replace_values(Observation(1, datetime(2024, 1, 3)), snow_depth=0.5).snow_depth
     0.5
     """
     copy = object.__new__(Observation)
@@ -241,8 +241,8 @@ def _numbers(texts: tuple[str, ...]) -> frozenset[float]:
     return frozenset(number_in(text) for text in texts)
 
 
-#: Beyond these nothing was ever measured, and a unit is mistaken. Ultrasonic sensors show bare
-#: ground some centimetres too low; such a depth counts as 0.
+#: Values beyond these have never been measured: the unit must be wrong. Ultrasonic sensors show
+#: bare ground some centimetres too low; such a depth counts as 0.
 RANGES = {
     "temperature": (-90.0, 60.0),
     "precipitation": (0.0, 2000.0),

@@ -19,7 +19,7 @@ from typing import Any
 ADDRESS_SPACE = 512 << 20  # bytes; the Lua state's own limit is far below
 BYTES = "latin-1"  # a character for every byte: texts of a script need not be valid UTF-8
 SPARE_BYTES = 1 << 20  # for reporting, when a script has used up all it may
-GIVEN_UP = (
+REDUCED_LIMITS = (
     (resource.RLIMIT_NOFILE, 0),
     (resource.RLIMIT_NPROC, 0),
     (resource.RLIMIT_FSIZE, 0),
@@ -31,11 +31,11 @@ GIVEN_UP = (
 def main() -> None:
     """Answer the request on stdin."""
     request = json.load(sys.stdin)
-    sys.path.append(request["lupa_in"])
+    sys.path.append(request["lupa_folder"])
     lua = _new_state(request["limits"]["memory_bytes"])
-    host = _furnish(lua, request)
+    host = _load_host(lua, request)
     texts = lua.table_from([_to_lua(text) for text in request["texts"]])
-    _give_up(request["limits"])
+    _drop_rights(request["limits"])
     answer = _run(lua, host, texts, request["limits"])
     sys.stdout.buffer.write(answer.encode("ascii"))
 
@@ -51,7 +51,7 @@ def _new_state(memory: int) -> Any:
     )
 
 
-def _furnish(lua: Any, request: dict[str, Any]) -> Any:
+def _load_host(lua: Any, request: dict[str, Any]) -> Any:
     """Load the Lua code that makes the sandbox."""
     folder = Path(__file__).parent
     loaded = [
@@ -63,8 +63,8 @@ def _furnish(lua: Any, request: dict[str, Any]) -> Any:
     return host(plain_data(), *named)
 
 
-def _give_up(limits: dict[str, Any]) -> None:
-    for which, amount in GIVEN_UP:
+def _drop_rights(limits: dict[str, Any]) -> None:
+    for which, amount in REDUCED_LIMITS:
         with contextlib.suppress(ValueError, OSError):  # not every system has every limit
             resource.setrlimit(which, (amount, amount))
     # The default action of these signals ends the process, even during a call.

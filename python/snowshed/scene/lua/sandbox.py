@@ -91,7 +91,7 @@ def run_sandboxed(
     lupa = require("lupa.lua54", "lua", "running Lua scripts")
     limits = limits or LuaLimits()
     request = {
-        "lupa_in": str(Path(lupa.__file__).parents[1]),
+        "lupa_folder": str(Path(lupa.__file__).parents[1]),
         "texts": [script.text for script in scripts],
         "words": list(functions),
         "shapes": dict(shapes),

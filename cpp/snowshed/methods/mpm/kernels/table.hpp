@@ -19,7 +19,7 @@ Kernels<T> kernels_for() {
   return kernels;
 }
 
-/// `Law` is the Cam-Clay law of the kernels that are not for checks.
+/// `Law` is the Cam-Clay law of all kernels except the checked ones.
 template <class T, int D, Transfer transfer, Basis basis, template <class> class Law>
 Kernels<T> with_law(const KernelChoice& c) {
   if (c.checks())

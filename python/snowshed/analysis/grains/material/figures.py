@@ -8,20 +8,20 @@ import matplotlib
 import numpy as np
 
 from snowshed.analysis.grains.material.fit import FittedSnow
-from snowshed.analysis.grains.material.readings import (
-    PEAK_FROM,
-    axial_stress,
-    invariants,
-    shear_strength,
-    tension,
-)
-from snowshed.analysis.grains.material.tests import (
+from snowshed.analysis.grains.material.loading_tests import (
     COMPACTION,
     CONFINED,
     ISOTROPIC,
     SHEAR,
     TENSION,
     Curves,
+)
+from snowshed.analysis.grains.material.readings import (
+    PEAK_FROM,
+    axial_stress,
+    invariants,
+    shear_strength,
+    tension,
 )
 from snowshed.methods.grains.curve import LoadingCurve
 from snowshed.plot.figure_style import BODY, COLOURS, FAINT, INK, STYLE, blank_figure, headline
@@ -40,9 +40,9 @@ def material_figure(fitted: FittedSnow, curves: Curves, *, synthetic: bool) -> F
     fitted
         The snow.
     curves
-        Those that it was fitted to.
+        Curves of the tests that it was fitted to.
     synthetic
-        Whether the samples are; the headline says so.
+        Whether the samples are synthetic, which the headline states.
     """
     law = fitted.law
     values = ", ".join(

@@ -12,7 +12,7 @@ import numpy as np
 from snowshed._core import InputError
 from snowshed.analysis.grains.material import readings
 from snowshed.analysis.grains.material.law import CamClayFit, Elasticity
-from snowshed.analysis.grains.material.tests import (
+from snowshed.analysis.grains.material.loading_tests import (
     COMPACTION,
     CONFINED,
     ISOTROPIC,
@@ -25,15 +25,16 @@ from snowshed.analysis.grains.ratios import LogMean
 from snowshed.base.formatting import percent
 from snowshed.methods.grains.curve import LoadingCurve
 from snowshed.methods.grains.phases import LINEAR
+from snowshed.methods.grains.summary import FEW_GRAINS
 from snowshed.scene.components import Snow
 
 Reading = TypeVar("Reading")
-#: Ratio of the law to the grains from which a note reports it.
-POOR = 2.0
-#: Share of the strengths from which a note reports that the yield surface misses them.
-MISSED = 0.25
+#: A note reports stresses of the law above this many times those of the grains.
+MAX_LAW_OVER_GRAINS = 2.0
+#: A note reports that the yield surface misses the strengths above this residual, relative to them.
+MAX_YIELD_RESIDUAL = 0.25
 #: p0 over K above which the law's elastic strains are no longer small.
-SOFT = 0.1
+MAX_P0_OVER_BULK = 0.1
 
 
 @dataclass(frozen=True)
@@ -96,8 +97,8 @@ class FittedSnow:
     notes: list[str] = field(default_factory=list)
 
     @property
-    def steps(self) -> float:
-        """Ratio of the time steps of the material point method to those of the calibrated snow.
+    def step_count_ratio(self) -> float:
+        """Number of MPM time steps over that with the calibrated snow.
 
         Their number is proportional to the speed of elastic waves.
         """
@@ -110,7 +111,7 @@ def isotropic_strength(curves: Curves) -> float:
 
 
 def fit_material(
-    curves: Curves, density: float, *, modulus: Optional[float] = None, few_grains: int = 0
+    curves: Curves, density: float, *, modulus: Optional[float] = None, min_grains: int = FEW_GRAINS
 ) -> FittedSnow:
     """Return the snow whose law agrees with the tests.
 
@@ -126,8 +127,8 @@ def fit_material(
         Density of the snow, kg/m3.
     modulus
         Young's modulus to use instead of the grains', Pa, for longer steps; xi then compensates.
-    few_grains
-        Number of grains of the smallest sample, if it is too small.
+    min_grains
+        Number of grains of the smallest sample. [default: enough for its snow]
 
     Raises
     ------
@@ -150,11 +151,11 @@ def fit_material(
     strengths = _read(curves, ISOTROPIC, readings.isotropic_yield, notes)
     ranges["preconsolidation_pressure"] = Range.of(list(strengths.values()))
     p0 = ranges["preconsolidation_pressure"].value
-    if p0 > SOFT * elastic.bulk_modulus:
+    if p0 > MAX_P0_OVER_BULK * elastic.bulk_modulus:
         raise InputError(
             f"p0 {p0:.3g} Pa is {p0 / elastic.bulk_modulus:.2g} of the bulk modulus "
             f"{elastic.bulk_modulus:.3g} Pa: the law would yield at large elastic strains only; "
-            f"up to {SOFT:g} are allowed"
+            f"up to {MAX_P0_OVER_BULK:g} are allowed"
         )
     own_p0 = {sample: value for (_, sample), value in strengths.items()}
     _read_strengths(curves, ranges, own_p0, notes)
@@ -169,7 +170,7 @@ def fit_material(
     )
     _check_confined(curves, ranges, law, notes)
     fitted = FittedSnow(law, ranges, notes)
-    _note_meaning(fitted, modulus, few_grains)
+    _note_meaning(fitted, modulus, min_grains)
     return fitted
 
 
@@ -212,7 +213,7 @@ def _read_strengths(
     ranges["critical_state_slope"] = replace(slopes, value=surface.slope)
     ranges["cohesion"] = replace(betas, value=surface.cohesion)
     ranges["yield_residual"] = Range.of([surface.residual])
-    if surface.residual > MISSED:
+    if surface.residual > MAX_YIELD_RESIDUAL:
         notes.append(
             f"the law's yield surface misses the strengths by {100 * surface.residual:.0f} % of "
             "their size"
@@ -237,7 +238,7 @@ def _read_hardening(
     ranges["hardening_factor"] = Range.of([hardening.factor for hardening in hardenings])
     ranges["hardening_residual"] = Range.of([hardening.residual for hardening in hardenings])
     excess = max(hardening.excess for hardening in hardenings)
-    if excess > POOR:
+    if excess > MAX_LAW_OVER_GRAINS:
         notes.append(
             f"between its brittle peak and hardening the snow is up to {excess:.2g} times weaker "
             "than the law, which does not soften while it compacts"
@@ -251,27 +252,27 @@ def _check_confined(
     stress = law.confined_yield()
     peaks = _read(curves, CONFINED, readings.confined_peak, notes)
     ranges["confined_yield_over_law"] = ratio = Range.of([peak / stress for peak in peaks.values()])
-    if not 1 / POOR <= ratio.value <= POOR:
+    if not 1 / MAX_LAW_OVER_GRAINS <= ratio.value <= MAX_LAW_OVER_GRAINS:
         notes.append(
             f"in confined compression the grains' peak is {ratio.value:.2g} times the law's yield "
             "stress, to which nothing is fitted"
         )
 
 
-def _note_meaning(fitted: FittedSnow, modulus: Optional[float], few_grains: int) -> None:
+def _note_meaning(fitted: FittedSnow, modulus: Optional[float], min_grains: int) -> None:
     notes = fitted.notes
     own = fitted.ranges["youngs_modulus"].value
     if modulus is not None:
         notes.append(
-            f"E is given; that of the grains is {own:.3g} Pa. The hardening factor makes up for it"
+            f"E is given; that of the grains is {own:.3g} Pa. The hardening factor compensates"
         )
     notes.append(
-        f"the material point method takes {fitted.steps:.2g} times as many steps as with the "
-        "calibrated snow; the law has lost its strength after "
-        f"{percent(fitted.law.lost_after, 2)} of plastic dilation"
+        f"the material point method takes {fitted.step_count_ratio:.2g} times as many steps as "
+        "with the calibrated snow; the law has lost its strength after "
+        f"{percent(fitted.law.dilation_at_strength_loss, 2)} of plastic dilation"
     )
-    if few_grains:
-        notes.append(f"{few_grains} grains: so small a sample hardly represents its snow")
+    if min_grains < FEW_GRAINS:
+        notes.append(f"{min_grains} grains: so small a sample hardly represents its snow")
     if fitted.ranges["preconsolidation_pressure"].samples < 2:
         notes.append("one sample: the ranges of the parameters are not known")
 

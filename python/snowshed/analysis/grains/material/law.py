@@ -1,7 +1,7 @@
 """The cohesive Cam-Clay law of the material point method (thesis 1.2.5-1.2.7).
 
-Hardening is the core's. The yield stress at a pressure and that of confined compression are closed
-forms of (1.2.6), which the core does not need.
+Hardening is computed by the core. The yield stress at a pressure and that of confined compression
+are closed forms of (1.2.6), which the core does not need.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ class Elasticity:
         law = self._hardening(factor)
         return law.preconsolidation(law.initial_plastic_strain(p0) - compaction)
 
-    def lost_after(self, p0: float, factor: float) -> float:
+    def dilation_at_strength_loss(self, p0: float, factor: float) -> float:
         """Return the plastic dilation at which the strength is lost: asinh(p0/K)/xi."""
         return -self._hardening(factor).initial_plastic_strain(p0)
 
@@ -103,9 +103,11 @@ class CamClayFit:
         return math.sqrt(self.elastic.confined_modulus / self.density)
 
     @property
-    def lost_after(self) -> float:
+    def dilation_at_strength_loss(self) -> float:
         """Plastic dilation at which the strength is lost."""
-        return self.elastic.lost_after(self.preconsolidation_pressure, self.hardening_factor)
+        return self.elastic.dilation_at_strength_loss(
+            self.preconsolidation_pressure, self.hardening_factor
+        )
 
     def hardened(self, compaction: Floats) -> Floats:
         """Return the pressure of isotropic compression after a plastic compaction, Pa."""

@@ -20,7 +20,8 @@ from snowshed.methods.grains.phases import MIN_ROWS, PEAK_BELOW
 
 #: Strain from which a peak counts: earlier peaks come from the plate's impact.
 PEAK_FROM = 5e-4
-#: Plastic compactions, over which stresses are averaged before hardening is fitted.
+#: Width of the intervals of plastic compaction over which stresses are averaged before hardening is
+#: fitted.
 HARDENING_BIN = 0.02
 #: Ranges of the law's parameters as scenes take them (`snowshed.Snow`).
 MAX_POISSON, MAX_HARDENING = 0.49, 1000.0
@@ -37,8 +38,8 @@ class Hardening:
     residual
         Root mean square of the residual, relative to that of the stresses.
     excess
-        Largest ratio of the law's stress to that of the grains: between the brittle peak and
-        hardening, grains are weaker than the law, which cannot soften while it compacts.
+        Largest ratio of the law's stress to that of the grains. Between the brittle peak and
+        hardening, grains are weaker than the law, because the law cannot soften while it compacts.
     """
 
     factor: float
@@ -47,12 +48,12 @@ class Hardening:
 
 
 def axial_stress(curve: LoadingCurve) -> Floats:
-    """Return the stress along z as the mean over both plates, Pa: waves make one the larger."""
+    """Return the mean stress of both plates along z, Pa; elastic waves make the two differ."""
     return np.asarray(0.5 * (curve["top_stress_pa"] + curve["bottom_stress_pa"]))
 
 
 def invariants(curve: LoadingCurve, *, isotropic: bool = False) -> tuple[Floats, Floats]:
-    """Return p and q of the law, Pa, row by row; the stress on x and y is that on the sides.
+    """Return p and q of the law, Pa, row by row; the sides give the stresses along x and y.
 
     The law's are Kirchhoff stresses: forces over initial areas, as curves have them, times the
     stretch along the force.
@@ -75,8 +76,8 @@ def elasticity(curve: LoadingCurve) -> tuple[Elasticity, float]:
     """Return E and nu, and R2 of the line, from confined compression before the first bond breaks.
 
     The stress has the slope E (1 - nu) / ((1 + nu)(1 - 2 nu)) over the strain, and that on the
-    sides nu/(1 - nu) over that on the plate. Lines are those of least squares through the origin,
-    to which waves at the beginning matter little.
+    sides nu/(1 - nu) over that on the plate. Lines are fitted by least squares through the origin,
+    so that waves at the beginning hardly matter.
 
     Raises
     ------
@@ -192,7 +193,7 @@ def tension(curve: LoadingCurve) -> tuple[float, float]:
 
 
 def hardening(curve: LoadingCurve, elastic: Elasticity, p0: float) -> Hardening:
-    """Return xi from isotropic compression: the least squares of the law's pressure.
+    """Return xi from isotropic compression, fitted to the pressures by least squares.
 
     Pressures are averaged over plastic compactions of 2 %, so that each interval counts once. The
     largest pressures, those of hardening, dominate.
@@ -202,7 +203,7 @@ def hardening(curve: LoadingCurve, elastic: Elasticity, p0: float) -> Hardening:
     curve
         Curve of isotropic compression, with the same strain rate along all axes.
     elastic
-        Elastic constants; E may be another than the grains', then xi makes up for it.
+        Elastic constants. If E is not that of the grains, xi compensates.
     p0
         Pressure at which hardening begins, Pa.
 
@@ -234,8 +235,8 @@ def hardening(curve: LoadingCurve, elastic: Elasticity, p0: float) -> Hardening:
     def law(factor: float) -> Floats:
         return elastic.hardened(p0, factor, np.maximum(x, 0.0))
 
-    # Residuals are logarithmic, because factors of all sizes are possible; the search begins at the
-    # last stress.
+    # The factor is fitted as a logarithm, because factors of all sizes are possible. The search
+    # begins at the factor that meets the last stress.
     last = math.asinh(max(y[-1], 1.01 * p0) / elastic.bulk_modulus)
     guess = math.log(max((last - math.asinh(p0 / elastic.bulk_modulus)) / x[-1], 1e-6))
     ends = (math.log(1e-9), math.log(MAX_HARDENING))
@@ -245,8 +246,8 @@ def hardening(curve: LoadingCurve, elastic: Elasticity, p0: float) -> Hardening:
     residual = float(np.sqrt(np.sum((fitted - y) ** 2) / np.sum(y**2)))
     if residual > 1.0:
         raise InputError(
-            f"the hardening law misses the stresses by {residual:.2g} of their size: snow stays "
-            f"weaker than its peak of {p0:.3g} Pa, which the law cannot"
+            f"the hardening law misses the stresses by {residual:.2g} of their size: after its "
+            f"peak of {p0:.3g} Pa the snow stays weaker, which the law cannot describe"
         )
     positive = y > 0
     return Hardening(factor, residual, float((fitted[positive] / y[positive]).max()))

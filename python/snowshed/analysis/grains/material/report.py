@@ -42,8 +42,8 @@ def write_snow(folder: Path, fitted: FittedSnow, source: Mapping[str, Any]) -> P
             "made_by": f"snowshed {_core.version} grains material",
             **source,
             "ranges": ranges,
-            "steps_over_calibrated": _rounded(fitted.steps),
-            "strength_lost_after_dilation": _rounded(fitted.law.lost_after),
+            "steps_over_calibrated": _rounded(fitted.step_count_ratio),
+            "strength_lost_after_dilation": _rounded(fitted.law.dilation_at_strength_loss),
             "notes": fitted.notes,
         },
     }

@@ -9,8 +9,8 @@ from typing import Any, Optional
 
 from snowshed.analysis.grains.material.figures import material_figure
 from snowshed.analysis.grains.material.fit import FittedSnow, fit_material, isotropic_strength
+from snowshed.analysis.grains.material.loading_tests import MaterialTests, read_curves
 from snowshed.analysis.grains.material.report import write_snow, write_table
-from snowshed.analysis.grains.material.tests import MaterialTests, read_curves
 from snowshed.analysis.grains.samples import LabelledSample
 from snowshed.analysis.grains.variants import Comparison
 from snowshed.methods.grains.settings import GrainsSettings
@@ -63,7 +63,7 @@ class MaterialFolder:
 
         curves = {**read_curves(tests.without_shear(), self.runs), **read_curves(shear, self.runs)}
         fitted = fit_material(
-            curves, tests.density, modulus=self.modulus, few_grains=tests.few_grains
+            curves, tests.density, modulus=self.modulus, min_grains=tests.min_grains
         )
         synthetic = any(sample.source for sample in tests.samples)
         if synthetic:

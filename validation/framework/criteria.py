@@ -1,4 +1,4 @@
-"""Bars: what the cases demand of errors and orders of convergence, and what was measured."""
+"""Criteria of the cases for errors and orders of convergence, and the results."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Bar:
+class Criterion:
     """A demand on a quantity, and the worst result.
 
     Attributes
@@ -25,11 +25,11 @@ class Bar:
     kind
         ``"error"`` (the largest allowed) or ``"order"`` of convergence (the smallest allowed).
     demanded, worst
-        The bar, and the worst that was measured (NaN if that failed; None if nothing was).
+        The criterion, and the worst that was measured (NaN if that failed; None if nothing was).
     settings
         Those of the worst.
     count
-        Number of errors or orders that were compared with the bar.
+        Number of errors or orders that were compared with the criterion.
     """
 
     case: str
@@ -44,42 +44,48 @@ class Bar:
     def meant(self) -> Wanted:
         """The settings that the demand is for; an order is not for one size alone."""
         order_in = self.quantity.order_in if self.kind == "order" else None
-        return {name: value for name, value in self.quantity.bar_for.items() if name != order_in}
+        return {name: value for name, value in self.quantity.limit_for.items() if name != order_in}
 
     @property
     def holds(self) -> Optional[bool]:
-        """True if the bar holds; None if nothing was measured that it is for."""
+        """True if the criterion holds; None if nothing was measured that it is for."""
         if self.worst is None:
             return None
         return self.worst >= self.demanded if self.kind == "order" else self.worst <= self.demanded
 
 
-def compare(table: pd.DataFrame, cases: Iterable[Case]) -> list[Bar]:
+def compare(table: pd.DataFrame, cases: Iterable[Case]) -> list[Criterion]:
     """Compare every demand of the cases with the measurements."""
-    bars = []
+    criteria = []
     for case in cases:
         for quantity in case.quantities:
             rows = rows_of(table, case.name, quantity.name)
-            if quantity.bar is not None:
-                bars.append(_error_bar(case.name, quantity, quantity.bar, rows))
+            if quantity.limit is not None:
+                criteria.append(_error_criterion(case.name, quantity, quantity.limit, rows))
             if quantity.min_order is not None and quantity.order_in is not None:
-                bars.append(_order_bar(case.name, quantity, quantity.min_order, rows))
-    return bars
+                criteria.append(_order_criterion(case.name, quantity, quantity.min_order, rows))
+    return criteria
 
 
-def _error_bar(case: str, quantity: Quantity, demanded: float, rows: pd.DataFrame) -> Bar:
-    """Every single measurement must be within the bar; one that failed is not."""
-    meant = [row for row in records(rows) if _matches(row.settings, quantity.bar_for)]
+def _error_criterion(
+    case: str, quantity: Quantity, demanded: float, rows: pd.DataFrame
+) -> Criterion:
+    """Every single measurement must be within the limit; one that failed is not."""
+    meant = [row for row in records(rows) if _matches(row.settings, quantity.limit_for)]
     if not meant:
-        return Bar(case, quantity, "error", demanded, None, {}, 0)
+        return Criterion(case, quantity, "error", demanded, None, {}, 0)
     worst = max(meant, key=lambda row: inf if isnan(row.error) else abs(row.error))
-    return Bar(case, quantity, "error", demanded, abs(worst.error), worst.settings, len(meant))
+    return Criterion(
+        case, quantity, "error", demanded, abs(worst.error), worst.settings, len(meant)
+    )
 
 
-def _order_bar(case: str, quantity: Quantity, demanded: float, rows: pd.DataFrame) -> Bar:
+def _order_criterion(
+    case: str, quantity: Quantity, demanded: float, rows: pd.DataFrame
+) -> Criterion:
     """Every series must converge fast enough; one with a failed measurement does not."""
     order_in = quantity.order_in or ""
-    demand = {name: value for name, value in quantity.bar_for.items() if name != order_in}
+    demand = {name: value for name, value in quantity.limit_for.items() if name != order_in}
     meant = [
         (convergence.order, convergence.settings)
         for convergence in convergences(solutions(rows), order_in)
@@ -87,9 +93,9 @@ def _order_bar(case: str, quantity: Quantity, demanded: float, rows: pd.DataFram
     meant += [(nan, row.settings) for row in records(rows) if isnan(row.error)]
     meant = [(order, settings) for order, settings in meant if _matches(settings, demand)]
     if not meant:
-        return Bar(case, quantity, "order", demanded, None, {}, 0)
+        return Criterion(case, quantity, "order", demanded, None, {}, 0)
     order, settings = min(meant, key=lambda pair: -inf if isnan(pair[0]) else pair[0])
-    return Bar(case, quantity, "order", demanded, order, settings, len(meant))
+    return Criterion(case, quantity, "order", demanded, order, settings, len(meant))
 
 
 def _matches(settings: CaseSettings, wanted: Wanted) -> bool:

@@ -10,7 +10,6 @@ from snowshed.analysis.grains.samples import LabelledSample
 from snowshed.analysis.grains.variants import Comparison, Variant
 from snowshed.methods.grains.curve import LoadingCurve
 from snowshed.methods.grains.settings import GrainsSettings
-from snowshed.methods.grains.summary import FEW_GRAINS
 from snowshed.scene.builders.grains import grains_scene
 from snowshed.scene.loading import LoadingStage
 from snowshed.study.store import Store
@@ -19,9 +18,9 @@ CONFINED, ISOTROPIC, COMPACTION, TENSION, SHEAR = (
     "confined", "isotropic", "compaction", "tension", "shear"
 )  # fmt: skip
 FROZEN: Mapping[str, Any] = {"numerics.bonded_plates": True}
-#: How each is loaded. What begins with a strength is slow: the plate's impact on soft snow is as
-#: large as its strength otherwise. The snow is frozen to the plates: else they touch a few spheres,
-#: whose contacts would be all that yields.
+#: Settings of each test. Tests of strength are slow; otherwise the plate's impact on soft snow
+#: would be as large as the strength. The snow is frozen to the plates; otherwise only the few
+#: spheres that touch them would yield.
 SLOW: Mapping[str, Any] = {"loading.0.speed": 1e-3, "loading.0.strain": 0.01, **FROZEN}
 LOADINGS: Mapping[str, Mapping[str, Any]] = {
     CONFINED: {"loading.0.kind": "compress", **SLOW},
@@ -33,13 +32,13 @@ SHEARING: Mapping[str, Any] = {
     "loading.0.kind": "shear", "loading.0.speed": 2e-3, "loading.0.strain": 0.02,
     "numerics.sides": "periodic", **FROZEN,
 }  # fmt: skip
-#: Normal stresses of the shear tests, of the yield stress in isotropic compression.
+#: Normal stresses of the shear tests, as shares of p0.
 NORMAL_STRESSES = (0.1, 0.3)
-SPEED = 0.02  # m/s, of the compaction
-#: Ice over volume to which snow is compacted: grains whose bonds are broken carry hardly anything
-#: before they are about so dense. Loose snow must be compacted further to get there.
+SPEED = 0.02  # speed of the plates in compaction, m/s
+#: Volume fraction of ice up to which snow is compacted: loose grains carry almost no stress below
+#: it.
 COMPACTED = 0.51
-MIN_COMPACTION = 0.12  # strain along each axis
+MIN_COMPACTION = 0.12  # smallest strain of the compaction along each axis
 
 Curves = Mapping[tuple[str, int], LoadingCurve]
 
@@ -71,19 +70,18 @@ class MaterialTests:
         )
 
     @property
-    def few_grains(self) -> int:
-        """Grains of the smallest sample, if they are few; else 0."""
-        least = min(sample.grains for sample in self.samples)
-        return least if least < FEW_GRAINS else 0
+    def min_grains(self) -> int:
+        """Number of grains of the smallest sample."""
+        return min(sample.grains for sample in self.samples)
 
     def without_shear(self) -> Comparison:
-        """Return the tests that need no other test before."""
+        """Return the tests that do not depend on the results of others."""
         tests = {name: dict(loading) for name, loading in LOADINGS.items()}
         tests[COMPACTION]["loading.0.strain"] = compaction_strain(self.ice_fraction)
         return self._comparison("", tests)
 
     def shear(self, pressure: float) -> Comparison:
-        """Return the shear tests, whose normal stresses are parts of a pressure in Pa."""
+        """Return the shear tests, with shares of a pressure (Pa) as normal stresses."""
         stresses = {
             f"{SHEAR} under {part:g} p0": {
                 **SHEARING,
