@@ -32,8 +32,8 @@ void visit_particles(Archive& archive, Particles& particles, std::size_t materia
   });
 }
 
-template <class T, int D, class Archive, class Layout, class StepTotals>
-void visit_rest(Archive& archive, Layout& layout, Stored<T, D>& stored, StepTotals& p,
+template <class T, int D, class Archive, class Layout, class Totals>
+void visit_rest(Archive& archive, Layout& layout, Stored<T, D>& stored, Totals& p,
                 const Settings& settings) {
   const std::size_t blocks = archive.size("blocks/keys", layout.particle_blocks);
   archive.array("blocks/keys", layout.particle_blocks, blocks);
