@@ -1,7 +1,7 @@
 """Search the snow with which each scheme of the MPM makes the stacks of the calibrated snow.
 
-Usage: python benchmarks/scheme_calibration.py run FOLDER
-       python benchmarks/scheme_calibration.py rank
+Usage: python -m benchmarks.scheme_calibration run FOLDER
+       python -m benchmarks.scheme_calibration rank
 
 `run` makes the stacks (a quarter of an hour on two cores) and appends them to
 benchmarks/results/calibration-schemes.csv. `rank` prints the snows of each scheme by their errors.
@@ -10,26 +10,31 @@ benchmarks/results/calibration-schemes.csv. `rank` prints the snows of each sche
 from __future__ import annotations
 
 import argparse
-import datetime
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import pandas as pd
+from benchmarks.keeping import RESULTS, append_rows
 
+from snowshed.analysis.calibration.comparison import SimulatedStacks, compare_stacks
+from snowshed.analysis.calibration.measurements import Measurement, measured_column
+from snowshed.analysis.calibration.misfit import rank_sets
 from snowshed.analysis.calibration.parameter_ranges import COHESION, GRID, PRESSURE, SLOPE
-from snowshed.analysis.sensitivity.fixed_parameter import rescaled
-from snowshed.base.machine import cpu_name
 from snowshed.scene.components import Snow
 from snowshed.scene.scene import Scene
+from snowshed.snow.stack.quantities import QUANTITIES
 from snowshed.study import Study
 
-STACKS = Path(__file__).parent / "results" / "calibration-schemes.csv"
+STACKS = RESULTS / "calibration-schemes.csv"
+SCHEMES = ("objective", "thesis")
 #: The six stacks of the scheme thesis that stand in for measured ones.
 STAND_IN, STAND_IN_SEEDS = "thesis", range(101, 107)
 #: Snows stronger than those of the thesis's grid.
 STRONGER = {SLOPE: [0.5, 0.7], PRESSURE: [10e3, 14e3], COHESION: [0.2, 0.4]}
-TILTS = {"panel.tilt": [40.0, 50.0]}
+TILT = "panel.tilt"
+TILTS = {TILT: [40.0, 50.0]}
 SNOW = [SLOPE, PRESSURE, COHESION]
-QUANTITIES = ["height_m", "length_m"]
+MEASURED = ["height", "length"]
 
 
 def run(folder: Path) -> None:
@@ -41,46 +46,49 @@ def run(folder: Path) -> None:
     for scheme, snows in (("thesis", GRID), ("objective", GRID), ("objective", STRONGER)):
         name = f"{scheme}-{'grid' if snows is GRID else 'stronger'}"
         tables.append(_stacks(lab, scheme, snows, [1], folder / name))
-    origin = {"machine": cpu_name(), "date": datetime.date.today().isoformat()}
-    rows = pd.concat([pd.read_csv(STACKS), pd.concat(tables).assign(**origin)])
-    rows.to_csv(STACKS, index=False, float_format="%.6g")
+    append_rows(pd.concat(tables), STACKS)
 
 
-def _stacks(lab: Scene, scheme: str, snows, seeds, folder: Path) -> pd.DataFrame:
+def _stacks(
+    lab: Scene,
+    scheme: str,
+    snows: Mapping[str, Sequence[float]],
+    seeds: Sequence[int],
+    folder: Path,
+) -> pd.DataFrame:
     scene = lab.with_({"numerics.scheme": scheme, "numerics.dx": 0.01})
     axes = {**TILTS, **{path: list(values) for path, values in snows.items()}}
     rows = Study.product(scene, axes, seeds=seeds).run(folder, threads=1)
-    columns = [*SNOW, *TILTS, "seed", "event", *QUANTITIES, "centre_height_m"]
+    columns = [*SNOW, TILT, "seed", "event", *map(measured_column, MEASURED), "centre_height_m"]
     return rows[columns].assign(scheme=scheme)
 
 
-def errors() -> pd.DataFrame:
-    """Return the errors of each scheme's snows, the best of each scheme first.
+def ranked(scheme: str) -> pd.DataFrame:
+    """Return the snows of a scheme, the best first.
 
     Returns
     -------
     pandas.DataFrame
-        Mean absolute errors (``_error``), mean deviations (``_bias``) and root mean squares
-        (``_rmse``) of height and length over tilts and events, m; and ``score``, the mean of the
-        rescaled root mean squares, by which the thesis ranks.
+        As `rank_sets` returns it, with the mean deviation of the height, ``height_bias_m``, m.
     """
-    table = pd.read_csv(STACKS)
+    columns = {TILT: "tilt", **{measured_column(name): name for name in MEASURED}}
+    table = pd.read_csv(STACKS).rename(columns=columns)
     of_stand_in = (table["scheme"] == STAND_IN) & table["seed"].isin(STAND_IN_SEEDS)
-    target = table[of_stand_in].groupby([*TILTS, "event"])[QUANTITIES].mean()
-    rows = table[~of_stand_in].join(target.add_suffix("_target"), on=[*TILTS, "event"])
-    scores = rows[["scheme", *SNOW]].drop_duplicates().set_index(["scheme", *SNOW])
-    for name in QUANTITIES:
-        rows["off"] = rows[name] - rows[f"{name}_target"]
-        off = rows.groupby(["scheme", *SNOW])["off"]
-        scores[f"{name}_error"] = off.apply(lambda values: values.abs().mean())
-        scores[f"{name}_bias"] = off.mean()
-        scores[f"{name}_rmse"] = off.apply(lambda values: (values**2).mean() ** 0.5)
-    parts = [
-        scores.groupby("scheme")[f"{name}_rmse"].transform(lambda values: rescaled(values))
-        for name in QUANTITIES
+    means = table[of_stand_in].groupby(["tilt", "event"])[MEASURED].mean()
+    targets = [
+        Measurement(tilt, event, 1, name, row[name], 1.0)
+        for (tilt, event), row in means.iterrows()
+        for name in MEASURED
     ]
-    scores["score"] = sum(parts) / len(parts)
-    return scores.sort_values(["scheme", "score"]).reset_index()
+    rows = table[~of_stand_in & (table["scheme"] == scheme)]
+    rows = rows.assign(set=rows.groupby(SNOW, sort=False).ngroup() + 1)
+    sets = rows.drop_duplicates("set").set_index("set")[SNOW]
+    rows = rows.reindex(columns=["tilt", "seed", "event", *QUANTITIES, "set"])
+    stacks = SimulatedStacks(SNOW, sets, rows)
+    comparison = compare_stacks(stacks, targets)
+    heights = comparison[comparison["quantity"] == "height"]
+    bias = (heights["simulated"] - heights["value"]).groupby(heights["set"]).mean()
+    return rank_sets(stacks, comparison).assign(height_bias_m=lambda of: of["set"].map(bias))
 
 
 def main() -> None:
@@ -93,7 +101,8 @@ def main() -> None:
     if chosen.command == "run":
         run(chosen.folder)
     else:
-        print(errors().groupby("scheme").head(6).round(3).to_string(index=False))
+        for scheme in SCHEMES:
+            print(scheme, ranked(scheme).head(6).round(3).to_string(index=False), sep="\n")
 
 
 if __name__ == "__main__":

@@ -1,9 +1,9 @@
 """Compare the laboratory's stacks on several grids, with both schemes of the MPM.
 
-Usage: python benchmarks/stack_grid.py run FOLDER [--case lab2d] [--seeds 12]
+Usage: python -m benchmarks.stack_grid run FOLDER [--case lab2d] [--seeds 12]
        [--cells 0.02 0.01 0.005]
-       python benchmarks/stack_grid.py time [--cells 0.02 0.01 0.005 0.0025]
-       python benchmarks/stack_grid.py draw
+       python -m benchmarks.stack_grid time [--cells 0.02 0.01 0.005 0.0025]
+       python -m benchmarks.stack_grid draw
 
 `run` makes the stacks of the record (hours on 0.25 cm cells) and appends them to
 benchmarks/results/stack-grid.csv. `time` runs each grid once, scheme after scheme on one thread,
@@ -14,7 +14,6 @@ and keeps the times in stack-grid-times.csv; nothing else should run on the mach
 from __future__ import annotations
 
 import argparse
-import datetime
 import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -22,15 +21,14 @@ from pathlib import Path
 from typing import Any
 
 import pandas as pd
+from benchmarks.keeping import RESULTS, append_rows
 from matplotlib.axes import Axes
 
-from snowshed.base.machine import cpu_name
 from snowshed.plot import INK, blank_figure, save_figure
 from snowshed.scene.scene import Scene
 from snowshed.study import Study
 from snowshed.study.table import read_table
 
-RESULTS = Path(__file__).parent / "results"
 STACKS = RESULTS / "stack-grid.csv"
 TIMES = RESULTS / "stack-grid-times.csv"
 PICTURE = Path(__file__).parents[1] / "docs" / "images" / "stack-grid.png"
@@ -48,7 +46,7 @@ LABEL_ABOVE = {"thesis": 7, "objective": -15}
 PANEL = {"tilt": "tilt", "panel_length": "length", "friction": "friction"}
 COLUMNS = (
     *("case", "scheme", *PANEL, "dx", "seed", "event", *QUANTITIES),
-    *("spread_m", "steps", "machine", "date"),
+    *("spread_m", "steps"),
 )
 
 
@@ -96,9 +94,8 @@ def run(folder: Path, case: str, seeds: int, all_cells: Sequence[float]) -> None
                 name: rows.get(f"panel.{field}", getattr(scene.panel, field))
                 for name, field in PANEL.items()
             }
-            origin = {"machine": cpu_name(), "date": _today()}
-            rows = rows.assign(case=case, scheme=scheme, dx=cells, **panel, **origin)
-            _append(rows[list(COLUMNS)], STACKS)
+            rows = rows.assign(case=case, scheme=scheme, dx=cells, **panel)
+            append_rows(rows[list(COLUMNS)], STACKS)
 
 
 def measure_times(all_cells: Sequence[float]) -> None:
@@ -113,7 +110,7 @@ def measure_times(all_cells: Sequence[float]) -> None:
                 wall = float(read_table(folder, timing=True)["run_wall_s"].max())
             print(f"{scheme} {cells} m: {wall:.2f} s", flush=True)
             rows.append({"scheme": scheme, "dx": cells, "wall_s": wall})
-    _append(pd.DataFrame(rows).assign(machine=cpu_name(), date=_today()), TIMES)
+    append_rows(pd.DataFrame(rows), TIMES)
 
 
 def deviations() -> pd.DataFrame:
@@ -173,16 +170,6 @@ def _draw_errors(axes: Axes, lab: pd.DataFrame, times: pd.Series, name: str, lab
     axes.set_ylim(2, 200)
     axes.minorticks_off()
     axes.legend(fontsize=8, frameon=False)
-
-
-def _append(rows: pd.DataFrame, file: Path) -> None:
-    if file.exists():
-        rows = pd.concat([pd.read_csv(file), rows], ignore_index=True)
-    rows.to_csv(file, index=False, float_format="%.6g")
-
-
-def _today() -> str:
-    return datetime.date.today().isoformat()
 
 
 def main() -> None:
