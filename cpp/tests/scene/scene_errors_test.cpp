@@ -354,7 +354,7 @@ TEST(SceneErrorsText, BlankLinesAreNoPartOfTheMessage) {
   EXPECT_EQ(message.substr(message.rfind(", after")), ", after \"?\"");
   // Each blank took nine bytes of the message, several times over.
   EXPECT_LT(said(std::string(1 << 22, '\n') + "x").size(), 200u);
-  EXPECT_EQ(where_of("{\"a\\\"\n\": 1}"), "name:1:6");  // within a text they stay what they are
+  EXPECT_EQ(where_of("{\"a\\\"\n\": 1}"), "name:1:6");  // within a text they remain escaped
 }
 
 TEST(SceneErrorsText, DamagedTextNeverCrashes) {

@@ -78,20 +78,18 @@ class StackError:
         scatter = " and ".join(f"{100 * self.scatter[name]:.0f} %" for name in self.scatter)
         cells = f"{number(self.recorded_cells, 2)} cell{'' if self.recorded_cells == 1 else 's'}"
         mechanisms = Mechanisms.of_settings(self.settings)
-        lengths = mechanisms.lengths_note(PRESET_THICKNESS, self.thickness)
-        calibration = mechanisms.calibration_note
         mine = (
             ""
             if abs(self.cells / self.recorded_cells - 1) < 0.01
             else f"; this scene has {number(self.cells, 2)}"
         )
-        return (
+        return _clauses(
             f"error of the stack in recorded runs ({_where(self.settings)}, {cells} in the "
             f"slab{mine}): {bias}, against the finest recorded grid of this scheme, which "
-            "has not converged either"
-            + (f"; single runs scatter by {scatter}" if scatter else "")
-            + (f"; {calibration}" if calibration else "")
-            + (f"; {lengths}" if lengths else "")
+            "has not converged either",
+            f"single runs scatter by {scatter}" if scatter else "",
+            mechanisms.calibration_note,
+            mechanisms.lengths_note(PRESET_THICKNESS, self.thickness),
         )
 
 
@@ -198,11 +196,11 @@ def recorded_bias(dimension: int, events: int, mechanisms: Optional[Mechanisms] 
     if not resolved:
         return _nothing(mechanisms)
     low, high = 100 * min(resolved.values()), 100 * max(resolved.values())
-    return (
+    return _clauses(
         f"stacks of {_where(stacks[0].settings)} were {_span(low, high)} with "
         f"{_numbers(min(resolved), max(resolved))} cells in the slab, against the finest recorded "
-        "grid of this scheme"
-        + (f"; {mechanisms.calibration_note}" if mechanisms.calibration_note else "")
+        "grid of this scheme",
+        mechanisms.calibration_note,
     )
 
 
@@ -221,6 +219,11 @@ def _where(settings: CaseSettings) -> str:
     """Return the recorded scene of settings, with its scheme."""
     scene = f"{PRESET} in {settings['dimension']}D, event {settings['events']}"
     return f"{scene}, {Mechanisms.of_settings(settings).label}"
+
+
+def _clauses(*clauses: str) -> str:
+    """Return the clauses that are not empty as a sentence."""
+    return "; ".join(filter(None, clauses))
 
 
 def _nothing(mechanisms: Mechanisms) -> str:
