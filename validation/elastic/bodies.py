@@ -1,4 +1,4 @@
-"""A free elastic body, for the cases with vibrations and with manufactured motions."""
+"""A free elastic body, which the cases of vibrations and of manufactured motions use."""
 
 from __future__ import annotations
 

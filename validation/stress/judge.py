@@ -25,10 +25,11 @@ MASS_BOUND = 1e-9
 #: the time step, and soft snow takes steps that are not small compared with its fall or impact.
 ENERGY_BOUND = 0.2
 
-#: Allowed excess of kinetic and elastic energy over the input, for a step or two and at the end.
+#: Largest excess of kinetic and elastic energy over the input that is allowed for a step or two.
 #: Bodies that collide strain before they slow down: symplectic Euler oscillates about a slightly
 #: different energy, by up to the energy of the colliding particles.
 SWING_BOUND = 0.1
+#: The same at the end of a run.
 GAIN_BOUND = 0.01
 
 #: A clear error names a place in the scene, a parameter, a particle, or the treatment

@@ -1,4 +1,5 @@
-// The law of snow with a crack band: how it softens, and its return mapping.
+// The law of snow with a crack band and a relaxation time: how it softens, its return mapping, and
+// how stress relaxes.
 #include <gtest/gtest.h>
 
 #include <cmath>

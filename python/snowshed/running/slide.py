@@ -44,8 +44,7 @@ def slide(
     pictures
         Whether to draw ``slide.png`` and write ``slide.html``.
     settings
-                Settings of the method. [default: `SlideSettings()`]
-
+        Settings of the method. [default: `SlideSettings()`]
 
     Returns
     -------

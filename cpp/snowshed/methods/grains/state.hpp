@@ -86,7 +86,7 @@ struct Workspace {
   std::vector<BodyFrame> frames;    // one per grain and plate
   std::vector<GroupForce> results;  // one per group of pairs
   BodyGroups groups_of;             // groups of each grain
-  double max_step = 0;              // s, for the pairs that are listed
+  double max_step = 0;              // s, the largest that all listed pairs allow
   std::vector<double> damped;       // J, of each grain in a step
 };
 
