@@ -20,10 +20,14 @@ VALIDATION ?= --quick
 THESIS ?= --quick
 MUTANTS ?=
 
+# Python keeps what it compiled. So pip need not compile modules that nothing imports, and no process
+# compiles a module again.
+unexport PYTHONDONTWRITEBYTECODE
+
 # Several tools must find cmake and ninja, which may be only in .venv.
 export PATH := $(CURDIR)/$(BIN):$(PATH)
 
-PIP := $(BIN)/python -m pip --disable-pip-version-check install
+PIP := $(BIN)/python -m pip --disable-pip-version-check install --no-compile
 # Selects the compiler's progress and messages from pip's output.
 COMPILER_LINES := '/^ *\[[0-9]+\/[0-9]+\]|warning:|error/ { print; fflush() }'
 

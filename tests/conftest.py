@@ -62,11 +62,16 @@ def drawn() -> None:
     """Draw the pictures and pages of this test, although `undrawn` leaves them out in its file."""
 
 
+def leave_out_drawings(patch: pytest.MonkeyPatch) -> None:
+    """Leave out the pictures and the page of slides, which take longer than a small slide."""
+    patch.setattr("snowshed.methods.slide.run.SlideRun.draw", lambda _: None)
+
+
 @pytest.fixture
 def undrawn(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Leave out the pictures and the page of slides, which take longer than a small slide."""
+    """Leave out the pictures and the page of slides in a test that does not ask for `drawn`."""
     if "drawn" not in request.fixturenames:
-        monkeypatch.setattr("snowshed.methods.slide.run.SlideRun.draw", lambda _: None)
+        leave_out_drawings(monkeypatch)
 
 
 @pytest.fixture

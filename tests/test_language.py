@@ -254,11 +254,12 @@ def former_words():
 def in_former_words(texts):
     """Return the former words in texts, each with the name of its text and the present term."""
     former = former_words()
+    longest_first = sorted(map(re.escape, former), key=len, reverse=True)
+    any_word = re.compile(rf"(?<![\w-])(?:{'|'.join(longest_first)})(?![\w-])")
     return [
-        f"{name}: {word} (write: {term})"
+        f"{name}: {match[0]} (write: {former[match[0]]})"
         for name, text in texts
-        for word, term in former.items()
-        if re.search(rf"(?<![\w-]){re.escape(word)}(?![\w-])", text)
+        for match in any_word.finditer(text)
     ]
 
 

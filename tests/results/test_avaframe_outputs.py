@@ -13,6 +13,7 @@ import subprocess
 
 import numpy as np
 import pytest
+from conftest import leave_out_drawings
 from helpers.slide_files import box, plane, write_polygons, write_project
 
 from snowshed.cli.main import main
@@ -37,7 +38,9 @@ def results(tmp_path_factory):
     ini = "tEnd = 0.1\ntSteps = 0|0.05\nresType = ppr|pft|pfv|FT\n"
     project = write_project(folder / "project", ini, releases=("rel", "up_hill"))
     write_polygons(project / "Inputs/RES/res.geojson", box(50, 10, 60, 30))
-    return run(project, folder / "out", "--particles-at", "1")
+    with pytest.MonkeyPatch.context() as patch:
+        leave_out_drawings(patch)
+        return run(project, folder / "out", "--particles-at", "1")
 
 
 @pytest.mark.parametrize("module", ["com1DFA", "com5SnowSlide"])
