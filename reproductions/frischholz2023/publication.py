@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import get_args
 
 import click
 
@@ -24,8 +25,9 @@ from reproductions.frischholz2023.sections import (
     regression,
     s_index,
 )
-from reproductions.frischholz2023.settings import FULL, MIDDLE, QUICK
+from reproductions.frischholz2023.settings import FULL, MIDDLE, PLANAR, QUICK
 from reproductions.frischholz2023.stages import ThesisComputation, stages
+from snowshed.methods.mpm.settings import Scheme
 
 ABOUT = (
     "Frischholz, <em>Snow slide-off from solar panels with the Material Point Method</em> (master "
@@ -37,6 +39,10 @@ QUICK_CAUTION = (
     "<strong>A quick reproduction.</strong> Coarse cells, 2D instead of 3D in chapters 3 and 4, "
     "few seedings and few values: it shows the procedure. Its verdicts hold for these settings, "
     "not for the thesis's; for those use <code>--full</code>."
+)
+PLANAR_CAUTION = (
+    "<strong>Chapters 3 and 4 in 2D.</strong> The thesis computed them in 3D. The cells are the "
+    "thesis's, and there are few seedings."
 )
 NOISE = (
     "Its noise is that of the seeding: another placement of the particles gives another stack. "
@@ -73,6 +79,12 @@ OPTIONS = (
         help="Contact with the panel: snow may leave it, or, as in the thesis (SLIP), only over "
         "its edge.  [default: separate]",
     ),
+    click.Option(
+        ["--scheme"],
+        type=click.Choice(get_args(Scheme)),
+        default="thesis",
+        help="Scheme of the MPM in all simulations.  [default: thesis]",
+    ),
 )
 
 REPRODUCTION: Reproduction[ThesisComputation] = Reproduction(
@@ -86,10 +98,11 @@ REPRODUCTION: Reproduction[ThesisComputation] = Reproduction(
     stage_help=STAGE_HELP,
     jobs_help="Processes at once.  [default: the number of cores]",
     options=OPTIONS,
-    identity=("condition",),
-    former={"publication": "thesis", "condition": "separate"},
+    identity=("condition", "scheme"),
+    former={"publication": "thesis", "condition": "separate", "scheme": "thesis"},
     sizes=(
         Size("quick", "Minutes: in 2D, a coarse grid (default).", QUICK, QUICK_CAUTION),
+        Size("planar", "An hour: as --middle, in 2D.", PLANAR, PLANAR_CAUTION),
         Size("middle", "Hours: the thesis's settings, few seedings.", MIDDLE),
         Size("full", "Days: all of it, several seedings.", FULL),
     ),

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 from snowshed.analysis.calibration.parameter_ranges import COHESION, GRID, PRESSURE, SLOPE
 from snowshed.analysis.regression.folds import CrossValidation
+from snowshed.methods.mpm.settings import Scheme
 from snowshed.scene.components import Condition
 
 #: Friction of the panel where a single value is used: the smallest static one in the thesis.
@@ -47,6 +48,8 @@ class Settings:
         Rounds of the folds for the rows of one seed, where there are several.
     condition
         Contact condition of the panel: "separate" (our default) or "slip" (the thesis's).
+    scheme
+        Scheme of the MPM. Deviations from the thesis are undone only with the scheme "thesis".
     """
 
     dimension: int
@@ -70,6 +73,7 @@ class Settings:
     folds: CrossValidation
     one_seed_rounds: int
     condition: Condition = "separate"
+    scheme: Scheme = "thesis"
 
 
 FULL = Settings(
@@ -111,6 +115,8 @@ MIDDLE = replace(
     folds=CrossValidation(rounds=3),
     one_seed_rounds=3,
 )
+#: The same in 2D, except for the laboratory, which is in both dimensions.
+PLANAR = replace(MIDDLE, dimension=2)
 QUICK = Settings(
     dimension=2,
     dx=0.02,

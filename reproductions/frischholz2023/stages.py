@@ -14,8 +14,11 @@ from reproductions.frischholz2023.regression_stage import GeometryRows, Regressi
 from reproductions.frischholz2023.settings import Settings
 from snowshed.analysis.regression.dataset import geometry_table
 from snowshed.analysis.regression.rows import read_rows
+from snowshed.methods.mpm.settings import Scheme
 from snowshed.scene.components import Condition
 
+#: Stages that vary the scheme of the thesis.
+OF_THE_THESIS = ("deviations", "variations")
 #: Stages of panels, whose measure is in doubt: their particles are stored.
 KEPT = ("deviations", "variations", "geometry")
 MAKERS = {
@@ -37,14 +40,16 @@ class ThesisComputation:
     path, settings
         The folder, and the settings.
     table
-        Rows of panels to use for chapter 5 instead of simulating them. Without it, a quick
-        reproduction takes the table that comes with snowshed.
+        Rows of panels to use for chapter 5 instead of simulating them. Without it, a reproduction
+        that simulates no panels takes the table that comes with snowshed, if its scheme is that of
+        the table: the thesis's.
     """
 
     def __init__(self, path: Path, settings: Settings, table: Optional[Path]) -> None:
         self.folder = folder = ReproductionFolder(path)
         self.settings = settings
-        if table is None and not settings.simulates_panels:
+        of_the_thesis = settings.scheme == "thesis"
+        if table is None and not settings.simulates_panels and of_the_thesis:
             table = geometry_table()
         self.table = table
         self.study_stages = {
@@ -52,7 +57,8 @@ class ThesisComputation:
                 name, folder.runs, partial(make, settings), keep_particles=name in KEPT
             )
             for name, make in MAKERS.items()
-            if name != "geometry" or table is None
+            if (name != "geometry" or table is None)
+            and (name not in OF_THE_THESIS or of_the_thesis)
         }
         self.rows = GeometryRows(folder, table, self.study_stages.get("geometry"))
         self.regression = RegressionStage(folder, settings, self.rows)
@@ -64,9 +70,21 @@ class ThesisComputation:
 
 
 def stages(
-    folder: Path, settings: Settings, *, table: Optional[Path], condition: Condition
+    folder: Path,
+    settings: Settings,
+    *,
+    table: Optional[Path],
+    condition: Condition,
+    scheme: Scheme,
 ) -> ThesisComputation:
-    """Return the stages, with a condition of the panel; raises InputError for a wrong table."""
+    """Return the stages, with a condition of the panel and a scheme.
+
+    Raises
+    ------
+    InputError
+        If the table is wrong.
+    """
     if table is not None:
         settings.folds.check(read_rows(table))
-    return ThesisComputation(folder, replace(settings, condition=condition), table)
+    settings = replace(settings, condition=condition, scheme=scheme)
+    return ThesisComputation(folder, settings, table)

@@ -115,7 +115,7 @@ def calibration(settings: Settings) -> list[Study]:
 def geometry(settings: Settings) -> list[Study]:
     """Return the panels of chapter 5, and those that Table 5.1.1 has besides the data set."""
     panels = geometry_study(MODEL_BETWEEN)
-    scene = panels.scene.set("panel.condition", settings.condition)
+    scene = _with_choices(panels.scene, settings)
     panels = Study(scene, panels.parts, PANELS, panels.seeds)
     others: dict[str, list[Any]] = {
         "panel.friction": [FRICTION],
@@ -195,7 +195,7 @@ def _variant(settings: Settings, name: str, names: Sequence[str]) -> Study:
 
 def _lab_scene(settings: Settings, dimension: int) -> Scene:
     scene = Scene.preset("lab-50").update({"dimension": dimension, "numerics.dx": settings.dx})
-    return scene.update({"events.count": LAB_EVENTS, "panel.condition": settings.condition})
+    return _with_choices(scene.set("events.count", LAB_EVENTS), settings)
 
 
 def _sensitivity(method: str, name: str, settings: Settings, seeds: int) -> Study:
@@ -205,5 +205,13 @@ def _sensitivity(method: str, name: str, settings: Settings, seeds: int) -> Stud
 
 def _resized(study: Study, settings: Settings) -> Scene:
     numerics = {"dimension": settings.dimension, "numerics.dx": settings.dx}
-    panel = {"panel.friction": MEASURED_FRICTION, "panel.condition": settings.condition}
-    return study.scene.update({**numerics, **panel})
+    scene = study.scene.update({**numerics, "panel.friction": MEASURED_FRICTION})
+    return _with_choices(scene, settings)
+
+
+def _with_choices(scene: Scene, settings: Settings) -> Scene:
+    """Return the scene with the condition of the panel, and with a scheme and its damping."""
+    scene = scene.with_({"panel.condition": settings.condition})
+    if settings.scheme == "thesis":
+        return scene
+    return scene.with_({"numerics.damping_rate": None, "numerics.scheme": settings.scheme})
