@@ -41,7 +41,7 @@ QUICK_CAUTION = (
     "not for the thesis's; for those use <code>--full</code>."
 )
 PLANAR_CAUTION = (
-    "<strong>Chapters 3 and 4 in 2D.</strong> The thesis computed them in 3D. The cells are the "
+    "<strong>In 2D.</strong> The thesis computed chapters 2 to 4 in 3D, too. The cells are the "
     "thesis's, and there are few seedings."
 )
 NOISE = (
@@ -102,7 +102,7 @@ REPRODUCTION: Reproduction[ThesisComputation] = Reproduction(
     former={"publication": "thesis", "condition": "separate", "scheme": "thesis"},
     sizes=(
         Size("quick", "Minutes: in 2D, a coarse grid (default).", QUICK, QUICK_CAUTION),
-        Size("planar", "An hour: as --middle, in 2D.", PLANAR, PLANAR_CAUTION),
+        Size("planar", "Half an hour: as --middle, in 2D.", PLANAR, PLANAR_CAUTION),
         Size("middle", "Hours: the thesis's settings, few seedings.", MIDDLE),
         Size("full", "Days: all of it, several seedings.", FULL),
     ),

@@ -23,6 +23,8 @@ class Settings:
     dimension, dx
         Dimension of the simulations of snow in chapters 3 and 4, and their grid size (m), also for
         the laboratory.
+    lab_dimensions
+        Dimensions of the laboratory.
     frictions, release_frictions
         Friction of the panel in the laboratory, and at 30 degrees.
     lab_seeds, index_seeds, fixation_seeds, grid_seeds
@@ -72,6 +74,7 @@ class Settings:
     deviation_seeds: int
     folds: CrossValidation
     one_seed_rounds: int
+    lab_dimensions: Sequence[int] = (2, 3)
     condition: Condition = "separate"
     scheme: Scheme = "thesis"
 
@@ -115,8 +118,8 @@ MIDDLE = replace(
     folds=CrossValidation(rounds=3),
     one_seed_rounds=3,
 )
-#: The same in 2D, except for the laboratory, which is in both dimensions.
-PLANAR = replace(MIDDLE, dimension=2)
+#: The same in 2D.
+PLANAR = replace(MIDDLE, dimension=2, lab_dimensions=(2,))
 QUICK = Settings(
     dimension=2,
     dx=0.02,

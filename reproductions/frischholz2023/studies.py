@@ -71,6 +71,7 @@ def lab(settings: Settings) -> list[Study]:
     grown = [
         Study.product(_lab_scene(settings, dimension), axes, name=name, seeds=seeds)
         for name, dimension in ((LAB_2D, 2), (LAB_3D, 3))
+        if dimension in settings.lab_dimensions
     ]
     scene = _lab_scene(settings, settings.dimension).set("panel.tilt", RELEASE_TILT)
     frictions = {"panel.friction": list(settings.release_frictions)}

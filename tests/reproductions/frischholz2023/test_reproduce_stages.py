@@ -2,6 +2,7 @@
 
 import json
 import re
+from dataclasses import replace
 
 import pandas as pd
 import pytest
@@ -10,7 +11,7 @@ from reproductions.common.stage import State, StudyStage, choose, compute
 from reproductions.frischholz2023 import studies
 from reproductions.frischholz2023.publication import REPRODUCTION
 from reproductions.frischholz2023.sections.regression import read_regressed
-from reproductions.frischholz2023.settings import FULL, MIDDLE, QUICK
+from reproductions.frischholz2023.settings import FULL, MIDDLE, PLANAR, QUICK
 from reproductions.frischholz2023.stages import ThesisComputation
 
 from snowshed import Scene
@@ -198,3 +199,23 @@ def test_regression_waits_for_the_panels(tmp_path):
 def test_a_quick_reproduction_takes_the_rows_that_come_with_snowshed(tmp_path):
     found = ThesisComputation(tmp_path / "out", TINY, None)
     assert "geometry" not in found.study_stages and len(found.rows.read()) == 610
+
+
+def test_a_scheme_is_that_of_all_simulations_and_has_its_own_damping():
+    makers = (studies.lab, studies.index, studies.fixation, studies.calibration, studies.geometry)
+    for make in makers:
+        for study in make(replace(QUICK, scheme="objective")):
+            numerics = json.loads(study.runs()[0].scene)["numerics"]
+            assert (numerics["scheme"], numerics["damping_rate"]) == ("objective", 380)
+
+
+def test_another_scheme_has_neither_the_deviations_nor_the_rows_of_the_thesis(tmp_path):
+    found = ThesisComputation(tmp_path / "out", replace(TINY, scheme="objective"), None)
+    assert list(found.study_stages) == ["lab", "s-index", "fixation", "calibration", "geometry"]
+    assert found.table is None
+
+
+def test_planar_is_middle_in_two_dimensions():
+    assert replace(PLANAR, dimension=3, lab_dimensions=(2, 3)) == MIDDLE
+    assert {json.loads(run.scene)["dimension"] for make in (studies.lab, studies.fixation)
+            for study in make(PLANAR) for run in study.runs()} == {2}  # fmt: skip

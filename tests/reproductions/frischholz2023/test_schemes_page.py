@@ -1,0 +1,50 @@
+"""The page of the thesis's claims with both schemes: written from results, and complete."""
+
+import pytest
+from reproductions.common.claims_tables import claims_csv
+from reproductions.common.hypothesis_tests import CONFIRMED, CONTRADICTED, Finding, Judged
+from reproductions.frischholz2023 import schemes_page
+
+from snowshed._core import InputError
+
+
+def judged(verdict, text, source="3.3"):
+    return Judged(source, text, "slope above zero", Finding(verdict, f"slope, m: {verdict}"))
+
+
+@pytest.fixture
+def folders(tmp_path):
+    def write(*tables):
+        for number, claims in enumerate(tables):
+            (tmp_path / str(number)).mkdir()
+            (tmp_path / str(number) / "claims.csv").write_text(claims_csv(claims), "utf-8")
+        return [tmp_path / str(number) for number in range(len(tables))]
+
+    return write
+
+
+def test_the_page_is_what_the_results_say():
+    """Made by python -m reproductions.frischholz2023.schemes_page."""
+    assert schemes_page.PAGE.read_text(encoding="utf-8") == schemes_page.page()
+
+
+def test_claims_that_change_are_apart_from_those_that_stay(folders, tmp_path):
+    thesis = [judged(CONFIRMED, "It grows."), judged(CONFIRMED, "It falls.")]
+    objective = [judged(CONTRADICTED, "It grows."), judged(CONFIRMED, "It falls.")]
+    of_panels = judged(CONFIRMED, "It is long.", "5.1.2")
+    schemes_page.keep(folders([*thesis, of_panels], [*objective, of_panels]), tmp_path)
+    before, changed, same = schemes_page.page(tmp_path).split("\n## ")
+    assert "Of 2 claims, 1 have another verdict" in before
+    assert "| `objective` | 1 | 1 | 0 |" in before
+    row = (
+        "| 3.3 | It grows. | confirmed: slope, m: confirmed | contradicted: slope, m: contradicted"
+    )
+    assert row in changed and "It falls." not in changed
+    assert "It falls." in same and "It is long." not in same
+
+
+def test_tables_of_other_claims_are_refused(folders, tmp_path):
+    made = folders([judged(CONFIRMED, "It grows.")], [judged(CONFIRMED, "It falls.")])
+    schemes_page.keep(made, tmp_path)
+    with pytest.raises(InputError, match="list different claims"):
+        schemes_page.page(tmp_path)
