@@ -13,7 +13,7 @@ from snowshed.base.progress import Progress, Reporter
 from snowshed.cli import progress as bar
 from snowshed.cli.terminal import plain_table, wide_console
 
-WIDTH = 140  # columns, of what is not a terminal
+WIDTH = 140  # columns of output that is not a terminal
 STYLES = {CONTRADICTED: "bold red", UNDECIDED: "dim"}
 
 

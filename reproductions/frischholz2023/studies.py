@@ -25,7 +25,9 @@ from snowshed.scene.components import Snow
 from snowshed.study import Factor, Study
 from snowshed.study.factors import SEED
 
-LAB_2D, LAB_3D, RELEASE = "lab-2d", "lab-3d", "lab-30-degrees"
+#: Studies of the laboratory, by dimension.
+LABORATORIES = {2: "lab-2d", 3: "lab-3d"}
+RELEASE = "lab-30-degrees"
 INDEX, FIXATION = "sensitivity-s", "sensitivity-fixation"
 GRID, TRUTH = "calibration", "calibration-truth"
 PANELS, TILTS = "geometry", "geometry-tilts"
@@ -69,9 +71,8 @@ def lab(settings: Settings) -> list[Study]:
     seeds = list(range(1, settings.lab_seeds + 1))
     axes = {"panel.tilt": list(LAB_TILTS), "panel.friction": list(settings.frictions)}
     grown = [
-        Study.product(_lab_scene(settings, dimension), axes, name=name, seeds=seeds)
-        for name, dimension in ((LAB_2D, 2), (LAB_3D, 3))
-        if dimension in settings.lab_dimensions
+        Study.product(_lab_scene(settings, d), axes, name=LABORATORIES[d], seeds=seeds)
+        for d in settings.lab_dimensions
     ]
     scene = _lab_scene(settings, settings.dimension).set("panel.tilt", RELEASE_TILT)
     frictions = {"panel.friction": list(settings.release_frictions)}

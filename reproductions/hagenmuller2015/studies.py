@@ -32,7 +32,7 @@ from snowshed.scene.scene import Scene
 #: 20 mm/s up to 30 %, with ice ten times as dense: the largest inertia that did not change
 #: stresses.
 STAGE = LoadingStage(kind="compress", speed=0.02, strain=0.3)
-#: Claims about the brittle phase alone need a sixth of it.
+#: Claims about the brittle phase alone need only a sixth of this strain.
 BRITTLE_STAGE = LoadingStage(kind="compress", speed=0.02, strain=0.05)
 #: Steps are three times the default: peaks of four samples stayed within 5 %, and energies balanced
 #: within 2e-4 of the work.
@@ -44,7 +44,7 @@ TOO_DENSE = 1e4
 LIGHT_SNOW, HEAVY_SNOW = f"{LIGHT:.0f} kg/m3", f"{HEAVY:.0f} kg/m3"
 THIN_NECKS, WIDE_NECKS = "thin necks", "wide necks"
 FEWER, TRAP, ELASTIC = "fewer grains", "density of ice x 10000", "elastic"
-#: Settings that differ up to 30 %, by the names that `sensitivity_variants` gives them.
+#: Settings of the variants that are compressed by 30 %, by their names in `sensitivity_variants`.
 SOFT, STRONG, ROUGH = "elastic modulus 1e+08 Pa", "strength of bonds 2e+06 Pa", "friction 0.5"
 DENSE_SETTINGS: Mapping[str, tuple[str, Mapping[str, float]]] = {
     SOFT: ("elastic modulus", {"elastic_modulus": 1e8}),
@@ -118,7 +118,7 @@ def dense(comparisons: Comparisons) -> Comparison:
 def brittle(comparisons: Comparisons) -> Comparison:
     """Return the variants of `snowshed grains sensitivity`, fewer grains, and the trap of inertia.
 
-    With spheres half as large, which take ten times as long.
+    One variant has spheres half as large, which take ten times as long.
     """
     comparison = sensitivity_variants(
         comparisons.base_snow(),

@@ -82,7 +82,7 @@ class GroundProfile:
     Attributes
     ----------
     corners
-        (x, z) of the lower ends of the planes and of the upper end of the first, m, from above.
+        (x, z) of the upper end of the first plane and of the lower ends of all, m, from the top.
     """
 
     corners: Sequence[tuple[float, float]]
@@ -128,7 +128,7 @@ class GroundProfile:
         raise AssertionError("unreachable")
 
     def ground(self) -> list[Obstacle]:
-        """Return the ground as planes; where it bends, it must be hollow."""
+        """Return the ground as planes; its bends must be concave."""
         planes = [
             Obstacle(name="ground", shape=Shape.plane((0, 0, 0), (0, 0, 1)), condition="sticky")
         ]
@@ -223,7 +223,7 @@ def wooden(obstacle: str, resolution: Resolution) -> Case:
         erosion=True,
         erosion_pressure=200.0,
         deposition_pressure=100.0,
-        deposition_speed=0.005,  # less than snow has after a step, so that it is not kept at once
+        deposition_speed=0.005,  # below the speed after one step: snow is not deposited at once
     )
     scene = _scene(f"wooden slope, {obstacle}", 3, settings, obstacles, [Body(shape=snow)], 4.0)
     return Case(f"wooden slope, {obstacle}", path, scene, 4.0, 0.25, -OBSTACLE_AT)

@@ -28,7 +28,7 @@ def top_views(courses: Sequence[Course], times: Sequence[float]) -> Figure:
     def plan(course: Course, positions: np.ndarray) -> np.ndarray:
         return np.stack([course.case.path.along(positions), positions[:, 1]], axis=1)
 
-    return _views(courses, times, plan, _obstacle_line, "way (m)", "y (m)")
+    return _views(courses, times, plan, _obstacle_line, "distance along the ground (m)", "y (m)")
 
 
 def _views(

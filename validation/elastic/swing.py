@@ -55,7 +55,7 @@ class Swing:
         def swing(t: Floats, height: float, decay: float, turns: float, phase: float) -> Floats:
             return np.asarray(height * np.exp(-decay * t) * np.sin(2 * np.pi * turns * t + phase))
 
-        # Periods and heights of one make the four unknowns comparable.
+        # With a period and an amplitude of one, the four unknowns are of the same size.
         period, height = 1 / frequency, float(np.abs(values).max())
         start = (1.0, 0.0, 1.0, 0.0)
         parameters, _ = curve_fit(swing, times / period, values / height, p0=start)

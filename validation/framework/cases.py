@@ -53,7 +53,7 @@ def load_cases(names: Sequence[str] = ()) -> list[Case]:
     Raises
     ------
     InputError
-        If there is nothing of a name.
+        If a name stands for no case.
 
     Examples
     --------

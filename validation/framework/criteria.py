@@ -42,13 +42,13 @@ class Criterion:
 
     @property
     def meant(self) -> Wanted:
-        """The settings that the demand is for; an order is not for one size alone."""
+        """Settings that the criterion applies to; an order of convergence applies to all sizes."""
         order_in = self.quantity.order_in if self.kind == "order" else None
         return {name: value for name, value in self.quantity.limit_for.items() if name != order_in}
 
     @property
     def holds(self) -> Optional[bool]:
-        """True if the criterion holds; None if nothing was measured that it is for."""
+        """True if the criterion holds; None if nothing that it applies to was measured."""
         if self.worst is None:
             return None
         return self.worst >= self.demanded if self.kind == "order" else self.worst <= self.demanded

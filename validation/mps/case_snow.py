@@ -81,7 +81,7 @@ def resting_heap(positions: Floats) -> Floats:
 
 
 def measure_heap(settings: CaseSettings) -> Outcome:
-    """Let a heap slump until it rests, and compare its height over four particles."""
+    """Let a heap slump until it rests, and compare its height in columns of four particles."""
     drive = mps_drive(MUD, floor_and_sides(), [block(*HEAP)], settings)
     drive.run_to(2.0)
     spacing = float(settings["spacing"])
@@ -130,12 +130,12 @@ CASES = (
         source="Liu & Mei (1989), Journal of Fluid Mechanics 207, 505-529",
         description="""
         A Bingham fluid with a yield stress of 100 Pa slumps and comes to rest. After 2 s its
-        height, over four particles, is compared with that of a shallow heap that is just about to
-        yield. The density is the largest one over that of a lattice, less one.
+        height, in columns four particles wide, is compared with that of a shallow heap that is just
+        about to yield. The density is the largest relative excess over that of a lattice.
         """,
         quantities=(
             Quantity(
-                "profile", "L2 of the height over it", limit=0.1,
+                "profile", "relative L2 error of the height", limit=0.1,
                 limit_for={"spacing": 0.02}, relative=False,
             ),
             Quantity("front", "front, m"),

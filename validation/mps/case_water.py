@@ -19,10 +19,11 @@ ACROSS = (10, 20, 40)  # particles across the dam
 #: T* = t sqrt(2 g/L) and X* = x/L of the front.
 MARTIN_MOYCE = ((0.832, 1.217), (1.219, 1.474), (1.997, 2.292), (2.547, 2.995), (3.345, 4.134), (4.034, 4.944))  # fmt: skip # noqa: E501
 KOSHIZUKA_OKA = ((0.381, 1.111), (0.769, 1.252), (1.153, 1.505), (1.537, 1.892), (1.935, 2.241), (2.323, 2.615), (2.719, 3.003), (3.096, 3.624))  # fmt: skip # noqa: E501
-#: Front of such water, released suddenly, as a volume of fluid (benchmarks/engines/gerris_dam.gfs).
+#: Front of suddenly released water by the volume of fluid (benchmarks/engines/gerris_dam.gfs).
 GERRIS = ((0.5, 1.16), (1.0, 1.53), (1.5, 2.03), (2.0, 2.64), (2.5, 3.32), (3.0, 4.07), (3.5, 4.85))
 #: Martin and Moyce's tables, as others print them, do not count the time from the release of the
-#: water: fronts of both columns twice as high as wide, 1 1/8 and 2 1/4 inches, are here.
+#: water, but so that the fronts of both columns twice as high as wide (1 1/8 and 2 1/4 inches) meet
+#: here.
 ORIGIN = (1.19, 1.44)  # T*, X*
 
 
@@ -144,11 +145,12 @@ DAM_BREAK = Case(
         "Nuclear Science and Engineering 123, 421-434"
     ),
     description="""
-    A column of water, 2 1/4 inches wide and twice as high, collapses. The position of the foremost
-    particle is compared, half a distance ahead, in widths of the column over T* = t √(2g/a): with
-    another method for water without friction that is released suddenly (volume of fluid, Gerris),
-    and with two measured series, as published and with the origin of time of Martin and Moyce's
-    tables, which bring their runs together at X* = 1.44, T* = 1.19.
+    A column of water, 2 1/4 inches wide and twice as high, collapses. The position of the front,
+    half a spacing ahead of the foremost particle, is compared in widths of the column over
+    T* = t √(2g/a). It is compared with another method for water without friction that is released
+    suddenly (volume of fluid, Gerris), and with two measured series, both as published and with
+    the origin of time of Martin and Moyce's tables, which let their runs meet at X* = 1.44,
+    T* = 1.19.
     """,
     quantities=(
         Quantity(

@@ -41,7 +41,7 @@ std::string list_of(const Variants& variants) {
 }
 
 /// The widest variant that runs here, or the one that the user asks for.
-KernelVariant chosen_variant() {
+KernelVariant select_variant() {
   const std::vector<KernelVariant> supported = supported_variants();
   const char* forced = std::getenv("SNOWSHED_KERNELS");
   if (!forced || !*forced) return supported.back();
@@ -54,15 +54,15 @@ KernelVariant chosen_variant() {
 
 }  // namespace
 
-KernelVariant chosen_kernel_variant() {
-  static const KernelVariant chosen = chosen_variant();
+KernelVariant kernel_variant() {
+  static const KernelVariant chosen = select_variant();
   return chosen;
 }
 
-const char* kernel_variant() { return name_of(chosen_kernel_variant()); }
+const char* kernel_variant_name() { return name_of(kernel_variant()); }
 
 const char* slow_kernels_note() {
-  const KernelVariant chosen = chosen_kernel_variant();
+  const KernelVariant chosen = kernel_variant();
   if (chosen == KernelVariant::avx2 && machine_has(KernelVariant::avx512) &&
       !build_has(KernelVariant::avx512))
     return "this build has no AVX-512 kernels, which would save up to a fifth of the time on this "

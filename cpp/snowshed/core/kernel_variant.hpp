@@ -7,10 +7,10 @@ namespace snowshed {
 
 /// Returns the widest variant that both the build and the machine have, or the one that the
 /// environment variable SNOWSHED_KERNELS names. Throws InputError if that is not available.
-KernelVariant chosen_kernel_variant();
+KernelVariant kernel_variant();
 
-/// Returns its name.
-const char* kernel_variant();
+/// Returns the name of `kernel_variant()`.
+const char* kernel_variant_name();
 
 /// Returns a sentence on the cost of kernels that are narrower than possible, because of the build
 /// or of the processor; empty if they are not. (benchmarks/results has the times of all kernels.)

@@ -16,7 +16,7 @@ namespace {
 using Bytes = std::optional<std::uint64_t>;
 
 /// The number after `key` in a file of "key number [kB]" lines, such as /proc/meminfo.
-Bytes field(const std::filesystem::path& file, const std::string& key) {
+Bytes read_field(const std::filesystem::path& file, const std::string& key) {
   std::ifstream lines(file);
   for (std::string line; std::getline(lines, line);)
     if (line.rfind(key, 0) == 0) {
@@ -28,12 +28,12 @@ Bytes field(const std::filesystem::path& file, const std::string& key) {
 }
 
 Bytes field_in_kilobytes(const std::filesystem::path& file, const std::string& key) {
-  const Bytes kilobytes = field(file, key);
+  const Bytes kilobytes = read_field(file, key);
   return kilobytes ? Bytes(*kilobytes * 1024) : Bytes();
 }
 
 /// The single number in a file; none if it holds "max".
-Bytes number(const std::filesystem::path& file) {
+Bytes read_number(const std::filesystem::path& file) {
   std::uint64_t value;
   return std::ifstream(file) >> value ? Bytes(value) : Bytes();
 }
@@ -55,7 +55,7 @@ void restrict_to(Allowance& allowance, Bytes limit, Bytes used, Bytes file_cache
 /// One of the two forms in which Linux limits the memory of groups of processes.
 struct Hierarchy {
   std::filesystem::path root;
-  std::string line;  // start of the line in /proc/self/cgroup, after its number
+  std::string prefix;  // start of the line in /proc/self/cgroup, after its number
   const char *limit, *used, *file_cache;
 };
 
@@ -65,8 +65,8 @@ std::string control_group(const Hierarchy& hierarchy) {
   for (std::string line; std::getline(lines, line);) {
     const std::size_t colon = line.find(':');
     if (colon != std::string::npos &&
-        line.compare(colon, hierarchy.line.size(), hierarchy.line) == 0)
-      return line.substr(colon + hierarchy.line.size());
+        line.compare(colon, hierarchy.prefix.size(), hierarchy.prefix) == 0)
+      return line.substr(colon + hierarchy.prefix.size());
   }
   return {};
 }
@@ -80,8 +80,8 @@ Allowance container_allowance() {
   Allowance allowance;
   for (const Hierarchy& h : hierarchies)
     for (auto group = h.root / control_group(h);; group = group.parent_path()) {
-      restrict_to(allowance, number(group / h.limit), number(group / h.used),
-                  field(group / "memory.stat", h.file_cache));
+      restrict_to(allowance, read_number(group / h.limit), read_number(group / h.used),
+                  read_field(group / "memory.stat", h.file_cache));
       if (group == h.root || !group.has_relative_path()) break;
     }
   return allowance;

@@ -97,7 +97,7 @@ inline std::vector<LoopShare> equal_shares(std::ptrdiff_t n, int threads) {
 /// it helps with those of the others. Where memory for this is short, it throws before the first
 /// iteration.
 template <class F>
-void parallel_for(std::ptrdiff_t n, int threads, [[maybe_unused]] int grain, F f) {
+void parallel_for_dynamic(std::ptrdiff_t n, int threads, [[maybe_unused]] int grain, F f) {
 #ifdef SNOWSHED_STD_THREADS
   run_in_turn(n, threads, f);
 #else
@@ -120,7 +120,7 @@ void parallel_for(std::ptrdiff_t n, int threads, [[maybe_unused]] int grain, F f
 
 /// The same in one equal piece per thread: for many cheap iterations. Allocates nothing.
 template <class F>
-void parallel_for_each(std::ptrdiff_t n, int threads, F f) {
+void parallel_for_static(std::ptrdiff_t n, int threads, F f) {
 #ifdef SNOWSHED_STD_THREADS
   run_in_turn(n, threads, f);
 #else

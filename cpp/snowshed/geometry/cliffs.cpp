@@ -63,7 +63,7 @@ std::string impossible_cliff(const HeightField& f, double max_slope) {
 std::string cliff_under(const Polygon& area, const HeightField& f, double max_slope) {
   int low[2], high[2];
   for (const int axis : {0, 1}) {
-    const auto less = [&](const MapPoint& a, const MapPoint& b) { return a[axis] < b[axis]; };
+    const auto less = [&](const Point2& a, const Point2& b) { return a[axis] < b[axis]; };
     const auto [first, last] = std::minmax_element(area.outline.begin(), area.outline.end(), less);
     const double last_index = (axis == 0 ? f.columns : f.rows) - 1;
     low[axis] = int(std::clamp((*first)[axis] / f.cell - 1, 0.0, last_index));
@@ -71,8 +71,8 @@ std::string cliff_under(const Polygon& area, const HeightField& f, double max_sl
   }
   const double steepest = rise(f, max_slope);
   return first_step(f, low, high, [&](const HeightStep& s, double from, double to) {
-    const MapPoint south_west = {(s.column - 1) * f.cell, (s.row - 1) * f.cell},
-                   north_east = {(s.column + s.east + 1) * f.cell, (s.row + s.north + 1) * f.cell};
+    const Point2 south_west = {(s.column - 1) * f.cell, (s.row - 1) * f.cell},
+                 north_east = {(s.column + s.east + 1) * f.cell, (s.row + s.north + 1) * f.cell};
     return std::abs(to - from) > steepest && area_within(area, south_west, north_east) > 0;
   });
 }

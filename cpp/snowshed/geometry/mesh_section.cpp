@@ -122,10 +122,10 @@ std::vector<TriangleMesh> sections_at_y0(const std::vector<TriangleMesh>& meshes
       bounds = unite(bounds, {v, v});
       nearest = std::min(nearest, std::abs(v.y()));
     }
-  const double size = (bounds.max - bounds.min).norm(), aside = 1e-6 * size;
-  std::vector<Section> sections = cut_all(meshes, nearest > aside ? 0.0 : aside);
-  if (nearest <= aside) {
-    std::vector<Section> before = cut_all(meshes, -aside);
+  const double size = (bounds.max - bounds.min).norm(), plane_offset = 1e-6 * size;
+  std::vector<Section> sections = cut_all(meshes, nearest > plane_offset ? 0.0 : plane_offset);
+  if (nearest <= plane_offset) {
+    std::vector<Section> before = cut_all(meshes, -plane_offset);
     if (total_area(before) > total_area(sections)) sections = std::move(before);
   }
   std::vector<TriangleMesh> surfaces;

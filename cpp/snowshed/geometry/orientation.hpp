@@ -4,15 +4,15 @@
 #include <array>
 #include <cmath>
 
-namespace snowshed {
+#include "snowshed/geometry/point2.hpp"
 
-using PlanePoint = std::array<double, 2>;
+namespace snowshed {
 
 /// Returns a number whose sign is the sense in which a, b, c turn: positive counter-clockwise,
 /// negative clockwise, 0 where they lie on one line. The sign is exact; the magnitude is about
 /// twice the area of the triangle. A rounded determinant decides where its error bound allows; else
 /// the six products are summed without rounding (Shewchuk 1997, doi:10.1007/PL00009321).
-inline double orientation(const PlanePoint& a, const PlanePoint& b, const PlanePoint& c) {
+inline double orientation(const Point2& a, const Point2& b, const Point2& c) {
   const double left = (a[0] - c[0]) * (b[1] - c[1]), right = (a[1] - c[1]) * (b[0] - c[0]);
   constexpr double relative_error = 3.3306690738754716e-16;  // (3 + 16 u) u, u = 2^-53
   if (std::abs(left - right) > relative_error * (std::abs(left) + std::abs(right)))

@@ -7,38 +7,39 @@
 namespace snowshed {
 namespace {
 
-double cross(const MapPoint& o, const MapPoint& a, const MapPoint& b) {
+double cross(const Point2& o, const Point2& a, const Point2& b) {
   return (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0]);
 }
 
-double length(const MapPoint& a, const MapPoint& b) { return std::hypot(b[0] - a[0], b[1] - a[1]); }
+double length(const Point2& a, const Point2& b) { return std::hypot(b[0] - a[0], b[1] - a[1]); }
 
-/// The right-hand side of an edge, `distance` long.
-MapPoint aside(const MapPoint& from, const MapPoint& to, double distance) {
+/// The vector, `distance` long, to the right of an edge.
+Point2 offset_vector(const Point2& from, const Point2& to, double distance) {
   const double l = length(from, to);
   return {distance * (to[1] - from[1]) / l, -distance * (to[0] - from[0]) / l};
 }
 
-MapPoint plus(const MapPoint& a, const MapPoint& b) { return {a[0] + b[0], a[1] + b[1]}; }
+Point2 plus(const Point2& a, const Point2& b) { return {a[0] + b[0], a[1] + b[1]}; }
 
 /// A point on the way from a to b.
-MapPoint between(const MapPoint& a, const MapPoint& b, double part) {
+Point2 between(const Point2& a, const Point2& b, double part) {
   return {a[0] + (b[0] - a[0]) * part, a[1] + (b[1] - a[1]) * part};
 }
 
 constexpr double mitre_limit = 4.0;
 
-/// The corner at `v` of a ring whose edges have moved aside.
-void add_corner(const MapPoint& before, const MapPoint& v, const MapPoint& after, double distance,
+/// The corner at `v` of a ring whose edges are offset.
+void add_corner(const Point2& before, const Point2& v, const Point2& after, double distance,
                 Ring& moved) {
-  const MapPoint first = aside(before, v, distance), second = aside(v, after, distance);
-  const MapPoint end = plus(v, first), begin = plus(v, second);
-  const MapPoint d1{v[0] - before[0], v[1] - before[1]}, d2{after[0] - v[0], after[1] - v[1]};
+  const Point2 first = offset_vector(before, v, distance),
+               second = offset_vector(v, after, distance);
+  const Point2 end = plus(v, first), begin = plus(v, second);
+  const Point2 d1{v[0] - before[0], v[1] - before[1]}, d2{after[0] - v[0], after[1] - v[1]};
   const double turn = d1[0] * d2[1] - d1[1] * d2[0];
   if (std::abs(turn) < 1e-30) return moved.push_back(end);  // straight on
   // Where the two moved edges meet.
   const double along = ((begin[0] - end[0]) * d2[1] - (begin[1] - end[1]) * d2[0]) / turn;
-  const MapPoint meet{end[0] + along * d1[0], end[1] + along * d1[1]};
+  const Point2 meet{end[0] + along * d1[0], end[1] + along * d1[1]};
   const double reach = length(v, meet), width = std::abs(distance);
   const bool inner = (turn > 0) == (distance < 0);
   const double max_reach =
@@ -56,7 +57,7 @@ void add_corner(const MapPoint& before, const MapPoint& v, const MapPoint& after
   moved.push_back(between(begin, meet, part));
 }
 
-bool segments_meet(const MapPoint& a, const MapPoint& b, const MapPoint& c, const MapPoint& d) {
+bool segments_meet(const Point2& a, const Point2& b, const Point2& c, const Point2& d) {
   const auto side = [](double value) { return (value > 0) - (value < 0); };
   const int c_of_ab = side(cross(a, b, c)), d_of_ab = side(cross(a, b, d));
   const int a_of_cd = side(cross(c, d, a)), b_of_cd = side(cross(c, d, b));
@@ -71,11 +72,11 @@ bool segments_meet(const MapPoint& a, const MapPoint& b, const MapPoint& c, cons
 
 }  // namespace
 
-bool contains(const Ring& ring, const MapPoint& p) {
+bool contains(const Ring& ring, const Point2& p) {
   bool inside = false;
   for (std::size_t i = 0; i < ring.size(); ++i) {
-    const MapPoint& a = ring[i];
-    const MapPoint& b = ring[(i + 1) % ring.size()];
+    const Point2& a = ring[i];
+    const Point2& b = ring[(i + 1) % ring.size()];
     const bool a_above = a[1] >= p[1], b_above = b[1] >= p[1];
     if (a_above == b_above) continue;
     if (((b[1] - p[1]) * (a[0] - b[0]) >= (b[0] - p[0]) * (a[1] - b[1])) == b_above)
@@ -84,7 +85,7 @@ bool contains(const Ring& ring, const MapPoint& p) {
   return inside;
 }
 
-bool contains(const Polygon& polygon, const MapPoint& point) {
+bool contains(const Polygon& polygon, const Point2& point) {
   return contains(polygon.outline, point) &&
          std::none_of(polygon.holes.begin(), polygon.holes.end(),
                       [&](const Ring& hole) { return contains(hole, point); });
@@ -97,9 +98,9 @@ double twice_signed_area(const Ring& ring) {
   return sum;
 }
 
-Ring moved_aside(const Ring& ring, double distance) {
+Ring offset_ring(const Ring& ring, double distance) {
   Ring distinct;
-  for (const MapPoint& p : ring)
+  for (const Point2& p : ring)
     if (distinct.empty() || length(distinct.back(), p) > 1e-14) distinct.push_back(p);
   while (distinct.size() > 1 && length(distinct.back(), distinct.front()) <= 1e-14)
     distinct.pop_back();
@@ -112,7 +113,7 @@ Ring moved_aside(const Ring& ring, double distance) {
 }
 
 Ring widened(const Ring& ring, double distance) {
-  return moved_aside(ring, twice_signed_area(ring) > 0 ? distance : -distance);
+  return offset_ring(ring, twice_signed_area(ring) > 0 ? distance : -distance);
 }
 
 bool crosses_itself(const Ring& ring) {
@@ -120,8 +121,8 @@ bool crosses_itself(const Ring& ring) {
   // Edges by their westernmost point, so that only those are compared that overlap along x.
   std::vector<std::size_t> order(n);
   std::iota(order.begin(), order.end(), 0u);
-  const auto from = [&](std::size_t e) -> const MapPoint& { return ring[e]; };
-  const auto to = [&](std::size_t e) -> const MapPoint& { return ring[(e + 1) % n]; };
+  const auto from = [&](std::size_t e) -> const Point2& { return ring[e]; };
+  const auto to = [&](std::size_t e) -> const Point2& { return ring[(e + 1) % n]; };
   const auto west = [&](std::size_t e) { return std::min(from(e)[0], to(e)[0]); };
   const auto east = [&](std::size_t e) { return std::max(from(e)[0], to(e)[0]); };
   std::sort(order.begin(), order.end(), [&](auto a, auto b) { return west(a) < west(b); });
@@ -134,17 +135,17 @@ bool crosses_itself(const Ring& ring) {
   return false;
 }
 
-double area_within(const Ring& ring, const MapPoint& low, const MapPoint& high) {
+double area_within(const Ring& ring, const Point2& low, const Point2& high) {
   Ring inside = ring, clipped;
   for (const int axis : {0, 1})
     for (const bool upper : {false, true}) {
       const double limit = upper ? high[axis] : low[axis];
-      const auto keeps = [&](const MapPoint& p) {
+      const auto keeps = [&](const Point2& p) {
         return upper ? p[axis] <= limit : p[axis] >= limit;
       };
       clipped.clear();
       for (std::size_t i = 0; i < inside.size(); ++i) {
-        const MapPoint &a = inside[i], &b = inside[(i + 1) % inside.size()];
+        const Point2 &a = inside[i], &b = inside[(i + 1) % inside.size()];
         if (keeps(a)) clipped.push_back(a);
         if (keeps(a) != keeps(b))
           clipped.push_back(between(a, b, (limit - a[axis]) / (b[axis] - a[axis])));
@@ -154,7 +155,7 @@ double area_within(const Ring& ring, const MapPoint& low, const MapPoint& high) 
   return inside.size() < 3 ? 0.0 : 0.5 * std::abs(twice_signed_area(inside));
 }
 
-double area_within(const Polygon& polygon, const MapPoint& low, const MapPoint& high) {
+double area_within(const Polygon& polygon, const Point2& low, const Point2& high) {
   double area = area_within(polygon.outline, low, high);
   for (const Ring& hole : polygon.holes) area -= area_within(hole, low, high);
   return std::max(area, 0.0);

@@ -1,13 +1,13 @@
 // Polygons on the map.
 #pragma once
 
-#include <array>
 #include <vector>
+
+#include "snowshed/geometry/point2.hpp"
 
 namespace snowshed {
 
-using MapPoint = std::array<double, 2>;  // m, east and north
-using Ring = std::vector<MapPoint>;      // without a repeated last point
+using Ring = std::vector<Point2>;  // without a repeated last point
 
 /// An area within an outline and outside of its holes.
 struct Polygon {
@@ -16,26 +16,26 @@ struct Polygon {
 };
 
 /// Whether a point lies within a ring (even-odd rule).
-bool contains(const Ring& ring, const MapPoint& point);
+bool contains(const Ring& ring, const Point2& point);
 
 /// Whether a point lies within the outline and in none of the holes.
-bool contains(const Polygon& polygon, const MapPoint& point);
+bool contains(const Polygon& polygon, const Point2& point);
 
 /// Twice the area that a ring encloses, positive where it runs counterclockwise, m2.
 double twice_signed_area(const Ring& ring);
 
 /// The area of a ring within a rectangle, m2 (clipped edge by edge: Sutherland and Hodgman 1974).
-double area_within(const Ring& ring, const MapPoint& low, const MapPoint& high);
+double area_within(const Ring& ring, const Point2& low, const Point2& high);
 
 /// The same of a polygon, without its holes.
-double area_within(const Polygon& polygon, const MapPoint& low, const MapPoint& high);
+double area_within(const Polygon& polygon, const Point2& low, const Point2& high);
 
 /// The ring with every edge moved outward by a distance (> 0, m) and the corners mitred; where a
 /// mitre would reach farther than four distances it is cut off.
 Ring widened(const Ring& ring, double distance);
 
 /// The same toward the left of the ring's direction where `distance` < 0, the right where > 0.
-Ring moved_aside(const Ring& ring, double distance);
+Ring offset_ring(const Ring& ring, double distance);
 
 /// Whether two edges of a ring cross or touch, other than neighbours at their common corner.
 bool crosses_itself(const Ring& ring);

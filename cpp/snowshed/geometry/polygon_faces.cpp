@@ -16,7 +16,7 @@ constexpr std::size_t max_comparisons = 300'000'000;
 /// The corners of a face as they lie in a plane, counter-clockwise.
 struct Outline {
   Face corners;
-  std::vector<PlanePoint> points;
+  std::vector<Point2> points;
 };
 
 /// Twice the area vector of a face (Newell).
@@ -116,12 +116,12 @@ class EarClipper {
   /// off because the outline comes back to the same point and goes on into the triangle.
   bool is_ear(std::size_t i) {
     const std::size_t first = before_[i], last = after_[i];
-    const PlanePoint &a = p_[first], &b = p_[i], &c = p_[last];
+    const Point2 &a = p_[first], &b = p_[i], &c = p_[last];
     if (a == c) return true;  // to a point and back
     if (!(orientation(a, b, c) > 0)) return false;
     for (std::size_t k = after_[last]; k != first; k = after_[k]) {
       if (++comparisons_ > max_comparisons) return false;
-      const PlanePoint& q = p_[k];
+      const Point2& q = p_[k];
       if (q == a || q == c) continue;
       if (q == b) {
         if (is_within_corner(a, b, c, p_[before_[k]]) || is_within_corner(a, b, c, p_[after_[k]]))
@@ -134,8 +134,7 @@ class EarClipper {
     return true;
   }
 
-  static bool is_within_corner(const PlanePoint& a, const PlanePoint& b, const PlanePoint& c,
-                               const PlanePoint& q) {
+  static bool is_within_corner(const Point2& a, const Point2& b, const Point2& c, const Point2& q) {
     return orientation(a, b, q) > 0 && orientation(b, c, q) > 0;
   }
 
@@ -154,7 +153,7 @@ class EarClipper {
     return true;
   }
 
-  const std::vector<PlanePoint>& p_;
+  const std::vector<Point2>& p_;
   const Face& corners_;
   std::size_t left_;
   std::size_t& comparisons_;

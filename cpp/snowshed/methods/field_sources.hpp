@@ -40,13 +40,13 @@ std::vector<double> values_of_each(std::size_t count, int threads, F f) {
   using Value = decltype(f(std::size_t()));
   if constexpr (std::is_arithmetic_v<Value>) {
     std::vector<double> values(count);
-    parallel_for_each(std::ptrdiff_t(count), threads,
-                      [&](std::ptrdiff_t i) { values[i] = f(std::size_t(i)); });
+    parallel_for_static(std::ptrdiff_t(count), threads,
+                        [&](std::ptrdiff_t i) { values[i] = f(std::size_t(i)); });
     return values;
   } else {
     constexpr int rows = Value::RowsAtCompileTime, columns = Value::ColsAtCompileTime;
     std::vector<double> values(count * rows * columns);
-    parallel_for_each(std::ptrdiff_t(count), threads, [&](std::ptrdiff_t i) {
+    parallel_for_static(std::ptrdiff_t(count), threads, [&](std::ptrdiff_t i) {
       const Value value = f(std::size_t(i));
       for (int r = 0; r < rows; ++r)
         for (int c = 0; c < columns; ++c) values[(i * rows + r) * columns + c] = value(r, c);

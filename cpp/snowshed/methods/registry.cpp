@@ -65,7 +65,7 @@ CostEstimate MethodDescriptor::cost_of_bodies(const SceneView&, const SceneOutli
 
 CostEstimate MethodDescriptor::cost_of_method(const SceneView&, const Surroundings&,
                                               const Method&) const {
-  throw std::logic_error("the method takes bodies, whose cost needs nothing built");
+  throw std::logic_error("the cost of a method that takes bodies needs no built simulation");
 }
 
 void MethodDescriptor::fill(const LevelSet&, int, const StopRequest&, ParticleBatch&,

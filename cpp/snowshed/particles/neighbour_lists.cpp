@@ -73,7 +73,7 @@ void NeighbourLists<D>::update(const AlignedVector<VecD<D>>& points, const CellO
   first_.assign(n + 1, 0);
   parts_.resize(std::max(parts, parts_.size()));
   const auto for_each_part = [&](const auto& act) {
-    parallel_for(std::ptrdiff_t(parts), threads, 1, [&](std::ptrdiff_t p) {
+    parallel_for_dynamic(std::ptrdiff_t(parts), threads, 1, [&](std::ptrdiff_t p) {
       const std::size_t begin = std::size_t(p) * cells_in_part;
       act(begin, std::min(cells.cells(), begin + cells_in_part), parts_[std::size_t(p)]);
     });

@@ -169,7 +169,7 @@ void RunRecord::write(const std::filesystem::path& file, const Simulation& sim, 
                       const std::string& error) const {
   const Method& method = sim.method();
   const StepCounters& c = method.counters();
-  ordered_json j{{"version", SNOWSHED_VERSION}, {"kernels", kernel_variant()}};
+  ordered_json j{{"version", SNOWSHED_VERSION}, {"kernels", kernel_variant_name()}};
   for (const auto& [key, fact] : machine) j[key] = fact;
   j["threads"] = sim.threads();
   j["scalar"] = sim.scene().numerics->scalar();

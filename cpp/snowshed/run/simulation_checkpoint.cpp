@@ -51,7 +51,7 @@ void check_shape_files(const BinaryReader& in, const Scene& scene,
 /// Other kernels round differently, so that the run would not continue to the same bits.
 void check_kernels(const BinaryReader& in) {
   if (!in.has("kernels")) return;
-  const std::string then = in.text("kernels"), now = kernel_variant();
+  const std::string then = in.text("kernels"), now = kernel_variant_name();
   if (then != now)
     throw InputError(in.path().string(),
                      "made with the kernels " + quote(then) + ", and " + quote(now) +
@@ -74,7 +74,7 @@ void Simulation::save(const std::filesystem::path& checkpoint) const {
   BinaryWriter out;
   out.add_text("scene", scene_text_);
   out.add_text("base_dir", std::filesystem::absolute(base_dir_).string());
-  out.add_text("kernels", kernel_variant());
+  out.add_text("kernels", kernel_variant_name());
   if (!shape_prints_.empty()) out.add("shape_files", shape_prints_);
   if (surroundings_.input) out.add(surroundings_.input->section(), prints_of(*surroundings_.input));
   if (curve_) curve_->save(out);

@@ -62,7 +62,7 @@ BodySpec layer_body(const Scene& scene, const Layer& layer, double height) {
   return body;
 }
 
-/// The slab's layers; one that is given by its thickness has one of them.
+/// The slab's layers; a slab that is given by its thickness has a single layer.
 std::vector<Layer> layers_of(const Slab& slab) {
   return slab.layers.empty() ? std::vector<Layer>{{slab.thickness, std::nullopt, 0}} : slab.layers;
 }

@@ -52,7 +52,7 @@ class Writer {
 
   void outline(const char* key, Ring& ring, const char*) {
     auto& corners = json_[key] = nlohmann::ordered_json::array();
-    for (const MapPoint& p : ring) corners.push_back({p[0], p[1]});
+    for (const Point2& p : ring) corners.push_back({p[0], p[1]});
   }
 
   template <class T>

@@ -14,8 +14,8 @@ TEST(Parallel, EveryIterationRunsOnce) {
   for (const int threads : {1, 2, 5})
     for (const std::ptrdiff_t n : {0, 1, 3, 64, 5000}) {
       std::vector<int> runs(std::size_t(n), 0);
-      parallel_for(n, threads, 16, [&](std::ptrdiff_t i) { ++runs[std::size_t(i)]; });
-      parallel_for_each(n, threads, [&](std::ptrdiff_t i) { ++runs[std::size_t(i)]; });
+      parallel_for_dynamic(n, threads, 16, [&](std::ptrdiff_t i) { ++runs[std::size_t(i)]; });
+      parallel_for_static(n, threads, [&](std::ptrdiff_t i) { ++runs[std::size_t(i)]; });
       const auto run = [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
         for (std::ptrdiff_t i = begin; i < end; ++i) ++runs[std::size_t(i)];
       };
@@ -42,8 +42,8 @@ TEST(Parallel, ThrowsWhatTheFirstIterationThatThrowsThrew) {
   };
   for (const int threads : {1, 2, 5})
     for (int attempt = 0; attempt < 20; ++attempt) {
-      EXPECT_EQ(thrown_by([&](auto f) { parallel_for(5000, threads, 16, f); }), "777");
-      EXPECT_EQ(thrown_by([&](auto f) { parallel_for_each(5000, threads, f); }), "777");
+      EXPECT_EQ(thrown_by([&](auto f) { parallel_for_dynamic(5000, threads, 16, f); }), "777");
+      EXPECT_EQ(thrown_by([&](auto f) { parallel_for_static(5000, threads, f); }), "777");
     }
 }
 
@@ -59,7 +59,7 @@ TEST(Parallel, TakesAsManyThreadsAsOpenMpWouldUnlessToldHowMany) {
 /// Iteration i writes element i and, which is not its own, the one before.
 void race() {
   std::vector<int> written(100, 0);
-  parallel_for(100, 2, 1, [&](std::ptrdiff_t i) {
+  parallel_for_dynamic(100, 2, 1, [&](std::ptrdiff_t i) {
     written[std::size_t(i)] = 1;
     written[std::size_t(i > 0 ? i - 1 : 0)] = 2;
   });

@@ -63,7 +63,7 @@ std::vector<Outline2> outlines() {
   Outline2 comb{"comb", {}, 0};
   const int teeth = 50;
   for (int k = 0; k < teeth; ++k)
-    for (const auto& [x, z] : {PlanePoint{0, 0}, {0.5, 0}, {0.5, -1}, {1, -1}})
+    for (const auto& [x, z] : {Point2{0, 0}, {0.5, 0}, {0.5, -1}, {1, -1}})
       comb.points.push_back({k + x, z});
   comb.points.push_back({double(teeth), 1});
   comb.points.push_back({0, 1});

@@ -51,7 +51,7 @@ TEST(Polygon, WidenedByItsDistanceWhateverTheDirection) {
 TEST(Polygon, ASharpCornerIsCutOff) {
   const Ring needle{{0, 0}, {10, 0.5}, {0, 1}};
   double reach = 0;
-  for (const MapPoint& p : widened(needle, 0.1)) reach = std::max(reach, p[0]);
+  for (const Point2& p : widened(needle, 0.1)) reach = std::max(reach, p[0]);
   EXPECT_GT(reach, 10.1);
   EXPECT_LT(reach, 10.0 + 4 * 0.1 + 1e-9);  // a full mitre would reach 2 m farther
 }

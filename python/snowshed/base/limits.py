@@ -9,8 +9,8 @@ from __future__ import annotations
 
 KB, MB, GB = 1 << 10, 1 << 20, 1 << 30
 
-#: Bytes of what people write: scenes, studies, lists, and of a table. A table is in memory three
-#: times while it is read.
+#: Bytes of a file that people write (a scene, a study, a list), and of a table. Memory holds a
+#: table three times while it is read.
 TEXT, TABLE = 64 * MB, 256 * MB
 #: Seconds to wait for the writer of a pipe, and until all of it is there.
 PIPE_SILENCE, PIPE = 3.0, 8.0
@@ -31,27 +31,27 @@ MEMBERS = 10_000
 UNPACKING = 80 * MB
 #: Largest gap between rows of weather, days; no station is silent for longer and then continues.
 WEATHER_GAP = 50 * 366
-#: Cells of a raster, and bytes of one block of it, which GDAL takes as a whole: with all that is
-#: made of a raster while it is read, that is a gigabyte. The core has the same limit for cells.
+#: Cells of a raster, and bytes of one of its blocks, which GDAL reads as a whole. With all copies
+#: that reading makes, that is a gigabyte. The core has the same limit for cells.
 RASTER_CELLS, RASTER_BLOCK = 25_000_000, 256 * MB
 #: Bytes of a file of facts beside a raster.
 SIDECAR = MB
-#: Cells of terrain under a slide, unless more are asked for: with its maps and its page a gigabyte.
+#: Cells of terrain under a slide, unless more are allowed; with maps and page they take a gigabyte.
 TERRAIN_CELLS = 2_500_000
-#: Elevations of more cells than this are not worth fewer bytes than one in so many cells: what is
-#: packed closer was made to cost much, because a slide takes some 250 bytes for a cell.
+#: Above the first number of cells, a file of elevations must have a byte for every so many cells. A
+#: file packed more tightly was made to be costly: a slide takes hundreds of bytes for each cell.
 PACKED_CELLS, PACKED = 1_000_000, 20
 #: Cells of snow in a raster of thickness, corners of the areas that they make, and cells times
 #: corners, because each cell and each particle is compared with each corner when snow is laid.
 SNOW_CELLS, RELEASE_CORNERS, CELLS_TIMES_CORNERS = 4_000_000, 5000, 200_000_000
-#: Pages of a TIFF file, and slices in a folder: each takes some 0.1 ms to look at. Tomographs make
-#: some thousand.
+#: Pages of a TIFF file, and slices in a folder: each takes about 0.1 ms to look at. Tomographs
+#: write about a thousand.
 PAGES = 16_384
 #: Bytes of a tag of a TIFF file. The longest are lists of strips, and descriptions as XML.
 TAG = 16 * MB
 #: Numbers of an image to read in one block; they occupy up to five times 8 bytes each.
 VOXELS_AT_ONCE = 4 * MB
-#: Numbers as text, bytes: some 20 million voxels, whose numbers take eight times as much.
+#: Bytes of numbers as text: some 20 million voxels, which take 8 bytes each as numbers.
 VOXELS_AS_TEXT = 64 * MB
 #: Largest ratio of an unpacked to a packed image, if the unpacked one is larger than this.
 UNPACKED_RATIO, UNPACKED_FREELY = 200, 256 * MB

@@ -160,7 +160,7 @@ class SlideFiles:
 
 
 def notes_for_summary(notes: Sequence[str], *scenes: Scene) -> list[str]:
-    """Return the notes that summaries of the scenes repeat, and tell the others.
+    """Return the notes that summaries of the scenes repeat, and issue the others.
 
     Parameters
     ----------

@@ -94,7 +94,7 @@ def _slab(slab: dict[str, Any]) -> str:
 
 
 def _span(scene: Mapping[str, Any], name: str) -> str:
-    """Return a parameter of the snow with its unit; from where to where, if layers differ."""
+    """Return a parameter of the snow with its unit; its range over the layers if they differ."""
     layers = (scene.get("slab") or {}).get("layers") or [{}]
     values = [layer.get("snow", scene["snow"])[name] for layer in layers]
     parameter = label(f"snow.{name}")

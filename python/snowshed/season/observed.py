@@ -1,4 +1,4 @@
-"""Days of a season from the observations of a station: the only place that decides.
+"""Days of a season from a station's observations; this module alone chooses their source.
 
 `SnowSource` names the origin of a day's new snow, for every format. Each day uses the first of the
 winter's columns (`columns`) with a value; days without a value are filled by a stated rule, or are
@@ -34,7 +34,7 @@ MAX_NAMED_WINTERS = 3  # winters that a note names
 
 @dataclass
 class _DailySnow:
-    """The new snow of every day, m, its source and the reason where it is not the file's."""
+    """The new snow of every day, m, its source, and the reason if the file does not give it."""
 
     fall: Floats
     source: list[SnowSource]
@@ -64,7 +64,7 @@ def record_of(station: Station, source: str, only: Optional[SnowSource] = None) 
     if np.isnan(days.temperature).all():
         raise InputError(
             f"{source}: no air temperature in any row of this {station.format} file; a season "
-            "needs them; give the file of its temperatures as well"
+            "needs temperatures; give the file that contains them as well"
         )
     warm, far, of_temperature = filled_temperatures(days.dates, days.temperature, days.there)
     depth = snow_of_depth(days, warm)
@@ -133,7 +133,7 @@ def _columns(
 
 
 def _without_parts(snow: Floats, part: Booleans) -> tuple[Floats, Booleans]:
-    """Return snow and whether it is no observation: without any, a part of a day tells nothing."""
+    """Return snow, NaN where part of a day had none, and whether it fell in part of a day only."""
     return np.where(part & (snow == 0.0), np.nan, snow), part & (snow > 0.0)
 
 
@@ -284,7 +284,7 @@ def _contradictions(snow: _DailySnow, calendar: Calendar) -> Iterator[str]:
 
 
 def _far_off(choice: StationChoice) -> frozenset[SnowSource]:
-    """Return the sources that contradict the one in use, which stands."""
+    """Return the sources that contradict the one in use, which is kept."""
     if not choice.observing:
         return frozenset()
     own = choice.sums.get(choice.observing[0])

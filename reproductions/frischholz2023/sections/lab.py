@@ -11,7 +11,7 @@ from reproductions.frischholz2023.claims import lab as claims
 from reproductions.frischholz2023.figures import growth_figure
 from reproductions.frischholz2023.settings import MEASURED_FRICTION
 from reproductions.frischholz2023.stages import ThesisComputation
-from reproductions.frischholz2023.studies import LAB_2D, LAB_3D, RELEASE
+from reproductions.frischholz2023.studies import LABORATORIES, RELEASE
 from reproductions.frischholz2023.tables import grouped, plus_minus, settings_grid
 from snowshed._core import InputError
 from snowshed.base.formatting import percent
@@ -48,7 +48,7 @@ def build(work: ThesisComputation) -> Content:
     stage = work.study_stages["lab"]
     rows = lab_rows(work)
     released = release_rows(read_table(work.folder.runs, RELEASE))
-    scenes = [scene for name in (LAB_2D, LAB_3D, RELEASE) for scene in stage.scenes(name)]
+    scenes = [scene for name in (*_laboratories(work), RELEASE) for scene in stage.scenes(name)]
     tables = [
         ("Tables 2.3.1, 4.1.1 and 4.3.1: settings", settings_grid(printed.LABORATORY, scenes)),
         ("Stacks after each event (mean ± deviation between seedings)", stacks_grid(rows)),
@@ -63,12 +63,16 @@ def lab_rows(work: ThesisComputation) -> pd.DataFrame:
     """Return the stacks at 40 and 50 degrees, one row per run and event."""
     import pandas as pd
 
-    tables = [read_table(work.folder.runs, name) for name in (LAB_2D, LAB_3D)]
+    tables = [read_table(work.folder.runs, name) for name in _laboratories(work)]
     table = pd.concat(tables, ignore_index=True).rename(columns=COLUMNS)
     rows = table[["dimension", *COLUMNS.values(), "seed", "event"]].dropna()
     if rows.empty:
         raise InputError("no stack at 40 or 50 degrees is computed yet")
     return rows
+
+
+def _laboratories(work: ThesisComputation) -> list[str]:
+    return [LABORATORIES[dimension] for dimension in work.settings.lab_dimensions]
 
 
 def release_rows(table: pd.DataFrame) -> pd.DataFrame:

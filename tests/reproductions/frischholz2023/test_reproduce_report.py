@@ -2,12 +2,16 @@
 
 import base64
 import re
+from dataclasses import replace
 
 import pandas as pd
 import pytest
 from helpers.pages import Page
 from plot.browser import check_page
 from reproduce_helpers import TINY, TINY_WITH_PANELS, few_fits, fill, geometry_table, report
+from reproductions.common.hypothesis_tests import UNDECIDED
+from reproductions.frischholz2023.claims.lab import DIMENSIONS, GROWTH
+from reproductions.frischholz2023.sections import lab
 from reproductions.frischholz2023.stages import ThesisComputation
 
 from snowshed.plot.html_page import STATES
@@ -114,3 +118,13 @@ def test_means_over_a_design_need_all_of_its_runs(tmp_path):
     assert "confirmed" in verdicts["2"] and verdicts["3"] == {"undecided"}
     text = " ".join(page_of(found).text)
     assert "stage s-index: 17 of 18 simulations done, 1 failed" in text
+
+
+def test_without_3d_the_laboratory_is_judged_in_2d(tmp_path):
+    found = ThesisComputation(tmp_path / "out", replace(TINY, lab_dimensions=(2,)), None)
+    fill(found, ["lab"])
+    content = lab.build(found)
+    assert {row[0] for row in content.tables[1][1].rows} == {"2D"}
+    verdicts = {claim.text: claim.finding for claim in content.claims}
+    assert "the data lack" in verdicts[DIMENSIONS[0].text].sentence
+    assert all(verdicts[claim.text].verdict != UNDECIDED for claim in GROWTH[:2])

@@ -49,9 +49,9 @@ def test_middle_is_the_thesis_at_the_frictions_it_measured():
 def test_the_laboratory_has_both_dimensions_and_30_degrees():
     scenes = {study.name: [json.loads(run.scene) for run in study.runs()]
               for study in studies.lab(FULL)}  # fmt: skip
-    assert {scene["dimension"] for scene in scenes[studies.LAB_2D]} == {2}
-    assert {scene["dimension"] for scene in scenes[studies.LAB_3D]} == {3}
-    for name in (studies.LAB_2D, studies.LAB_3D):
+    assert {scene["dimension"] for scene in scenes[studies.LABORATORIES[2]]} == {2}
+    assert {scene["dimension"] for scene in scenes[studies.LABORATORIES[3]]} == {3}
+    for name in (studies.LABORATORIES[2], studies.LABORATORIES[3]):
         assert {scene["panel"]["tilt"] for scene in scenes[name]} == {40, 50}
         assert {scene["events"]["count"] for scene in scenes[name]} == {5}
     assert {scene["panel"]["tilt"] for scene in scenes[studies.RELEASE]} == {30}

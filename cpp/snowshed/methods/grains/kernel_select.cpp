@@ -19,7 +19,7 @@ extern const Kernels kernel_table;
 #endif
 
 const Kernels& chosen_kernels() {
-  switch (chosen_kernel_variant()) {
+  switch (kernel_variant()) {
 #ifdef SNOWSHED_HAS_KERNELS_avx512
     case KernelVariant::avx512:
       return avx512::kernel_table;

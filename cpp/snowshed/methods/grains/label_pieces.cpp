@@ -73,7 +73,8 @@ LabelPieces count_pieces(const LabelImage& image) {
 }
 
 void check_labels(const LabelPieces& counts) {
-  constexpr std::size_t min_piece = 8, pieces_per_label = 10;  // voxels; of grey values
+  // Grey values have more pieces per label, and smaller ones (voxels).
+  constexpr std::size_t min_piece = 8, pieces_per_label = 10;
   if (counts.pieces <= pieces_per_label * counts.labels ||
       counts.voxels >= min_piece * counts.pieces)
     return;

@@ -95,7 +95,7 @@ std::vector<Vec3> places_of(const PairSearch& s, const std::vector<GrainPose>& p
   rotations.reserve(poses.size());
   for (const GrainPose& pose : poses) rotations.push_back(pose.orientation.toRotationMatrix());
   std::vector<Vec3> centres(s.spheres.offsets.size());
-  parallel_for_each(std::ptrdiff_t(centres.size()), s.threads, [&](std::ptrdiff_t i) {
+  parallel_for_static(std::ptrdiff_t(centres.size()), s.threads, [&](std::ptrdiff_t i) {
     const std::uint32_t g = s.spheres.grain[std::size_t(i)];
     centres[std::size_t(i)] = poses[g].position + rotations[g] * s.spheres.offsets[std::size_t(i)];
   });
@@ -136,7 +136,7 @@ class Finder {
   /// The search runs layer by layer. Pairs are sorted afterwards, so that threads do not matter.
   void find_grains() {
     std::vector<std::vector<PairKey>> layers(std::size_t(cells_.count(2)));
-    parallel_for(cells_.count(2), s_.threads, 1, [&](std::ptrdiff_t k) {
+    parallel_for_dynamic(cells_.count(2), s_.threads, 1, [&](std::ptrdiff_t k) {
       for (int j = 0; j < cells_.count(1); ++j) find_along(j, int(k), layers[std::size_t(k)]);
     });
     std::size_t all = 0;

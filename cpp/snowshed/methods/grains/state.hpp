@@ -78,7 +78,7 @@ struct State {
   double time = 0, dt = 0;  // s
   std::int64_t bonds = 0, broken_in_tension = 0, broken_in_shear = 0;
   StepCounters counters;
-  EnergyBalance energy;  // its sums over steps
+  EnergyBalance energy;  // sums over steps; stored energies are computed on request
 };
 
 struct Workspace {

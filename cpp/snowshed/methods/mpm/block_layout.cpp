@@ -56,12 +56,13 @@ void BlockLayout<D>::connect(int threads) {
 
   around_particles.resize(particle_blocks.size());
   around_nodes.resize(grid_blocks.size());
-  parallel_for(std::ptrdiff_t(particle_blocks.size()), threads, 64, [this](std::ptrdiff_t i) {
-    for_each_neighbour<D>(particle_blocks[i], [this, i](int n, BlockKey k) {
-      around_particles[i][n] = find_block(grid_blocks, k);
-    });
-  });
-  parallel_for(std::ptrdiff_t(grid_blocks.size()), threads, 64, [this](std::ptrdiff_t i) {
+  parallel_for_dynamic(std::ptrdiff_t(particle_blocks.size()), threads, 64,
+                       [this](std::ptrdiff_t i) {
+                         for_each_neighbour<D>(particle_blocks[i], [this, i](int n, BlockKey k) {
+                           around_particles[i][n] = find_block(grid_blocks, k);
+                         });
+                       });
+  parallel_for_dynamic(std::ptrdiff_t(grid_blocks.size()), threads, 64, [this](std::ptrdiff_t i) {
     for_each_neighbour<D>(grid_blocks[i], [this, i](int n, BlockKey k) {
       around_nodes[i][n] = find_block(particle_blocks, k);
     });

@@ -92,8 +92,8 @@ template <class Find>
 Contacts<T, D> Contacts<T, D>::gathered(const std::vector<BlockKey>& blocks, int threads,
                                         Find find) {
   std::vector<std::vector<Contact<T>>> by_block(blocks.size());
-  parallel_for(std::ptrdiff_t(blocks.size()), threads, 8,
-               [&](std::ptrdiff_t b) { find(std::size_t(b), by_block[b]); });
+  parallel_for_dynamic(std::ptrdiff_t(blocks.size()), threads, 8,
+                       [&](std::ptrdiff_t b) { find(std::size_t(b), by_block[b]); });
   Contacts all;
   all.blocks_ = blocks;
   all.first_.reserve(blocks.size() + 1);

@@ -12,9 +12,9 @@
 namespace snowshed::mpm {
 namespace {
 
-/// Memory of the solver. A particle holds position, velocity, deformation gradient, affine
-/// matrix, volume, mass, plastic strain and sorting keys; a grid node mass, momentum and force,
-/// in blocks that are only partly filled.
+/// Memory of the solver. A particle holds position, velocity, elastic and plastic strain, mass, id
+/// and event, with APIC an affine matrix; a grid node holds sums and velocities, in blocks that are
+/// only partly filled.
 struct Storage {
   double bytes_per_particle, bytes_per_voxel;
 };
@@ -47,8 +47,8 @@ constexpr double woken_share = 0.5;
 /// to 16 in 3D after 125 m. A particle all alone takes 40.
 constexpr double scattered_snow(int dimension) { return dimension == 2 ? 4.0 : 15.0; }
 
-/// Nodes of the grid blocks around the snow of an event, were each body compact: many small bodies
-/// far apart use more of them than their volume suggests.
+/// Number of nodes of the grid blocks around an event's snow, for compact bodies. Many small bodies
+/// far apart use more nodes than their volume suggests.
 double count_nodes(const Settings& n, const std::vector<double>& volumes, int dimension) {
   constexpr double reached = 1.5;  // blocks beyond its own that the splines of a body reach
   const double edge = (dimension == 2 ? block_edge<2> : block_edge<3>)*n.dx;
@@ -80,8 +80,8 @@ double count_updates(const Settings& n, int events, const SnowMotion& motion,
   return particles * estimate.steps / events;
 }
 
-/// Time over the step at rest, and more for the distance: a step gets shorter with speed, as in
-/// `next_time_step`.
+/// Number of steps: the time over the step at rest, and additional ones for the distance, because
+/// steps get shorter with speed (`next_time_step`).
 double steps_per_event(const Settings& n, const SnowMotion& motion, double time_step) {
   return std::ceil(motion.event_time / time_step +
                    2.0 * motion.distance / (n.dx * n.courant_factor));

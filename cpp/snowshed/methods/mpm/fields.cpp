@@ -76,7 +76,7 @@ Vec3 SolverImpl<T, D>::velocity(std::size_t i) const {
   return embed(v);
 }
 
-/// In the space (x, y, z); without y in 2D.
+/// The affine matrix in (x, y, z); in 2D the row and the column of y are zero.
 template <class T, int D>
 Mat3 SolverImpl<T, D>::affine(std::size_t i) const {
   const auto axis = [](int d) { return d == D - 1 ? 2 : d; };
@@ -89,13 +89,14 @@ Mat3 SolverImpl<T, D>::affine(std::size_t i) const {
 template <class T, int D>
 std::vector<double> SolverImpl<T, D>::positions() const {
   std::vector<double> values(3 * state_.particles.size());
-  parallel_for(std::ptrdiff_t(state_.layout.particle_blocks.size()), model_.max_threads, 64,
-               [&](std::ptrdiff_t b) {
-                 for (std::int32_t i = state_.layout.first[b]; i < state_.layout.first[b + 1]; ++i)
-                   Vec3::Map(&values[3 * std::size_t(i)]) = embed(position_of(
-                       state_.particles, std::size_t(i), state_.layout.particle_blocks[b],
-                       model_.options.settings.dx, model_.options.settings.basis));
-               });
+  parallel_for_dynamic(
+      std::ptrdiff_t(state_.layout.particle_blocks.size()), model_.max_threads, 64,
+      [&](std::ptrdiff_t b) {
+        for (std::int32_t i = state_.layout.first[b]; i < state_.layout.first[b + 1]; ++i)
+          Vec3::Map(&values[3 * std::size_t(i)]) =
+              embed(position_of(state_.particles, std::size_t(i), state_.layout.particle_blocks[b],
+                                model_.options.settings.dx, model_.options.settings.basis));
+      });
   return values;
 }
 
@@ -157,8 +158,8 @@ ParticleState SolverImpl<T, D>::state() const {
   const std::vector<double> x = positions();
   const auto by_id = [&](auto& values, auto value) {
     values.resize(at.size());
-    parallel_for_each(std::ptrdiff_t(at.size()), model_.max_threads,
-                      [&](std::ptrdiff_t k) { values[k] = value(at[k]); });
+    parallel_for_static(std::ptrdiff_t(at.size()), model_.max_threads,
+                        [&](std::ptrdiff_t k) { values[k] = value(at[k]); });
   };
   ParticleState s;
   by_id(s.positions, [&](std::size_t i) { return Vec3::Map(&x[3 * i]); });

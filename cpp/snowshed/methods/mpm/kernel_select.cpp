@@ -33,7 +33,7 @@ Kernels<T> from(Kernels<T> (*two)(const KernelChoice&), Kernels<T> (*three)(cons
 #define SNOWSHED_SELECT(T)                                       \
   template <>                                                    \
   Kernels<T> select_kernels<T>(const KernelChoice& choice) {     \
-    switch (chosen_kernel_variant()) {                           \
+    switch (kernel_variant()) {                                  \
       SNOWSHED_CASE_AVX512(T)                                    \
       SNOWSHED_CASE_AVX2(T)                                      \
       default:                                                   \

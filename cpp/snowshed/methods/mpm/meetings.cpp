@@ -35,7 +35,7 @@ void Meetings<T, D>::forget(const Model<T, D>& model, const State<T, D>& state, 
   if (places(state.layout) == 0) return;
   radius_.resize(state.particles.size());
   const double dx = model.options.settings.dx;
-  parallel_for_each(std::ptrdiff_t(radius_.size()), threads, [&](std::ptrdiff_t i) {
+  parallel_for_static(std::ptrdiff_t(radius_.size()), threads, [&](std::ptrdiff_t i) {
     radius_[i] = T(state.contact_radius(model, std::size_t(i)) / dx);
   });
 }
@@ -50,7 +50,7 @@ void Meetings<T, D>::update(const Model<T, D>& model, State<T, D>& state, Grid<T
   for (const FieldContact<T>& c : before) stores.push_back(&c);
   std::sort(stores.begin(), stores.end(), by_name<T>);
   std::vector<std::vector<FieldContact<T>>> by_place(places(state.layout));
-  parallel_for(places(state.layout), threads, 1, [&](std::ptrdiff_t place) {
+  parallel_for_dynamic(places(state.layout), threads, 1, [&](std::ptrdiff_t place) {
     const std::int32_t block = state.layout.meeting_blocks[state.layout.meeting_first[place]];
     if (measured_ && !state.sleep.is_active(block))  // nothing has moved there
       by_place[place].assign(before.begin() + first_[place], before.begin() + first_[place + 1]);
@@ -69,8 +69,8 @@ void Meetings<T, D>::update(const Model<T, D>& model, State<T, D>& state, Grid<T
   measured_ = true;
 }
 
-/// Sums of a block of nodes, which `room` holds where the block takes no part in the step; null
-/// if no snow reaches it.
+/// The sums of a block of nodes, or null if no snow reaches it. `room` holds them if the block
+/// takes no part in the step.
 template <class T, int D>
 const T* Meetings<T, D>::sums_of(const State<T, D>& state, Grid<T, D>& grid,
                                  const Kernels<T>& kernels, std::int32_t g,
@@ -113,9 +113,9 @@ typename Meetings<T, D>::Masses Meetings<T, D>::masses_of(const State<T, D>& sta
   return masses;
 }
 
-/// The normal of a node is that of the difference of the two masses, smoothed over the nodes around
-/// it. Without smoothing it points anywhere at the corners of a body, and would push the body
-/// forward.
+/// The normal of a node is the direction of the gradient of the difference of the two masses,
+/// smoothed over the nodes around it. Without smoothing it points anywhere at the corners of a
+/// body, and would push the body forward.
 template <class T, int D>
 void Meetings<T, D>::find_normals(const Masses& a, const Masses& b, Nodes& nodes) {
   struct Raw {
@@ -198,8 +198,8 @@ void Meetings<T, D>::find_reach(const Model<T, D>& model, const State<T, D>& sta
   }
 }
 
-/// The contacts of a place, with the impulses they had in store before. Nodes that have come off
-/// stay until friction has been charged for theirs.
+/// Measures the contacts of a place, which keep their stored impulses. A node at which the snow has
+/// separated stays a contact until friction has used up its stored impulse.
 template <class T, int D>
 void Meetings<T, D>::measure(const Model<T, D>& model, const State<T, D>& state, Grid<T, D>& grid,
                              const Stores& before, std::ptrdiff_t place,
@@ -253,8 +253,8 @@ void Meetings<T, D>::exchange(const StepParameters<T>& step, double friction, St
   }
 }
 
-/// The same between two fields. If little snow moves with a node, less friction than is due stops
-/// it. The rest slows the nodes around it that still slide.
+/// The same between two fields. A part of the stored friction may suffice to stop a node with
+/// little snow. The excess slows the nodes of the block that still slide.
 template <class T, int D>
 void Meetings<T, D>::exchange(const StepParameters<T>& step, T friction, Grid<T, D>& grid,
                               FieldContact<T>* begin, FieldContact<T>* end) const {

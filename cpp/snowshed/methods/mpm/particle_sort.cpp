@@ -74,7 +74,7 @@ std::vector<std::uint32_t> order_by_block(const std::vector<BlockKey>& blocks,
                                           std::vector<std::int32_t>& first, int threads) {
   const std::ptrdiff_t n = std::ptrdiff_t(blocks.size());
   std::vector<std::uint32_t> slot(blocks.size());
-  parallel_for_each(n, threads, [&](std::ptrdiff_t i) {
+  parallel_for_static(n, threads, [&](std::ptrdiff_t i) {
     slot[i] =
         std::uint32_t(std::lower_bound(unique.begin(), unique.end(), blocks[i]) - unique.begin());
   });
@@ -103,7 +103,7 @@ template <class T, int D>
 ParticleSort<T, D>::ParticleSort(const Particles<T, D>& particles, std::vector<BlockKey> blocks,
                                  const BlockLayout<D>& present, int threads)
     : threads_(threads) {
-  parallel_for_each(std::ptrdiff_t(blocks.size()), threads, [&](std::ptrdiff_t i) {
+  parallel_for_static(std::ptrdiff_t(blocks.size()), threads, [&](std::ptrdiff_t i) {
     const auto block = block_it_is_in(particles, std::size_t(i), blocks[i]);
     if (!block)
       throw SimulationError("particle " + std::to_string(particles.id[std::size_t(i)]) +
@@ -120,8 +120,8 @@ ParticleSort<T, D>::ParticleSort(const Particles<T, D>& particles, std::vector<B
 
 template <class T, int D>
 void ParticleSort<T, D>::apply(Particles<T, D>& particles) noexcept {
-  parallel_for_each(std::ptrdiff_t(particles.size()), threads_,
-                    [&](std::ptrdiff_t i) { rebase(particles, std::size_t(i)); });
+  parallel_for_static(std::ptrdiff_t(particles.size()), threads_,
+                      [&](std::ptrdiff_t i) { rebase(particles, std::size_t(i)); });
   if (!order_.empty()) particles.permute(order_, spare_, threads_);
 }
 

@@ -121,8 +121,8 @@ struct Particles {
     order_by_id_.clear();
     for_each_array([&](const char*, auto& array) {
       auto& sorted = std::get<std::remove_reference_t<decltype(array)>>(spare);
-      parallel_for_each(std::ptrdiff_t(order.size()), threads,
-                        [&](std::ptrdiff_t i) { sorted[i] = array[order[i]]; });
+      parallel_for_static(std::ptrdiff_t(order.size()), threads,
+                          [&](std::ptrdiff_t i) { sorted[i] = array[order[i]]; });
       array.swap(sorted);
     });
   }

@@ -123,7 +123,7 @@ void SolverImpl<T, D>::scatter() {
   const ParticleView<T> view = state_.particles.view();
   const StepParameters<T> step = parameters(state_.progress.dt);
   const std::ptrdiff_t n = std::ptrdiff_t(state_.layout.particle_blocks.size());
-  parallel_for(n, threads(), 1, [&](std::ptrdiff_t b) { scatter_block(step, view, b); });
+  parallel_for_dynamic(n, threads(), 1, [&](std::ptrdiff_t b) { scatter_block(step, view, b); });
   clear_idle_nodes();
   work_.tiles_valid = true;
 }
@@ -146,7 +146,7 @@ void SolverImpl<T, D>::gather_and_update(double dt) {
   if (model_.boundary.any_slip()) state_.contacts.find_pushing_shares(work_.pushing);
   const StepParameters<T> step = parameters(dt);
   const std::vector<std::int32_t>& active = state_.sleep.active();
-  parallel_for(std::ptrdiff_t(active.size()), threads(), 8, [&](std::ptrdiff_t i) {
+  parallel_for_dynamic(std::ptrdiff_t(active.size()), threads(), 8, [&](std::ptrdiff_t i) {
     const std::int32_t g = active[i];
     state_.contacts.commit(g);
     const T* tiles[neighbour_count<D>];
@@ -166,7 +166,7 @@ template <class T, int D>
 void SolverImpl<T, D>::update(double dt) {
   const StepParameters<T> step = parameters(dt);
   const std::vector<std::int32_t>& active = state_.sleep.active();
-  parallel_for(std::ptrdiff_t(active.size()), threads(), 8, [&](std::ptrdiff_t i) {
+  parallel_for_dynamic(std::ptrdiff_t(active.size()), threads(), 8, [&](std::ptrdiff_t i) {
     if (!meets(active[i])) update_block(step, active[i]);
   });
   if (!state_.layout.meets.empty()) update_meetings(step);
@@ -176,8 +176,8 @@ void SolverImpl<T, D>::update(double dt) {
 /// contact with obstacles.
 template <class T, int D>
 void SolverImpl<T, D>::update_meetings(const StepParameters<T>& step) {
-  parallel_for(work_.meetings.places(state_.layout), threads(), 2,
-               [&](std::ptrdiff_t place) { update_meeting(step, place); });
+  parallel_for_dynamic(work_.meetings.places(state_.layout), threads(), 2,
+                       [&](std::ptrdiff_t place) { update_meeting(step, place); });
 }
 
 template <class T, int D>
@@ -266,7 +266,7 @@ double SolverImpl<T, D>::largest_strain() {
   const ParticleView<T> view = state_.particles.view();
   const std::vector<std::int32_t>& awake = state_.sleep.awake();
   work_.block_strain.resize(awake.size());
-  parallel_for(std::ptrdiff_t(awake.size()), threads(), 64, [&](std::ptrdiff_t i) {
+  parallel_for_dynamic(std::ptrdiff_t(awake.size()), threads(), 64, [&](std::ptrdiff_t i) {
     const std::int32_t b = awake[i];
     double bound = bound_over(state_.layout.around_particles[b]);
     if (!(bound <= rate_limit)) {
@@ -292,7 +292,7 @@ void SolverImpl<T, D>::g2p2g(double dt) {
   const std::vector<std::int32_t>& awake = state_.sleep.awake();
   const bool damps = damps_next();
   if (damps) average_velocities(dt);
-  parallel_for(std::ptrdiff_t(awake.size()), threads(), 1, [&](std::ptrdiff_t i) {
+  parallel_for_dynamic(std::ptrdiff_t(awake.size()), threads(), 1, [&](std::ptrdiff_t i) {
     const std::int32_t b = awake[i];
     const T* velocities[neighbour_count<D>];
     velocities_around(b, velocities);

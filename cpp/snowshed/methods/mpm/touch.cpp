@@ -66,10 +66,10 @@ void Touch<T, D>::update(const Model<T, D>& model, State<T, D>& state, double mo
       due.push_back(std::int32_t(b));
   if (due.empty()) return;
   measured_ = false;  // until all has gone well
-  parallel_for(std::ptrdiff_t(due.size()), threads, 4,
-               [&](std::ptrdiff_t i) { measure(model, state, due[i]); });
-  parallel_for(std::ptrdiff_t(state.layout.grid_blocks.size()), threads, 16,
-               [&](std::ptrdiff_t g) { mark(model, state, std::int32_t(g)); });
+  parallel_for_dynamic(std::ptrdiff_t(due.size()), threads, 4,
+                       [&](std::ptrdiff_t i) { measure(model, state, due[i]); });
+  parallel_for_dynamic(std::ptrdiff_t(state.layout.grid_blocks.size()), threads, 16,
+                       [&](std::ptrdiff_t g) { mark(model, state, std::int32_t(g)); });
   measured_ = true;
 }
 

@@ -145,7 +145,7 @@ void VelocityAverage<T, D>::update(const Kernels<T>& kernels, const ParticleView
                                    double share, int threads) noexcept {
   const auto& states = sleep.states();
   for (AverageTile<T>& tile : tiles_of_) tile.share = T(share * share_of_length_);
-  parallel_for(std::ptrdiff_t(states.size()), threads, 1, [&](std::ptrdiff_t b) {
+  parallel_for_dynamic(std::ptrdiff_t(states.size()), threads, 1, [&](std::ptrdiff_t b) {
     if (states[b].asleep && settled_[b]) return;
     scatter(kernels, view, layout, std::int32_t(b));
     settled_[b] = states[b].asleep;
@@ -159,8 +159,8 @@ void VelocityAverage<T, D>::update(const Kernels<T>& kernels, const ParticleView
   needed_.clear();
   for (std::size_t c = 0; c < is_needed_.size(); ++c)
     if (is_needed_[c]) needed_.push_back(std::int32_t(c));
-  parallel_for(std::ptrdiff_t(needed_.size()), threads, 8,
-               [&](std::ptrdiff_t i) { gather(needed_[i]); });
+  parallel_for_dynamic(std::ptrdiff_t(needed_.size()), threads, 8,
+                       [&](std::ptrdiff_t i) { gather(needed_[i]); });
 }
 
 template <class T, int D>

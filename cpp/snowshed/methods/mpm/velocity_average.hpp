@@ -1,10 +1,10 @@
-// Velocities averaged over a length, towards which they are damped: sums of mass and momentum on a
-// coarse grid whose spacing is that length, independent of the cells. The grid's own PIC damps over
-// dx.
+// Averages of the velocities over a length, towards which velocities are damped. They come from
+// sums of mass and momentum on a coarse grid whose spacing is that length, independent of the
+// cells. PIC on the cells themselves damps over dx.
 //
-// As the sums of a step, those of a block's particles go to a tile of its own; the coarse grid, in
-// blocks, gathers the tiles in fixed order; the mean velocities come back to the tiles. Only the
-// tiles of sleeping blocks, which do not change, outlive a step.
+// As in a step, the particles of each block add to a tile of their own. The coarse grid gathers the
+// tiles block by block, in fixed order, and the mean velocities return to the tiles. Only the tiles
+// of sleeping blocks, which do not change, outlive a step.
 #pragma once
 
 #include <array>
@@ -17,15 +17,15 @@
 
 namespace snowshed::mpm {
 
-/// Steps from one damping to the next, which then counts for all of them. In a step snow moves by a
-/// fraction of a cell, so that little changes; and the average costs as much as a third of a step.
+/// Number of steps from one damping to the next; each damping stands for all of them. In a step
+/// snow moves by a fraction of a cell, so little changes, and an average costs a third of a step.
 inline constexpr int steps_between_averages = 4;
 
 template <class T, int D>
 class VelocityAverage {
  public:
-  /// The coarse grid over `length` (m). No finer than half a cell: on a coarser grid a smaller
-  /// share of velocities is averaged instead, so that it diffuses them as fast.
+  /// A coarse grid of the spacing `length` (m), but of at least half a cell. On a grid coarser than
+  /// `length` a smaller share of the velocities is damped, so that they diffuse as fast.
   VelocityAverage(double length, double dx, Basis basis);
 
   /// Follows a change of the layout or of the order of the particles.

@@ -41,11 +41,11 @@ void SolverImpl<D>::append(State<D>& state, const ParticleBatch& batch) const {
       p.position[i][0] -=
           model_.options.period * std::floor(p.position[i][0] / model_.options.period);
     p.velocity[i] = section<D>(batch.velocity);
-    p.pressure[i] = p.rate[i] = 0;
-    p.push[i].setZero();
-    p.shear[i].setZero();
+    p.pressure[i] = p.shear_rate[i] = 0;
+    p.pressure_acceleration[i].setZero();
+    p.viscous_acceleration[i].setZero();
     p.mass[i] = batch.mass_of(k);
-    p.density[i] = 1;
+    p.relative_density[i] = 1;
     p.viscosity[i] = model_.rheology.viscosity;
     p.kind[i] = Kind::moving;
     if (s.erosion && s.erodible_thickness > 0)

@@ -15,11 +15,12 @@ void SolverImpl<D>::visit_fields(Visit visit) const {
   show.of_each("position", [&p](std::size_t i) { return embed(p.position[i]); });
   show.of_each("velocity", [&p](std::size_t i) { return embed(p.velocity[i]); });
   show.column("mass", p.mass);
-  show.of_each("density",
-               [this, &p](std::size_t i) { return model_.settings().density * p.density[i]; });
-  show.column("number_density", p.density);
+  show.of_each("density", [this, &p](std::size_t i) {
+    return model_.settings().density * p.relative_density[i];
+  });
+  show.column("number_density", p.relative_density);
   show.column("pressure", p.pressure);
-  show.column("shear_rate", p.rate);
+  show.column("shear_rate", p.shear_rate);
   show.column("apparent_viscosity", p.viscosity);
   show.computed("particle_kind", [&] {
     std::vector<std::uint8_t> kinds(size());

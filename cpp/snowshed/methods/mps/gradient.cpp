@@ -139,14 +139,14 @@ void apply_pressure(const Model<D>& model, double dt, Particles<D>& particles, W
   for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {
     work.change[i].setZero();
     if (particles.is_wall(i)) return;
-    particles.push[i].setZero();
+    particles.pressure_acceleration[i].setZero();
     if (!particles.moves(i)) return;
     VecD<D> gradient = work.pressure.sum[i] +
                        gradient_at_walls(model, particles, near, i, work.pressure.base[i], dt);
     if (corrected && !near.surface[i]) gradient = near.correction[i] * gradient;
-    particles.push[i] = model.gradient() / s.density * gradient;
+    particles.pressure_acceleration[i] = model.gradient() / s.density * gradient;
     const VecD<D> before = particles.velocity[i];
-    VecD<D> velocity = before - dt * particles.push[i];
+    VecD<D> velocity = before - dt * particles.pressure_acceleration[i];
     for (const WallContact<D>* c = near.contacts.begin(i); c < near.contacts.end(i); ++c)
       keep_out(*c, s.spacing, dt, velocity);
     work.change[i] = velocity - before;

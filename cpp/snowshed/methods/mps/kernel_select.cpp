@@ -35,7 +35,7 @@ const Kernels<D>& chosen(const Kernels<2>& plane, const Kernels<3>& space) {
 
 template <int D>
 const Kernels<D>& chosen_kernels() {
-  switch (chosen_kernel_variant()) {
+  switch (kernel_variant()) {
 #ifdef SNOWSHED_HAS_KERNELS_avx512
     case KernelVariant::avx512:
       return chosen<D>(avx512::kernel_table_2d, avx512::kernel_table_3d);

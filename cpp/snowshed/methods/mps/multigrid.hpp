@@ -15,9 +15,9 @@ namespace snowshed::mps {
 
 /// Aggregation multigrid (Notay 2010; Braess 1995, doi:10.1007/BF02238484): the unknowns of a cell
 /// are one unknown of the next level, those of 2^D cells one of the level after it. Corrections are
-/// constant within an aggregate, and enlarged to make up for that. A damped Jacobi sweep goes
-/// before and one after each correction, which is symmetric, as conjugate gradients need it. There
-/// are C unknowns for each particle, which do not depend on each other above the particles.
+/// constant within an aggregate, and enlarged to make up for that. One damped Jacobi
+/// sweep before and one after each correction keep the cycle symmetric, as conjugate gradients
+/// require. A particle has C unknowns; above the particles they are independent of each other.
 template <int D, int C>
 class Multigrid {
  public:

@@ -16,17 +16,17 @@ enum class Kind : std::uint8_t { moving, erodible, inner_wall, dummy_wall };
 /// One array for each quantity, all of one length.
 template <int D>
 struct Particles {
-  AlignedVector<VecD<D>> position;  // m
-  AlignedVector<VecD<D>> velocity;  // m/s
-  AlignedVector<double> pressure;   // Pa
-  AlignedVector<double> mass;       // kg
-  AlignedVector<double> density;    // number density over n0
-  AlignedVector<double> rate;       // 1/s, of shear
-  AlignedVector<double> viscosity;  // Pa s, apparent
-  // m/s2, the gradient of the pressure over density, of the last step; of wall particles: the
-  // normal
-  AlignedVector<VecD<D>> push;
-  AlignedVector<VecD<D>> shear;  // m/s2, by viscosity, in the last step
+  AlignedVector<VecD<D>> position;         // m
+  AlignedVector<VecD<D>> velocity;         // m/s
+  AlignedVector<double> pressure;          // Pa
+  AlignedVector<double> mass;              // kg
+  AlignedVector<double> relative_density;  // number density over n0
+  AlignedVector<double> shear_rate;        // 1/s
+  AlignedVector<double> viscosity;         // Pa s, apparent
+  /// m/s2, the gradient of the pressure over the density, in the last step. Walls have no
+  /// acceleration: their array holds `wall_normal`.
+  AlignedVector<VecD<D>> pressure_acceleration;
+  AlignedVector<VecD<D>> viscous_acceleration;  // m/s2, in the last step
   AlignedVector<Kind> kind;
   AlignedVector<std::uint32_t> id;
   AlignedVector<std::uint16_t> event;  // for wall particles, the number of the obstacle
@@ -34,6 +34,7 @@ struct Particles {
   std::size_t size() const { return position.size(); }
   bool moves(std::size_t i) const { return kind[i] == Kind::moving; }
   bool is_wall(std::size_t i) const { return kind[i] >= Kind::inner_wall; }
+  const VecD<D>& wall_normal(std::size_t i) const { return pressure_acceleration[i]; }
 
   /// Calls visit(name, array) for each array.
   template <class Visit>
@@ -51,11 +52,11 @@ struct Particles {
     visit("velocity", self.velocity, other.velocity);
     visit("pressure", self.pressure, other.pressure);
     visit("mass", self.mass, other.mass);
-    visit("density", self.density, other.density);
-    visit("rate", self.rate, other.rate);
+    visit("density", self.relative_density, other.relative_density);
+    visit("rate", self.shear_rate, other.shear_rate);
     visit("viscosity", self.viscosity, other.viscosity);
-    visit("push", self.push, other.push);
-    visit("shear", self.shear, other.shear);
+    visit("push", self.pressure_acceleration, other.pressure_acceleration);
+    visit("shear", self.viscous_acceleration, other.viscous_acceleration);
     visit("kind", self.kind, other.kind);
     visit("id", self.id, other.id);
     visit("event", self.event, other.event);

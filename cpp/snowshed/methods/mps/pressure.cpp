@@ -39,7 +39,7 @@ double slip_divergence(const Model<D>& model, const Particles<D>& particles,
     const std::size_t j = near.lists.neighbour(e);
     const VecD<D> separation = near.separation(e);
     if (particles.kind[j] == Kind::dummy_wall) {
-      const VecD<D>& normal = particles.push[j];
+      const VecD<D>& normal = particles.wall_normal(j);
       flow -= double(near.weight[e]) * separation.dot(normal) *
               (near.slip[i] - particles.velocity[j]).dot(normal);
     } else {
@@ -252,7 +252,8 @@ SolveReport solve_pressure(const Model<D>& model, double dt, Particles<D>& parti
     work.pressure.source[i] = 0;
     if (work.pressure.fixed[i]) return;
     double value = -source(model, dt, relaxation, particles, work, i) / model.laplacian();
-    if (corrected) value -= model.settings().density * near.asymmetry[i].dot(particles.push[i]);
+    if (corrected)
+      value -= model.settings().density * near.asymmetry[i].dot(particles.pressure_acceleration[i]);
     if (near.surface[i]) value = std::max(value, 0.0);  // snow does not hang together there
     work.pressure.source[i] = value;
   });

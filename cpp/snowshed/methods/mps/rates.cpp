@@ -151,7 +151,7 @@ void find_rates(const Model<D>& model, Particles<D>& particles, Workspace<D>& wo
                   });
       gradient = Matrix(gradient * work.rates.correction[i]);
     }
-    particles.rate[i] = shear_rate<D>(gradient);
+    particles.shear_rate[i] = shear_rate<D>(gradient);
   });
 }
 
@@ -160,7 +160,8 @@ void find_viscosities(const Model<D>& model, Particles<D>& particles, const Work
   const Rheology& law = model.rheology;
   for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {
     const double pressure = law.friction > 0 ? work.rates.smooth_pressure[i] : 0.0;
-    particles.viscosity[i] = law.apparent_viscosity(law.yield_stress(pressure), particles.rate[i]);
+    particles.viscosity[i] =
+        law.apparent_viscosity(law.yield_stress(pressure), particles.shear_rate[i]);
   });
 }
 

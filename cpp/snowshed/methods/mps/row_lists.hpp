@@ -25,7 +25,7 @@ class RowLists {
     const std::size_t parts = (particles + in_part - 1) / in_part;
     parts_.resize(std::max(parts, parts_.size()));
     first_.assign(particles + 1, 0);
-    parallel_for(std::ptrdiff_t(parts), threads, 1, [&](std::ptrdiff_t p) {
+    parallel_for_dynamic(std::ptrdiff_t(parts), threads, 1, [&](std::ptrdiff_t p) {
       const std::size_t begin = std::size_t(p) * in_part;
       parts_[std::size_t(p)].clear();
       make(begin, std::min(particles, begin + in_part), first_.data(), parts_[std::size_t(p)]);

@@ -150,7 +150,8 @@ void SolverImpl<D>::apply_viscosity(double dt, State<D>& next) {
   smooth_pressures(model_, p, workspace_);
   next.solves.viscosity = mps::apply_viscosity(model_, dt, p, workspace_);
   require_converged(next.solves.viscosity, "viscous", model_.settings().max_iterations);
-  for (std::size_t i = 0; i < p.size(); ++i) p.shear[i] = (p.velocity[i] - before[i]) / dt;
+  for (std::size_t i = 0; i < p.size(); ++i)
+    p.viscous_acceleration[i] = (p.velocity[i] - before[i]) / dt;
   if (!model_.options.energy) return;
   workspace_.energy.viscous = p.velocity;
   workspace_.energy.viscous_change.resize(p.size());
@@ -188,11 +189,11 @@ void SolverImpl<D>::solve_pressure_first(double dt, State<D>& next) {
   workspace_.splitting.flowing.resize(n);
   workspace_.splitting.expected_shear.resize(n);
   for_each_particle(n, threads, [&](std::size_t i) {
-    workspace_.splitting.flowing[i] = p.moves(i) && model_.rheology.flows(p.rate[i]);
+    workspace_.splitting.flowing[i] = p.moves(i) && model_.rheology.flows(p.shear_rate[i]);
     workspace_.splitting.expected_shear[i].setZero();
     if (workspace_.splitting.flowing[i])
       workspace_.splitting.expected_shear[i] =
-          (coupled ? first_shear : expected_shear) * p.shear[i];
+          (coupled ? first_shear : expected_shear) * p.viscous_acceleration[i];
   });
   AndersonMixing<D> mixing;
   SolveReport pressure, viscosity;
@@ -205,7 +206,7 @@ void SolverImpl<D>::solve_pressure_first(double dt, State<D>& next) {
     add_solve(next.solves.pressure, pressure);
     add_solve(next.solves.viscosity, viscosity);
     if (!coupled || k + 1 == max_couplings) break;
-    workspace_.splitting.shear = p.shear;
+    workspace_.splitting.shear = p.viscous_acceleration;
     double square = 0;
     for (std::size_t i = 0; i < n; ++i) {
       if (!workspace_.splitting.flowing[i]) workspace_.splitting.shear[i].setZero();
@@ -287,7 +288,7 @@ void SolverImpl<D>::step() {
   if (s.order == Order::single_move) move(dt, next.particles);
   erode_and_deposit(model_, next.particles, workspace_);
   for (std::size_t i = 0; i < next.particles.size(); ++i)
-    next.particles.density[i] = workspace_.near.density[i] / model_.kernel.number_density;
+    next.particles.relative_density[i] = workspace_.near.density[i] / model_.kernel.number_density;
   if (model_.options.energy) record_energy(next, dt);
   if (model_.has_wall_particles()) remove_walls(next.particles);
   next.time += dt;
@@ -314,7 +315,7 @@ Report SolverImpl<D>::report() const {
   r.mean_viscosity_iterations = double(state_.viscosity_iterations) / steps;
   double square = 0, count = 0;
   for (std::size_t i = 0; i < size(); ++i) {
-    const double density = state_.particles.density[i];
+    const double density = state_.particles.relative_density[i];
     r.largest_density = std::max(r.largest_density, density);
     if (density < model_.settings().surface_ratio) continue;  // at the surface
     square += (density - 1) * (density - 1);

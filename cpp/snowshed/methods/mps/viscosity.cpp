@@ -156,8 +156,9 @@ double wall_drag(const Model<D>& model, const Particles<D>& particles, double sh
   if (share == 0) return 0;
   const VecD<D> relative = particles.velocity[i] - c.velocity;
   const double rate = (relative - relative.dot(c.normal) * c.normal).norm() / height;
-  const double pressure = std::max(
-      0.0, particles.pressure[i] - s.density * c.distance * particles.push[i].dot(c.normal));
+  const double pressure =
+      std::max(0.0, particles.pressure[i] -
+                        s.density * c.distance * particles.pressure_acceleration[i].dot(c.normal));
   const Rheology& law = model.rheology;
   double viscosity = law.apparent_viscosity(law.yield_stress(pressure), rate);
   const ContactLaw& contact = model.options.obstacles[c.obstacle].law;

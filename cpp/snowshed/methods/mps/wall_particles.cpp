@@ -282,11 +282,12 @@ void WallParticles<D>::append_group(Group& group, const RigidPose& pose, double 
       to.resize(i + 1);
       to.position[i] = x;
       to.velocity[i] = moves ? section<D>(pose.velocity(embed(x))) : VecD<D>(VecD<D>::Zero());
-      to.pressure[i] = to.rate[i] = to.viscosity[i] = 0;
+      to.pressure[i] = to.shear_rate[i] = to.viscosity[i] = 0;
       to.mass[i] = mass;
-      to.density[i] = 1;
-      to.push[i] = moves ? section<D>(pose.normal_to_world(embed(p.normal))) : p.normal;
-      to.shear[i].setZero();
+      to.relative_density[i] = 1;
+      to.pressure_acceleration[i] =
+          moves ? section<D>(pose.normal_to_world(embed(p.normal))) : p.normal;
+      to.viscous_acceleration[i].setZero();
       to.kind[i] = p.kind;
       to.id[i] = 0xffffffff;
       to.event[i] = std::uint16_t(p.obstacle);

@@ -45,8 +45,8 @@ void reorder(const std::vector<std::uint32_t>& order, AlignedVector<double>& scr
   static_assert(sizeof(Entry) <= sizeof(double) && std::is_trivially_copyable_v<Entry>);
   auto* sorted = reinterpret_cast<Entry*>(scratch.data());
   const auto n = std::ptrdiff_t(order.size());
-  parallel_for_each(n, threads, [&](std::ptrdiff_t e) { sorted[e] = array[order[e]]; });
-  parallel_for_each(n, threads, [&](std::ptrdiff_t e) { array[e] = sorted[e]; });
+  parallel_for_static(n, threads, [&](std::ptrdiff_t e) { sorted[e] = array[order[e]]; });
+  parallel_for_static(n, threads, [&](std::ptrdiff_t e) { array[e] = sorted[e]; });
 }
 
 }  // namespace
@@ -132,8 +132,8 @@ void sort_by_cell(State& state, Workspace& work) {
       [&](const char*, auto& array) { reorder(order, scratch, work.threads, array); });
   for (std::size_t e = 0; e < order.size(); ++e) work.new_places[order[e]] = std::uint32_t(e);
   for (auto* ends : {&state.bonds.first, &state.bonds.second})
-    parallel_for_each(std::ptrdiff_t(ends->size()), work.threads,
-                      [&](std::ptrdiff_t b) { (*ends)[b] = work.new_places[(*ends)[b]]; });
+    parallel_for_static(std::ptrdiff_t(ends->size()), work.threads,
+                        [&](std::ptrdiff_t b) { (*ends)[b] = work.new_places[(*ends)[b]]; });
 }
 
 }  // namespace snowshed::slide

@@ -24,7 +24,7 @@ struct NodeRange {
 };
 NodeRange nodes_within(const Ring& ring, int axis, int nodes) {
   double low = ring[0][axis], high = low;
-  for (const MapPoint& p : ring) {
+  for (const Point2& p : ring) {
     low = std::min(low, p[axis]);
     high = std::max(high, p[axis]);
   }
@@ -36,14 +36,14 @@ NodeRange nodes_within(const Ring& ring, int axis, int nodes) {
 /// In units of cells.
 Ring scaled(const Ring& ring, double cell) {
   Ring result;
-  for (const MapPoint& p : ring) result.push_back({p[0] / cell, p[1] / cell});
+  for (const Point2& p : ring) result.push_back({p[0] / cell, p[1] / cell});
   return result;
 }
 
 }  // namespace
 
 Ring widened_as_avaframe(const Ring& outline, double radius) {
-  return moved_aside(outline, mostly_counterclockwise(outline) ? radius / 2 : -radius / 2);
+  return offset_ring(outline, mostly_counterclockwise(outline) ? radius / 2 : -radius / 2);
 }
 
 std::vector<double> thickness_at_nodes(const std::vector<Area>& areas, const Terrain& terrain,

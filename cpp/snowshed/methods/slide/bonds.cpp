@@ -77,13 +77,13 @@ class MapPoints {
 };
 
 /// Whether the straight line between two points crosses a ring.
-bool crosses(const Ring& ring, const MapPoint& a, const MapPoint& b) {
-  const auto side = [](const MapPoint& o, const MapPoint& p, const MapPoint& q) {
+bool crosses(const Ring& ring, const Point2& a, const Point2& b) {
+  const auto side = [](const Point2& o, const Point2& p, const Point2& q) {
     return (p[0] - o[0]) * (q[1] - o[1]) - (p[1] - o[1]) * (q[0] - o[0]);
   };
   for (std::size_t i = 0; i < ring.size(); ++i) {
-    const MapPoint& c = ring[i];
-    const MapPoint& d = ring[(i + 1) % ring.size()];
+    const Point2& c = ring[i];
+    const Point2& d = ring[(i + 1) % ring.size()];
     if (std::max(c[0], d[0]) < std::min(a[0], b[0]) || std::min(c[0], d[0]) > std::max(a[0], b[0]))
       continue;
     if ((side(a, b, c) > 0) != (side(a, b, d) > 0) && (side(c, d, a) > 0) != (side(c, d, b) > 0))
@@ -92,7 +92,7 @@ bool crosses(const Ring& ring, const MapPoint& a, const MapPoint& b) {
   return false;
 }
 
-bool crosses_outline(const std::vector<Area>& areas, const MapPoint& a, const MapPoint& b) {
+bool crosses_outline(const std::vector<Area>& areas, const Point2& a, const Point2& b) {
   for (const Area& area : areas) {
     if (crosses(area.polygon.outline, a, b)) return true;
     for (const Ring& hole : area.polygon.holes)

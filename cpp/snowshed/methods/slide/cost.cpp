@@ -11,9 +11,9 @@ namespace {
 /// Memory of a particle with three bonds, and of a node of the terrain.
 constexpr double bytes_per_particle = 620, bytes_per_node = 100;
 
-MapPoint middle(const Ring& ring) {
-  MapPoint sum{0, 0};
-  for (const MapPoint& p : ring) sum = {sum[0] + p[0], sum[1] + p[1]};
+Point2 middle(const Ring& ring) {
+  Point2 sum{0, 0};
+  for (const Point2& p : ring) sum = {sum[0] + p[0], sum[1] + p[1]};
   return {sum[0] / double(ring.size()), sum[1] / double(ring.size())};
 }
 
@@ -23,7 +23,7 @@ double block_travel_time(const Terrain& terrain, const Settings& s, const Area& 
                          double gravity, double max_time) {
   const BasalFriction law = BasalFriction::from(s, gravity);
   const double dt = 0.05, drag = law.drag / (s.density * release.thickness);
-  const MapPoint start = middle(release.polygon.outline);
+  const Point2 start = middle(release.polygon.outline);
   Vec3 x(start[0], start[1], 0), u = Vec3::Zero();
   double time = 0;
   for (; time < max_time; time += dt) {

@@ -50,13 +50,14 @@ double cover_of(const Particles& p, const CellLists& cells, const Places& places
 /// The integral of the factor on the pressure from 0 to n neighbours; see FewNeighbours.
 double raised_integral(double n) {
   const double rest = 1 - few_neighbours.power;
-  const double twofold = std::pow(few_neighbours.factor, 1 / few_neighbours.power);  // up to here
+  // Up to this number of neighbours the factor is 2.
+  const double twofold = std::pow(few_neighbours.factor, 1 / few_neighbours.power);
   if (n <= twofold) return 2 * n;
   return twofold + n + few_neighbours.factor / rest * (std::pow(n, rest) - std::pow(twofold, rest));
 }
 
-/// The potential of the pressure (kernels/surface_pressure.hpp), J: sum_k m_k g n_z h_k / 2, by
-/// which the snow's centre of mass lies above the ground, raised at few neighbours.
+/// The potential energy of the pressure (kernels/surface_pressure.hpp), J: sum_k m_k g n_z h_k / 2,
+/// because the snow's centre of mass lies h/2 above the ground; raised where neighbours are few.
 double pressure_energy(const Model& model, const State& state, const Workspace& work) {
   const double radius = model.terrain.cell();
   const Particles& p = state.particles;

@@ -13,7 +13,7 @@ namespace {
 
 Ring moved(const Ring& ring, const HeightField& field) {
   Ring local;
-  for (const MapPoint& p : ring) local.push_back({p[0] - field.west, p[1] - field.south});
+  for (const Point2& p : ring) local.push_back({p[0] - field.west, p[1] - field.south});
   return local;
 }
 

@@ -105,7 +105,7 @@ struct Bounds {
 
 Bounds bounds_of(const Ring& ring) {
   Bounds b{{ring[0][0], ring[0][1]}, {ring[0][0], ring[0][1]}};
-  for (const MapPoint& p : ring)
+  for (const Point2& p : ring)
     for (const int axis : {0, 1}) {
       b.low[axis] = std::min(b.low[axis], p[axis]);
       b.high[axis] = std::max(b.high[axis], p[axis]);
@@ -179,11 +179,11 @@ double mean_thickness(const Area& area, const Terrain& terrain, std::size_t inde
   return volume / covered;
 }
 
-MapPoint centroid(const Ring& ring) {
+Point2 centroid(const Ring& ring) {
   double x = 0, y = 0, sum = 0;
-  const MapPoint& o = ring[0];
+  const Point2& o = ring[0];
   for (std::size_t i = 1; i + 1 < ring.size(); ++i) {
-    const MapPoint &a = ring[i], &b = ring[i + 1];
+    const Point2 &a = ring[i], &b = ring[i + 1];
     const double w = (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0]);
     x += w * (a[0] + b[0] - 2 * o[0]) / 3;
     y += w * (a[1] + b[1] - 2 * o[1]) / 3;
@@ -218,7 +218,7 @@ Ground ground_under(const Terrain& terrain, const Polygon& polygon) {
       if (contains(polygon, {x, y})) look_at(x, y);
   // Areas narrower than the points are apart may lie between them.
   if (g.points == 0)
-    for (const MapPoint& corner : polygon.outline) look_at(corner[0], corner[1]);
+    for (const Point2& corner : polygon.outline) look_at(corner[0], corner[1]);
   if (g.points == 0) return Ground{1.0, 1.0, 0.0, 0};
   g.stretch /= double(g.points);
   const double length = std::hypot(fall[0], fall[1]);
@@ -232,10 +232,10 @@ Ground ground_under(const Terrain& terrain, const Polygon& polygon) {
 /// Calls visit(x, y) for the points of a lattice within a ring's bounds, row by row; it begins at
 /// `origin` and its rows run along the fall line.
 template <class Visit>
-void for_lattice_points(const Ring& ring, const MapPoint& origin, const Ground& along, double side,
+void for_lattice_points(const Ring& ring, const Point2& origin, const Ground& along, double side,
                         Visit visit) {
   double reach = 0;
-  for (const MapPoint& p : ring)
+  for (const Point2& p : ring)
     reach = std::max(reach, std::hypot(p[0] - origin[0], p[1] - origin[1]));
   const double height = side * row_distance;
   const int rows = int(std::ceil(reach / height)), columns = int(std::ceil(reach / side)) + 1;
@@ -251,10 +251,10 @@ void for_lattice_points(const Ring& ring, const MapPoint& origin, const Ground& 
 /// may touch.
 void refuse_overlap(const Terrain& terrain, const std::vector<Area>& areas, std::size_t index,
                     const ParticleBatch& batch) {
-  const double aside = 1e-6 * terrain.cell();
+  const double margin = 1e-6 * terrain.cell();
   const auto well_within = [&](const Polygon& polygon, double x, double y) {
-    return contains(polygon, {x - aside, y}) && contains(polygon, {x + aside, y}) &&
-           contains(polygon, {x, y - aside}) && contains(polygon, {x, y + aside});
+    return contains(polygon, {x - margin, y}) && contains(polygon, {x + margin, y}) &&
+           contains(polygon, {x, y - margin}) && contains(polygon, {x, y + margin});
   };
   for (std::size_t other = 0; other < index; ++other) {
     const Bounds b = bounds_of(areas[other].polygon.outline);

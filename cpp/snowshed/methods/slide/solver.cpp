@@ -29,7 +29,7 @@ std::string on_map(const Terrain& terrain, int column, int row) {
 /// Throws if a cell under an area lacks a height at one of its nodes.
 void check_no_hole(const Terrain& terrain, const Polygon& area, const std::string& where) {
   double low[2] = {area.outline[0][0], area.outline[0][1]}, high[2] = {low[0], low[1]};
-  for (const MapPoint& p : area.outline)
+  for (const Point2& p : area.outline)
     for (const int axis : {0, 1}) {
       low[axis] = std::min(low[axis], p[axis]);
       high[axis] = std::max(high[axis], p[axis]);
@@ -54,7 +54,7 @@ void check_on_terrain(const Terrain& terrain, const std::vector<Area>& areas,
                       const std::string& kind) {
   for (std::size_t i = 0; i < areas.size(); ++i) {
     const std::string where = "/terrain/" + kind + "/" + std::to_string(i);
-    for (const MapPoint& p : areas[i].polygon.outline) {
+    for (const Point2& p : areas[i].polygon.outline) {
       if (!terrain.place(p[0], p[1]).inside())
         throw InputError(
             where, "reaches beyond the terrain, which extends from (" + on_map(terrain, 0, 0) +

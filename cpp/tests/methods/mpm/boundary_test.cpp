@@ -45,7 +45,7 @@ double acceleration(const Slide& slide, double from, double to) {
 
 double by_coulomb(double friction) { return 9.81 * (std::sin(tilt) - friction * std::cos(tilt)); }
 
-// The slab on which the usual nodal rule fails: it holds it at mu = 0.6 already (tan 40 = 0.84).
+// The usual nodal rule fails on this slab: it holds the slab at mu = 0.6 (tan 40 = 0.84).
 class LongSlab : public testing::TestWithParam<double> {};
 INSTANTIATE_TEST_SUITE_P(Friction, LongSlab, testing::Values(0.0, 0.3, 0.6, 0.8));
 
@@ -55,7 +55,7 @@ TEST_P(LongSlab, SlidesAsCoulombSays) {
               0.01 * by_coulomb(friction));
 }
 
-// Slip, which cancels pulls, is where the usual rule fails: it must take them off the friction.
+// Slip also cancels pulls. They must reduce the friction, which the usual rule does not do.
 TEST_P(LongSlab, SlidesAsCoulombSaysWithSlipToo) {
   const double friction = GetParam();
   EXPECT_NEAR(acceleration({2.0, friction, Condition::slip}, 0.1, 0.3), by_coulomb(friction),
@@ -85,7 +85,8 @@ TEST(Friction, HoldsBeyondTheAngleOfRepose) {
 }
 
 TEST(Friction, StopsASlidingSlab) {
-  // On level ground; once the contact has set in it takes v/(mu g) and v^2/(2 mu g) to stop.
+  // On level ground the slab stops within the time v/(mu g) and the distance v^2/(2 mu g), once
+  // contact has set in.
   const auto solver =
       make_solver(options_for({2, Precision::float32}),
                   {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::separate, 0.5)});
@@ -109,10 +110,10 @@ struct Chunk {
   double cells, speed, tilt, friction;  // edge; m/s; degrees
 };
 
-/// A chunk of snow, at most five cells high, that slides down a ramp at some speed. On its way it
-/// must feel the friction that Coulomb says, and as much energy must go into friction. A chunk of
-/// two cells is over a node for as long as it takes to slide four cells, so half a cell of memory
-/// is felt most there.
+/// A chunk of snow, at most five cells high, that slides down a ramp at some speed. Its
+/// friction must be Coulomb's, and friction must take as much energy. The delay of friction, half a
+/// cell of sliding, matters most for a chunk of two cells: it covers a node only while it slides
+/// four cells.
 void expect_coulomb(const Chunk& c, double bar) {
   SCOPED_TRACE(testing::Message() << c.cells << " cells, " << c.speed << " m/s, " << c.tilt);
   constexpr double dx = 0.01;
@@ -239,7 +240,8 @@ TEST(ThinPanel, OfACombinedSolidLetsNoSnowThrough) {
     batch.velocity.z() = -3;
     solver->add(batch);
     run_until(*solver, 0.15);
-    // Some slides off the end of the shelf, which its rounding moves out by a cell.
+    // Some snow slides off the end of the shelf, which thickening has rounded and moved out by a
+    // cell.
     for (const Vec3& x : solver->state().positions)
       if (x.x() > -0.21) ASSERT_GT(x.z(), 0);
   }

@@ -171,7 +171,7 @@ TEST(Scatter, SaysWhenAParticleHasLeftTheTile) {
 [[noreturn]] void choose_kernels(const char* name) {
   setenv("SNOWSHED_KERNELS", name, 1);
   try {
-    std::fprintf(stderr, "chose %s", kernel_variant());
+    std::fprintf(stderr, "chose %s", kernel_variant_name());
   } catch (const InputError& error) {
     std::fprintf(stderr, "%s", error.what());
   }

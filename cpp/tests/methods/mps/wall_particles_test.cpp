@@ -19,8 +19,8 @@ Particles<D> at_rest(const std::vector<Vec3>& positions) {
   for (std::size_t i = 0; i < positions.size(); ++i) {
     p.position[i] = section<D>(positions[i]);
     p.velocity[i].setZero();
-    p.push[i].setZero();
-    p.shear[i].setZero();
+    p.pressure_acceleration[i].setZero();
+    p.viscous_acceleration[i].setZero();
     p.kind[i] = Kind::moving;
     p.event[i] = 0;
   }

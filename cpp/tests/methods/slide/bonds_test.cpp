@@ -24,7 +24,7 @@ Particles lattice(int columns, int rows, double fall = 0) {
 TEST(SlideBonds, ALatticeIsBondedAlongItsEdges) {
   const int columns = 7, rows = 5;
   const Bonds bonds = bonds_between(lattice(columns, rows), 0, 1.0, nullptr);
-  // Along the rows, and two upward from each point but at the ends of the rows.
+  // Bonds along the rows, and two upward from each point, except at the ends of rows.
   EXPECT_EQ(bonds.size(), std::size_t(rows * (columns - 1) + (rows - 1) * (2 * columns - 1)));
   for (const double length : bonds.rest_length) EXPECT_NEAR(length, 1, 1e-12);
 }
@@ -98,8 +98,8 @@ TEST(SlideBonds, AStrainedBondPullsWithItsModulusTimesContactAreaTimesStrain) {
   const auto at = [&](std::size_t i) {
     return *thickness.at<double>(strip.slide->order_by_id()[i]);
   };
-  // Force on the lower left particle, along the pull: of the bond to the lower right one, and of
-  // the bond to the tip above, whose length does not change yet.
+  // The force along the pull on the lower left particle comes from the bond to the lower right one.
+  // The bond to the tip above has not changed its length yet.
   const double length = (before.positions[1] - before.positions[0]).norm() + 1e-4 * 0.2;
   const double expected = (length - 1) * 0.5 * (at(0) + at(1)) * (length / std::sqrt(3.0)) * 50000;
   const double measured = 300 * (after.velocities[0].x() - before.velocities[0].x()) / 1e-4;

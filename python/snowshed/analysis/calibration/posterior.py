@@ -138,7 +138,7 @@ class Posterior:
         return pd.DataFrame(rows)
 
     def table(self) -> pd.DataFrame:
-        """Return the samples: the parameters, and ``discrepancy_height``, ... as parts."""
+        """Return the samples: the parameters, and ``discrepancy_height``, ... as fractions."""
         import pandas as pd
 
         columns = [*self.surrogate.parameters, *_discrepancies(self.quantities)]
@@ -238,7 +238,7 @@ class _Density:
     values, variances
         Shape (m,): the means, m, and their variances by measuring and seeding, m².
     seedings
-        Shape (m,): variance by the seeding of a single run, which the surrogate's contain, m².
+        Shape (m,): variance by the seeding of a single run, a part of the surrogate's, m².
     scales
         Shape (m,): mean of the quantity over the measurements, m.
     """

@@ -125,7 +125,7 @@ class Ranges:
 
 
 def season_settings(base: SeasonSettings, values: Mapping[str, float], dx: float) -> SeasonSettings:
-    """Return the settings of a season with drawn values; thin releases slide together."""
+    """Return a season's settings with drawn values; releases below 1.5 cells slide together."""
     drawn: dict[str, Any] = {
         name: values[name] for name in ("friction", "adhesion", "catch") if name in values
     }

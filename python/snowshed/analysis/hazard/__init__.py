@@ -1,1 +1,1 @@
-"""Maps of many slides: how often snow comes where, and how hard."""
+"""Maps of many slides: the probability that snow reaches a place, and its intensity."""

@@ -1,4 +1,4 @@
-"""Published results of a regression of the same panels, which stand beside those of ours.
+"""Published results of a regression of the same panels, printed beside our own.
 
 They come with the data set, in ``data/published.json``.
 """
@@ -18,9 +18,9 @@ if TYPE_CHECKING:
     import pandas as pd
 
 FILE = Path(__file__).with_name("data") / "published.json"
-#: Bounds by which results of ours agree with what was published: the RBF kernel's mean absolute
-#: error is at most the first, the linear kernel's is larger by at least the second factor, and
-#: quartiles differ by at most the third part.
+#: Bounds within which our results agree with the published ones: the largest mean absolute error of
+#: the RBF kernel, the smallest ratio of the linear kernel's error to it, and the largest relative
+#: deviation of quartiles.
 MAX_RBF_ERROR, LINEAR_WORSE, QUARTILES_OFF = 0.004, 2.5, 0.20
 
 

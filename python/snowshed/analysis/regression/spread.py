@@ -1,7 +1,8 @@
 """The spread of stacks around their prediction.
 
 The 100 models differ, and the data scatter about any model. Both are measured on panels that a
-model has never seen: rows of the same panel are alike, and leaving out single rows would flatter.
+model has never seen. Rows of the same panel are alike, so errors on single rows that are left out
+would be too small.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from snowshed.base.arrays import Floats
 
 #: Part of the cases that lie within the spread, and within the interval.
 SPREAD, INTERVAL = 0.68, 0.90
-MIN_SCALE = 1e-9  # of a scale, as a part of the target's deviation
+MIN_SCALE = 1e-9  # smallest scale, relative to the standard deviation of the predictions
 
 
 @dataclass(frozen=True)
@@ -28,8 +29,8 @@ class Spread:
     """Half widths of intervals about a prediction.
 
     The scale of an error is sqrt(s^2 + (a + b |prediction|)^2), with s the standard deviation of
-    the models; how many scales hold which part of the errors is counted on unseen panels
-    (normalised conformal prediction), so that no distribution is assumed.
+    the models. The number of scales that contains a share of the errors is counted on unseen
+    panels (normalised conformal prediction), so that no distribution is assumed.
 
     Attributes
     ----------
@@ -124,7 +125,7 @@ def stack_spread(rows: StackRows, target: str, predictions: Floats, deviations: 
     rows, target
         The data.
     predictions, deviations
-        Predictions of models that have not seen the row's panel, and spread of the answering
+        Predictions of models that have not seen the row's panel, and standard deviation of the
         models, for each row, shape (n,).
     """
     stacks = rows.stacks[target]

@@ -101,7 +101,7 @@ class EpsilonSVR(RegressorMixin, BaseEstimator):
     ) -> Iterator[Floats]:
         """Fit every epsilon and C of a grid, and yield the predictions of each fit.
 
-        All fits share the kernel matrix, and those of one epsilon share what `fit_along_c` can.
+        All fits share the kernel matrix. For one epsilon, `fit_along_c` reuses a fit where it can.
 
         Parameters
         ----------

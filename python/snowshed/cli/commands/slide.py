@@ -174,5 +174,5 @@ def _steps(text: Optional[str]) -> list[int]:
     steps = numbers("--particles-at", text, example="1,100")
     for step in steps:
         if step < 0 or step % 1:
-            raise InputError(f"--particles-at: {step:g}; a number of steps is whole and from 0")
+            raise InputError(f"--particles-at: {step:g} is not a whole number, at least 0")
     return [int(step) for step in steps]

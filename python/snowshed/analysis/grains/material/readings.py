@@ -75,9 +75,9 @@ def invariants(curve: LoadingCurve, *, isotropic: bool = False) -> tuple[Floats,
 def elasticity(curve: LoadingCurve) -> tuple[Elasticity, float]:
     """Return E and nu, and R2 of the line, from confined compression before the first bond breaks.
 
-    The stress has the slope E (1 - nu) / ((1 + nu)(1 - 2 nu)) over the strain, and that on the
-    sides nu/(1 - nu) over that on the plate. Lines are fitted by least squares through the origin,
-    so that waves at the beginning hardly matter.
+    The stress has the slope E (1 - nu) / ((1 + nu)(1 - 2 nu)) over the strain. The stress on the
+    sides is nu/(1 - nu) times that on the plate. Lines are fitted by least squares through the
+    origin, so that waves at the beginning hardly matter.
 
     Raises
     ------
