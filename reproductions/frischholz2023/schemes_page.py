@@ -18,6 +18,7 @@ from reproductions.common.claims_tables import VERDICTS, claims_csv, read_claims
 from reproductions.common.folder import ReproductionFolder
 from reproductions.common.hypothesis_tests import Judged
 from reproductions.common.markdown import markdown_table
+from reproductions.frischholz2023.claims.scheme_reasons import REASONS
 from reproductions.frischholz2023.claims_page import DATA, DOCS
 from snowshed._core import InputError
 from snowshed.cli.main import main as snowshed
@@ -37,7 +38,8 @@ def page(data: Path = DATA) -> str:
     Raises
     ------
     InputError
-        If the results are damaged, or the two tables list other claims.
+        If the results are damaged, the two tables list different claims, or a changed verdict has
+        no reason.
     """
     pairs = _pairs(data)
     changed = [pair for pair in pairs if len({judged.finding.verdict for judged in pair}) > 1]
@@ -55,6 +57,7 @@ def page(data: Path = DATA) -> str:
         f"Of {len(pairs)} claims, {len(changed)} have another verdict with `{OBJECTIVE}`:",
         markdown_table(_counts_grid(pairs)),
         "## Claims with another verdict",
+        "\n".join(_reason(pair[0]) for pair in changed),
         markdown_table(_findings_grid(changed)),
         "## Claims with the same verdict",
         markdown_table(_findings_grid([pair for pair in pairs if pair not in changed])),
@@ -62,6 +65,12 @@ def page(data: Path = DATA) -> str:
         "in `reproductions/frischholz2023/data`. Do not edit it by hand.",
     ]
     return "\n\n".join(parts) + "\n"
+
+
+def _reason(claim: Judged) -> str:
+    if claim.text not in REASONS:
+        raise InputError(f"claims/scheme_reasons.py: no reason for {claim.text!r}")
+    return f"- **{claim.text}** ({claim.source}) {REASONS[claim.text]}"
 
 
 def keep(folders: Sequence[Path], data: Path = DATA) -> None:

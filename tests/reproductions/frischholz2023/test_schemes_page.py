@@ -4,8 +4,12 @@ import pytest
 from reproductions.common.claims_tables import claims_csv
 from reproductions.common.hypothesis_tests import CONFIRMED, CONTRADICTED, Finding, Judged
 from reproductions.frischholz2023 import schemes_page
+from reproductions.frischholz2023.claims.scheme_reasons import REASONS
 
 from snowshed._core import InputError
+
+#: A claim with a reason, whatever its verdicts.
+GROWS = next(iter(REASONS))
 
 
 def judged(verdict, text, source="3.3"):
@@ -28,23 +32,34 @@ def test_the_page_is_what_the_results_say():
     assert schemes_page.PAGE.read_text(encoding="utf-8") == schemes_page.page()
 
 
+def test_reasons_are_of_changed_verdicts():
+    pairs = schemes_page._pairs(schemes_page.DATA)
+    changed = {a.text for a, b in pairs if a.finding.verdict != b.finding.verdict}
+    assert changed == set(REASONS)
+
+
 def test_claims_that_change_are_apart_from_those_that_stay(folders, tmp_path):
-    thesis = [judged(CONFIRMED, "It grows."), judged(CONFIRMED, "It falls.")]
-    objective = [judged(CONTRADICTED, "It grows."), judged(CONFIRMED, "It falls.")]
+    thesis = [judged(CONFIRMED, GROWS), judged(CONFIRMED, "It falls.")]
+    objective = [judged(CONTRADICTED, GROWS), judged(CONFIRMED, "It falls.")]
     of_panels = judged(CONFIRMED, "It is long.", "5.1.2")
     schemes_page.keep(folders([*thesis, of_panels], [*objective, of_panels]), tmp_path)
     before, changed, same = schemes_page.page(tmp_path).split("\n## ")
     assert "Of 2 claims, 1 have another verdict" in before
     assert "| `objective` | 1 | 1 | 0 |" in before
-    row = (
-        "| 3.3 | It grows. | confirmed: slope, m: confirmed | contradicted: slope, m: contradicted"
-    )
+    row = f"| 3.3 | {GROWS} | confirmed: slope, m: confirmed | contradicted: slope, m: contradicted"
     assert row in changed and "It falls." not in changed
     assert "It falls." in same and "It is long." not in same
 
 
+def test_a_changed_verdict_without_a_reason_is_refused(folders, tmp_path):
+    made = folders([judged(CONFIRMED, "It falls.")], [judged(CONTRADICTED, "It falls.")])
+    schemes_page.keep(made, tmp_path)
+    with pytest.raises(InputError, match=r"no reason for 'It falls\.'"):
+        schemes_page.page(tmp_path)
+
+
 def test_tables_of_other_claims_are_refused(folders, tmp_path):
-    made = folders([judged(CONFIRMED, "It grows.")], [judged(CONFIRMED, "It falls.")])
+    made = folders([judged(CONFIRMED, GROWS)], [judged(CONFIRMED, "It falls.")])
     schemes_page.keep(made, tmp_path)
     with pytest.raises(InputError, match="list different claims"):
         schemes_page.page(tmp_path)
