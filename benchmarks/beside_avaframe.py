@@ -5,11 +5,11 @@ Usage: python -m benchmarks.beside_avaframe AVAFRAME_PYTHON [--particles 360 110
 
 AVAFRAME_PYTHON is the interpreter of an environment with AvaFrame 2.1 (``pip install
 avaframe==2.1``). Both run the same project folders in turn, in steps of 0.01 s; the best of three
-counts. The projects are a slab on an incline with run-out, of about as many particles as are asked
-for, and copies of those that are named, without their ini. AvaFrame's time is that of its loop over
-time steps, which also keeps the peaks and reports how far it is, and that of its function for a
-time step alone. Our time is that of the loop over time steps, with the peaks. Nothing else should
-run on the machine meanwhile.
+counts. The projects are slabs on an incline with run-out, with about the given numbers of
+particles, and copies of the given FOLDERs without their ini. AvaFrame's times are those of its loop
+over time steps, which also updates the peaks and reports progress, and of its function for a time
+step alone. Our time is that of the loop over time steps, with the peaks. Nothing else should run on
+the machine meanwhile.
 """
 
 from __future__ import annotations
@@ -95,7 +95,7 @@ def make_project(folder: Path, particles: int, python: str) -> None:
 
 
 def avaframe_seconds(folder: Path, steps: int, python: str) -> tuple[float, float]:
-    """Return AvaFrame's time for a particle step, s: of its loop, and of the steps alone."""
+    """Return AvaFrame's time for a particle step in s: by its loop, and by the steps alone."""
     subprocess.run(
         [python, "-I", "-c", AVAFRAME, str(folder), str(steps)],
         check=True,
@@ -117,7 +117,7 @@ def our_seconds(folder: Path, steps: int) -> tuple[float, int]:
 
 
 def copied_project(project: Path, folder: Path) -> None:
-    """Copy what both read of a project folder."""
+    """Copy the files of a project folder that both programs read."""
     for part in ("dem.*", "REL/*"):
         for file in (project / "Inputs").glob(part):
             copy = folder / file.relative_to(project)

@@ -7,9 +7,9 @@ PROGRAM is the program of MPS-Basic (Koshizuka and Shibata laboratory, MIT licen
 optimisation and OpenMP. In both programs a column of water, twice as high as wide, collapses in a
 basin twice as long as the column, with the same distance between particles and the same radius of
 the pressure's weights. The unit is a step of one water particle, and the best of three runs counts.
-MPS-Basic's walls are particles, too, and ours are mirrors: its speed with its walls among the
-particles is printed, too. Writes benchmarks/results/DATE-mps.json. Nothing else should run on the
-machine meanwhile.
+MPS-Basic's walls are particles and ours are mirrors, so its speed per particle with the walls is
+printed, too. Writes benchmarks/results/DATE-mps.json. Nothing else should run on the machine
+meanwhile.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ GRADIENT_RADIUS = 2.1  # of MPS-Basic, in spacings, by default
 BASIN = 2  # its length, in widths of the column
 LAYERS = 4  # of its wall: two whose pressure is known, and two behind them
 STEP = 4e-4  # s, of MPS-Basic, in its own proportion to the spacing
-FIRST_STEPS, STEPS = 5, 30  # of MPS-Basic: those before count starts, and those that count
+FIRST_STEPS, STEPS = 5, 30  # of MPS-Basic: untimed steps first, then timed ones
 OUR_STEPS = 400
 REPETITIONS = 3
 FLUID, WALL, DUMMY = 1, 2, 3

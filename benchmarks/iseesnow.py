@@ -37,7 +37,7 @@ from snowshed.running.run import run
 from snowshed.scene.builders.slides import slide_scene
 
 THICKNESS, FRICTION, TURBULENCE = 1.5, 0.4, 2000.0  # m, 1, m/s2
-REACHED = 0.1  # m
+MIN_THICKNESS = 0.1  # m
 
 
 def unpacked(folder: Path, pattern: str, to: Path) -> Path:
@@ -76,7 +76,7 @@ def our_peaks(case: Path, folder: Path, changes: dict[str, object]) -> tuple[Ras
 
 def readings(thickness: Raster, speed: Raster) -> dict[str, float]:
     """Return the figures of two peak rasters."""
-    reached = thickness.heights > REACHED
+    reached = thickness.heights > MIN_THICKNESS
     columns = np.flatnonzero(reached.any(axis=0))
     return {
         "peak speed, m/s": float(np.nanmax(speed.heights)),
@@ -92,7 +92,7 @@ def difference(ours: Floats, theirs: Floats, where: np.ndarray) -> float:
 
 
 def compare(case: Path, changes: dict[str, object]) -> None:
-    """Run a case and print how it compares."""
+    """Run a case and print the comparison."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         begin = time.perf_counter()
@@ -105,7 +105,7 @@ def compare(case: Path, changes: dict[str, object]) -> None:
     for key in a:
         change = f"{100 * (a[key] / b[key] - 1):+.1f} %" if "x" not in key.split()[1] else ""
         print(f"  {key:20} {a[key]:>10.4g} {b[key]:>10.4g} {change:>8}")
-    reached = [raster[0].heights > REACHED for raster in (ours, model)]
+    reached = [raster[0].heights > MIN_THICKNESS for raster in (ours, model)]
     either, both = reached[0] | reached[1], reached[0] & reached[1]
     thickness, speed = (difference(o.heights, m.heights, either) for o, m in zip(ours, model))
     print(

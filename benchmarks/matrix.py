@@ -3,9 +3,9 @@
 Usage: python -m benchmarks.matrix path/to/snowshed_bench
 
 Prints nanoseconds of processor time for each particle update, on one thread, and writes
-benchmarks/results/DATE-matrix-COMPILER.json. A cell is out of line if it takes more than twice
-what its neighbours predict: those that differ from it in one choice only, such as the transfer,
-scaled by the price of this choice elsewhere.
+benchmarks/results/DATE-matrix-COMPILER.json. A cell is out of line if it takes more than twice the
+time that its neighbours predict. Neighbours differ from it in one choice only, such as the
+transfer, and are scaled by the price of this choice elsewhere.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ from snowshed.base.machine import cpu_name
 RESULTS = Path(__file__).parent / "results"
 VARIANTS = ("baseline", "avx2", "avx512")
 CHOICES = ("dimension", "precision", "transfer", "basis", "snow")
-#: A cell that is this many times off its neighbours is a finding.
-OUT_OF_LINE = 2.0
+#: Factor between the time of a cell and its predicted time from which it is a finding.
+MAX_FACTOR = 2.0
 #: Largest time in double precision, over that in single precision.
 DOUBLE_OVER_FLOAT = 2.3
 
@@ -76,7 +76,7 @@ def findings(times: Times) -> Iterator[str]:
     """Yield a sentence for each cell that is out of line, or too slow in double precision."""
     for cell, time in times.items():
         expected = predicted(times, cell)
-        if not 1 / OUT_OF_LINE < time / expected < OUT_OF_LINE:
+        if not 1 / MAX_FACTOR < time / expected < MAX_FACTOR:
             yield f"{'/'.join(cell)}: {time:.1f} ns, where its neighbours predict {expected:.1f}"
         if cell[1] == "double":
             ratio = time / times[(cell[0], "float", *cell[2:])]

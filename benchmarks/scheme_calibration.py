@@ -19,7 +19,7 @@ from benchmarks.keeping import RESULTS, append_rows
 from snowshed.analysis.calibration.comparison import SimulatedStacks, compare_stacks
 from snowshed.analysis.calibration.measurements import Measurement, measured_column
 from snowshed.analysis.calibration.misfit import rank_sets
-from snowshed.analysis.calibration.parameter_ranges import COHESION, GRID, PRESSURE, SLOPE
+from snowshed.analysis.calibration.parameter_grid import COHESION, GRID, PRESSURE, SLOPE
 from snowshed.scene.components import Snow
 from snowshed.scene.scene import Scene
 from snowshed.snow.stack.quantities import QUANTITIES
@@ -30,7 +30,7 @@ SCHEMES = ("objective", "thesis")
 #: The six stacks of the scheme thesis that stand in for measured ones.
 STAND_IN, STAND_IN_SEEDS = "thesis", range(101, 107)
 #: Snows stronger than those of the thesis's grid.
-STRONGER = {SLOPE: [0.5, 0.7], PRESSURE: [10e3, 14e3], COHESION: [0.2, 0.4]}
+STRONGER_SNOWS = {SLOPE: [0.5, 0.7], PRESSURE: [10e3, 14e3], COHESION: [0.2, 0.4]}
 TILT = "panel.tilt"
 TILTS = {TILT: [40.0, 50.0]}
 SNOW = [SLOPE, PRESSURE, COHESION]
@@ -43,7 +43,7 @@ def run(folder: Path) -> None:
     calibrated = Snow.preset("calibrated").to_data()
     known = {path: [calibrated[path.rpartition(".")[2]]] for path in SNOW}
     tables = [_stacks(lab, STAND_IN, known, STAND_IN_SEEDS, folder / "stand-in")]
-    for scheme, snows in (("thesis", GRID), ("objective", GRID), ("objective", STRONGER)):
+    for scheme, snows in (("thesis", GRID), ("objective", GRID), ("objective", STRONGER_SNOWS)):
         name = f"{scheme}-{'grid' if snows is GRID else 'stronger'}"
         tables.append(_stacks(lab, scheme, snows, [1], folder / name))
     append_rows(pd.concat(tables), STACKS)

@@ -68,7 +68,7 @@ CASES = {
     ),
 }
 #: Cells whose mean stacks count as exact, m.
-FINEST = 0.0025
+REFERENCE_CELLS = 0.0025
 
 
 def scene_of(scheme: str, cells: float, case: str = "lab2d") -> Scene:
@@ -114,7 +114,7 @@ def measure_times(all_cells: Sequence[float]) -> None:
 
 
 def deviations() -> pd.DataFrame:
-    """Return by how much mean stacks deviate from those on the finest grid of their scheme.
+    """Return the deviations of mean stacks from those on the finest grid of their scheme.
 
     Returns
     -------
@@ -146,7 +146,7 @@ def draw() -> None:
 
 
 def _draw_errors(axes: Axes, lab: pd.DataFrame, times: pd.Series, name: str, label: str) -> None:
-    coarse = lab[lab["dx"] > FINEST]
+    coarse = lab[lab["dx"] > REFERENCE_CELLS]
     errors = coarse.assign(square=coarse[f"{name}_off"] ** 2).groupby(["scheme", "dx"])["square"]
     error = 100 * errors.mean() ** 0.5
     for scheme in SCHEMES:
@@ -182,7 +182,9 @@ def main() -> None:
     running.add_argument("--seeds", type=int, default=12)
     running.add_argument("--cells", type=float, nargs="+", default=[0.02, 0.01, 0.005])
     timing = commands.add_parser("time")
-    timing.add_argument("--cells", type=float, nargs="+", default=[0.02, 0.01, 0.005, FINEST])
+    timing.add_argument(
+        "--cells", type=float, nargs="+", default=[0.02, 0.01, 0.005, REFERENCE_CELLS]
+    )
     commands.add_parser("draw")
     chosen = parser.parse_args()
     if chosen.command == "run":

@@ -32,7 +32,7 @@ YADE_STEP = 2.3e-8  # s
 RANGES = ((0.05, 0.10), (0.10, 0.15))
 
 
-def ours(file: Path, strain: float) -> list[float]:
+def snowshed_stresses(file: Path, strain: float) -> list[float]:
     """Return the peak and the means that snowshed finds, kPa."""
     stage = LoadingStage(kind="compress", speed=SPEED, strain=strain)
     scene = grains_scene(file, VOXEL, [stage], settings=GrainsSettings(damping=0.2, threads=1))
@@ -42,7 +42,7 @@ def ours(file: Path, strain: float) -> list[float]:
     return [float("nan") if value is None else value / 1e3 for value in stresses]
 
 
-def theirs(file: Path, strain: float) -> list[float]:
+def yade_stresses(file: Path, strain: float) -> list[float]:
     """Return the peak and the means that Yade finds, kPa."""
     sample = VoxelSample.of_labels(np.load(file), VOXEL)
     press = Press(YADE_STEP, SPEED, strain, friction=0.2, damping=0.2, every=200)
@@ -66,7 +66,7 @@ def main() -> None:
     cases = []
     print(f"{'kPa':>30} {'peak':>8} {'5-10 %':>8} {'10-15 %':>8}")
     for file in options.samples:
-        for engine, press in (("snowshed", ours), ("Yade", theirs)):
+        for engine, press in (("snowshed", snowshed_stresses), ("Yade", yade_stresses)):
             stresses = press(file, options.strain)
             print(f"{file.stem[-20:]:>20} {engine:>9}", *(f"{value:>8.3g}" for value in stresses))
             cases.append({"sample": file.stem, "engine": engine, "kpa": stresses})

@@ -1,4 +1,4 @@
-"""Measure what the study engine costs, and how two workers share equal runs.
+"""Measure the overhead of the study engine, and the gain of two workers with equal runs.
 
 Usage: python -m benchmarks.study
 

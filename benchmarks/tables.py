@@ -14,7 +14,7 @@ import numpy as np
 
 Case = dict[str, Any]
 
-#: What the price list names, and the two cases whose difference it is.
+#: Features of the price list, each with the two cases whose difference is its price.
 PRICES = {
     "third dimension (27 nodes instead of 9)": ("base_3d", "base_2d"),
     "plasticity and hardening, snow not yielding": ("cam_clay_elastic", "base_3d"),

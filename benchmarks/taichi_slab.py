@@ -3,11 +3,12 @@
 Usage: python -m benchmarks.taichi_slab [--steps 50] [--threads 2] [--atomic] [--json FILE]
 
 Needs Taichi (pip install taichi). 262 144 particles of reference snow on sticky ground, float,
-quadratic splines, FLIP 0.99. Taichi takes the time steps that snowshed chose, free of charge, and
-their end states are compared. Numbers in parentheses are equations of docs/methods/mpm.md.
+quadratic splines, FLIP 0.99. Taichi takes the time steps that snowshed chose, which costs it
+nothing, and the end states are compared. Numbers in parentheses are equations of
+docs/methods/mpm.md.
 
 The Taichi version is the fastest of those tried: grid flat or in blocks, as one or eight arrays;
-particles as one or many arrays; stress in a kernel of its own or not; transfers fused or not.
+particles as one or many arrays; stress in a separate kernel or not; transfers fused or not.
 Particles are sorted by cell once. Slabs of cells scatter in two colours, without atomics, which
 holds until a particle strays two cells from its slab; --atomic scatters as is usual in Taichi.
 """

@@ -11,14 +11,14 @@ if(SNOWSHED_SANITIZE)
   set(snowshed_default_variants baseline)  # all variants come from the same templates
 elseif(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64|amd64")
   list(APPEND snowshed_all_variants avx2 avx512)
-  # For processors without AVX2: -O1 builds in half the time, and warns without cause.
+  # For processors without AVX2. -O1 builds in half the time, but gives false warnings.
   set(SNOWSHED_KERNEL_FLAGS_baseline -O1
     $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
 endif()
 set(SNOWSHED_KERNEL_VARIANTS ${snowshed_default_variants} CACHE STRING
   "instruction sets to build the kernels for: all, native (this machine's), or a list")
 
-# What `native` stands for: the baseline, and the widest set that this machine runs.
+# Sets `result` to the meaning of `native`: the baseline, and the widest set that this machine runs.
 function(snowshed_native_variants result)
   try_run(runs compiles ${CMAKE_BINARY_DIR}/widest_kernels
     ${CMAKE_CURRENT_SOURCE_DIR}/cpp/apps/widest_kernels.cpp

@@ -9,8 +9,8 @@ else()
 endif()
 option(SNOWSHED_UNITY_BUILD "Compile several sources at a time" ${snowshed_default_batches})
 
-# The compiler gets `size` sources at a time. The arguments behind it are headers of libraries that
-# most of the sources include.
+# Compiles `size` sources at a time. The arguments after `size` are library headers that most of the
+# sources include.
 function(snowshed_in_batches target size)
   set_target_properties(${target} PROPERTIES
     UNITY_BUILD ${SNOWSHED_UNITY_BUILD} UNITY_BUILD_BATCH_SIZE ${size})

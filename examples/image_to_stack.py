@@ -40,7 +40,7 @@ def main(folder: Path, voxels: int = 40, coarser: int = 2, dx: float = 0.01) -> 
 
 
 def stages() -> list[str]:
-    """Return the folders of what is found in the image."""
+    """Return the folders of the results."""
     return [name.split("/")[0] for name in PICTURES]
 
 

@@ -2,7 +2,7 @@
 
     python examples/in_memory.py [FOLDER [DX]]
 
-The particles are read while they move; only the last of them go to a file, FOLDER/last.bin.
+The particles are read while they move; only their final state goes to a file, FOLDER/last.bin.
 """
 
 import sys
@@ -14,7 +14,7 @@ from snowshed import Scene, Simulation
 
 
 def main(folder: str = "in-memory", dx: float = 0.01) -> None:
-    """Run one event, print what the particles do, and store how they end up in `folder`."""
+    """Run one event, print the particles' motion, and store their final state in `folder`."""
     scene = Scene.preset("lab-50").update({"dimension": 2, "numerics.dx": dx})
     simulation = Simulation(scene)
     simulation.begin_event()

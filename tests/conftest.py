@@ -12,10 +12,10 @@ import pytest
 from snowshed import Scene, run_events
 from snowshed.io import read_station, vdb_available
 
-# What writes and reads OpenVDB files, where snowshed was built without it.
+# The module that writes and reads OpenVDB files, if snowshed was built without it.
 collect_ignore = [] if vdb_available() else ["io/vdb/test_vdb_files.py"]
 
-# A shell in the background has them ignored, which the commands under test would keep.
+# A shell in the background ignores interrupts, and commands under test would inherit that.
 for _signal in (signal.SIGINT, signal.SIGHUP):
     if signal.getsignal(_signal) is signal.SIG_IGN:
         _heard = signal.default_int_handler if _signal == signal.SIGINT else signal.SIG_DFL

@@ -1,4 +1,5 @@
-"""The house of docs/develop/architecture.md: arrows point down, and nothing grows too large."""
+"""The structure of docs/develop/architecture.md: dependencies point down, and no file is too
+large."""
 
 import ast
 import re
@@ -29,7 +30,7 @@ MAX_ROOMS = 12
 
 
 def tracked(*patterns):
-    """Return the files of the project that git knows, or may come to know."""
+    """Return the files of the project that git tracks or could add."""
     command = ["git", "ls-files", "--cached", "--others", "--exclude-standard", *patterns]
     listed = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
     return [path for name in listed.stdout.splitlines() if (path := ROOT / name).is_file()]
@@ -70,13 +71,13 @@ def test_no_method_knows_another():
 
 
 def names_of_methods():
-    """Return the methods that the registry lists, a line each."""
+    """Return the methods that the registry lists, one per line."""
     registry = (CPP / "methods" / "registry.cpp").read_text()
     return re.findall(r"^ +add\((\w+)\)", registry, re.MULTILINE)
 
 
 def test_no_method_is_named_outside_its_folder():
-    """Texts may speak of a slide or of grains; names, includes and values may not."""
+    """Texts may mention a slide or grains; names, includes and values may not."""
     names = "|".join(names_of_methods())
     prefixes = "|".join(name.capitalize() for name in names_of_methods())
     value = re.compile(rf'"(?:{names})"|#include ".*/(?:{names})[/.].*"')
@@ -144,7 +145,7 @@ def test_the_root_of_the_package_has_few_rooms():
 
 
 def folders():
-    """Return the folders of the project in which there is source, from its root."""
+    """Return the folders of the project that contain source files, from its root."""
     inside = {path.relative_to(ROOT).parent for path in tracked("*.py", "*.?pp", "*.lua", "*.sh")}
     return {folder for path in inside for folder in (path, *path.parents)} - {Path()}
 
@@ -156,7 +157,7 @@ def test_the_page_lists_every_folder():
     for indent, name in re.findall(r"^( *)([\w/]+)/", drawing, re.MULTILINE):
         above[len(indent) // 2 :] = [name]
         drawn.update({Path(*above), *Path(*above).parents})
-    repeating = {"tests", "lua_compat"}  # what stands in other folders
+    repeating = {"tests", "lua_compat"}  # folders that repeat others
     missing = {one for one in folders() - drawn if not repeating & set(one.parts[:-1])}
     assert missing == set()
     assert {one for one in drawn if not (ROOT / one).is_dir()} == set()
@@ -168,10 +169,10 @@ def test_no_source_file_is_long():
     assert {str(path): n for path, n in lengths.items() if n > MAX_LINES} == {}
 
 
-#: What writes a file that is there under its own name before it is whole.
+#: Calls that write a file under its final name before it is complete.
 WRITERS = {"write_text", "write_bytes", "savefig", "savez", "savez_compressed", "savetxt", "to_csv"}
 WRITERS |= {"to_parquet", "to_netcdf", "copyfile", "copytree"}
-#: Who may do so elsewhere, and why.
+#: Modules that may call them elsewhere, and the reasons.
 WRITE_BY_NAME = {
     "io/csv_table.py": "makes texts only",
     "scene/builders/terrain.py": "has a temporary folder",
@@ -180,7 +181,7 @@ WRITE_BY_NAME = {
 
 
 def own_names(tree):
-    """Return the names that a module has from `replacing`, and those of files in memory."""
+    """Return the names in a module that come from `replacing` or stand for files in memory."""
     names = set()
     for node in ast.walk(tree):
         if isinstance(node, ast.With) and "replacing" in ast.dump(node.items[0].context_expr):
@@ -191,7 +192,7 @@ def own_names(tree):
 
 
 def writes_by_name(tree):
-    """Yield the calls that write files, but for those to what `replacing` gave or to memory."""
+    """Yield the calls that write files, except those to files of `replacing` or in memory."""
     own = own_names(tree)
     for node in ast.walk(tree):
         if not isinstance(node, ast.Call) or not isinstance(node.func, ast.Attribute):

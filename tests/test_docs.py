@@ -1,4 +1,4 @@
-"""The pages: what they say exists, their examples run, and a reader finds out whether to read on.
+"""The pages: their names and files exist, their examples run, and they begin with their purpose.
 
 Studies, structures and predictions have their own tests.
 """
@@ -20,7 +20,7 @@ from snowshed.cli.deferred import Deferred
 from snowshed.cli.main import cli
 
 PAGES = [ROOT / "README.md", *sorted(DOCS.rglob("*.md"))]
-#: Pages that a program writes, which may be long; what they say is tested with the program.
+#: Pages that a program writes, which may be long; their content is tested with the program.
 GENERATED = {
     *("trust/thesis-claims.md", "trust/thesis-schemes.md", "trust/thesis-gap.md"),
     "trust/list-of-faults.md",
@@ -43,7 +43,7 @@ PAGE_OF = {
     "regress": "guides/prediction.md",
     "predict": "guides/prediction.md",
 }
-# So that an example takes a second.
+# These settings let an example take a second.
 SHORTER = {
     '"numerics.dx": 0.02,': '"numerics.dx": 0.02, "events.count": 1, "events.max_time": 0.1,',
     '"numerics.dx": 0.03}': '"numerics.dx": 0.03, "events.max_time": 0.1}',
@@ -60,7 +60,8 @@ def blocks(page, language):
 
 
 def documented():
-    """Every command line in a shell block or a sentence: the program, and the words after it."""
+    """Yield every command line in a shell block or a sentence: the program, and the words after
+    it."""
     for page in PAGES:
         text = page.read_text(encoding="utf-8")
         lines = "\n".join(re.findall(r"^```sh\n(.*?)^```", text, re.M | re.S))
@@ -75,7 +76,7 @@ def documented():
 
 
 def command_of(program, words):
-    """The command that words name, and the words after it."""
+    """Return the command that words name, and the words after it."""
     command, rest = PROGRAMS[program], list(words)
     while isinstance(command, click.Group) and rest:
         command = command.commands[rest.pop(0)]
@@ -89,7 +90,7 @@ def test_documented_commands_and_their_options_exist(program, words):
     if words and words[0].startswith("-") and PROGRAMS[program] is cli:
         return
     command, rest = command_of(program, [word for word in words if word != "..."])
-    if command.name == "self-test":  # its former options say where they went
+    if command.name == "self-test":  # its former options name their replacements
         assert not rest
     command.make_context("documented", rest, resilient_parsing=True)
 
@@ -233,7 +234,7 @@ def is_file(path):
 
 
 def is_name(name):
-    """Return whether a dotted name is that of a module, or of what a module holds."""
+    """Return whether a dotted name belongs to a module or to a name in a module."""
     try:
         pkgutil.resolve_name(name)
     except (ImportError, AttributeError):

@@ -22,7 +22,7 @@ ARGUMENTS = {
 }
 #: Scripts that take most of a minute.
 LONG = {"image_to_stack.py"}
-#: On such coarse grids slabs are said to be thin; with the line of the script that runs them.
+#: The note on thin slabs, which such coarse grids cause, with the script's line that runs them.
 NOTE = re.compile(r".*: SnowshedNote: the slab is .* thick, less than two cells .*\n.*\n")
 
 

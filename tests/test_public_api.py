@@ -1,4 +1,4 @@
-"""What the packages export, and what the page of the API documents, says its types."""
+"""Everything that the packages export and the page of the API documents has types."""
 
 import ast
 import importlib
@@ -37,7 +37,7 @@ PUBLIC = sorted({*DOCUMENTED, *EXPORTED})
 
 
 def types_seen_by(thing):
-    """Return the names of a thing's module, those included that are imported for types alone."""
+    """Return the names in an object's module, including those that are imported for types alone."""
     names = {}
     for base in reversed(getattr(thing, "__mro__", (thing,))):  # a class also has its bases' types
         if base.__module__ in WRITTEN or base is thing:
@@ -68,7 +68,8 @@ def signatures(thing):
 
 
 def holds_any(kind):
-    """Return whether a type holds Any; in arrays it is NumPy's own way to leave out a shape."""
+    """Return whether a type contains Any, except in arrays, where NumPy itself uses it for a
+    shape."""
     if kind is typing.Any:
         return True
     if typing.get_origin(kind) in (np.ndarray, np.dtype):
@@ -107,14 +108,14 @@ def test_the_page_lists_every_name_of_the_room_of_questions():
     assert set(snowshed.analysis.__all__) - documented == set()
 
 
-#: Where a reader sees imports: pages, tutorials and examples.
+#: Files in which a reader sees imports: pages, tutorials and examples.
 SHOWN = [
     ROOT / "README.md",
     *(path for ending in ("md", "ipynb") for path in sorted((ROOT / "docs").rglob(f"*.{ending}"))),
     *sorted((ROOT / "examples").glob("*.py")),
     ROOT / "tests" / "test_first_snippets.py",
 ]
-#: The page on adding a method shows the inside.
+#: The page on adding a method shows internal modules.
 DEEP = re.compile(r"(?:from|import) snowshed(?:\.\w+){2,}|`snowshed(?:\.\w+){3,}")
 
 
@@ -132,13 +133,13 @@ def test_what_the_page_documents_stands_in_the_package_or_a_room():
 
 
 def test_a_name_is_exported_once_in_a_room():
-    """Packages inside a room export nothing; a room's stub does."""
+    """Packages inside a room export nothing; only the stub of a room exports names."""
     inside = [f"{package}.{name}" for package, name in EXPORTED if package.count(".") > 1]
     assert [name for name in inside if not name.startswith(INTERNAL)] == []
 
 
 def test_no_exported_name_is_that_of_a_module_beside_it():
-    """The import of the module would take the name's place in the package."""
+    """The import of the module would replace the name in the package."""
     names = {f"{package}.{name}" for package, name in EXPORTED}
     modules = {name for name in names & WRITTEN if name.count(".") == 1}
     assert names & WRITTEN == modules and "snowshed.scene" in modules

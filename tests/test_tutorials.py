@@ -1,4 +1,4 @@
-"""The tutorials in docs/start/tutorials: their cells run, and come to what their text says."""
+"""The tutorials in docs/start/tutorials: their cells run, with the results in their text."""
 
 import json
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Print what pip must install before snowshed can be built, one requirement a line.
+"""Print the requirements that pip must install before snowshed can be built, one per line.
 
 These are the build requirements of pyproject.toml, and cmake and ninja if the system has none.
 """

@@ -78,7 +78,7 @@ def _shown(default):
 
 
 def _in_shapes(schema, node, key):
-    """Return what a key means in the types of shape that have it."""
+    """Return the meanings of a key in the types of shape that have it."""
     kinds = {}
     for variant in node["oneOf"]:
         if key in variant["properties"]:

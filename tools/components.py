@@ -1,4 +1,4 @@
-"""Writes the fields of the scene's components, and what their docstrings say of them.
+"""Writes the fields of the scene's components, and their descriptions in docstrings.
 
 The core describes every field of a scene once (cpp/snowshed/scene/describe.hpp), with its type,
 unit, range, default and meaning. This program brings the dataclasses in python/snowshed to that
@@ -35,7 +35,7 @@ TYPES = {"number": "float", "integer": "int", "boolean": "bool", "string": "str"
 def components() -> dict[type[Record], dict]:
     """Return every class of a scene's components with the node of the schema that describes it.
 
-    A part that several methods have is described for each; the whole scene by the whole schema.
+    A part of several methods is described for each method, and the scene by the whole schema.
     """
     nodes: dict[type[Record], dict] = {}
     for name, method in METHODS.items():

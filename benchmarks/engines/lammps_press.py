@@ -68,7 +68,7 @@ def write_bodies(sample: VoxelSample, file: Path) -> None:
 
 
 def commands(sample: VoxelSample, press: Press, folder: Path) -> list[str]:
-    """Return what LAMMPS is told before it runs."""
+    """Return the commands for LAMMPS before its run."""
     radius = sample.radius
     normal = press.elastic_modulus * radius
     shear = press.stiffness_ratio * normal

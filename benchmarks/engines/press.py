@@ -31,7 +31,7 @@ class Press:
     every: int = 5
 
     def steps(self, height: float) -> int:
-        """Return how many steps a sample of this height needs."""
+        """Return the number of steps for a sample of this height."""
         return int(self.strain * height / self.speed / self.time_step)
 
     def save(self, file: Path) -> None:

@@ -33,14 +33,14 @@ def yade_program() -> Optional[str]:
 
 
 def lammps_python() -> Optional[str]:
-    """Return an interpreter that says it has LAMMPS, or None."""
+    """Return the interpreter that has LAMMPS, or None."""
     return os.environ.get(LAMMPS_PYTHON) or None
 
 
 def press_with_yade(
     sample: VoxelSample, press: Press, folder: Path, *, steps: int = 0, threads: int = 1
 ) -> Record:
-    """Press with Yade; `steps` times only so many steps, with hollow grains."""
+    """Press with Yade; with `steps`, time only so many steps with hollow grains."""
     program = [str(yade_program()), "-n", f"-j{threads}", "-x", str(HERE / "yade_press.py")]
     return _run(program, sample, press, folder, [str(steps)] if steps else [])
 

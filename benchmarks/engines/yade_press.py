@@ -4,8 +4,9 @@ SAMPLE is a file of `VoxelSample.save`, PRESS a file of `Press.save`, OUT an NPZ
 top_n (force on the top plate), bonds, and wall_s of the steps.
 
 Yade weighs a clump by its spheres. So all voxels become spheres here, also the inner ones, with the
-mass of a voxel. The difference in inertia between a cube and a ball is isotropic and is added. For
-measurements of speed, with a number of steps, only the surface is made, with that mass.
+mass of a voxel. The difference in inertia between a cube and a ball is isotropic and is added.
+Measurements of speed give a number of steps; then only the spheres of the surface are made, with
+the same mass.
 
 The folder of this file must be in PYTHONPATH.
 """
@@ -89,7 +90,7 @@ class Pressed:
     def _set_engines(self) -> None:
         # Yade's default moves the points of contact of two spheres outward to where they would just
         # touch, so that cycles of load cannot creep. Slips of pressed spheres are then larger than
-        # those of the points themselves, and peaks with friction by 1.5 %.
+        # those of the points themselves, and peaks with friction are 1.5 % larger.
         spheres = y.Ig2_Sphere_Sphere_ScGeom6D(avoidGranularRatcheting=False)
         y.O.engines = [
             y.ForceResetter(),
@@ -104,7 +105,7 @@ class Pressed:
         y.O.dt = self.press.time_step
 
     def _bond(self, sample: VoxelSample) -> list[tuple[int, int]]:
-        """Make each pair of voxels of two grains that share a face a bond of its own."""
+        """Make a separate bond of each pair of voxels of two grains that share a face."""
         face = (2 * sample.radius) ** 2
         pairs = [(int(a), int(b)) for a, b in self.ids[sample.bonds]]
         for a, b in pairs:
@@ -120,7 +121,7 @@ class Pressed:
         return float(utils.sumForces(self.top, (0, 0, 1)))
 
     def count_bonds(self) -> int:
-        """Return how many bonds hold."""
+        """Return the number of intact bonds."""
         return sum(
             y.O.interactions.has(a, b)
             and y.O.interactions[a, b].isReal
@@ -135,15 +136,15 @@ def main() -> None:
     timed = len(sys.argv) > 4
     pressed = Pressed(sample, press, hollow=timed)
     steps = int(sys.argv[4]) if timed else press.steps(sample.height)
-    rows = [(0.0, 0.0, len(pressed.bonds))]  # nothing presses yet
+    rows = [(0.0, 0.0, len(pressed.bonds))]  # without any force yet
     if timed:
-        y.O.run(10, wait=True)  # looks for contacts
+        y.O.run(10, wait=True)  # finds the contacts
     begin = time.perf_counter()
     if timed:
         y.O.run(steps, wait=True)
     while not timed and y.O.iter < steps:
         y.O.run(press.every, wait=True)
-        # The forces are those of the places before the last step's motion.
+        # The forces belong to the positions before the last step's motion.
         rows.append((y.O.time - y.O.dt, pressed.top_force(), pressed.count_bonds()))
     wall = time.perf_counter() - begin
     times, forces, bonds = np.array(rows).T

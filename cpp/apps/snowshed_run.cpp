@@ -1,4 +1,4 @@
-// snowshed-run: a JSON scene in, results out. No Python.
+// snowshed-run: runs a JSON scene and writes its results, without Python.
 #include <unistd.h>
 
 #include <csignal>

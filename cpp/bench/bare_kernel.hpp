@@ -24,7 +24,7 @@ class BareKernel {
 
  private:
   static constexpr int margin = 2;          // empty cells on every side
-  static constexpr int slab_thickness = 4;  // cells along x, the work of a thread at a time
+  static constexpr int slab_thickness = 4;  // cells along x that a thread takes at a time
 
   void particles_to_grid(int slab);
   void update_nodes(int slab);

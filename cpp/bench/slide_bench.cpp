@@ -29,8 +29,8 @@ HeightField plane_with_run_out(double width) {
   return f;
 }
 
-std::unique_ptr<slide::Solver> sliding(double particles, slide::Mode mode, bool bonds,
-                                       int threads) {
+std::unique_ptr<slide::Solver> sliding_snow(double particles, slide::Mode mode, bool bonds,
+                                            int threads) {
   const double width = std::sqrt(particles / 2) * cell;  // two particles a cell
   slide::Options o;
   o.terrain = plane_with_run_out(width);
@@ -51,7 +51,7 @@ void add(const std::string& name, double particles, slide::Mode mode, bool bonds
   const std::string full = "slide/" + name + "/" + std::to_string(int(particles));
   benchmark::RegisterBenchmark(full.c_str(),
                                [=](benchmark::State& state) {
-                                 const auto slide = sliding(particles, mode, bonds, threads);
+                                 const auto slide = sliding_snow(particles, mode, bonds, threads);
                                  std::int64_t moved = 0;
                                  for (auto _ : state) {
                                    slide->step();

@@ -103,11 +103,12 @@ void add(const std::string& name, Case c, const std::function<void(Case&)>& chan
 
 // --- the slab ---------------------------------------------------------------------------------
 
-const Vec3 in_flow(5, 0, -5);  // onto the ground
+const Vec3 impact_velocity(5, 0, -5);  // onto the ground
 
-/// Returns the slab while it flows: after so many steps nine packs of ten yield in each.
+/// Returns a case in which the slab flows: after `steps_before` steps, nine of ten SIMD packs yield
+/// in each step.
 Case slab_in_flow() {
-  Case c = slab_3d(in_flow);
+  Case c = slab_3d(impact_velocity);
   c.steps_before = 160;
   return c;
 }
@@ -136,15 +137,15 @@ void add_slabs() {
 // --- the cost of each feature -----------------------------------------------------------------
 
 /// Returns the base case, elastic snow in free fall: only the transfers and a stress.
-Case plain() {
+Case free_fall() {
   Case c = slab_3d(Vec3(0, 0, -1));
   c.options.snows[0].model = SnowModel::elastic;
   c.options.obstacles.clear();
   return c;
 }
 
-Case on(Condition condition, bool moving = false) {
-  Case c = plain();
+Case slab_on_ground(Condition condition, bool moving = false) {
+  Case c = free_fall();
   Obstacle ground{"ground", make_plane(Vec3::Zero(), Vec3::UnitZ()), {condition, 0.3}, {}};
   if (moving) {
     MotionSpec motion;
@@ -161,28 +162,30 @@ void add_prices() {
     add("price/" + feature, std::move(c), change, {1});
   };
   const auto unchanged = [](C&) {};
-  price("base_3d", plain(), unchanged);
-  price("base_2d", plain(), [](C& c) {
+  price("base_3d", free_fall(), unchanged);
+  price("base_2d", free_fall(), [](C& c) {
     c.options.dimension = 2;
     c.batch = slab({256, 0, 256}, slab_dx, c.options.snows[0].density);
   });
-  price("cam_clay_elastic", plain(), [](C& c) { c.options.snows[0].model = SnowModel::cam_clay; });
+  price("cam_clay_elastic", free_fall(),
+        [](C& c) { c.options.snows[0].model = SnowModel::cam_clay; });
   price("ground_cam_clay_in_flow", slab_in_flow(), unchanged);
   price("ground_elastic_in_flow", slab_in_flow(),
         [](C& c) { c.options.snows[0].model = SnowModel::elastic; });
-  price("double", plain(), [](C& c) { c.options.settings.precision = mpm::Precision::float64; });
-  price("cubic", plain(), [](C& c) { c.options.settings.basis = mpm::Basis::cubic; });
-  price("apic", plain(), [](C& c) { c.options.settings.transfer = mpm::Transfer::apic; });
-  price("sticky_contact", on(Condition::sticky), unchanged);
-  price("slip_contact", on(Condition::slip), unchanged);
-  price("separate_contact", on(Condition::separate), unchanged);
-  price("moving_contact", on(Condition::sticky, true), unchanged);
-  price("several_snows", plain(), [](C& c) { c.options.snows.assign(2, Snow()); });
-  price("energy_balance", plain(), [](C& c) {
+  price("double", free_fall(),
+        [](C& c) { c.options.settings.precision = mpm::Precision::float64; });
+  price("cubic", free_fall(), [](C& c) { c.options.settings.basis = mpm::Basis::cubic; });
+  price("apic", free_fall(), [](C& c) { c.options.settings.transfer = mpm::Transfer::apic; });
+  price("sticky_contact", slab_on_ground(Condition::sticky), unchanged);
+  price("slip_contact", slab_on_ground(Condition::slip), unchanged);
+  price("separate_contact", slab_on_ground(Condition::separate), unchanged);
+  price("moving_contact", slab_on_ground(Condition::sticky, true), unchanged);
+  price("several_snows", free_fall(), [](C& c) { c.options.snows.assign(2, Snow()); });
+  price("energy_balance", free_fall(), [](C& c) {
     c.options.snows.assign(2, Snow());
     c.options.energy = true;
   });
-  price("sleep_of_awake_snow", plain(), [](C& c) { c.options.settings.sleep_speed = 0.02; });
+  price("sleep_of_awake_snow", free_fall(), [](C& c) { c.options.settings.sleep_speed = 0.02; });
   // Without gravity the slab is at rest from the start.
   price("sleep_at_rest", slab_3d(), [](C& c) {
     c.options.settings.sleep_speed = 0.02;
@@ -208,7 +211,7 @@ void add_scaling() {
 
 // --- every kernel ------------------------------------------------------------------------------
 
-/// A snow of each sort of kernel, see KernelChoice.
+/// The snow for one kind of kernels, see KernelChoice.
 struct MatrixSnow {
   const char* name;
   std::function<void(mpm::Options&)> choose;
@@ -227,10 +230,10 @@ const std::vector<MatrixSnow>& matrix_snows() {
 }
 
 Case matrix_slab(int dimension) {
-  Case c = dimension == 3 ? slab_3d(in_flow) : slab_2d();
+  Case c = dimension == 3 ? slab_3d(impact_velocity) : slab_2d();
   const double density = c.options.snows[0].density;
   if (dimension == 3) c.batch = slab({32, 16, 16}, slab_dx, density);
-  c.batch.velocity = in_flow;
+  c.batch.velocity = impact_velocity;
   return c;
 }
 

@@ -1,4 +1,4 @@
-"""Types of the compiled core. Arrays are fresh copies in SI units, but for `Simulation.field`."""
+"""Types of the compiled core. Arrays are copies in SI units, except for `Simulation.field`."""
 
 from os import PathLike
 from typing import Any, Callable, Optional, Protocol, Union, overload
@@ -22,7 +22,7 @@ class ParsedScene:
     @property
     def json(self) -> str: ...
 
-#: A scene as the core takes it; only text is parsed again.
+#: A scene for the core; each call parses a text again, but no ParsedScene.
 SceneArgument = Union[ParsedScene, str]
 
 def update_version(text: str) -> str: ...

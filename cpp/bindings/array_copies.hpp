@@ -34,7 +34,7 @@ inline pybind11::array_t<double> map_of(const std::vector<double>& values, int r
   return map;
 }
 
-/// The columns of a table that is held row by row, by their names.
+/// The columns, by name, of a table whose values lie row by row.
 inline pybind11::dict columns_of(const std::vector<std::string>& names,
                                  const std::vector<double>& values) {
   pybind11::dict table;

@@ -1,4 +1,4 @@
-// The errors of the core as Python's.
+// Translates the core's errors into Python exceptions.
 #include "snowshed/core/errors.hpp"
 
 #include <cstring>
@@ -29,7 +29,7 @@ void raise_os_error(const py::handle& type, int code, const std::string& what,
 }  // namespace
 
 void register_errors(py::module_& m) {
-  // They live as long as the interpreter.
+  // The exception types live as long as the interpreter.
   static py::handle input, simulation, file;
   input = py::exception<InputError>(m, "InputError", PyExc_ValueError).release();
   simulation = py::exception<SimulationError>(m, "SimulationError", PyExc_RuntimeError).release();

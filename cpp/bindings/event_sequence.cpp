@@ -32,7 +32,7 @@ py::dict record_dict(const EventRecord& record) {
 
 using Path = std::filesystem::path;
 
-/// Exceptions of a signal's handler, such as KeyboardInterrupt, pass through.
+/// Runs Python's signal handlers, whose exceptions, such as KeyboardInterrupt, pass through.
 bool python_interrupts() {
   if (PyErr_CheckSignals() != 0) throw py::error_already_set();
   return false;

@@ -30,7 +30,7 @@ std::vector<py::ssize_t> strides_of(const FieldView& view, const std::vector<py:
   return strides;
 }
 
-/// Object by which Python keeps a view's memory.
+/// Returns an object by which Python keeps a view's memory alive.
 py::capsule owner_of(const FieldView& view) {
   using Owner = std::shared_ptr<const void>;
   return py::capsule(new Owner(view.elements),

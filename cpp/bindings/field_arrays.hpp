@@ -7,7 +7,7 @@
 
 namespace snowshed {
 
-/// A read-only array over the view's memory, which it keeps; (n,), (n, 3) or (n, 3, 3).
+/// A read-only array that uses the view's memory and keeps it alive; (n,), (n, 3) or (n, 3, 3).
 pybind11::array array_of(const FieldView&);
 
 /// A copy of a field ordered by id, in double precision, or in 64 bits for whole numbers.

@@ -46,7 +46,7 @@ py::dict next_frame(FilmReader& reader) {
   return d;
 }
 
-/// Checksum of the first `frames` frames, and so of the film until then.
+/// Checksum of a film up to the end of its first `frames` frames.
 std::string film_checksum(const FilmReader& reader, std::size_t frames) {
   if (frames > reader.frames().size()) throw py::index_error("the film has fewer frames");
   return hexadecimal(reader.checksum(frames));

@@ -50,8 +50,8 @@ void bind_geometry(py::module_& m) {
         "(heights, west, south, cell, values of -9999 that the header does not declare, numbers "
         "with decimal commas) of an ESRI ASCII grid, the southernmost row first.");
   m.def("impossible_cliff", &cliff, "heights"_a, "west"_a, "south"_a, "cell"_a, "max_slope"_a,
-        "Describes the first step between neighbouring nodes that no ground has; empty if there is "
-        "none.");
+        "Describes the first step between neighbouring nodes that is impossible on ground; empty "
+        "if there is none.");
   m.def("read_mesh", &mesh_arrays, "path"_a, "scale"_a = 1.0,
         "Vertices (n, 3), m, and triangles (m, 3) of an STL, OBJ or PLY file.");
 }

@@ -1,4 +1,4 @@
-// Additions of methods to the module: each is in a file of its own in methods/, which no other file
+// Bindings of the methods. Each method adds its own from a file in methods/ that no other file
 // names.
 #pragma once
 
@@ -13,7 +13,7 @@ struct MethodBindings {
   void (*simulation)(SimulationClass&);  // adds methods to the class
 };
 
-/// Those of all methods.
+/// The bindings of all methods.
 inline std::vector<MethodBindings>& method_bindings() {
   static std::vector<MethodBindings> all;
   return all;

@@ -39,7 +39,7 @@ py::dict plan_dict(const py::object& argument, const std::filesystem::path& base
   return d;
 }
 
-/// Python's warnings name the fields that were renamed since the version of a scene.
+/// Issues a Python warning for each note on changes since the version of a scene.
 void warn(const std::vector<std::string>& notes, const std::string& file = "") {
   for (const std::string& note : notes) {
     const std::string message = file.empty() ? note : file + ": " + note;
@@ -67,7 +67,7 @@ void bind_scene(py::module_& m) {
             return ParsedScene(resolve(with_absolute_files(base_dir, scene)));
           },
           "text"_a, "base_dir"_a = ".",
-          "The scene of a JSON text; files that it names are found from base_dir.")
+          "The scene of a JSON text; relative file names in it refer to base_dir.")
       .def_static(
           "load",
           [](const std::filesystem::path& path) {
@@ -76,12 +76,12 @@ void bind_scene(py::module_& m) {
             warn(notes, path.string());
             return ParsedScene(resolve(scene));
           },
-          "path"_a, "The scene of a file; files that it names are found beside it.")
+          "path"_a, "The scene of a file; relative file names in it refer to the file's folder.")
       .def_property_readonly("json", [](const ParsedScene& s) { return s.json; });
   m.def("update_version", &updated, "text"_a,
         "The JSON of a scene in the present version, with the same meaning.");
   m.def("scene_checksum", &scene_checksum, "text"_a,
-        "A checksum of the values in a scene's text without the number of threads.");
+        "A checksum of the values in a scene's text, except the number of threads.");
   m.def("scene_schema", &scene_schema, "The JSON Schema of a scene.");
   m.def(
       "preset", [](const std::string& name) { return write_scene(preset_scene(name)); }, "name"_a);
@@ -95,7 +95,7 @@ void bind_scene(py::module_& m) {
         return expected_work(scene_of(scene), base_dir);
       },
       "scene"_a, "base_dir"_a = ".",
-      "Expected work of a run, in particle updates of whole snow; nothing is measured.");
+      "Expected work of a run, in particle updates of unbroken snow; nothing is measured.");
 }
 
 }  // namespace snowshed

@@ -9,7 +9,7 @@
 
 namespace snowshed {
 
-/// A complete scene, and its JSON text for those who need text.
+/// A complete scene and its JSON text.
 struct ParsedScene {
   Scene scene;
   std::string json;

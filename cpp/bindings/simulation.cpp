@@ -51,7 +51,7 @@ py::dict report_dict(const RunReport& r) {
 
 namespace {
 
-/// The callback returns whether to continue.
+/// Runs the present event until it ends or the callback returns false; returns how it ended.
 std::string run(Simulation& sim, const py::function& callback, double interval) {
   const auto observer = [&](const RunReport& r) {
     py::gil_scoped_acquire gil;
@@ -132,7 +132,7 @@ py::array order_by_id(const Simulation& sim) {
   return column<std::int64_t>(order);
 }
 
-/// Ordered by id.
+/// Returns for each particle, ordered by id, whether it is on the panel.
 py::array on_panel(const Simulation& sim) {
   const FieldView view = sim.method().field("position");
   std::vector<Vec3> positions;

@@ -17,7 +17,7 @@ class SimulationClass {
 
   pybind11::class_<Handle>& operator*() { return class_; }
 
-  /// A method that only reads: f(simulation, arguments...).
+  /// Adds a method that only reads: f(simulation, arguments...).
   template <class F, class... Extra>
   void reads(const char* name, F f, const Extra&... extra) {
     class_.def(name, guarded(name, Handle::Access::read, +f), extra...);
@@ -30,7 +30,7 @@ class SimulationClass {
   void property(const char* name, F f) {
     class_.def_property_readonly(name, guarded(name, Handle::Access::read, +f));
   }
-  /// A field by the name of its own method, ordered by id.
+  /// Adds a method that returns a field, ordered by id.
   void column(const char* name, const char* field) {
     class_.def(name, [name, field](Handle& handle) {
       return handle.use(name, Handle::Access::read, [field](const auto& simulation) {

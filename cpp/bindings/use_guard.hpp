@@ -54,7 +54,7 @@ class Guarded {
   };
 
   T object_;
-  std::atomic<std::thread::id> user_{};  // thread that uses it; that of no thread: free
+  std::atomic<std::thread::id> user_{};  // thread that uses the object; default value if free
   std::atomic<const char*> call_{"a call"};
 };
 

@@ -23,7 +23,7 @@ constexpr std::size_t archive_header = 24, section_header = 24, archive_trailer 
 
 std::size_t padded(std::size_t bytes) { return (bytes + 7) / 8 * 8; }
 
-/// Returns the sections, from the first on, as long as they lie within the bytes.
+/// Returns the sections before the first one that does not lie within the bytes.
 std::vector<ArchiveSection> sections_of(const std::string& bytes) {
   std::vector<ArchiveSection> sections;
   if (bytes.size() < archive_header + archive_trailer) return sections;
@@ -89,7 +89,7 @@ void mutate_section(std::vector<ArchiveSection>& sections, std::mt19937& random)
       sections.push_back(section);
       break;
     default:
-      section.data = mutate(section.data, section.data.size() + part_growth);
+      section.data = mutate(section.data, section.data.size() + max_part_growth);
   }
 }
 

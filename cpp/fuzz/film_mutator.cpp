@@ -1,5 +1,5 @@
-// Mutations that keep the checksums of a film valid and its frames deflated. Random bytes hardly
-// ever do, so the reader would refuse them before it looks at the content.
+// Mutations that keep the checksums of a film valid and its frames deflated. The reader would
+// refuse nearly all random bytes before it looks at the content.
 #include <cstdint>
 #include <random>
 #include <string>
@@ -25,7 +25,7 @@ struct FilmParts {
   std::vector<Record> records;
 };
 
-/// Returns the parts, from the first on, as long as they lie within the bytes.
+/// Returns the parts before the first one that does not lie within the bytes.
 FilmParts parts_of(const std::string& bytes) {
   FilmParts parts;
   if (bytes.size() < text_at) return parts;
@@ -49,14 +49,14 @@ FilmParts parts_of(const std::string& bytes) {
   return parts;
 }
 
-/// The header of a version, of which 1 sums the text alone.
+/// Returns the header of a film; the checksum of version 1 covers the text alone.
 std::string header_of(const std::string& text, std::uint32_t version) {
   const std::string fixed = "SNOWFILM" + bytes_of(version) + bytes_of(std::uint32_t(text.size()));
   const std::uint32_t before = version == 1 ? 0 : crc32_of(fixed.data(), fixed.size());
   return fixed + bytes_of(crc32_of(text.data(), text.size(), before)) + bytes_of(0) + text;
 }
 
-/// A record behind one with the checksum `before`, which becomes its own.
+/// Returns a record that follows one with the checksum `before`; `before` becomes its own checksum.
 std::string record_of(const std::string& tag, std::string facts, std::size_t raw,
                       const std::vector<std::uint8_t>& packed, std::uint32_t& before) {
   facts += bytes_of(std::uint32_t(raw)) + bytes_of(std::uint32_t(packed.size())) +
@@ -72,7 +72,7 @@ std::string record_of_version_1(std::string facts, std::size_t raw,
   return "FRAM" + bytes_of(crc32_of(facts.data(), facts.size())) + facts;
 }
 
-/// Returns a film of these parts with matching lengths and checksums; perhaps one that is closed.
+/// Returns a film of these parts with matching lengths and checksums, with its end if `closed`.
 std::string film_of(const FilmParts& parts, std::uint32_t version, bool closed) {
   std::string bytes = header_of(parts.text, version);
   auto sum = number_at<std::uint32_t>(bytes, text_at - 8);
@@ -89,7 +89,7 @@ std::string film_of(const FilmParts& parts, std::uint32_t version, bool closed) 
 /// Changes the header or a frame, or removes or repeats one.
 void mutate_part(FilmParts& parts, std::mt19937& random) {
   if (parts.records.empty() || random() % 8 == 0) {
-    parts.text = mutate(parts.text, parts.text.size() + part_growth);
+    parts.text = mutate(parts.text, parts.text.size() + max_part_growth);
     return;
   }
   const std::size_t i = random() % parts.records.size();
@@ -107,7 +107,7 @@ void mutate_part(FilmParts& parts, std::mt19937& random) {
       record.facts.resize(raw_at - facts_at);
       break;
     default:
-      record.raw = mutate(record.raw, record.raw.size() + part_growth);
+      record.raw = mutate(record.raw, record.raw.size() + max_part_growth);
   }
 }
 

@@ -10,7 +10,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     std::size_t voxels = 1;
     for (const std::size_t side : labels.shape) voxels *= side;
     require(labels.shape.size() == 3 && labels.values.size() == voxels, "voxels");
-    for (const std::int32_t label : labels.values) require(label >= 0, "a label");
+    for (const std::int32_t label : labels.values) require(label >= 0, "a label is negative");
   });
   return 0;
 }

@@ -12,8 +12,8 @@ extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, st
 
 namespace snowshed {
 
-/// The most bytes by which a part grows in a mutation.
-constexpr std::size_t part_growth = 64;
+/// Largest number of bytes by which a part grows in a mutation.
+constexpr std::size_t max_part_growth = 64;
 
 template <class T>
 T number_at(const std::string& bytes, std::size_t offset) {

@@ -14,7 +14,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     require(std::isfinite(field.west) && std::isfinite(field.south), "place");
     require(field.heights.size() == std::size_t(field.columns) * std::size_t(field.rows), "nodes");
     for (const double height : field.heights)
-      require(std::isnan(height) || std::abs(height) <= 1e5, "a height");
+      require(std::isnan(height) || std::abs(height) <= 1e5, "a height is beyond 1e5 m");
   });
   return 0;
 }

@@ -1,5 +1,5 @@
-// Fuzz target of scenes. A text must be refused, or give a scene that is the same again when it is
-// written and read.
+// Fuzz target of scenes. A text must be refused, or give a scene that stays the same when it is
+// written and read again.
 #include "fuzzing.hpp"
 #include "snowshed/run/cost_estimate.hpp"
 #include "snowshed/scene/scene_json.hpp"

@@ -61,7 +61,7 @@ const char* const rich_scene = R"({"snowshed": 2, "dimension": %D, "title": "see
   "events": {"count": 2, "between": "reseed", "max_time": 3, "rest_speed": 0.02, "rest_time": 0.1},
   "output": {"snapshot_interval": 0.1, "energy": true, "checkpoint_interval": 60}})";
 
-/// A slide on terrain, with everything that it takes.
+/// A slide on terrain, with every feature of the method.
 const char* const slide_scene = R"({"snowshed": 2, "method": "slide", "dimension": 3,
   "terrain": {"file": "dem.asc", "crs": "EPSG:31287", "thickness_file": "depth.asc",
     "release": [{"name": "slab", "outline": [[10, 10], [30, 10], [30, 30]], "thickness": 0.5,
@@ -71,7 +71,7 @@ const char* const slide_scene = R"({"snowshed": 2, "method": "slide", "dimension
   "numerics": {"cell": 2, "time_step": 0.01, "friction_law": "coulomb", "bonds": true},
   "events": {"max_time": 10}})";
 
-/// A sample that is loaded, with everything that grains take.
+/// A sample that is loaded, with every feature of the method "grains".
 const char* const grains_scene = R"({"snowshed": 2, "method": "grains", "dimension": 3,
   "sample": {"file": "labels.npy", "voxel_size": 5e-5},
   "loading": [{"kind": "compress", "speed": 0.02, "strain": 0.1, "stress": 1e4},
@@ -86,13 +86,13 @@ const char* const mps_scene = R"({"snowshed": 2, "method": "mps", "dimension": 2
                "threads": 1},
   "events": {"count": 2, "max_time": 1}, "output": {"energy": true}})";
 
-/// Two grains and more of eight voxels, see `write_labels`.
+/// Grains of eight voxels each, see `write_labels`.
 const char* const loaded_grains = R"({"snowshed": 2, "method": "grains", "dimension": 3,
   "sample": {"file": "small.npy", "voxel_size": 1e-4}, "gravity": 0,
   "loading": [{"kind": "compress", "speed": 0.1, "strain": 0.01}], "numerics": {"threads": 1},
   "output": {"energy": true}})";
 
-/// On the plane of `write_terrain`.
+/// A slide on the plane of `write_terrain`.
 const char* const small_slide = R"({"snowshed": 2, "method": "slide", "dimension": 3,
   "terrain": {"file": "plane.asc",
     "release": [{"outline": [[8, 8], [20, 8], [20, 20], [8, 20]], "thickness": 0.5}],
@@ -297,7 +297,7 @@ void write_rasters(const fs::path& folder) {
         size + "xllcorner 1\nyllcorner 2\ncellsize 0.5\nnodata_value nan\n1 nan 3\n4 5 6\n");
 }
 
-/// A plane of 38 degrees.
+/// Writes the elevations of a plane inclined by 38 degrees.
 void write_terrain(const fs::path& file) {
   std::string heights = "ncols 20\nnrows 15\nxllcenter 0\nyllcenter 0\ncellsize 2\n";
   for (int row = 0; row < 15; ++row)
@@ -306,7 +306,7 @@ void write_terrain(const fs::path& file) {
   write(file, heights);
 }
 
-/// Particles that come, move and go.
+/// Writes films of particles that appear, move and vanish.
 void write_films(const fs::path& folder) {
   fs::create_directories(folder);
   for (const int axes : {2, 3}) {
@@ -368,8 +368,8 @@ void write_checkpoint(const Scene& scene, const fs::path& inputs, const fs::path
   simulation.save(file);
 }
 
-/// A checkpoint of each other method, with everything that its state can hold. `inputs` gets the
-/// files that the scenes name.
+/// Writes a checkpoint of each other method, with everything that its state can hold, and the files
+/// that the scenes name into `inputs`.
 void write_checkpoints_of_methods(const fs::path& folder, const fs::path& inputs) {
   write_terrain(inputs / "plane.asc");
   write_labels(inputs);

@@ -1,6 +1,6 @@
-"""snowshed: snow that slides off solar panels and down slopes, simulated.
+"""snowshed: simulation of snow that slides off solar panels and down slopes.
 
-A scene is set value by value and run event after event; the stack below the panel is measured.
+A scene is set value by value and run event by event; the stack below the panel is measured.
 ``__init__.pyi`` lists the public names. Each is imported when it is first used, so that commands
 start at once.
 
@@ -16,9 +16,9 @@ import os
 
 import lazy_loader as _lazy
 
-# The solver's threads meet twice a step. By default OpenMP's runtime makes the early ones spin for
-# a long time, which on a busy machine takes the processor from the thread they wait for. The
-# runtime reads this once, when the core is loaded; a setting of the user's own stands.
+# The solver's threads meet twice a step. By default OpenMP's runtime makes early threads spin for a
+# long time, which on a busy machine takes the processor from the thread they wait for. The runtime
+# reads this variable once, when the core is loaded; a setting of the user is kept.
 if "OMP_WAIT_POLICY" not in os.environ:
     os.environ.setdefault("GOMP_SPINCOUNT", "2000")
 

@@ -37,7 +37,7 @@ class Estimate:
         return Estimate(self.value * factor, self.noise * abs(factor))
 
     def text(self, unit: str = "") -> str:
-        """Return number and noise; unit "%" for parts.
+        """Return number and noise as text; the unit "%" is for shares.
 
         Examples
         --------
@@ -53,7 +53,7 @@ class Estimate:
 def widening(freedom: float) -> float:
     """Return the factor of Student's t on a noise that was estimated from few numbers.
 
-    `SIGMAS` of it then hold 95 %, as they do for an exact noise.
+    `SIGMAS` times the widened noise then hold 95 %, as with an exact noise.
 
     Examples
     --------

@@ -17,7 +17,7 @@ from reproductions.common.stage import Stage
 
 
 class Computation(Protocol):
-    """The stages of a reproduction in its folder, and whatever its sections read from them."""
+    """The stages of a reproduction in its folder, and the data that its sections read from them."""
 
     @property
     def stages(self) -> Sequence[Stage]:
@@ -78,7 +78,7 @@ class Reproduction(Generic[Work]):
     former: Mapping[str, str] = field(default_factory=dict)
 
     def size(self, name: str) -> Size[Any]:
-        """Return the size of a name."""
+        """Return the size with a name."""
         return next(size for size in self.sizes if size.name == name)
 
     def report(self, folder: Path) -> Path:

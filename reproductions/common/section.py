@@ -51,8 +51,8 @@ class Section(Generic[Work]):
         Names of its stages.
     judged
         When its claims are judged: on "any" part of the stages, when they have "ended" with or
-        without failures, or when everything is "done". Before that, claims stay open: means over
-        part of a design compare unlike points.
+        without failures, or when everything is "done". Before that, claims stay open, because means
+        over part of a design compare different points.
     """
 
     name: str

@@ -29,7 +29,7 @@ class State:
     unit
         Name of the units.
     reason
-        Reason of the failures, if they have the same one.
+        Reason of the failures, if it is the same for all.
     """
 
     done: int
@@ -49,7 +49,7 @@ class State:
         return self.done == self.count
 
     def text(self) -> str:
-        """Return the state for people.
+        """Return the state as text.
 
         Examples
         --------

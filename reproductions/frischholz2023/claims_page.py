@@ -56,8 +56,9 @@ def page(data: Path = DATA) -> str:
         "has the figures, the tables and the rule for each claim.",
         f"The {computed['runs']} simulations were finished on {computed['date']}, on "
         f"{computed['cpu']}. [Reproducing the thesis](reproduce.md) explains the simulations and "
-        "the verdicts, [the gap](thesis-gap.md) the differences between our stacks of chapter 5 "
-        "and those of the thesis. A number after ± is the standard deviation of the noise.",
+        "the verdicts, and [the gap](thesis-gap.md) explains the differences between our stacks of "
+        "chapter 5 and those of the thesis. A number after ± is the standard deviation of the "
+        "noise.",
         "`python -m reproductions.frischholz2023.claims_page` writes this page from the results "
         "in `reproductions/frischholz2023/data`. Do not edit it by hand.",
         "## Contradicted claims, and their likely causes",

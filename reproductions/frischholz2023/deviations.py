@@ -56,13 +56,13 @@ DEVIATIONS: Mapping[str, Deviation] = {
             "slip",
             "The panel is SLIP: the normal speed of snow on it is zero.",
             "Snow may leave the panel's face.",
-            "With SLIP to the letter snow leaves the plane of the panel over its edge only, and a "
-            "slab that tips over the edge is held down behind it.",
+            "With SLIP taken literally, snow leaves the panel's plane only over its edge, and the "
+            "rear of a slab that tips over the edge is held down.",
         ),
         Deviation(
             "damping",
             "FLIP has a share of 0.99 per step, for any size of step.",
-            "Panels of chapter 5 are damped at a rate, that of this share with the thesis's cells.",
+            "Panels of chapter 5 are damped at the rate of this share with the thesis's cells.",
             "A share in each step makes the damping depend on the step, and so on the cells: a "
             "shorter step damps more.",
         ),
@@ -76,24 +76,24 @@ DEVIATIONS: Mapping[str, Deviation] = {
             "grid",
             "Cells of 1 cm.",
             "Cells of 1.5 cm for the panels of chapter 5, 1 cm elsewhere.",
-            "Cells of 1 cm take 3.4 times as long; the time went into more seedings.",
+            "Cells of 1 cm take 3.4 times as long; we use this time for more seedings.",
         ),
         Deviation(
             "frames",
             "An event is over after 50, 60 and 100 frames in chapters 3, 4 and 5: "
             "2.1, 2.5 and 4.2 s at 24 frames a second (the rate is not printed).",
             "An event is over when the snow rests.",
-            "A long slab on a rough panel slides longer than that, and moving snow is not a stack "
+            "A long slab on a rough panel slides longer than that, and snow in motion is no stack "
             "yet.",
         ),
         Deviation(
             "trimming",
-            "A.4.2, its second sentence to the letter: both ends of a 2D stack step inward by the "
-            "same increment.",
+            "The second sentence of A.4.2, taken literally: both ends of a 2D stack step inward by "
+            "the same increment.",
             "The particle farthest from the centre of mass is dropped first, as in the first "
             "sentence and in the 3D rule.",
-            "Where snow has rolled far off, steps at equal pace take the 3 % from the dense end; "
-            "the length of a stack then scatters more from seeding to seeding.",
+            "If snow has rolled far off, equal steps take the 3 % from the dense end; the length "
+            "of a stack then scatters more from seeding to seeding.",
             trimming="equal_pace",
         ),
     )

@@ -10,7 +10,14 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from snowshed.plot.figure_style import COLOURS, FIRST, LAST, STYLE, blank_figure, headline
+from snowshed.plot.figure_style import (
+    COLOURS,
+    FIRST_SHADE,
+    LAST_SHADE,
+    STYLE,
+    blank_figure,
+    headline,
+)
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -85,7 +92,7 @@ def geometry_figure(table: pd.DataFrame) -> Figure:
     """
     reference = _reference(table)
     events = sorted(table["event"].unique())
-    shades = matplotlib.colormaps["viridis"](np.linspace(FIRST, LAST, len(events)))
+    shades = matplotlib.colormaps["viridis"](np.linspace(FIRST_SHADE, LAST_SHADE, len(events)))
     with matplotlib.rc_context(STYLE):
         figure = blank_figure(9.2, 7.4)
         headline(

@@ -55,7 +55,7 @@ DATA = Path(__file__).with_name("data")
 PAGE = Path(__file__).parents[2] / "docs" / "trust" / "thesis-gap.md"
 DEVIATIONS_FILE, SCATTER_FILE, ERRORS_FILE = "deviations.csv", "scatter.csv", FILE.name
 #: Files that are stored from the folders of regressions, as `snowshed regress` writes them.
-KEPT = ("scores.csv", "ratio/errors.csv", "ratio/quartiles.csv")
+COPIED_FILES = ("scores.csv", "ratio/errors.csv", "ratio/quartiles.csv")
 
 
 def page(data: Path = DATA) -> str:
@@ -116,11 +116,12 @@ def _causes_part(stacks: pd.DataFrame, errors: pd.DataFrame) -> list[str]:
         markdown_table(deviations_section.quartiles_grid(stacks)),
         *_left_over(stacks),
         "### Regressions with each deviation undone",
-        f"The table has ε-SVR of H/L of the same rows ({errors['rows'].max():.0f} for each), by "
+        f"The table has regressions of H/L (ε-SVR) for {errors['rows'].max():.0f} rows of each "
+        "variant, by "
         f"{SCHEME.rounds} round{'s' if SCHEME.rounds > 1 else ''} of {SCHEME.folds} outer and "
         f"{SCHEME.inner_folds} inner folds. The "
-        "quartiles are those of the predictions. A sample has a tenth of the rows of the data set, "
-        "so that its errors can only be compared with each other.",
+        "quartiles are those of the predictions. The sample has a tenth of the rows of the data "
+        "set, so compare its errors only with each other.",
         markdown_table(deviations_section.errors_grid(errors, stacks)),
     ]
 
@@ -128,8 +129,8 @@ def _causes_part(stacks: pd.DataFrame, errors: pd.DataFrame) -> list[str]:
 def _variations_part(stacks: pd.DataFrame) -> list[str]:
     return [
         "### Settings of our own, varied on the same sample",
-        "Damping is a rate in our settings, so that it does not depend on the length of the "
-        "steps. With a share in each step, it does.",
+        "Our damping is a rate, so it does not depend on the length of the steps. With a share in "
+        "each step it does.",
         markdown_table(deviations_section.variations_grid(stacks)),
     ]
 
@@ -138,7 +139,7 @@ def _cause(stacks: pd.DataFrame, name: str) -> str:
     """Return the text on a deviation and its effect on H/L."""
     deviation, ratio_change = DEVIATIONS[name], change(stacks, name, "ratio")
     if is_unswitched(stacks, name):
-        size = "not switched in these runs, whose scenes are our own; its effect is unknown"
+        size = "the runs of the sample do not switch it, so its effect is unknown"
     elif ratio_change.value == 0:
         size = "it changes no stack of the sample"
     else:
@@ -257,7 +258,7 @@ def keep(
         write_csv(read_scatter(seeds), data / SCATTER_FILE, float_format="%.5g")
     if regressions is not None:
         for name in regressed_rows():
-            for file in KEPT:
+            for file in COPIED_FILES:
                 (data / name / file).parent.mkdir(parents=True, exist_ok=True)
                 shutil.copyfile(regressions / name / file, data / name / file)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from snowshed.analysis.calibration.parameter_ranges import COHESION, PRESSURE, SLOPE
+from snowshed.analysis.calibration.parameter_grid import COHESION, PRESSURE, SLOPE
 from snowshed.analysis.regression.published import published
 from snowshed.plot.labels import label
 

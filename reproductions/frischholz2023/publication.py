@@ -46,12 +46,11 @@ PLANAR_CAUTION = (
 )
 NOISE = (
     "Its noise is that of the seeding: another placement of the particles gives another stack. "
-    "Deviations between seedings are pooled over the points that a claim compares and divided by "
-    "the root of the number of runs a mean is over; where there are few seedings, they are "
-    "widened by Student's t. Where slopes are fitted, the noise is their standard error; for "
-    "scores of the regressions it is the standard error over the outer folds, for errors and "
-    "quartiles that over the panels. Rules that say <em>no noise</em> compare numbers as they "
-    "are."
+    "Deviations between seedings are pooled over the points that a claim compares, divided by the "
+    "root of the number of averaged runs, and widened by Student's t if there are few seedings. "
+    "The noise of a fitted slope is its standard error. For scores of the regressions it is the "
+    "standard error over the outer folds, for errors and quartiles over the panels. Rules that say "
+    "<em>no noise</em> compare the numbers without noise."
 )
 
 HELP = """Reproduce chapters 3 to 5 of the thesis and its lab experiment, and judge its claims.

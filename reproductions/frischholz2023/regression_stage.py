@@ -176,7 +176,7 @@ class RegressionStage:
         return ""
 
     def _part(self, rows: StackRows, scheme: CrossValidation) -> Part:
-        """Return a part; other rows, and other folds, have another folder."""
+        """Return a part, whose folder depends on its rows and folds."""
         name = f"{NAME}-{rows.digest[:8]}"
         return Part(rows, self._folder.of_stage(name), scheme)
 

@@ -49,7 +49,7 @@ def page(data: Path = DATA) -> str:
         "(../methods/mpm-scheme.md). The simulations of chapters 2 to 4 were made with each: with "
         f"`{THESIS}`, which is the default, and with `{OBJECTIVE}`, whose stacks depend [less on "
         "the cells](stack-grid.md). They are in 2D with the thesis's cells of 1 cm. "
-        "[The verdicts in 3D](thesis-claims.md) have `thesis` only, and so has chapter 5.",
+        "[The verdicts in 3D](thesis-claims.md) and those on chapter 5 are for `thesis` only.",
         "```sh\n"
         f"snowshed reproduce frischholz2023 --planar --scheme {OBJECTIVE} \\\n"
         "  --stage lab --stage s-index --stage fixation --stage calibration -o planar\n"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from snowshed.analysis.calibration.parameter_ranges import COHESION, GRID, PRESSURE, SLOPE
+from snowshed.analysis.calibration.parameter_grid import COHESION, GRID, PRESSURE, SLOPE
 from snowshed.analysis.regression.folds import CrossValidation
 from snowshed.methods.mpm.settings import Scheme
 from snowshed.scene.components import Condition
@@ -39,11 +39,11 @@ class Settings:
         Whether the panels of chapter 5 are simulated (the thesis's 122, and those with more tilts);
         else the rows are those of the data set in snowshed.
     deviation_dx
-        Size of the grid cells (m) where deviations from the thesis are undone one by one: ours, and
-        the size in place of the thesis's. Their ratio is that of 1.5 cm to 1 cm.
+        Sizes of the grid cells (m) in the runs that undo deviations one by one: ours, and one that
+        stands for the thesis's. Their ratio is that of 1.5 cm to 1 cm.
     deviation_panels, deviation_longest, deviation_seeds
         Every n-th panel of the data set is simulated, up to a length, m, with a number of seeds. (n
-        has no factor in common with the numbers of lengths, because lengths would repeat.)
+        has no factor in common with the numbers of lengths; otherwise lengths would repeat.)
     folds
         Folds of the nested cross-validation.
     one_seed_rounds

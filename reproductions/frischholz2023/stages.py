@@ -18,9 +18,9 @@ from snowshed.methods.mpm.settings import Scheme
 from snowshed.scene.components import Condition
 
 #: Stages that vary the scheme of the thesis.
-OF_THE_THESIS = ("deviations", "variations")
-#: Stages of panels, whose measure is in doubt: their particles are stored.
-KEPT = ("deviations", "variations", "geometry")
+THESIS_SCHEME_STAGES = ("deviations", "variations")
+#: Stages of panels. Their particles are stored, so that stacks can be measured again.
+PARTICLE_STAGES = ("deviations", "variations", "geometry")
 MAKERS = {
     "lab": studies.lab,
     "s-index": studies.index,
@@ -54,11 +54,11 @@ class ThesisComputation:
         self.table = table
         self.study_stages = {
             name: StudyStage(
-                name, folder.runs, partial(make, settings), keep_particles=name in KEPT
+                name, folder.runs, partial(make, settings), keep_particles=name in PARTICLE_STAGES
             )
             for name, make in MAKERS.items()
             if (name != "geometry" or table is None)
-            and (name not in OF_THE_THESIS or of_the_thesis)
+            and (name not in THESIS_SCHEME_STAGES or of_the_thesis)
         }
         self.rows = GeometryRows(folder, table, self.study_stages.get("geometry"))
         self.regression = RegressionStage(folder, settings, self.rows)

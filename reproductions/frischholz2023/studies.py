@@ -9,9 +9,9 @@ from typing import Any
 from reproductions.frischholz2023.deviations import DEVIATIONS
 from reproductions.frischholz2023.settings import MEASURED_FRICTION, Settings
 from snowshed import Scene
-from snowshed.analysis.calibration.design import calibration_study
+from snowshed.analysis.calibration.grid_study import calibration_study
 from snowshed.analysis.calibration.measurements import Measurement
-from snowshed.analysis.calibration.parameter_ranges import COHESION, PRESSURE, SLOPE
+from snowshed.analysis.calibration.parameter_grid import COHESION, PRESSURE, SLOPE
 from snowshed.analysis.regression.dataset import MODEL_BETWEEN
 from snowshed.analysis.regression.deviations import ALL
 from snowshed.analysis.regression.geometry import (
@@ -132,7 +132,7 @@ def geometry(settings: Settings) -> list[Study]:
 def deviations(settings: Settings) -> list[Study]:
     """Return a sample of the panels: with our settings, with each deviation undone, and with all.
 
-    A deviation in the measuring needs no runs of its own.
+    A deviation in the measuring needs no additional runs.
 
     Examples
     --------

@@ -36,7 +36,7 @@ FILE = Path(__file__).with_name("data") / "deviation-errors.csv"
 #: The columns of a regression's inputs, in its order.
 INPUTS = ("event", "panel.height", "panel.length", "panel.tilt")
 COLUMNS = ("variant", "trimming", "model", "rows", *QUARTILES, *ERRORS)
-#: A sample has a tenth of the rows of the data set, so that its folds are fewer.
+#: A sample has a tenth of the rows of the data set, so its folds are fewer.
 SCHEME = CrossValidation(rounds=1, folds=7, inner_folds=4)
 
 

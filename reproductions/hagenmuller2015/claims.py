@@ -30,13 +30,13 @@ from reproductions.common.hypothesis_tests import (
 from reproductions.hagenmuller2015.printed import YADE
 from reproductions.hagenmuller2015.studies import (
     ELASTIC,
-    FEWER,
+    EXCESSIVE_INERTIA,
+    FEWER_GRAINS,
     HEAVY_SNOW,
+    HIGH_FRICTION,
     LIGHT_SNOW,
-    ROUGH,
-    SOFT,
+    SOFT_ICE,
     THIN_NECKS,
-    TRAP,
     WIDE_NECKS,
 )
 from snowshed.analysis.grains.ratios import STRESSES, LogMean, paired_ratios
@@ -47,14 +47,14 @@ if TYPE_CHECKING:
     import pandas as pd
 
 PEAK, EARLY, MIDDLE, DENSE = STRESSES
-SCALED = "density of ice x 100"
+SCALED_DENSITY = "density of ice x 100"
 HALF_EDGE = "volume / 8"
-#: Largest factor between stresses that hardly differ, and smallest between clearly different ones.
-HARDLY, MUCH = math.log(1.3), math.log(2.0)
-#: Factor from which two of Yade's numbers differ by more than a sample's scatter.
-CLEAR = math.log(1.5)
+#: Largest log ratio of stresses that hardly differ, and smallest of clearly different ones.
+MAX_LOG_SIMILAR, MIN_LOG_DISTINCT = math.log(1.3), math.log(2.0)
+#: Log ratio above which two of Yade's numbers differ by more than a sample's scatter.
+MIN_LOG_CLEAR = math.log(1.5)
 #: Largest remaining part of a reversible strain, relative to the peak strain; least R2 of a line.
-REMAINS, LINEAR = 0.05, 0.95
+MAX_REMAINING_STRAIN, MIN_LINEARITY = 0.05, 0.95
 
 
 @dataclass(frozen=True)
@@ -110,13 +110,13 @@ def factor(ratio: Estimate, what: str) -> str:
     return f"{what}: x {math.exp(ratio.value):.3g} (noise: {noise})"
 
 
-def reversible(tests: LoadingTests) -> Finding:
+def is_reversible(tests: LoadingTests) -> Finding:
     """Test whether loading and unloading in the elastic phase leaves no trace."""
     rows = tests.of(ELASTIC)
     broken = (rows["broken_in_tension"] + rows["broken_in_shear"]).astype(float)
     peak, rest = rows["elastic_limit_strain"].astype(float), rows["axial_strain"].astype(float)
     linear = rows["linearity"].astype(float)
-    good = (broken == 0) & (rest.abs() <= REMAINS * peak) & (linear >= LINEAR)
+    good = (broken == 0) & (rest.abs() <= MAX_REMAINING_STRAIN * peak) & (linear >= MIN_LINEARITY)
     verdict = CONFIRMED if good.all() else CONTRADICTED if not good.any() else UNDECIDED
     return Finding(
         verdict,
@@ -125,7 +125,7 @@ def reversible(tests: LoadingTests) -> Finding:
     )
 
 
-def brittle(tests: LoadingTests) -> Finding:
+def softens(tests: LoadingTests) -> Finding:
     """Test whether the stress falls after its peak."""
     rows = tests.of(BASE)
     drop = _estimate(LogMean.of((rows[EARLY].astype(float) / rows[PEAK].astype(float)).tolist()))
@@ -137,7 +137,9 @@ def hardens(tests: LoadingTests) -> Finding:
     rows = tests.of(BASE)
     growth = (rows[DENSE].astype(float) / rows[MIDDLE].astype(float)).tolist()
     rise = _estimate(LogMean.of(growth))
-    finding = _factors(positive(rise - Estimate(MUCH, 0.0), ""), rise, "25 to 30 % over 10 to 15 %")
+    finding = _factors(
+        positive(rise - Estimate(MIN_LOG_DISTINCT, 0.0), ""), rise, "25 to 30 % over 10 to 15 %"
+    )
     onset = rows["hardening_onset_strain"].astype(float)
     seen = int(onset.notna().sum())
     begins = f"exponential from {percent(onset.mean(), 2)} in {seen} of {len(rows)}"
@@ -162,23 +164,25 @@ def falls(variant: str, stress: str, tests: LoadingTests, *, by: float = 0.0) ->
     return _factors(negative(change - Estimate(-by, 0.0), ""), change, STRESSES[stress])
 
 
-def hardly(variants: Sequence[str], stress: str, tests: LoadingTests, base: str = BASE) -> Finding:
+def hardly_differs(
+    variants: Sequence[str], stress: str, tests: LoadingTests, base: str = BASE
+) -> Finding:
     """Test whether a stress hardly differs from the base's."""
     findings = []
     for variant in variants:
         change = tests.change(variant, stress, base)
         findings.append(
-            _factors(small(change, HARDLY, ""), change, f"{variant}, {STRESSES[stress]}")
+            _factors(small(change, MAX_LOG_SIMILAR, ""), change, f"{variant}, {STRESSES[stress]}")
         )
     return all_of(findings)
 
 
-def as_much_as_yade(stress: str, tests: LoadingTests) -> Finding:
+def agrees_with_yade(stress: str, tests: LoadingTests) -> Finding:
     """Test whether a stress of the base is that of Yade within 30 %."""
     value = YADE[BASE][list(STRESSES).index(stress)]
     assert value is not None
     logarithm = tests.log(BASE, stress)
-    verdict = near(logarithm, math.log(1e3 * value), HARDLY, "").verdict
+    verdict = near(logarithm, math.log(1e3 * value), MAX_LOG_SIMILAR, "").verdict
     text = f"{STRESSES[stress]} {math.exp(logarithm.value) / 1e3:.3g} kPa, Yade {value:g} kPa"
     return Finding(verdict, factor(logarithm - Estimate(math.log(1e3 * value), 0.0), text))
 
@@ -187,7 +191,7 @@ def same_signs(variant: str, tests: LoadingTests) -> Finding:
     """Test whether stresses change as in Yade, where these change by more than the scatter."""
     findings = []
     for stress, printed, base in zip(STRESSES, YADE[variant], YADE[BASE]):
-        if printed is None or base is None or abs(math.log(printed / base)) < CLEAR:
+        if printed is None or base is None or abs(math.log(printed / base)) < MIN_LOG_CLEAR:
             continue
         change = tests.change(variant, stress)
         test = positive if printed > base else negative
@@ -202,7 +206,7 @@ def same_order(stress: str, tests: LoadingTests) -> Finding:
     pairs = []
     for first, second in combinations(YADE, 2):
         high, low = YADE[first][place], YADE[second][place]
-        if high is None or low is None or abs(math.log(high / low)) < CLEAR:
+        if high is None or low is None or abs(math.log(high / low)) < MIN_LOG_CLEAR:
             continue
         above, below = (first, second) if high > low else (second, first)
         pairs.append((positive(tests.change(above, stress, below), "").verdict, above, below))
@@ -228,13 +232,13 @@ PAPER: list[Claim[LoadingTests]] = [
         "elastic phase",
         "At first the deformation is elastic: linear, reversible, and no bond breaks.",
         "in every sample no bond breaks, less than 5 % of the strain is left, R2 above 0.95",
-        reversible,
+        is_reversible,
     ),
     Claim(
         "brittle phase",
         "Then bonds break, and the stress falls from its peak.",
         "the mean stress from 5 to 10 % is below the peak below 5 %",
-        brittle,
+        softens,
     ),
     Claim(
         "hardening",
@@ -265,49 +269,49 @@ PAPER: list[Claim[LoadingTests]] = [
         "snow types",
         "At large strain types of equal density do not differ clearly. (Here: necks as above.)",
         "stresses from 25 to 30 % differ by less than a factor of 1.3",
-        lambda tests: hardly([THIN_NECKS], DENSE, tests, WIDE_NECKS),
+        lambda tests: hardly_differs([THIN_NECKS], DENSE, tests, WIDE_NECKS),
     ),
     Claim(
         "sphere size",
         "The brittle phase is insensitive to the size of the spheres.",
         "peaks of spheres half and one and a half times as large differ by less than 1.3",
-        lambda tests: hardly(["spheres 50 um", "spheres 150 um"], PEAK, tests),
+        lambda tests: hardly_differs(["spheres 50 um", "spheres 150 um"], PEAK, tests),
     ),
     Claim(
         "segmentation",
         "The brittle phase is insensitive to the number of grains.",
         "the peak of half as many grains of the same ice differs by less than a factor of 1.3",
-        lambda tests: hardly([FEWER], PEAK, tests),
+        lambda tests: hardly_differs([FEWER_GRAINS], PEAK, tests),
     ),
     Claim(
         "volume",
         "The volume is representative.",
         "the peak of an eighth of the volume differs by less than a factor of 1.3",
-        lambda tests: hardly([HALF_EDGE], PEAK, tests),
+        lambda tests: hardly_differs([HALF_EDGE], PEAK, tests),
     ),
     Claim(
         "elastic modulus",
         "The brittle phase is insensitive to Young's modulus.",
         "the peak with a tenth of it differs by less than a factor of 1.3",
-        lambda tests: hardly([SOFT], PEAK, tests),
+        lambda tests: hardly_differs([SOFT_ICE], PEAK, tests),
     ),
     Claim(
         "elastic modulus",
         "The dense phase is very sensitive to Young's modulus.",
         "the stress from 25 to 30 % with a tenth of it is less than half",
-        lambda tests: falls(SOFT, DENSE, tests, by=MUCH),
+        lambda tests: falls(SOFT_ICE, DENSE, tests, by=MIN_LOG_DISTINCT),
     ),
     Claim(
         "friction",
         "Friction between grains raises the stress.",
         "peak, and mean from 25 to 30 %, are above the base's with friction 0.5 instead of 0.2",
-        lambda tests: rises(ROUGH, BASE, [PEAK, DENSE], tests),
+        lambda tests: rises(HIGH_FRICTION, BASE, [PEAK, DENSE], tests),
     ),
     Claim(
         "density of ice",
         "Denser ice, which saves time, hardly changes the brittle phase.",
         "the peak with density_scaling 100 instead of 10 differs by less than a factor of 1.3",
-        lambda tests: hardly([SCALED], PEAK, tests),
+        lambda tests: hardly_differs([SCALED_DENSITY], PEAK, tests),
     ),
 ]
 ENGINE: list[Claim[LoadingTests]] = [
@@ -315,14 +319,14 @@ ENGINE: list[Claim[LoadingTests]] = [
         "density of ice",
         "Far too dense ice raises the peak, by inertia.",
         "the peak with density_scaling 10000 is above the base's",
-        lambda tests: rises(TRAP, BASE, [PEAK], tests),
+        lambda tests: rises(EXCESSIVE_INERTIA, BASE, [PEAK], tests),
     ),
     *(
         Claim(
             "base",
             f"{STRESSES[stress]} as with Yade, on a comparable sample",
             "within 30 % (a factor of 1.3)",
-            partial(as_much_as_yade, stress),
+            partial(agrees_with_yade, stress),
         )
         for stress in (PEAK, EARLY)
     ),

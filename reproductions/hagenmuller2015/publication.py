@@ -20,13 +20,12 @@ ABOUT = (
 )
 QUICK_CAUTION = (
     "<strong>A quick reproduction.</strong> Samples of some 90 grains are below a representative "
-    "volume: what they say of the paper's claims is not final. For 1000 grains and more use "
-    "<code>--full</code>."
+    "volume, so their verdicts are not final. For 1000 grains and more use <code>--full</code>."
 )
 NOISE = (
     "Here it is the logarithm of a ratio of stresses, taken sample by sample. Its noise is the "
     "standard error by the scatter between samples, widened by Student's t, as samples are few. "
-    "Hardly means by less than a factor of 1.3."
+    "“Hardly” means by less than a factor of 1.3."
 )
 HELP = """Judge the claims of Hagenmuller, Chambon and Naaim (2015) on snow in compression.
 

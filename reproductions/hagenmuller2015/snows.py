@@ -17,13 +17,13 @@ from snowshed.analysis.tomography.segmentation import SegmentationSettings, segm
 from snowshed.analysis.tomography.sphere_snow import sphere_snow
 
 VOXEL, WAVELENGTH = 5e-5, 5e-4  # m
-COARSER = 2  # voxels along the edge of a sphere
-DENSITY, LIGHT, HEAVY = 318.0, 192.0, 427.0  # kg/m3
+VOXELS_PER_SPHERE = 2  # voxels along the edge of a sphere
+DENSITY, LIGHT_DENSITY, HEAVY_DENSITY = 318.0, 192.0, 427.0  # kg/m3
 #: Sphere packs of equal density: their density, diameter, and radius of the necks.
-PACK_DENSITY, PACK_DIAMETER, THIN, WIDE = 250.0, 4.5e-4, 0.3, 0.6
-MAX_FIELDS = 20  # that are tried
+PACK_DENSITY, PACK_DIAMETER, THIN_NECK_RATIO, WIDE_NECK_RATIO = 250.0, 4.5e-4, 0.3, 0.6
+MAX_FIELDS = 20  # tried for one sample
 #: Least depth of a neck, which gives fewer grains than the default (0.75 voxels).
-FEWER_GRAINS = SegmentationSettings(depth=1.25)
+DEEP_NECKS = SegmentationSettings(depth=1.25)
 
 
 @dataclass(frozen=True)

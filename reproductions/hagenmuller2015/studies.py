@@ -6,13 +6,13 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from reproductions.hagenmuller2015.snows import (
-    COARSER,
+    DEEP_NECKS,
     DENSITY,
-    FEWER_GRAINS,
-    HEAVY,
-    LIGHT,
-    THIN,
-    WIDE,
+    HEAVY_DENSITY,
+    LIGHT_DENSITY,
+    THIN_NECK_RATIO,
+    VOXELS_PER_SPHERE,
+    WIDE_NECK_RATIO,
     Samples,
     field_snow,
     pack_snow,
@@ -39,24 +39,28 @@ BRITTLE_STAGE = LoadingStage(kind="compress", speed=0.02, strain=0.05)
 SETTINGS = GrainsSettings(density_scaling=10.0, courant_factor=0.9)
 #: Loading within the elastic phase, and back: slow, so that waves are small.
 ELASTIC_STRAIN, ELASTIC_SPEED = 1e-4, 5e-4
-#: The trap: far too much inertia.
-TOO_DENSE = 1e4
-LIGHT_SNOW, HEAVY_SNOW = f"{LIGHT:.0f} kg/m3", f"{HEAVY:.0f} kg/m3"
+#: Density scaling with far too much inertia.
+EXCESSIVE_SCALING = 1e4
+LIGHT_SNOW, HEAVY_SNOW = f"{LIGHT_DENSITY:.0f} kg/m3", f"{HEAVY_DENSITY:.0f} kg/m3"
 THIN_NECKS, WIDE_NECKS = "thin necks", "wide necks"
-FEWER, TRAP, ELASTIC = "fewer grains", "density of ice x 10000", "elastic"
+FEWER_GRAINS, EXCESSIVE_INERTIA, ELASTIC = "fewer grains", "density of ice x 10000", "elastic"
 #: Settings of the variants that are compressed by 30 %, by their names in `sensitivity_variants`.
-SOFT, STRONG, ROUGH = "elastic modulus 1e+08 Pa", "strength of bonds 2e+06 Pa", "friction 0.5"
+SOFT_ICE, STRONG_BONDS, HIGH_FRICTION = (
+    "elastic modulus 1e+08 Pa",
+    "strength of bonds 2e+06 Pa",
+    "friction 0.5",
+)
 DENSE_SETTINGS: Mapping[str, tuple[str, Mapping[str, float]]] = {
-    SOFT: ("elastic modulus", {"elastic_modulus": 1e8}),
-    STRONG: ("strength of bonds", {"tensile_strength": 2e6, "shear_strength": 2e6}),
-    ROUGH: ("friction", {"friction": 0.5}),
+    SOFT_ICE: ("elastic modulus", {"elastic_modulus": 1e8}),
+    STRONG_BONDS: ("strength of bonds", {"tensile_strength": 2e6, "shear_strength": 2e6}),
+    HIGH_FRICTION: ("friction", {"friction": 0.5}),
 }
 
 Snow = Callable[[int], LabelledSample]
 
 
 class Comparisons:
-    """The comparisons of a reproduction, made when they are needed: their samples take a while.
+    """The comparisons of a reproduction. They are made on request, because samples take time.
 
     Parameters
     ----------
@@ -87,12 +91,12 @@ class Comparisons:
 
     def variant(self, name: str, varied: str, snow: Snow) -> Variant:
         """Return a variant that is another snow."""
-        coarse = [sample.coarser(COARSER) for sample in self.samples(snow)]
+        coarse = [sample.coarser(VOXELS_PER_SPHERE) for sample in self.samples(snow)]
         files = [sample.write(self.folder) for sample in coarse]
         return Variant(name, varied, files, coarse[0].voxel_size)
 
 
-def dense(comparisons: Comparisons) -> Comparison:
+def dense_tests(comparisons: Comparisons) -> Comparison:
     """Return the tests up to 30 %: other settings, densities and necks."""
     edge = comparisons.edge
     base = comparisons.variant(BASE, BASE, lambda seed: field_snow(edge, seed, DENSITY))
@@ -107,15 +111,23 @@ def dense(comparisons: Comparisons) -> Comparison:
         for name, (varied, changes) in DENSE_SETTINGS.items()
     ]
     snows = [
-        comparisons.variant(LIGHT_SNOW, "density", lambda seed: field_snow(edge, seed, LIGHT)),
-        comparisons.variant(HEAVY_SNOW, "density", lambda seed: field_snow(edge, seed, HEAVY)),
-        comparisons.variant(THIN_NECKS, "necks", lambda seed: pack_snow(edge, seed, THIN)),
-        comparisons.variant(WIDE_NECKS, "necks", lambda seed: pack_snow(edge, seed, WIDE)),
+        comparisons.variant(
+            LIGHT_SNOW, "density", lambda seed: field_snow(edge, seed, LIGHT_DENSITY)
+        ),
+        comparisons.variant(
+            HEAVY_SNOW, "density", lambda seed: field_snow(edge, seed, HEAVY_DENSITY)
+        ),
+        comparisons.variant(
+            THIN_NECKS, "necks", lambda seed: pack_snow(edge, seed, THIN_NECK_RATIO)
+        ),
+        comparisons.variant(
+            WIDE_NECKS, "necks", lambda seed: pack_snow(edge, seed, WIDE_NECK_RATIO)
+        ),
     ]
     return Comparison(_scene(base, [STAGE]), [base, *settings, *snows], "hagenmuller-dense")
 
 
-def brittle(comparisons: Comparisons) -> Comparison:
+def brittle_tests(comparisons: Comparisons) -> Comparison:
     """Return the variants of `snowshed grains sensitivity`, fewer grains, and the trap of inertia.
 
     One variant has spheres half as large, which take ten times as long.
@@ -125,19 +137,19 @@ def brittle(comparisons: Comparisons) -> Comparison:
         comparisons.folder,
         BRITTLE_STAGE,
         SETTINGS,
-        coarser=COARSER,
+        coarser=VOXELS_PER_SPHERE,
         finer=True,
     )
     edge, base = comparisons.edge, comparison.variants[0]
     fewer = comparisons.variant(
-        FEWER, "segmentation", lambda seed: field_snow(edge, seed, DENSITY, FEWER_GRAINS)
+        FEWER_GRAINS, "segmentation", lambda seed: field_snow(edge, seed, DENSITY, DEEP_NECKS)
     )
-    scaling = {"numerics.density_scaling": TOO_DENSE}
-    trap = Variant(TRAP, "density of ice", base.samples, base.voxel_size, scaling)
+    scaling = {"numerics.density_scaling": EXCESSIVE_SCALING}
+    trap = Variant(EXCESSIVE_INERTIA, "density of ice", base.samples, base.voxel_size, scaling)
     return Comparison(comparison.scene, [*comparison.variants, fewer, trap], "hagenmuller-brittle")
 
 
-def elastic(comparisons: Comparisons) -> Comparison:
+def elastic_tests(comparisons: Comparisons) -> Comparison:
     """Return loading within the elastic phase, and back until the plate is free."""
     edge = comparisons.edge
     base = comparisons.variant(ELASTIC, ELASTIC, lambda seed: field_snow(edge, seed, DENSITY))
@@ -151,7 +163,7 @@ def _scene(base: Variant, stages: Sequence[LoadingStage]) -> Scene:
 
 
 MAKERS: Mapping[str, Callable[[Comparisons], Comparison]] = {
-    "elastic": elastic,
-    "brittle": brittle,
-    "dense": dense,
+    "elastic": elastic_tests,
+    "brittle": brittle_tests,
+    "dense": dense_tests,
 }

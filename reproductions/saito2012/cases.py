@@ -2,8 +2,8 @@
 
 The paper prints density, adhesive force, friction angle, viscosity, spacing and the thickness of
 the erodible layer. All shapes are ours, because its drawings are lost: tilts, lengths of slopes 1
-and 2, the amount of snow, stakes and board; so are the limits of the dilatant branch, of erosion
-and of deposition.
+and 2, the amount of snow, stakes and board. The limits of the dilatant branch, of erosion and of
+deposition are ours, too.
 """
 
 from __future__ import annotations
@@ -34,23 +34,28 @@ WOOD_LENGTH = 5.4  # m, printed
 #: Inferred, wooden slope.
 WOOD_TILT, RUN_OUT = 30.0, 1.5  # degrees, m
 BLOCK = (0.4, 0.2)  # m, length and height of the block of snow; it fills the slope's width
-OBSTACLE_AT = 0.3  # m above the foot of the slope
-STAKE, STAKE_HEIGHT = 0.02, 0.2  # m
+OBSTACLE_DISTANCE = 0.3  # m above the foot of the slope
+STAKE_WIDTH, STAKE_HEIGHT = 0.02, 0.2  # m
 BOARD_HEIGHT, BOARD_GAP, NOTCH = 0.12, 0.04, (0.04, 0.06)  # m; the notch's width and depth
 #: Inferred, slopes 1 and 2: tilt and length from above, m, then level ground.
 SLOPES: Mapping[int, Sequence[tuple[float, float]]] = {
     1: [(30.0, 40.0)],
     2: [(38.0, 30.0), (20.0, 30.0)],
 }
-SOURCE = (12.0, 10.0, 1.5)  # m, length, width and height of the slab that is released
+RELEASED_SLAB = (12.0, 10.0, 1.5)  # m, length, width and height of the slab that is released
 LAYER_WIDTH = 20.0  # m
 #: The stress begins to grow as a power of the rate where snow slides at some 10 m/s by a wall.
 WOOD_LIMIT, SLOPE_LIMIT = 1000.0, 50.0  # 1/s
 STRESS_GROWTH = 1000.0  # s
 
 BINGHAM, COMBINED = "Bingham", "combined"
-NONE, NARROW, WIDE, BOARD = "no obstacle", "stakes 0.02 m", "stakes 0.04 m", "notched board"
-OBSTACLES = (NONE, NARROW, WIDE, BOARD)
+NO_OBSTACLE, NARROW_STAKES, WIDE_STAKES, NOTCHED_BOARD = (
+    "no obstacle",
+    "stakes 0.02 m",
+    "stakes 0.04 m",
+    "notched board",
+)
+OBSTACLES = (NO_OBSTACLE, NARROW_STAKES, WIDE_STAKES, NOTCHED_BOARD)
 
 
 @dataclass(frozen=True)
@@ -176,7 +181,7 @@ class Case:
         Its ground.
     scene
         Its scene.
-    end, every
+    end, interval
         End of the case, and interval of the stored states, s.
     obstacle
         Position of its obstacle, m along the path, or of the missing obstacle.
@@ -186,7 +191,7 @@ class Case:
     path: GroundProfile
     scene: Scene
     end: float
-    every: float
+    interval: float
     obstacle: Optional[float] = None
 
     @property
@@ -197,10 +202,10 @@ class Case:
     @property
     def times(self) -> list[float]:
         """Times of the stored states, s."""
-        return [self.every * k for k in range(round(self.end / self.every) + 1)]
+        return [self.interval * k for k in range(round(self.end / self.interval) + 1)]
 
 
-def wooden(obstacle: str, resolution: Resolution) -> Case:
+def wooden_case(obstacle: str, resolution: Resolution) -> Case:
     """Return the wooden slope with an obstacle at its foot."""
     path = GroundProfile.of([(WOOD_TILT, WOOD_LENGTH)])
     width = resolution.wooden_width
@@ -209,10 +214,10 @@ def wooden(obstacle: str, resolution: Resolution) -> Case:
         rail = Shape.plane((0, side * width / 2, 0), (0, -side, 0))
         name = "rail right" if side < 0 else "rail left"
         obstacles.append(Obstacle(name=name, shape=rail, condition="separate", friction=0.1))
-    if obstacle in (NARROW, WIDE):
-        gap = 0.02 if obstacle == NARROW else 0.04
+    if obstacle in (NARROW_STAKES, WIDE_STAKES):
+        gap = 0.02 if obstacle == NARROW_STAKES else 0.04
         obstacles.append(_solid("stakes", Shape.union(*_stakes(path, width, gap))))
-    elif obstacle == BOARD:
+    elif obstacle == NOTCHED_BOARD:
         obstacles.append(_solid("board", _board(path, width)))
     snow = path.box(-WOOD_LENGTH + BLOCK[0] / 2, (BLOCK[0], width, BLOCK[1]))
     settings = replace(
@@ -226,16 +231,16 @@ def wooden(obstacle: str, resolution: Resolution) -> Case:
         deposition_speed=0.005,  # below the speed after one step: snow is not deposited at once
     )
     scene = _scene(f"wooden slope, {obstacle}", 3, settings, obstacles, [Body(shape=snow)], 4.0)
-    return Case(f"wooden slope, {obstacle}", path, scene, 4.0, 0.25, -OBSTACLE_AT)
+    return Case(f"wooden slope, {obstacle}", path, scene, 4.0, 0.25, -OBSTACLE_DISTANCE)
 
 
-def slope(number: int, model: str, resolution: Resolution) -> Case:
+def slope_case(number: int, model: str, resolution: Resolution) -> Case:
     """Return slope 1 or 2 with the Bingham or the combined model."""
     path = GroundProfile.of(SLOPES[number])
     spacing = SLOPE_SNOW.spacing
     assert spacing is not None
     top = sum(length for _, length in SLOPES[number])
-    snow = [Body(shape=path.box(-top + SOURCE[0] / 2, SOURCE, above=spacing))]
+    snow = [Body(shape=path.box(-top + RELEASED_SLAB[0] / 2, RELEASED_SLAB, above=spacing))]
     lengths = [length for _, length in SLOPES[number]]
     ends = [-sum(lengths[k + 1 :]) for k in range(len(lengths))]
     for end, length in zip(ends, lengths):
@@ -263,9 +268,9 @@ def slope(number: int, model: str, resolution: Resolution) -> Case:
 def cases(resolution: Resolution) -> list[Case]:
     """Return all cases."""
     slopes = [
-        slope(number, model, resolution) for number in SLOPES for model in (BINGHAM, COMBINED)
+        slope_case(number, model, resolution) for number in SLOPES for model in (BINGHAM, COMBINED)
     ]
-    return [*(wooden(obstacle, resolution) for obstacle in OBSTACLES), *slopes]
+    return [*(wooden_case(obstacle, resolution) for obstacle in OBSTACLES), *slopes]
 
 
 def _solid(name: str, shape: Shape) -> Obstacle:
@@ -273,17 +278,20 @@ def _solid(name: str, shape: Shape) -> Obstacle:
 
 
 def _stakes(path: GroundProfile, width: float, gap: float) -> list[Shape]:
-    count = int((width + 1e-9) // (STAKE + gap))
-    first = -0.5 * (count - 1) * (STAKE + gap)
-    size = (STAKE, STAKE, STAKE_HEIGHT)
-    return [path.box(-OBSTACLE_AT, size, across=first + k * (STAKE + gap)) for k in range(count)]
+    count = int((width + 1e-9) // (STAKE_WIDTH + gap))
+    first = -0.5 * (count - 1) * (STAKE_WIDTH + gap)
+    size = (STAKE_WIDTH, STAKE_WIDTH, STAKE_HEIGHT)
+    return [
+        path.box(-OBSTACLE_DISTANCE, size, across=first + k * (STAKE_WIDTH + gap))
+        for k in range(count)
+    ]
 
 
 def _board(path: GroundProfile, width: float) -> Shape:
     """Return a board that leaves gaps at its ends and has a notch in the middle of its top."""
-    board = path.box(-OBSTACLE_AT, (STAKE, width - 2 * BOARD_GAP, BOARD_HEIGHT))
-    cut = (3 * STAKE, NOTCH[0], NOTCH[1] + 0.02)  # beyond the board's faces
-    return Shape.difference(board, path.box(-OBSTACLE_AT, cut, above=BOARD_HEIGHT - NOTCH[1]))
+    board = path.box(-OBSTACLE_DISTANCE, (STAKE_WIDTH, width - 2 * BOARD_GAP, BOARD_HEIGHT))
+    cut = (3 * STAKE_WIDTH, NOTCH[0], NOTCH[1] + 0.02)  # beyond the board's faces
+    return Shape.difference(board, path.box(-OBSTACLE_DISTANCE, cut, above=BOARD_HEIGHT - NOTCH[1]))
 
 
 def _scene(

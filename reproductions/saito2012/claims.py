@@ -17,11 +17,19 @@ from reproductions.common.hypothesis_tests import (
     Finding,
     all_of,
 )
-from reproductions.saito2012.cases import BINGHAM, BOARD, BOARD_GAP, COMBINED, NARROW, NONE, WIDE
-from reproductions.saito2012.measures import REST, Course
+from reproductions.saito2012.cases import (
+    BINGHAM,
+    BOARD_GAP,
+    COMBINED,
+    NARROW_STAKES,
+    NO_OBSTACLE,
+    NOTCHED_BOARD,
+    WIDE_STAKES,
+)
+from reproductions.saito2012.measures import REST_SPEED, Course
 
-#: Shares of the snow: above the first it is held back, below the second it hardly is.
-MUCH, HARDLY = 0.10, 0.03
+#: An obstacle holds snow back above the first share of all snow, and hardly below the second.
+MIN_HELD_SHARE, MAX_UNHELD_SHARE = 0.10, 0.03
 
 
 @dataclass(frozen=True)
@@ -60,7 +68,7 @@ def between(value: float, low: float, high: float, text: str) -> Finding:
 
 def reaches_the_foot(data: Courses) -> Finding:
     """Test whether the avalanche without obstacle lies on the foot of the slope at 4 s."""
-    course = data.wooden(NONE)
+    course = data.wooden(NO_OBSTACLE)
     fronts = ", ".join(f"{course.front(course.at(t)):.2f}" for t in (1, 2, 3, 4))
     share = course.passed(course.at(4))
     text = f"front at {fronts} m after 1, 2, 3, 4 s; {100 * share:.0f} % below 0.3 m at 4 s"
@@ -69,7 +77,7 @@ def reaches_the_foot(data: Courses) -> Finding:
 
 def held_share(obstacle: str, data: Courses) -> tuple[float, str]:
     """Return the share of the snow that only the obstacle holds above it, with a text."""
-    course, without = data.wooden(obstacle), data.wooden(NONE)
+    course, without = data.wooden(obstacle), data.wooden(NO_OBSTACLE)
     held, free = course.held(course.at(4)), without.held(without.at(4))
     return held - free, f"{100 * held:.1f} % lie above it at 4 s, {100 * free:.1f} % without it"
 
@@ -77,7 +85,7 @@ def held_share(obstacle: str, data: Courses) -> tuple[float, str]:
 def holds(obstacle: str, data: Courses) -> Finding:
     """Test whether an obstacle holds snow back that would pass without it."""
     share, text = held_share(obstacle, data)
-    return between(share, HARDLY, MUCH, text)
+    return between(share, MAX_UNHELD_SHARE, MIN_HELD_SHARE, text)
 
 
 def leaks(obstacle: str, data: Courses) -> Finding:
@@ -91,12 +99,12 @@ def leaks(obstacle: str, data: Courses) -> Finding:
 def keeps_none(obstacle: str, data: Courses) -> Finding:
     """Test whether an obstacle holds back hardly any snow."""
     share, text = held_share(obstacle, data)
-    return between(-share, -MUCH, -HARDLY, text)
+    return between(-share, -MIN_HELD_SHARE, -MAX_UNHELD_SHARE, text)
 
 
 def leaks_at_edges(data: Courses) -> Finding:
-    """Test whether what passes the board late passes at its edges."""
-    course = data.wooden(BOARD)
+    """Test whether the snow that passes the board late passes at its edges."""
+    course = data.wooden(NOTCHED_BOARD)
     width = course.snow[0].positions[:, 1].max()  # half that of the slope, less half a spacing
     share = course.passed_at_edges(course.at(3), course.at(4), float(width) - 1.25 * BOARD_GAP)
     return between(share, 0.3, 0.5, f"{100 * share:.0f} % of what passes from 3 to 4 s")
@@ -121,7 +129,7 @@ def _moves(course: Course) -> Finding:
         f"{course.case.name}: {speed:.3g} m/s on average after {end.time:.0f} s, its front "
         f"{front:+.2f} m in the last five"
     )
-    return between(speed, REST, 5 * REST, text)
+    return between(speed, REST_SPEED, 5 * REST_SPEED, text)
 
 
 def spreads_wider(data: Courses) -> Finding:
@@ -136,7 +144,7 @@ def spreads_wider(data: Courses) -> Finding:
     return between(widths[0] / widths[1], 1.0, 1.05, text)
 
 
-def lost(what: str) -> Finding:
+def undecided_without(what: str) -> Finding:
     """Return an undecided finding: the reference data are unavailable."""
     return Finding(UNDECIDED, f"{what} are not available")
 
@@ -151,29 +159,29 @@ WOODEN_CLAIMS: list[Claim[Courses]] = [
     Claim(
         "experiments, fig. 15",
         "Stakes 0.02 m apart hold snow back.",
-        f"at 4 s at least {MUCH:.0%} more lie above them than without; contradicted below "
-        f"{HARDLY:.0%}",
-        lambda data: holds(NARROW, data),
+        f"at 4 s at least {MIN_HELD_SHARE:.0%} more lie above them than without; contradicted "
+        f"below {MAX_UNHELD_SHARE:.0%}",
+        lambda data: holds(NARROW_STAKES, data),
     ),
     Claim(
         "experiments, fig. 15",
         "In the simulation snow flows through the gaps gradually.",
         "more than 0.5 % of the snow passes from 3 to 4 s; contradicted below 0.1 %",
-        lambda data: leaks(NARROW, data),
+        lambda data: leaks(NARROW_STAKES, data),
     ),
     Claim(
         "experiments, fig. 16",
         "Stakes 0.04 m apart keep almost no snow.",
-        f"at 4 s less than {HARDLY:.0%} more lie above them than without; contradicted above "
-        f"{MUCH:.0%}",
-        lambda data: keeps_none(WIDE, data),
+        f"at 4 s less than {MAX_UNHELD_SHARE:.0%} more lie above them than without; contradicted "
+        f"above {MIN_HELD_SHARE:.0%}",
+        lambda data: keeps_none(WIDE_STAKES, data),
     ),
     Claim(
         "experiments, fig. 17",
         "The notched board holds snow back.",
-        f"at 4 s at least {MUCH:.0%} more lie above it than without; contradicted below "
-        f"{HARDLY:.0%}",
-        lambda data: holds(BOARD, data),
+        f"at 4 s at least {MIN_HELD_SHARE:.0%} more lie above it than without; contradicted "
+        f"below {MAX_UNHELD_SHARE:.0%}",
+        lambda data: holds(NOTCHED_BOARD, data),
     ),
     Claim(
         "experiments, fig. 17",
@@ -185,22 +193,22 @@ WOODEN_CLAIMS: list[Claim[Courses]] = [
         "experiments, fig. 13",
         "After 1 s simulation and experiment differ, after 2 s they agree.",
         "needs the photographs",
-        lambda data: lost("the photographs"),
+        lambda data: undecided_without("the photographs"),
     ),
 ]
 SLOPE_CLAIMS: list[Claim[Courses]] = [
     Claim(
         "slope 1, fig. 10",
         "With the Bingham model alone the snow never stops.",
-        f"on both slopes its mean speed is above {5 * REST:g} m/s at the end; contradicted below "
-        f"{REST:g} m/s",
+        f"on both slopes its mean speed is above {5 * REST_SPEED:g} m/s at the end; contradicted "
+        f"below {REST_SPEED:g} m/s",
         never_stops,
     ),
     Claim(
         "slope 1, fig. 10",
         "With the combined model and deposition it stops.",
-        f"on both slopes its mean speed is below {REST:g} m/s at the end; contradicted above "
-        f"{5 * REST:g} m/s",
+        f"on both slopes its mean speed is below {REST_SPEED:g} m/s at the end; contradicted "
+        f"above {5 * REST_SPEED:g} m/s",
         stops,
     ),
     Claim(
@@ -214,7 +222,7 @@ SLOPE_CLAIMS: list[Claim[Courses]] = [
         "slope 2, fig. 11",
         "Speed and path agree with the photographs.",
         "needs the photographs",
-        lambda data: lost("the photographs and the slope's shape"),
+        lambda data: undecided_without("the photographs and the slope's shape"),
     ),
 ]
 CLAIMS = (*WOODEN_CLAIMS, *SLOPE_CLAIMS)

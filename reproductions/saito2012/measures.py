@@ -17,7 +17,7 @@ FRONT_QUANTILE = 0.99
 #: Largest distance above an obstacle, m, and largest speed, m/s, of snow that it holds.
 HELD_LENGTH, HELD_SPEED = 0.8, 0.3
 #: Largest mean speed of snow at rest, m/s.
-REST = 0.02
+REST_SPEED = 0.02
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class Course:
     def at(self, time: float) -> Snow:
         """Return the snow at a time; raises LookupError if it is not stored."""
         for state in self.snow:
-            if abs(state.time - time) < 0.5 * self.case.every:
+            if abs(state.time - time) < 0.5 * self.case.interval:
                 return state
         raise LookupError(f"{self.case.name} at {time:g} s")
 

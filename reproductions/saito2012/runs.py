@@ -76,7 +76,7 @@ class CaseStage:
         simulation = self._simulation(0)
         spacing = float(getattr(self.case.scene.numerics, "spacing", 0) or 0.01)
         speed = SPEED_OVER_FREE_FALL * math.sqrt(2 * 9.81 * self.case.path.corners[0][1])
-        steps = left * self.case.every * speed / (0.2 * spacing)
+        steps = left * self.case.interval * speed / (0.2 * spacing)
         return steps * simulation.particle_count / PARTICLE_STEPS_PER_S
 
     def snow(self) -> list[Snow]:

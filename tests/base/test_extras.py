@@ -1,4 +1,4 @@
-"""Optional libraries: what is said where one is missing."""
+"""Optional libraries: messages if one is missing."""
 
 import ast
 import importlib
@@ -16,7 +16,7 @@ SOURCE = Path(extras.__file__).parents[1]
 SOURCES = sorted(SOURCE.rglob("*.py"))
 OUTSIDE = sorted((ROOT / "validation").rglob("*.py"))  # of the installed package
 OF_USERS = {MODULES_OF[name] for names in required()[1].values() for name in names}
-#: Made of scikit-learn; the registry of models asks for it before it imports them.
+#: Modules that need scikit-learn; the registry of models requires it before it imports them.
 ESTIMATORS = {
     SOURCE / "analysis" / "regression" / f"{name}.py"
     for name in (
@@ -44,7 +44,7 @@ def test_a_missing_library_is_named_with_what_needs_it_and_what_brings_it():
 
 
 def calls_of_require(source):
-    """The modules and extras that are asked for, names of constants replaced by what they hold."""
+    """The required modules and extras, with constants replaced by their values."""
     for node in ast.walk(ast.parse(source.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "require":
             module, extra, _ = node.args
@@ -70,7 +70,7 @@ def test_every_optional_library_is_asked_for_with_the_extra_that_brings_it():
 
 
 def imported_when_running(node):
-    """Yield the modules that code imports, those that only type checkers see left out."""
+    """Yield the modules that code imports, except imports for type checkers."""
     if isinstance(node, ast.If) and getattr(node.test, "id", "") == "TYPE_CHECKING":
         return
     yield from (one.name for one in node.names) if isinstance(node, ast.Import) else ()

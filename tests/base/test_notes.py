@@ -6,7 +6,7 @@ import click
 import pytest
 
 from snowshed import SnowshedNote
-from snowshed.base.notes import issue_note, recorded
+from snowshed.base.notes import issue_note, record_notes
 from snowshed.cli.common_options import quiet_option
 from snowshed.cli.main import main
 
@@ -27,19 +27,19 @@ def test_the_command_line_prints_a_note_unless_quiet(capsys):
 
 
 def test_recorded_notes_are_said_again_and_stay_errors_where_these_are_wanted():
-    with pytest.warns(SnowshedNote, match="feet became metres"), recorded() as notes:
+    with pytest.warns(SnowshedNote, match="feet became metres"), record_notes() as notes:
         issue_note("feet became metres")
         issue_note("feet became metres")
     assert notes == ["feet became metres"]
     with warnings.catch_warnings():
         warnings.simplefilter("error", SnowshedNote)
-        with pytest.raises(SnowshedNote), recorded():
+        with pytest.raises(SnowshedNote), record_notes():
             issue_note("feet became metres")
 
 
 def test_notes_before_an_error_are_recorded():
     raises = pytest.raises(ValueError, match="too far")
-    with pytest.warns(SnowshedNote), raises, recorded() as notes:
+    with pytest.warns(SnowshedNote), raises, record_notes() as notes:
         issue_note("feet became metres")
         raise ValueError("too far")
     assert notes == ["feet became metres"]

@@ -1,4 +1,4 @@
-"""Parts are written as percentages by one function, which never says 1e+02 %."""
+"""Shares are written in percent by one function, which never writes 1e+02 %."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""Records: what is misspelt or of the wrong type is an error at once."""
+"""Records: misspelt names and values of a wrong type are errors at once."""
 
 import copy
 import pickle

@@ -115,11 +115,11 @@ def test_it_says_which_scheme_and_why():
     missing = choose(
         0.3, scene_with(dimension=3), [*OBJECTIVE, stack(0.01, 0.2, 0.2, 9.0, dimension=3)]
     )
-    assert "Nothing is recorded of scheme objective for such a scene." in missing.reason
+    assert "No runs of scheme objective are recorded for such a scene." in missing.reason
 
 
 def test_a_chosen_scheme_is_that_of_the_recorded_runs_whatever_the_scene_was():
-    """A scheme decides many settings, which a scene may have given: none of them stays."""
+    """A scheme replaces all settings of the scene that it decides."""
     wanted = scene_with(**{"numerics.scheme": "objective", "numerics.dx": 0.01}).resolve().data
     other = scene_with(**{"numerics.transfer": "apic", "numerics.contact": "touch"})
     chosen = other.update(choose(0.05, other, OBJECTIVE).values).resolve().data
@@ -178,7 +178,7 @@ def test_it_needs_a_slab_and_something_recorded():
 
 @pytest.fixture
 def packaged(tmp_path, monkeypatch):
-    """Let the commands read made-up measurements in place of those of the package."""
+    """Make the commands read made-up measurements instead of those of the package."""
     path = tmp_path / "recorded.json"
     record(RECORDED, path)
     monkeypatch.setattr(recorded, "PACKAGED", path)

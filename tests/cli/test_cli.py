@@ -37,7 +37,10 @@ def test_the_command_of_the_lab_experiment(capsys):
     assert data["panel"]["height"] == 0.33
     assert data["panel"]["friction"] == 0.3
     assert data["slab"]["thickness"] == 0.02
-    assert data["slab"]["width"] in (0.0, pytest.approx(0.142))  # 0: two thirds of the panel's
+    assert data["slab"]["width"] in (
+        0.0,
+        pytest.approx(0.142),
+    )  # 0: two thirds of the panel
     assert (data["events"]["count"], data["dimension"]) == (5, 3)
 
 
@@ -291,7 +294,7 @@ def test_the_former_spelling_of_a_dry_run_works(tmp_path, capsys):
     for option in ("--dry-run", "--plan"):
         assert main(["panel", *TINY, "-o", str(tmp_path / "out"), option]) == 0
         lines = capsys.readouterr().out.splitlines()
-        measured = (" run time", " speed")  # on this machine, at this moment
+        measured = (" run time", " speed")  # these depend on the machine and the moment
         shown.append([line for line in lines if not line.startswith(measured)])
         assert len(shown[-1]) == len(lines) - len(measured)
     assert shown[0] == shown[1] and not (tmp_path / "out").exists()
@@ -326,7 +329,7 @@ def commands_with_options():
 
 
 def test_commands_that_compute_have_the_same_options():
-    """One spelling each: a dry run, and resuming; other commands take seconds."""
+    """A dry run and resuming have the same spelling in all commands."""
     computing = {
         name: options
         for name, options in commands_with_options().items()
@@ -335,6 +338,6 @@ def test_commands_that_compute_have_the_same_options():
     assert {"panel", "run", "slide", "season", "clearance", "lua", "study run"} <= computing.keys()
     assert {"sensitivity", "calibrate", "grains sensitivity"} <= computing.keys()
     without_resume = {name for name, options in computing.items() if "--resume" not in options}
-    assert without_resume == {"study resume"}  # its name says it
+    assert without_resume == {"study resume"}  # the name says that it resumes
     without_dry_run = {name for name, options in computing.items() if "--dry-run" not in options}
     assert without_dry_run == {"study resume", "regress"}

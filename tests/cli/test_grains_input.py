@@ -1,4 +1,4 @@
-"""Bad input to ``snowshed grains``: exit code 2, what is wrong and where, and nothing left."""
+"""Bad input to ``snowshed grains``: exit code 2, error and position, and no files."""
 
 import numpy as np
 import pytest

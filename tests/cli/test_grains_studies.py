@@ -11,7 +11,7 @@ from snowshed.cli.main import main
 
 @pytest.fixture
 def samples(tmp_path):
-    """Two samples of one density, each with a hole elsewhere."""
+    """Two samples of one density, with holes at different positions."""
     files = [tmp_path / f"{name}.npy" for name in "ab"]
     for number, file in enumerate(files):
         labels = column_of_grains(4, 4).repeat(4, 1).repeat(4, 2)

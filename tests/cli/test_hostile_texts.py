@@ -1,4 +1,4 @@
-"""What a file or a name says reaches the terminal as text, and ends in a sentence with a code."""
+"""Texts of files and names reach the terminal without commands; errors are one sentence."""
 
 import json
 import os
@@ -91,7 +91,7 @@ def test_every_signal_that_ends_a_run_leaves_a_checkpoint(tmp_path, number):
 
 @pytest.mark.parametrize("program", ["snowshed", "snowshed-run"])
 def test_an_interrupt_is_heard_while_snow_is_seeded(tmp_path, program):
-    """A seeding of minutes; what hears the interrupt does so long before the end."""
+    """The seeding takes minutes; the interrupt acts long before its end."""
     scene = tiny_scene(dimension=3, **{"numerics.dx": 0.002, "seeding.particles_per_voxel": 64})
     scene.resolve().save(tmp_path / "scene.json")
     words = ["snowshed-run"] if program == "snowshed-run" else [*COMMAND, "run"]
@@ -112,7 +112,7 @@ def test_an_interrupt_is_heard_while_snow_is_seeded(tmp_path, program):
 
 
 def used_s(process, ticks):
-    """Processor time of a process, s: it does not depend on how busy the machine is."""
+    """Processor time of a process, s, which does not depend on other load of the machine."""
     try:
         words = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()
     except OSError:
@@ -121,7 +121,7 @@ def used_s(process, ticks):
 
 
 def test_an_interrupt_is_known_when_python_has_wrapped_it(monkeypatch, capsys):
-    """As it does where a class is being made: ``Error calling __set_name__``."""
+    """Such an error occurs while a class is created: ``Error calling __set_name__``."""
 
     class Field:
         def __set_name__(self, owner, name):

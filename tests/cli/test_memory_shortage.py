@@ -1,4 +1,4 @@
-"""What the command line says where memory is short."""
+"""Messages of the command line after a shortage of memory."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Output that nobody reads to its end: a command ends quietly, as others do."""
+"""A command ends quietly if its output is not read to the end."""
 
 import subprocess
 import sys
@@ -36,7 +36,7 @@ def test_tables_and_lines_too(tmp_path, finished):
 
 
 def test_what_is_written_meanwhile_is_whole(tmp_path, finished):
-    """The message is lost, the page is not."""
+    """The message is lost, but the page is written."""
     code, said = into_closed_pipe(["view", finished, "-o", tmp_path / "page.html"])
     assert (code, said) == (PIPE_CLOSED, "")
     assert (tmp_path / "page.html").read_text().rstrip().endswith("</html>")

@@ -1,4 +1,4 @@
-"""AvaFrame projects on the command line: interrupted and gone on with, and never half refused."""
+"""AvaFrame projects on the command line: interruption and resuming, and complete refusals."""
 
 import json
 import re
@@ -28,7 +28,7 @@ def slide(project, out, *options):
 
 
 def interrupted(project, out, number, *options):
-    """Interrupt a project's first slide, and return the command that goes on with it."""
+    """Interrupt a project's first slide, and return the command that resumes it."""
     words = ["slide", "--avaframe", project, "-o", out, "-q", *options]
     run = subprocess.Popen([*PROGRAM, *map(str, words)], stderr=subprocess.PIPE, text=True)
     while not (out / "film.bin").exists() and run.poll() is None:
@@ -44,7 +44,7 @@ def interrupted(project, out, number, *options):
 
 
 def test_the_hint_after_an_interrupt_goes_on_with_all_simulations(tmp_path):
-    """Also with what was asked for on the command line."""
+    """The hint repeats the options of the command line."""
     ini = "tEnd = 6\ndeltaTh = 0.02\n"
     project = write_project(tmp_path / "a project", ini, releases=("north", "south"))
     out = tmp_path / "out"
@@ -115,7 +115,7 @@ def test_links_are_refused_before_anything_is_written(tmp_path, capsys):
 
 
 def test_notes_of_readers_are_quiet_where_asked(tmp_path, capsys):
-    """GDAL's own warnings, too, which are notes."""
+    """Warnings of GDAL become notes."""
     pyogrio = pytest.importorskip("pyogrio")
     import numpy as np
     import shapely
@@ -129,7 +129,7 @@ def test_notes_of_readers_are_quiet_where_asked(tmp_path, capsys):
         crs="EPSG:31287", geometry_type="Polygon",
     )  # fmt: skip
     content = bytearray(file.read_bytes())
-    content[36:100] = bytes(64)  # bounds that GDAL warns of, or not: it does not matter which
+    content[36:100] = bytes(64)  # bounds; GDAL may warn about them
     file.write_bytes(content)
     assert slide(project, tmp_path / "out", "-q") == 0
     assert not capsys.readouterr().err

@@ -1,4 +1,4 @@
-"""``snowshed slide`` on rasters as people have them: notes, bands, limits, and what is refused."""
+"""``snowshed slide`` on common rasters: notes, bands, limits, and refused files."""
 
 import json
 
@@ -45,7 +45,7 @@ def test_a_note_is_on_the_terminal_in_the_json_on_the_page_and_in_the_scene(
     assert note in json.loads((tmp_path / "out/slide.json").read_text())["notes"]
     page = (tmp_path / "out/slide.html").read_text()
     assert page.count(note) == 1
-    assert page.index("Of the files:") < page.index(note)
+    assert page.index("Notes on the files:") < page.index(note)
     assert json.loads((tmp_path / "out/scene.json").read_text())["terrain"]["notes"] == note
 
 
@@ -195,7 +195,7 @@ def test_what_belongs_to_a_raster_needs_one(tmp_path, capsys, option):
 
 
 def test_no_place_has_a_speed_where_snow_never_was(tmp_path):
-    """The mean speed of the default mode fades beyond the snow; the maps agree all the same."""
+    """The maps agree although the mean speed of the default mode fades beyond the snow."""
     write_geotiff(tmp_path / "dem.tif", STEEP, **FORM)
     assert slide(tmp_path, "-q", "--no-bonds", "--max-time", "6") == 0
     pft, pfv, ppr = (

@@ -1,6 +1,6 @@
-"""Commands in forks of one process, which has imported what they need: most of a start's time.
+"""Commands in forks of one process, which has imported their modules: that saves most of a start.
 
-As a program, reads a request a line, and answers with the exit code of the fork that ran it.
+The program reads one request per line, and answers with the exit code of the fork that ran it.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ class Forks:
 
 
 def serve() -> None:
-    """Fork for each request; import afterwards what it needed, for those that follow."""
+    """Fork for each request; then import the modules that it needed, for later requests."""
     sys.path.append(str(Path.cwd()))
     for line in sys.stdin:
         request = json.loads(line)
@@ -68,7 +68,7 @@ def serve() -> None:
 
 
 def answer(request: dict) -> None:
-    """Run a request and end as its program would."""
+    """Run a request and end with the exit code of its program."""
     signal.alarm(TIME_LIMIT_S)
     os.environ.update(request["environment"])
     with Path(request["output"]).open("w") as output, Path(os.devnull).open() as nothing:

@@ -1,4 +1,4 @@
-"""A run that is killed, or whose disk is full, at any file operation goes on to the same bits."""
+"""A run that is killed or meets a full disk at any file operation resumes to the same bits."""
 
 import itertools
 import os
@@ -35,7 +35,7 @@ CLEARANCE = (
     *("--slope-length", "0.4", "--tilt", "60", "--heights", "0.3", "--draws", "1"),
     *("--jobs", "1", "-q"),
 )
-#: Each command, whose files are in {inputs}, and the options with which it goes on.
+#: Each command, whose files are in {inputs}, and the options with which it resumes.
 PROGRAMS = {
     "snowshed-run": ([SCRIPTS / "snowshed-run", "{inputs}/scene.json", "--quiet"], ["--resume"]),
     "run": ([SNOWSHED, "run", "{inputs}/scene.json", "-q"], ["--resume"]),
@@ -50,9 +50,9 @@ PROGRAMS = {
     "clearance": ([SNOWSHED, "clearance", "{inputs}/winter.csv", *CLEARANCE], []),
 }
 KINDS = ("kill", "full")
-#: Operations tried in the tests that run always, where they are more than two.
+#: Operations tried in the quick tests, if a program has more than two.
 SAMPLES = {"snowshed-run": 16}
-#: Programs of which some operations are tried in every test run; the others share their writers.
+#: Programs in the quick tests; the others share their writers.
 SAMPLED = ("snowshed-run", "season", "study", "slide", "clearance")
 #: Files that hold wall times.
 DIFFERENT = (
@@ -139,7 +139,7 @@ class Program:
         return self.base / "undisturbed", int(count.read_text())
 
     def disturbed(self, kind, at):
-        """Return the folder of a run that met a fault and then went on; check how it ended."""
+        """Return the folder of a run that met a fault and was resumed; check its end."""
         folder = self.base / f"{kind}-{at}"
         done = self.run(folder, FAULT_KIND=kind, FAULT_AT=str(at))
         if kind == "full":
@@ -159,7 +159,7 @@ class Program:
 
 
 def contents(folder):
-    """Return what must be the same: names and bytes, tables without wall times."""
+    """Return the content that must be the same: names and bytes, tables without wall times."""
     found = {}
     for path in sorted(folder.rglob("*")):
         name = path.relative_to(folder).as_posix()
@@ -195,13 +195,13 @@ def check(program, sample=None):
 
 @pytest.fixture(scope="module")
 def forks(faults, tmp_path_factory):
-    """One process for the commands of all tests: what one of them imports, the others have."""
+    """One process for the commands of all tests, which share its imported modules."""
     with Forks(tmp_path_factory.mktemp("forks"), faults) as process:
         yield process
 
 
 def started(name, forks):
-    """Return what starts a program: one that is compiled has a process of its own."""
+    """Return the function that starts a program; a compiled one has a separate process."""
     return in_a_process if name == "snowshed-run" else forks.run
 
 

@@ -1,4 +1,4 @@
-"""Scenes that must be refused, as changes to a good one, with a part of what must be said."""
+"""Scenes that must be refused, as changes to a good one, each with a part of the message."""
 
 import json
 from pathlib import Path
@@ -54,7 +54,7 @@ def merged(data: Any, changes: Any) -> Any:
 
 @pytest.fixture(params=BAD_SCENES.values(), ids=BAD_SCENES.keys())
 def bad_scene(request: pytest.FixtureRequest, tmp_path: Path) -> tuple[Path, str]:
-    """A scene file, alone in its folder with the meshes, and what its refusal must say."""
+    """A scene file, alone in its folder with the meshes, and a part of the error message."""
     changes, message = request.param
     data = merged(tiny_scene().resolve().data, changes)
     (tmp_path / "open.obj").write_text(OPEN_MESH)

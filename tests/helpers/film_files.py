@@ -30,12 +30,12 @@ def zigzag(numbers):
 
 
 def differences(numbers):
-    """Return the bytes of numbers, each as its difference to the one before."""
+    """Return the bytes of numbers, each stored as its difference from the number before."""
     return varints(zigzag(np.diff(numbers, prepend=0)))
 
 
 def record(raw, *, time, event, lists, particles, before=None):
-    """Return the bytes of a frame behind one with the checksum `before`; None: of version 1."""
+    """Return the bytes of a frame that follows one with the checksum `before`; None: version 1."""
     packed = zlib.compress(raw, 1)
     facts = (time, event, lists, particles, len(raw), len(packed))
     if before is None:
@@ -68,7 +68,7 @@ def header(
 
 
 def header_sum(version, fixed):
-    """Return the checksum of what comes before the text; version 1 leaves it out."""
+    """Return the checksum of the bytes before the text; version 1 has none."""
     return 0 if version == 1 else zlib.crc32(fixed)
 
 
@@ -109,7 +109,7 @@ def film_bytes(frames, *, closed=False, **facts):
 
 
 def as_version_1(content):
-    """Return a film of version 2 as version 1 has it."""
+    """Return a film of version 2 in version 1."""
     (length,) = struct.unpack_from("<I", content, 12)
     text = content[24 : 24 + length]
     out = [b"SNOWFILM" + struct.pack("<IIII", 1, length, zlib.crc32(text), 0) + text]

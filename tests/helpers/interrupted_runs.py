@@ -1,4 +1,4 @@
-"""Runs that are interrupted, and their tables beside those of runs that were not."""
+"""Interrupted runs, and comparison of their tables with those of uninterrupted runs."""
 
 import signal
 

@@ -6,7 +6,7 @@ from contextlib import contextmanager
 
 
 class Listener:
-    """A port, and the first bytes of what was sent to it."""
+    """A port, and the first bytes that were sent to it."""
 
     def __init__(self):
         self.socket = socket.create_server(("127.0.0.1", 0))
@@ -16,7 +16,7 @@ class Listener:
 
     @property
     def address(self):
-        """What files name."""
+        """Return the address that files name."""
         return f"http://127.0.0.1:{self.port}"
 
     def _listen(self):
@@ -36,7 +36,7 @@ class Listener:
 
 @contextmanager
 def silence():
-    """Give a listener, and fail where it has heard anything."""
+    """Yield a listener, and fail if it has received anything."""
     listener = Listener()
     try:
         yield listener

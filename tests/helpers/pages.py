@@ -7,7 +7,7 @@ VOID = {"meta", "br", "img", "link", "hr", "input"}
 
 
 class Page(HTMLParser):
-    """Checks that tags are balanced, and gathers what the page shows."""
+    """Checks that tags are balanced, and gathers the content of the page."""
 
     def __init__(self, html: str) -> None:
         super().__init__()
@@ -23,7 +23,7 @@ class Page(HTMLParser):
         assert not self.open
 
     def handle_starttag(self, tag: str, attributes: list[tuple[str, Optional[str]]]) -> None:
-        """Note what a tag names."""
+        """Note the ids, links and images of a tag."""
         found = dict(attributes)
         self.ids += [found["id"]] if "id" in found else []
         self.links += [found["href"]] if "href" in found else []

@@ -1,4 +1,4 @@
-"""Commands in processes of their own, which tests interrupt and kill, or ask what they import."""
+"""Commands in separate processes, which tests interrupt, kill, or search for imported modules."""
 
 import os
 import signal
@@ -47,7 +47,7 @@ def children_of(pid: int) -> list[int]:
 
 
 def kill_with_children(command: subprocess.Popen) -> None:
-    """Kill a command and its workers, none of which may do anything any more."""
+    """Kill a command and its workers, so that none of them does anything afterwards."""
     command.send_signal(signal.SIGSTOP)  # so that it starts no other worker meanwhile
     for child in children_of(command.pid):
         os.kill(child, signal.SIGKILL)

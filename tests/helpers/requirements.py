@@ -1,4 +1,4 @@
-"""What snowshed and its extras require, as pyproject.toml says, and what it is imported as."""
+"""The requirements of snowshed and its extras in pyproject.toml, and their modules."""
 
 import re
 import sys
@@ -11,7 +11,7 @@ else:
     import tomli as tomllib
 
 
-#: The module of each requirement, but for NumPy.
+#: The module of each requirement except NumPy.
 MODULES_OF = {
     "allpairspy": "allpairspy",
     "arviz": "arviz",
@@ -46,7 +46,7 @@ MODULES_OF = {
 
 
 def required() -> tuple[set[str], dict[str, set[str]]]:
-    """Names of the requirements of snowshed itself, and of each extra, but for extras of extras."""
+    """Names of the requirements of snowshed itself and of each extra, without extras of extras."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     extras = {
         extra: {_name(one) for one in listed}

@@ -14,7 +14,7 @@ NEW_SNOW = 0.3  # m, on the second day
 def hours(step=1, before=False):
     """Yield day, hour, temperature, precipitation and depth, every `step` hours.
 
-    Precipitation is that of the `step` hours from there on, or of those before.
+    Precipitation is that of the `step` hours after this time, or before it.
     """
     last = 0.0
     for day, (warm, rain, depth) in enumerate(DAYS, 1):

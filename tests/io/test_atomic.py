@@ -1,4 +1,4 @@
-"""Files that appear whole or not at all, and what is never destroyed."""
+"""Files that appear whole or not at all, and files that are never destroyed."""
 
 import errno
 import os

@@ -1,4 +1,4 @@
-"""Films, read as docs/reference/film.md describes them: against files that were written by hand."""
+"""Films as docs/reference/film.md describes them, in files written by hand."""
 
 import json
 import struct
@@ -34,7 +34,7 @@ def test_a_film_is_read_as_it_is_described(file, axes):
 
 
 def test_particles_that_come_and_go_keep_their_places(file):
-    """A film whose list of particles changes in every frame, as that of a slide may."""
+    """A film whose list of particles changes in every frame, which may happen in a slide."""
     random = np.random.default_rng(4)
     frames = []
     for number in range(12):
@@ -103,12 +103,12 @@ def test_a_film_with_any_bit_changed_is_refused_or_said_to_be_cut_off(file, vers
         except InputError as error:
             assert str(file) in str(error)
             continue
-        # Of version 1 the length of the last frame may say that more of it was to come.
+        # In version 1, the length of the last frame may show that the frame is incomplete.
         assert version == 1 and at > start and not film.whole and film.notes
 
 
 def test_no_damage_is_shown(file):
-    """Every damage is told, or ends the film before it, which the film says."""
+    """Every damage is an error, or ends the film before it with a note."""
     frames = film_files.falling_film(40, 6)
     whole = film_files.film_bytes(frames, closed=True)
     random = np.random.default_rng(7)
@@ -124,7 +124,7 @@ def test_no_damage_is_shown(file):
 
 
 def forged(raw=b"\0" * 40, **facts):
-    """Return a film of one frame whose checksum is right, whatever it says."""
+    """Return a film of one frame with any content and a correct checksum."""
     honest = {"time": 0.0, "event": 1, "lists": 1, "particles": 5}
     head = film_files.header()
     before = struct.unpack_from("<I", head, 16)[0]

@@ -1,4 +1,4 @@
-"""Files without end, wherever a command or another file names them."""
+"""Endless files in all places where a command or another file names them."""
 
 import subprocess
 import sys

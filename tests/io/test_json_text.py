@@ -1,4 +1,4 @@
-"""JSON with a key that is given twice, in every reader of JSON."""
+"""JSON with a repeated key, in every reader of JSON."""
 
 import json
 

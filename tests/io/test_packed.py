@@ -1,4 +1,4 @@
-"""Packed files, pipes, and lines that cost more than they hold; nothing depends on the clock."""
+"""Packed files, pipes, and lines that would cost too much; no test depends on the clock."""
 
 import gzip
 import lzma
@@ -12,7 +12,7 @@ import threading
 import pytest
 
 from snowshed import InputError
-from snowshed.base.limits import LINE, MB, MEMBERS, TEXT
+from snowshed.base.limits import MAX_LINE_BYTES, MAX_MEMBERS, MAX_TEXT_BYTES, MB
 from snowshed.io import read_station
 from snowshed.io.csv_table import read_csv, read_text_table
 from snowshed.io.input_file import read_input
@@ -48,10 +48,13 @@ def test_parts_that_do_not_fit_into_one_feed_give_the_same(tmp_path):
 @pytest.mark.parametrize(
     ("content", "message"),
     [
-        (gzip.compress(b"") * (MEMBERS + 1), f"more than {MEMBERS} gzip members; unpack it first"),
-        (xz(b"") * (MEMBERS + 1), f"more than {MEMBERS} xz members"),
-        (gzip.compress(b"0" * (TEXT + 1), 1), "longer than 64 MB when unpacked"),
-        (xz(b"0" * (TEXT + 1), preset=0), "longer than 64 MB when unpacked"),
+        (
+            gzip.compress(b"") * (MAX_MEMBERS + 1),
+            f"more than {MAX_MEMBERS} gzip members; unpack it first",
+        ),
+        (xz(b"") * (MAX_MEMBERS + 1), f"more than {MAX_MEMBERS} xz members"),
+        (gzip.compress(b"0" * (MAX_TEXT_BYTES + 1), 1), "longer than 64 MB when unpacked"),
+        (xz(b"0" * (MAX_TEXT_BYTES + 1), preset=0), "longer than 64 MB when unpacked"),
         (gzip.compress(TABLE)[:-9], "damaged: gzip: it ends too early"),
         (xz(TABLE)[:-9], "damaged: xz: it ends too early"),
         (gzip.compress(TABLE) + b"more", "damaged: gzip"),
@@ -86,11 +89,11 @@ def test_a_dictionary_larger_than_the_limit_is_refused(tmp_path):
 @pytest.mark.parametrize(
     ("content", "message"),
     [
-        (b"a,b\n" + b"1," * LINE, "line 2: not a table: a row longer than 1 MB"),
-        (b"a" + b",a" * LINE, "line 1: not a table: a row longer than 1 MB"),
-        (b'a,b\n"' + b"\n" * 2 * LINE, "not a table"),
+        (b"a,b\n" + b"1," * MAX_LINE_BYTES, "line 2: not a table: a row longer than 1 MB"),
+        (b"a" + b",a" * MAX_LINE_BYTES, "line 1: not a table: a row longer than 1 MB"),
+        (b'a,b\n"' + b"\n" * 2 * MAX_LINE_BYTES, "not a table"),
         (b'a,b\n"' + (b"x" * 9999 + b"\n") * 200, "not a table"),
-        (b"a,b\n" + b'"\n",' * LINE, "not a table: a row longer than 1 MB"),
+        (b"a,b\n" + b'"\n",' * MAX_LINE_BYTES, "not a table: a row longer than 1 MB"),
         (b"a,b\n1,\0\n", "line 2: not a table: it holds bytes that are 0"),
         (b"a" + b",a" * 2000, "2001 columns; at most 1000"),
         (b"a,b\n" + b"1,2\n" * 300_002, "not a table: more than 300000 rows"),
@@ -120,7 +123,7 @@ def test_lines_end_as_those_of_other_systems(tmp_path):
 
 
 def test_a_pipe_without_a_writer_ends(tmp_path, monkeypatch):
-    monkeypatch.setattr("snowshed.io.input_file.PIPE_SILENCE", 0.05)
+    monkeypatch.setattr("snowshed.io.input_file.MAX_PIPE_SILENCE_S", 0.05)
     os.mkfifo(tmp_path / "pipe")
     with pytest.raises(InputError, match=r"pipe: a pipe or a device without a writer"):
         read_input(tmp_path / "pipe")

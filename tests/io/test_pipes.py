@@ -1,4 +1,4 @@
-"""Pipes and sockets in place of files: each would make its reader wait for ever."""
+"""Pipes and sockets in place of files, which would make a reader wait forever."""
 
 import os
 import socket

@@ -1,4 +1,4 @@
-"""The return mapping as it is bound; the C++ tests compare it with an independent integration."""
+"""The binding of the return mapping; C++ tests compare it with an independent integration."""
 
 import numpy as np
 import pytest

@@ -27,11 +27,11 @@ PACKAGE = ROOT / "python" / "snowshed"
 
 PRESSED = LoadingStage(kind="compress", strain=2e-3, speed=0.05)
 
-#: Modules and folders that name a method, and why; each module names one, unless it names all.
+#: Modules and folders that name a method, with the reason; a module names one method or all.
 NAME_METHODS = {
     "methods/registry.py": "the registry",
-    "methods/summary.py": "the number of grains was a figure called `grains`",
-    "cli/main.py": "commands have names, and two are called as their method is",
+    "methods/summary.py": "the number of grains was a figure with the name `grains`",
+    "cli/main.py": "two commands have the names of their methods",
     "cli/": "a command may run scenes of one method, and the self-test has a check of each",
     "scene/builders/": "a builder makes scenes of one method",
     "plot/slide_figure.py": "draws maps, which slides alone have",
@@ -43,12 +43,12 @@ NAME_METHODS = {
     "analysis/": "an analysis may ask about the results of one method",
 }
 NAME_ALL = {"methods/registry.py", "cli/main.py"}
-#: Beneath folders that may name methods, what serves all of them.
+#: Modules for all methods in folders that may name a method.
 SERVE_ALL = {"cli/run_scene.py", "cli/run_output.py"}
 
 
 def modules():
-    """Yield the modules outside the folders of methods: name from the package's root, and tree."""
+    """Yield path and syntax tree of the modules outside the folders of methods."""
     for path in sorted(PACKAGE.rglob("*.py")):
         name = path.relative_to(PACKAGE).as_posix()
         if not name.startswith(tuple(f"methods/{folder}/" for folder in FOLDERS)):
@@ -104,7 +104,7 @@ def test_the_parts_of_every_method_are_there():
 
 
 def test_nobody_imports_a_plug_in():
-    """It stands in a method's folder and imports what lies above; the registry names it."""
+    """A method's ``run`` imports higher layers; only the method's entry names it, as text."""
     wrong = [
         f"{path.relative_to(PACKAGE)}, line {node.lineno}"
         for path in PACKAGE.rglob("*.py")
@@ -181,7 +181,7 @@ def test_snow_that_cannot_age_is_refused_before_anything_is_written(tmp_path):
 
 
 class BlockRun(MethodRun):
-    """The stand-in: it writes how far the snow has come to lie."""
+    """A run of the stand-in, which writes the largest distance of the snow."""
 
     UNIT = "blocks"
 
@@ -197,7 +197,7 @@ def read_place(folder: Path) -> float:
 
 
 def test_an_entry_is_all_that_python_needs_of_a_method(tmp_path, monkeypatch, capsys):
-    """A stand-in takes the place of a method that the core has: one entry, and one class."""
+    """A stand-in for a method of the core needs one entry and one class."""
     entry = Method(
         name="mps",
         title="A block",

@@ -14,7 +14,7 @@ def test_stresses_are_those_of_the_elastic_strain(dimension, model):
     scene.update({"numerics.precision": "double", "snow.youngs_modulus": 2e5})
     simulation = Simulation(scene)
     simulation.begin_event()
-    simulation.run(until=0.35)  # amid the impact
+    simulation.run(until=0.35)  # during the impact
     axes = "xz" if dimension == 2 else "xyz"
     strain = np.zeros((simulation.particle_count, dimension, dimension))
     for i, a in enumerate(axes):

@@ -1,7 +1,7 @@
 """A process that reads mutated files: ``child.py FOLDER TRIES FIRST MEMORY_MB READER...``.
 
-It prints a line of JSON before and after each file, from the FIRST of all readers' files on. It is
-killed by a file that takes too long or too much memory; whoever started it goes on behind that.
+It prints a line of JSON before and after each file, from the FIRST of all readers' files on. A file
+that takes too long or too much memory kills the process, and its caller continues after that file.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ def main() -> None:
         if good is None or good.name != name:
             limit_memory(resource.RLIM_INFINITY)
             good = Good(name, folder / name.replace(" ", "-"))
-            limit_memory(used() + (memory << 20))  # what it needs is imported by now
+            limit_memory(used() + (memory << 20))  # its modules are imported by now
         tell(reader=name, seed=seed)
         signal.setitimer(signal.ITIMER_PROF, HANG_S)  # ends the process, also in the core
         outcome = good.outcome(seed)
@@ -44,7 +44,7 @@ def tell(**facts: object) -> None:
 
 
 class Good:
-    """A reader with its good file, and what that holds."""
+    """A reader with its good file, and the content of that file."""
 
     def __init__(self, name: str, folder: Path) -> None:
         from readers import READERS
@@ -58,7 +58,7 @@ class Good:
         self.wanted = self.reader.read(self.file)
 
     def outcome(self, seed: int) -> str:
-        """Return what becomes of the file with the changes of a seed."""
+        """Return the outcome of reading the file with the changes of a seed."""
         from mutate import mutated
         from readers import REFUSED
 

@@ -1,4 +1,4 @@
-"""Good files of every kind, which mutations begin with."""
+"""Good files of every kind, which are then mutated."""
 
 from __future__ import annotations
 
@@ -188,13 +188,13 @@ def model(folder: Path) -> Path:
     from snowshed.analysis.regression.ensemble import Ensemble
     from snowshed.analysis.regression.model_file import Member, StackModel
     from snowshed.analysis.regression.scaling import Scaling
-    from snowshed.analysis.regression.spread import INTERVAL, SPREAD, Spread
+    from snowshed.analysis.regression.spread import INTERVAL_SHARE, SPREAD_SHARE, Spread
 
     chance = np.random.default_rng(1)
     inputs = chance.uniform(1, 4, (12, 4))
     scaled = Scaling.of(inputs).scaled(inputs)
     ensemble = Ensemble(scaled, chance.normal(size=(2, 12)), np.zeros(2), np.full((2, 4), 0.1))
-    member = Member(ensemble, 1.0, 0.5, Spread(0.1, 0.2, {SPREAD: 1.0, INTERVAL: 2.0}))
+    member = Member(ensemble, 1.0, 0.5, Spread(0.1, 0.2, {SPREAD_SHARE: 1.0, INTERVAL_SHARE: 2.0}))
     save_model(StackModel(inputs, {("ratio", "rbf"): member}, "t", "stack"), folder / "a.npz")
     return folder / "a.npz"
 

@@ -1,7 +1,7 @@
-"""Images whose headers are sound in form and lie: sizes, places, types and packings of all kinds.
+"""Images with well-formed headers of false content: sizes, places, types and packings.
 
 Each function changes a good file of a format, the same for the same seed. Checksums are computed
-again, so that readers meet the lie and not a wrong sum.
+again, so that readers meet the false content and not a wrong sum.
 """
 
 from __future__ import annotations
@@ -131,7 +131,7 @@ def tiff(content: bytes, seed: int) -> bytes:
 
 
 def _pages(data: bytearray) -> list[tuple[int, int]]:
-    """Return where the pages of a file begin, and how many tags each has."""
+    """Return the start of each page of a file, and its number of tags."""
     found = []
     (start,) = struct.unpack_from("<I", data, 4)
     while start:

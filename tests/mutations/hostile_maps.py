@@ -1,4 +1,4 @@
-"""Maps, polygons and projects as somebody could make them who wishes harm."""
+"""Maps, polygons and projects that are made to do harm."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ Chance = random.Random
 
 @dataclass(frozen=True)
 class Try:
-    """A folder to write into, what may not be reached, and the numbers that decide."""
+    """A folder to write into, targets that must not be reached, and the random numbers."""
 
     folder: Path
     address: str
@@ -34,7 +34,7 @@ class Try:
     chance: Chance
 
     def target(self) -> str:
-        """Return something that must not be reached."""
+        """Return a target that must not be reached."""
         server = self.address.removeprefix("http://")
         return self.chance.choice(
             [
@@ -67,7 +67,7 @@ class Try:
 
 
 def descriptions(t: Try) -> Path:
-    """Write a description of another source under a name that is read."""
+    """Write the description of another source under a name that readers open."""
     to, chance = t.target(), t.chance
     layer = f'<OGRVRTLayer name="a"><SrcDataSource>{to}</SrcDataSource></OGRVRTLayer>'
     vrt = f"<OGRVRTDataSource>{layer}</OGRVRTDataSource>"

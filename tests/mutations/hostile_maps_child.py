@@ -2,8 +2,8 @@
 
 ``hostile_maps_child.py FOLDER TRIES FIRST MEMORY_MB ADDRESS OUTSIDE`` makes and reads them, from
 the FIRST on, and prints a line of JSON before and after each. They name ADDRESS and files in
-OUTSIDE in every way. It is killed by one that takes too long or too much memory; whoever started it
-goes on behind that.
+OUTSIDE in every way. A map that takes too long or too much memory kills the process, and its caller
+continues after that map.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from snowshed.io.raster.raster import read_raster  # noqa: E402
 from snowshed.scene.builders.avaframe import avaframe_simulations  # noqa: E402
 from snowshed.scene.builders.avaframe_files import copy_inputs  # noqa: E402
 
-HANG_WALL_S = 120  # for what waits without computing, such as for a pipe
+HANG_WALL_S = 120  # for readers that wait without computing, such as for a pipe
 
 
 def read(file: Path, results: Path) -> None:
@@ -43,7 +43,7 @@ def read(file: Path, results: Path) -> None:
 
 
 def outcome(t: Try, name: str) -> str:
-    """Return what becomes of an input."""
+    """Return the outcome of reading an input."""
     file = MAKERS[name](t)
     results = t.folder / "results"
     results.mkdir()
@@ -73,7 +73,7 @@ def main() -> None:
     warm = folder / "warm"
     warm.mkdir(parents=True, exist_ok=True)
     read(write_project(warm / "project", "tEnd = 0.1\n"), warm)
-    limit_memory(used() + (memory << 20))  # what reading needs is imported by now
+    limit_memory(used() + (memory << 20))  # modules for reading are imported by now
     for name, seed in every[first:]:
         place = folder / "input"
         shutil.rmtree(place, ignore_errors=True)

@@ -55,7 +55,7 @@ def _insert(content: bytes, chance: random.Random) -> bytes:
 
 
 def _digit(content: bytes, chance: random.Random) -> bytes:
-    """Change a digit, so that what is left is often a good file that says something else."""
+    """Change a digit, so that the result is often a good file with another content."""
     there = [at for at, byte in enumerate(content[:100_000]) if 0x30 <= byte <= 0x39]
     if not there:
         return _flip(content, chance)

@@ -1,8 +1,8 @@
 """Every reader of files, with a good file to begin with: one line in `READERS` for each.
 
-A reader gets the path of a file that was changed. It may raise what the command line turns into a
-sentence (`REFUSED`). What `exact` readers return must be what the good file holds, since their
-formats are ours and carry checksums.
+A reader gets the path of a file that was changed. It may raise the exceptions that the command line
+turns into a sentence (`REFUSED`). `exact` readers must return the content of the good file, because
+their formats are ours and carry checksums.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ REFUSED = (InputError, SimulationError, OSError)
 
 @dataclasses.dataclass(frozen=True)
 class Reader:
-    """A kind of file: how a good one is made in a folder, and how one is read."""
+    """A kind of file: the function that makes a good one in a folder, and the reader."""
 
     make: Callable[[Path], Path]
     read: Callable[[Path], Any]
@@ -106,7 +106,7 @@ def _as_store(file: Path) -> Any:
 
 
 def _as_resumed_table(file: Path) -> Any:
-    """Go on with a finished run one of whose tables has changed; return the tables."""
+    """Resume a finished run with a changed table; return the tables."""
     folder = file.parent
     with contextlib.redirect_stderr(None):
         run_events(folder / "scene.json", folder, resume=True, pictures=False)
@@ -114,7 +114,7 @@ def _as_resumed_table(file: Path) -> Any:
 
 
 def _as_record(file: Path) -> str:
-    """Go on with a finished run whose run.json has changed, unless reading it tells already."""
+    """Resume a finished run with a changed run.json, unless reading already refuses it."""
     found = Results(file.parent).run
     run_events(file.parent / "scene.json", file.parent, resume=True, pictures=False)
     return json.dumps(found)
@@ -240,7 +240,7 @@ def _as_history(file: Path) -> str:
 
 
 def _as_curve(file: Path) -> str:
-    """Read a curve, and see that `snowshed-run` does not go on with one that has changed."""
+    """Read a curve, and check that `snowshed-run` does not resume with a changed one."""
     found = LoadingCurve.read(file).text()
     folder, scene = str(file.parent), str(file.parent / "scene.json")
     command = [str(Path(sys.executable).with_name("snowshed-run")), scene, "-o", folder]
@@ -264,7 +264,7 @@ def _digest(value: object) -> str:
     return hashlib.sha256(pickle.dumps(value)).hexdigest()
 
 
-#: A new reader is one more line.
+#: A new reader is an additional line.
 READERS = {
     "scene": Reader(good.scene, _as_scene, share=2),
     "mesh obj": Reader(good.text("a.obj", CLOSED_MESH), _as_mesh),

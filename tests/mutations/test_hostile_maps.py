@@ -1,4 +1,4 @@
-"""Hostile maps, polygons, projects: no request, nothing outside opened, no traceback or flood."""
+"""Hostile maps cause no request, open no file outside, and raise no traceback or memory flood."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ IN_OPEN, IN_ACCESS, IN_MODIFY = 0x20, 0x1, 0x2
 
 @contextmanager
 def untouched(folder: Path):
-    """Fail where any file of a folder is opened, by whatever means."""
+    """Fail if any file of a folder is opened, by any means."""
     libc = ctypes.CDLL(None, use_errno=True)
     watch = libc.inotify_init1(os.O_NONBLOCK)
     assert watch >= 0
@@ -52,7 +52,7 @@ def _events(watch: int) -> bytes:
 
 
 def outside_of(folder: Path) -> Path:
-    """Write files that nobody has business with."""
+    """Write files that no reader may open."""
     outside = folder / "outside"
     outside.mkdir()
     for name in ("a.gpkg", "a.prj", "a.geojson", "a.shp", "a.asc"):
@@ -61,7 +61,7 @@ def outside_of(folder: Path) -> Path:
 
 
 def outcomes(folder: Path, tries: int, address: str, outside: Path) -> dict[tuple[str, int], str]:
-    """Return what became of each input, by its kind and seed."""
+    """Return the outcome of each input, by its kind and seed."""
     found: dict[tuple[str, int], str] = {}
     child = Path(__file__).with_name("hostile_maps_child.py")
     while len(found) < tries * len(MAKERS):

@@ -1,4 +1,4 @@
-"""Mutated files of every kind: no traceback, signal, hang or flood of memory, no silent damage."""
+"""Mutated files cause no traceback, signal, hang, memory flood or silent damage."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ GOOD = {"accepted", "refused"}
 def outcomes(
     names: list[str], folder: Path, tries: int, memory: int = MEMORY_MB
 ) -> dict[tuple[str, int], str]:
-    """Return what became of each file, by its reader and seed."""
+    """Return the outcome of each file, by its reader and seed."""
     found: dict[tuple[str, int], str] = {}
     count = sum(tries_of(name, tries) for name in names)
     while len(found) < count:

@@ -9,7 +9,7 @@ import pytest
 
 PROGRAMS = ("chromium", "chromium-browser", "google-chrome", "chrome")
 AUDIT = Path(__file__).with_name("audit.js")
-#: A sandbox is not to be had for root, and without a graphics card WebGL is computed.
+#: Root has no sandbox, and without a graphics card WebGL runs in software.
 OPTIONS = ["--no-sandbox", "--enable-unsafe-swiftshader", "--use-angle=swiftshader"]
 
 
@@ -35,15 +35,15 @@ def open_page(file, *, width=900, height=700, **context):
 
 
 def _without_preloads():
-    """Return the environment without the libraries of sanitizers, which browsers do not bear."""
+    """Return the environment without the libraries of sanitizers, which break browsers."""
     return {name: value for name, value in os.environ.items() if name != "LD_PRELOAD"}
 
 
 def faults_of(file, *, width=900, scheme="light"):
     """Return what is wrong with a page as a browser shows it.
 
-    That is what cannot be read, has no name or cannot be reached by keys (see audit.js), what is
-    asked for elsewhere, and what its scripts complain of.
+    Faults are elements that cannot be read, have no name or cannot be reached by keys (see
+    audit.js), requests to other places, and errors of scripts.
     """
     with open_page(file, width=width, color_scheme=scheme, reduced_motion="reduce") as (page, told):
         if page.evaluate("!!document.getElementById('data')"):  # the moving view

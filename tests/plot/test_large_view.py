@@ -58,6 +58,6 @@ def test_a_million_particles_open_thinned(tmp_path):
     assert 38_000 < results.film.frames[-1].particles < 42_000
     page = write_view(tmp_path)
     text = " ".join("".join(Page(page.read_text(encoding="utf-8")).text).split())
-    assert "The film holds one of 2" in text and "particles, chosen by their numbers" in text
+    assert "The film holds one of 2" in text and "particles, chosen by their ids" in text
     first, last, wrong = opened(page)
     assert first != last and wrong == []

@@ -24,7 +24,7 @@ SCENE = Scene.preset("lab-50").set("dimension", 2).resolve().data
 
 
 class Snow:
-    """What the pictures ask of a simulation."""
+    """The part of a simulation that the pictures use."""
 
     event = 3
     damping_rate_per_s = 188.2

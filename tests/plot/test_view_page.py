@@ -148,7 +148,7 @@ def test_it_moves_and_obeys_in_firefox(page, tmp_path):
 
 
 def test_positions_in_the_browser_are_those_of_the_film(page):
-    """The decoder of the page is another one than that of the library."""
+    """The page has a decoder of its own, independent of the library's."""
     film = Film(page.with_name("film.bin"))
     source = (VIEWER / "film.js").read_text(encoding="utf-8")
     last = list(film)[-1]

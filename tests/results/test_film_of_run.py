@@ -107,7 +107,7 @@ def test_a_lost_film_begins_where_the_run_goes_on(tmp_path, tiny):
 
 
 def test_a_run_goes_on_with_no_other_film_than_its_own(tmp_path, tiny):
-    """With none that is damaged, cut, or of another run, each told by its name."""
+    """A film that is damaged, cut, or of another run is refused, and its name is told."""
     halted_in_event_2(tmp_path, tiny)
     film = tmp_path / "film.bin"
     whole = film.read_bytes()

@@ -36,7 +36,7 @@ def test_the_solvers_next_step_takes_its_velocities_from_the_same_grid(dimension
     before = simulation.velocities()
     simulation.step()
     axes = ["x", "z"] if dimension == 2 else ["x", "y", "z"]
-    # What the grid gives back to particles, by the weights with which it took.
+    # Velocities that the grid returns to particles, by the weights of the transfer to it.
     shift = np.zeros_like(places)
     shift[:, 2] = -9.81 * simulation.time_step
     wanted = np.zeros_like(places)

@@ -1,4 +1,4 @@
-"""A results folder of the version before, interrupted in its second event, is gone on with.
+"""A results folder of the version before, interrupted in its second event, is resumed.
 
 ``old_results`` was written by ``snowshed run``; its run.json tells nothing of single events.
 """

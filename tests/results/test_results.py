@@ -215,7 +215,7 @@ def test_a_damaged_table_of_events_is_not_resumed(finished, tmp_path, capsys, da
 
 @pytest.mark.parametrize("kept", [0, 1])
 def test_events_that_the_table_lacks_are_measured_from_their_particles(finished, tmp_path, kept):
-    """Stored in single precision: all but their last digits are those measured in memory."""
+    """Particles are stored in single precision, so only the last digits of measures differ."""
     folder = tmp_path / "results"
     shutil.copytree(finished, folder)
     lines = (folder / "events.csv").read_text().splitlines(keepends=True)

@@ -28,7 +28,7 @@ def test_tables_are_those_of_the_files_with_units(finished):
 
 
 def test_particles_are_those_of_the_end_of_an_event(finished):
-    """The last ones are those of the checkpoint, in single precision."""
+    """The last particles are those of the checkpoint, in single precision."""
     results, last = Results(finished), Simulation.load(finished / "checkpoint.bin")
     particles = results.particles()
     assert particles["position"].dims == ("particle", "component")

@@ -1,4 +1,4 @@
-"""What a run wrote is not shown, and not gone on with, where it has been changed."""
+"""Files of a run that have been changed are neither shown nor continued."""
 
 import json
 import re
@@ -15,7 +15,7 @@ from mutations.mutate import mutated
 
 from snowshed import InputError, ResolvedScene, Results, run_events
 from snowshed.base.interrupt import Interrupted
-from snowshed.base.notes import recorded
+from snowshed.base.notes import record_notes
 from snowshed.io.film import Film
 from snowshed.io.vtk.vtp import read_particles
 from snowshed.methods.grains.curve import LoadingCurve
@@ -106,7 +106,7 @@ def test_the_film_of_a_finished_run_is_complete(folder):
 
 
 def test_a_film_of_version_1_is_checked_by_what_there_is(folder):
-    """Its run.json knew nothing of the film, but when the events ended."""
+    """Its run.json records nothing of the film, only the ends of the events."""
     sound = film_files.as_version_1((folder / "film.bin").read_bytes())
     record = json.loads((folder / "run.json").read_text())
     for new in ("film", "files", "scene_checksum", "checksum"):
@@ -115,7 +115,7 @@ def test_a_film_of_version_1_is_checked_by_what_there_is(folder):
     (folder / "film.bin").write_bytes(sound)
     film = Results(folder).film
     assert film.version == 1 and "version 1" in film.notes[0]
-    with pytest.warns(UserWarning, match="version 1"), recorded() as notes:
+    with pytest.warns(UserWarning, match="version 1"), record_notes() as notes:
         film_dataset(film)
     assert len(notes) == 1
     write_view(folder)
@@ -128,7 +128,7 @@ def test_a_film_of_version_1_is_checked_by_what_there_is(folder):
 
 
 def test_what_a_running_run_has_is_shown_as_such(tmp_path):
-    """As far as it has come: the film may be longer than run.json knows."""
+    """The film of a running run may be longer than run.json records."""
     seen = []
 
     def look(progress):

@@ -13,7 +13,7 @@ from snowshed import _core
 FILE = Path(__file__).with_name("laboratory_stacks.json")
 SETTINGS = {"dimension": 2, "dx": 0.01, "events": 4}
 COMPARED = ("height", "length")
-#: Of the recorded means; the tests use others.
+#: Seeds of the recorded means; the tests use others.
 SEEDS = range(101, 125)
 ABOUT = (
     "Mean and standard deviation between seedings of the laboratory's stack after each event, in "

@@ -1,4 +1,4 @@
-"""Contact conditions and damping as scenes choose them, and that results say so."""
+"""Contact conditions and damping that scenes choose, and their record in results."""
 
 import json
 import math
@@ -80,7 +80,7 @@ def test_a_slab_slides_as_coulomb_says_near_the_limit(condition):
 
 
 def collapsed(**numerics: float) -> float:
-    """Return how wide a column of weak snow lies when it has collapsed, m."""
+    """Return the width of a column of weak snow after its collapse, m."""
     snow = Snow(preconsolidation_pressure=2000, cohesion=0.05)
     column = Body(Shape.box((0, 0.15), (0.2, 0.3)))
     scene = Scene(dimension=2, ground=Ground(), snow=snow, bodies=[column])

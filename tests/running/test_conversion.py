@@ -63,7 +63,7 @@ def test_reseeding_hardly_moves_the_stack(reseeded):
 
 
 def test_reseeded_snow_lies_at_rest_and_keeps_its_event():
-    """Of the nearest old particle, whichever event that came from."""
+    """Its event is that of the nearest old particle."""
     scene = tiny_scene(**{"events": {"between": "reseed", "count": 3}})
     simulation = _core.Simulation(scene.resolve().json)
     for event in (1, 2, 3):

@@ -11,7 +11,7 @@ from snowshed import GrainsSettings, InputError, LoadingStage
 from snowshed.analysis.tomography.example import example_grains
 from snowshed.analysis.tomography.sphere_snow import sphere_snow
 from snowshed.base.interrupt import Interrupted
-from snowshed.base.notes import recorded
+from snowshed.base.notes import record_notes
 from snowshed.io.vtk.vtp import read_particles
 from snowshed.methods.grains.curve import LoadingCurve, carried_stress
 from snowshed.running.run import run
@@ -31,7 +31,7 @@ def scene(tmp_path):
 
 
 def test_what_is_synthetic_is_called_so(scene, tmp_path):
-    """By the folder of the sample or by the title; an image of one's own is not called so."""
+    """The sample's folder or the title says so; a user's own image is not called synthetic."""
     short = scene.set("loading.0.strain", 1e-5)
     assert run(short, tmp_path / "own", pictures=False).summary.synthetic is None
     facts = {"voxel_size_m": VOXEL, "synthetic": True, "source": "synthetic: by hand"}
@@ -172,7 +172,7 @@ def test_labels_in_several_places_are_told_and_stored(scene, tmp_path):
     labels[labels == 3] = 1
     write_labels(tmp_path, labels)
     short = scene.set("loading.0.strain", 1e-5)
-    with recorded() as told:
+    with record_notes() as told:
         summary = run(short, tmp_path / "out", pictures=False).summary
     assert told == list(summary.sample_notes)
     assert "1 of 2 labels lie in several places, 3 pieces in all" in told[0]

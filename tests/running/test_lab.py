@@ -1,4 +1,4 @@
-"""The laboratory experiment in 2D, against what the thesis and an independent program give."""
+"""The laboratory experiment in 2D, against the thesis and an independent program."""
 
 import numpy as np
 import pandas as pd

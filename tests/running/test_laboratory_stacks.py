@@ -1,4 +1,4 @@
-"""The laboratory's stacks in the mean of four seedings, against what was recorded of 24 others."""
+"""The laboratory's stacks in the mean of four seedings, against a record of 24 others."""
 
 import json
 

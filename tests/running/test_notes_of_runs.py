@@ -1,4 +1,4 @@
-"""What runs tell: as warnings, on the command line and in run.json, in every way of running."""
+"""Notes of runs: as warnings, on the command line and in run.json, in every way of running."""
 
 import json
 import warnings
@@ -10,7 +10,7 @@ from helpers.grain_files import VOXEL, write_labels
 from helpers.slide_files import plane
 
 from snowshed import InputError, Scene, Simulation, SnowshedNote, run_events
-from snowshed.base.notes import recorded
+from snowshed.base.notes import record_notes
 from snowshed.cli.main import main
 from snowshed.io.raster.raster import write_ascii_grid
 from snowshed.running.run import run
@@ -30,7 +30,7 @@ def notes_of(folder):
 
 
 def test_run_events_says_and_keeps_what_is_odd_before_and_after(tmp_path):
-    with pytest.warns(SnowshedNote), recorded() as said:
+    with pytest.warns(SnowshedNote), record_notes() as said:
         run_events(tiny_scene(**{"panel.friction": 3.0}), tmp_path / "run", pictures=False)
     assert said == notes_of(tmp_path / "run")
     assert [note.split(":")[0] for note in said] == [
@@ -41,10 +41,10 @@ def test_run_events_says_and_keeps_what_is_odd_before_and_after(tmp_path):
 
 def test_misplaced_snow_is_refused_or_told_alike_everywhere(tmp_path, capsys):
     scene = ball_in_ground()
-    with pytest.warns(SnowshedNote), recorded() as in_memory:
+    with pytest.warns(SnowshedNote), record_notes() as in_memory:
         Simulation(scene).begin_event()
     assert len(in_memory) == 1 and "of its particles lie below the ground" in in_memory[0]
-    with pytest.warns(SnowshedNote), recorded() as said:
+    with pytest.warns(SnowshedNote), record_notes() as said:
         run_events(scene, tmp_path / "run", pictures=False)
     assert said == in_memory == notes_of(tmp_path / "run")
     file = tmp_path / "scene.json"
@@ -163,6 +163,6 @@ def test_grains_begin_between_their_plates_and_below_the_cone(tmp_path):
     assert spheres[:, 2].max() <= (height - radius) * (1 + 1e-9)
     row = {name: values[0] for name, values in simulation._core.grains_curve().items()}
     assert row["cone_force_n"] == pytest.approx(0.0, abs=1e-9)
-    with recorded() as said:
+    with record_notes() as said:
         run(scene, tmp_path / "run", pictures=False)
     assert said == notes_of(tmp_path / "run") == []

@@ -1,4 +1,4 @@
-"""Settings that decide how accurate a run is."""
+"""Settings that decide the accuracy of a run."""
 
 from helpers.processes import modules_after
 

@@ -1,4 +1,4 @@
-"""The components of a scene are what `make components` writes from the core's description."""
+"""The components of a scene are the output of `make components` from the core's description."""
 
 import subprocess
 import sys

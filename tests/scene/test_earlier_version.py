@@ -1,4 +1,4 @@
-"""Scenes of version 1, whose slip is separate now."""
+"""Scenes of version 1, whose "slip" is "separate" now."""
 
 import json
 
@@ -61,7 +61,7 @@ def test_runs_stored_with_version_1_are_found():
     assert data["panel"]["condition"] == "separate"
     old = {**data, "snowshed": 1, "panel": {**data["panel"], "condition": "slip"}}
     assert content_hash(old) == now.hash
-    # What was called separate then, and what is called slip now, are other runs.
+    # "separate" of version 1 and "slip" of today give other runs.
     hashes = {now.hash}
     for version, condition in ((1, "separate"), (2, "slip"), (2, "sticky")):
         other = {**data, "snowshed": version}

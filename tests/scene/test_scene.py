@@ -46,7 +46,7 @@ def check_mirror(record: type[Record], node: dict, seen: set) -> None:
 def test_fields_are_the_properties_of_the_cores_schema():
     seen: set = set()
     check_mirror(Scene, SCHEMA, seen)
-    assert len(seen) == 22  # every record there is, but for the settings of the other methods
+    assert len(seen) == 22  # every record except the settings of other methods
 
 
 @pytest.mark.parametrize("method", METHODS)

@@ -1,4 +1,4 @@
-"""A scene keeps what it was given, changes only where it is told to, and shows what is in it."""
+"""A scene keeps copies of given values, changes only on request, and shows its values."""
 
 import pytest
 

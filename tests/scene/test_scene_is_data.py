@@ -1,4 +1,4 @@
-"""A scene is text where it enters and leaves the process; between, it is parsed once."""
+"""A scene is text only where it enters and leaves the process, and is parsed once."""
 
 import ast
 import copy
@@ -14,12 +14,12 @@ from snowshed import ResolvedScene
 from snowshed.cli.main import main
 from snowshed.scene.scene import resolve_scene
 
-#: Texts that the core gives or takes: of scenes, their snow and their schema.
+#: Texts that the core gives or takes: scenes, their snow and their schema.
 OF_SCENES = {"scene", "json", "snow", "snows", "scene_json", "ready", "resolved", "run", "task"}
 
 
 def test_only_the_room_of_scenes_parses_them():
-    """What `json.loads` reads elsewhere has another name."""
+    """Elsewhere, `json.loads` reads texts with other names."""
     package = ROOT / "python" / "snowshed"
     wrong = []
     for path in package.rglob("*.py"):
@@ -37,7 +37,7 @@ def test_only_the_room_of_scenes_parses_them():
 
 @pytest.fixture
 def handled(monkeypatch):
-    """What turns scenes into data or into text, call by call."""
+    """The calls that turn scenes into data or into text."""
     calls = []
 
     def is_scene(value):

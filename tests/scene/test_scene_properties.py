@@ -1,6 +1,6 @@
 """Properties of scenes that must hold whatever is set, read or typed (with hypothesis).
 
-Every scene here starts from a valid one, so that whatever is wrong was set by the test.
+Every scene here starts from a valid one, so that every error comes from the test.
 """
 
 import contextlib
@@ -31,7 +31,7 @@ from snowshed.cli.main import main
 from snowshed.cli.scene_options import option_name
 from snowshed.scene.schema import Parameter, scene_parameters
 
-# The same examples in every run: a failure that comes and goes helps nobody.
+# The same examples in every run, so that failures can be repeated.
 same_every_time = settings(derandomize=True, database=None, deadline=None, max_examples=100)
 
 PARAMETERS = {parameter.path: parameter for parameter in scene_parameters()}
@@ -89,7 +89,7 @@ ANYTHING = st.recursive(
 
 
 def plausible(parameter: Parameter) -> st.SearchStrategy:
-    """Values of the right type, many of them in range."""
+    """Values of the correct type, many of them in range."""
     if parameter.choices:
         return st.sampled_from(parameter.choices)
     if parameter.path in ITEMS:
@@ -118,7 +118,7 @@ def value_at(data: Any, path: str) -> Any:
 
 
 def keeps(data: Any, path: str, value: Any) -> bool:
-    """Whether the scene has the value that was set; None and these zeros stand for a default."""
+    """Return whether the scene has the value that was set; None and these zeros mean a default."""
     if value is None or (path in FOLLOWERS and value == 0):
         return True
     if path == "method":  # the default is not written
@@ -262,7 +262,7 @@ def test_any_file_is_a_scene_or_an_input_error(tmp_path_factory, content):
         with pytest.raises(InputError):
             ResolvedScene.load(file)
         return
-    if "snowshed" in json.loads(content):  # which only a part of a scene may lack
+    if "snowshed" in json.loads(content):  # only a part of a scene may lack this key
         assert ready == ResolvedScene.load(file)
 
 
@@ -283,7 +283,7 @@ def as_options(path: str, value: Any) -> list[str]:
 def test_options_make_the_same_scene_as_sets_or_the_same_error(sets):
     assume(
         not {"numerics.flip_ratio", "numerics.damping_rate"} <= set(dict(sets))
-    )  # one of the two
+    )  # only one of the two may be given
     scene = Scene.preset("lab-50")
     words = ["scene", "--preset=lab-50"]
     for path, value in dict(sets).items():
@@ -291,7 +291,7 @@ def test_options_make_the_same_scene_as_sets_or_the_same_error(sets):
     output, errors = StringIO(), StringIO()
     with redirect_stdout(output), redirect_stderr(errors):
         code = main(words)
-    assume("GB of memory" not in errors.getvalue())  # how much there is changes all the time
+    assume("GB of memory" not in errors.getvalue())  # the free memory changes all the time
     try:
         scene.update(dict(sets))
         expected = scene.resolve().json

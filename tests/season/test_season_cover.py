@@ -34,7 +34,7 @@ def test_the_cover_is_that_of_the_snowfalls_settled():
 
 
 def test_the_cover_melts_by_its_degrees():
-    """5 degrees melt 20 mm of water a day: 0.3 m of 100 kg/m3 are gone in a day and a half."""
+    """5 degrees melt 20 mm of water a day; 0.3 m of 100 kg/m3 melt in a day and a half."""
     still = SeasonSettings(settling=None)
     assert natural_cover(days(0.3, 0.0, 0.0, warm=5.0), still) == pytest.approx([0.3, 0.1, 0.0])
 

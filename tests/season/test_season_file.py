@@ -1,4 +1,4 @@
-"""Season files: what they may hold, and what is said of those that hold something else."""
+"""Season files: allowed contents, and messages on other contents."""
 
 import dataclasses
 import datetime
@@ -148,5 +148,5 @@ def test_snowfall_in_centimetres_is_not_taken_for_metres(tmp_path):
     file.write_text(
         "date,snowfall_m,temperature_c\n2024-12-01,2,-3\n2024-12-02,1.5,-3\n2024-12-03,1,-3\n"
     )
-    with pytest.raises(InputError, match=r"half of the snowfalls are of 1.5 m and more"):
+    with pytest.raises(InputError, match=r"half of the snowfalls are 1.5 m and more"):
         read_season(file)

@@ -1,4 +1,4 @@
-"""The release criterion against the slide-off it starts: both agree which panels clear."""
+"""The release criterion and the simulated slide-off clear the same panels."""
 
 import pytest
 

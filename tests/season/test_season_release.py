@@ -1,4 +1,4 @@
-"""Gathering, letting go and settling, against closed forms and an ODE solver."""
+"""Accumulation, release and settling, against closed forms and an ODE solver."""
 
 import datetime
 import math
@@ -120,10 +120,10 @@ def test_settling_never_changes_the_mass():
 
 def test_a_stack_settles_between_events_and_starts_anew_with_each():
     stack = SettlingStack(SETTLING_LAWS["vionnet-2012"], 9.81)
-    stack.take(0.5, 150.0)
-    stack.wait(20 * DAY, -5.0)
+    stack.set_stack(0.5, 150.0)
+    stack.settle(20 * DAY, -5.0)
     assert 0.3 < stack.ratio < 1.0
-    stack.take(1.0, 160.0)
+    stack.set_stack(1.0, 160.0)
     assert stack.ratio == 1.0
 
 

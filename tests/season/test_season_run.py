@@ -1,4 +1,4 @@
-"""A whole season through the interface and the command line, on a grid as coarse as can be."""
+"""A whole season through the interface and the command line, on the coarsest possible grid."""
 
 import dataclasses
 import json
@@ -48,7 +48,7 @@ def season_file(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def finished(season_file, tmp_path_factory):
-    """A season of four rows: two that let go, one held by adhesion, one without snow."""
+    """A season of four rows: two with a release, one held by adhesion, one without snow."""
     folder = tmp_path_factory.mktemp("season") / "results"
     settings = SeasonSettings(friction=0.6, adhesion=20.0, settling="vionnet-2012")
     return run_season(season_file, panel_scene(), folder, settings=settings), folder
@@ -72,7 +72,7 @@ def test_the_stack_stands_still_between_events_but_for_its_settling(finished):
     table = pd.read_csv(finished[1] / "season.csv")
     height, settled = table["stack_height_m"], table["settled_height_m"]
     assert height[0] == 0.0
-    assert 0.0 < height[1] == height[2]  # an event may flatten the stack, waiting may not
+    assert 0.0 < height[1] == height[2]  # only an event changes the stack
     assert height[3] > 0.0
     assert settled[1] == pytest.approx(height[1])
     assert settled[2] < settled[1]
@@ -128,7 +128,7 @@ def test_resuming_a_finished_season_changes_nothing(finished, season_file):
 
 
 def test_a_scene_may_be_a_file_or_its_data(season_file, tmp_path):
-    """Nothing lets go of a flat panel, so that nothing is simulated."""
+    """A flat panel releases nothing, so nothing is simulated."""
     flat = panel_scene(**{"panel.tilt": 1.0}).resolve()
     flat.save(tmp_path / "scene.json")
     tables = [
@@ -177,7 +177,7 @@ def test_burial_is_the_first_event_that_closes_the_clearance():
 
 
 def test_what_stays_on_the_panel_bears_the_next_slabs(season_file, tmp_path):
-    """Let go by its static friction, snow is held by a rougher panel at once."""
+    """Snow that static friction releases is held at once by a panel with more sliding friction."""
     result = run_season(
         season_file,
         panel_scene(**{"panel.friction": 3.0, "events.max_time": 0.2}),

@@ -1,4 +1,4 @@
-"""What a day's new snow is, where it comes from, and what is no snowfall at all."""
+"""The new snow of a day, its source, and changes of the depth that are not snowfall."""
 
 import random
 from datetime import date, datetime, timedelta
@@ -17,7 +17,7 @@ WINTER = (date(2023, 11, 1), date(2024, 4, 30))
 HOURS = [datetime(2023, 11, 1) + timedelta(hours=n) for n in range(24 * 182)]
 COLD = 265.15  # K
 NO_TEMPERATURE = {"TMAX": None, "TMIN": None}
-STEPS = 12  # of the depth, of 0.2 m each, in the hours
+STEPS = 12  # number of hourly rises of the depth by 0.2 m
 
 
 def total(record):
@@ -191,7 +191,7 @@ def several_winters(folder, **elements_of):
 
 
 def test_new_snow_that_nobody_entered_gives_way(tmp_path):
-    """In one winter, or in all of them: the depth rises, and new snow is 0 throughout."""
+    """In one winter, or in all winters, the depth rises and the new snow is always 0."""
     one = lambda day, _: 0.0 if date(2001, 7, 1) <= day < date(2002, 7, 1) else 100.0 * snows(day)  # noqa: E731
     record = several_winters(tmp_path, SNOW=one, SNWD=lambda _, deep: deep)
     sources = [winter.source_text for winter in record.winters().winters]
@@ -203,7 +203,7 @@ def test_new_snow_that_nobody_entered_gives_way(tmp_path):
 
 
 def test_new_snow_is_not_filled_up_with_rain(tmp_path):
-    """More by the gauge than by hand is told, but what was measured stands."""
+    """A gauge with more snow than by hand is noted, but new snow by hand is used."""
     record = several_winters(tmp_path, PRCP=lambda day, _: 300.0 if snows(day) else 0.0)
     assert {row.source for row in record.rows} == {SnowSource.HAND}
     assert told(record, "contradict each other", "the new snow is used, not the precipitation")
@@ -213,7 +213,7 @@ def test_new_snow_is_not_filled_up_with_rain(tmp_path):
 
 
 def test_new_snow_of_a_rolling_day_counts_once(tmp_path):
-    """0.12 m fall from 18 to 6 o'clock; the sum of the last 24 hours stands in every row."""
+    """0.12 m fall from 18 to 6 o'clock; every row holds the sum of the last 24 hours."""
     hours = [datetime(2024, 1, 10) + timedelta(hours=n) for n in range(96)]
     fallen = np.array([0.01 * (18 < n <= 30) for n in range(96)])
     rolling = [fallen[max(n - 23, 0) : n + 1].sum() for n in range(96)]
@@ -223,7 +223,7 @@ def test_new_snow_of_a_rolling_day_counts_once(tmp_path):
 
 
 def test_measured_snow_does_not_vanish_without_a_temperature(tmp_path):
-    """A month without a thermometer in one of three winters, and in the only one."""
+    """A month without temperatures, in one of three winters and in the only winter."""
     rows = [
         (day, elements(day) | (NO_TEMPERATURE if (day.year, day.month) == (2002, 1) else {}))
         for day in days(date(2000, 7, 1), date(2003, 6, 30))
@@ -232,9 +232,7 @@ def test_measured_snow_does_not_vanish_without_a_temperature(tmp_path):
     record = read_record(ghcn(tmp_path / "x.csv", rows))
     assert total(record) == pytest.approx(total(read_record(ghcn(tmp_path / "y.csv", whole))))
     assert len(record.winters().counted) == 3
-    assert told(
-        record, "without a temperature are 25 days", "mean of the file's same days of the year"
-    )
+    assert told(record, "without a temperature are 25 days", "mean of the same days of the year")
     assert on(record, date(2002, 1, 16)).temperature == pytest.approx(-6.0, abs=0.3)
     single = [row for row in rows if row[0] >= date(2001, 7, 1) and row[0] < date(2002, 7, 1)]
     record = read_record(ghcn(tmp_path / "z.csv", single))

@@ -1,4 +1,4 @@
-"""What a winter is worth: coverage, names, north and south, gaps of years."""
+"""The quality of winters: coverage, names, north and south, gaps of years."""
 
 from datetime import date
 

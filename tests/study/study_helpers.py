@@ -29,7 +29,7 @@ def tiny_study(name: str = "tiny", frictions: tuple[float, ...] = (0.1, 0.2, 0.3
 def outcome(
     hash_: str, status: str = "done", events: int = 2, error: str | None = None
 ) -> RunOutcome:
-    """What a run could have given: every measure is its own little number."""
+    """A possible outcome of a run; every measure is a small number of its own."""
     rows = [
         {
             "event": event,
@@ -79,7 +79,7 @@ class ScriptedWorkers:
 
 
 def contents(folder: Path) -> dict[str, list[tuple]]:
-    """All that is in a store and does not change from one computation to the next."""
+    """The content of a store that is the same in every computation."""
     connection = sqlite3.connect(folder / FILE)
     try:
         return {

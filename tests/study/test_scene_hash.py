@@ -1,4 +1,4 @@
-"""What is the same run, and what is not."""
+"""Scenes that are the same run, and scenes that are not."""
 
 import json
 import os

@@ -95,7 +95,7 @@ def test_neither_order_nor_threads_nor_parallel_work_change_the_table(computed, 
 
 
 def test_a_run_that_cannot_go_on_is_a_row_with_its_error(tmp_path):
-    # What is in the file of an obstacle shows only when the run begins.
+    # The content of an obstacle's file is checked only when the run begins.
     np.save(tmp_path / "good.npy", np.hypot(*np.mgrid[-1:2, -1:2]) * 0.1 - 0.05)
     (tmp_path / "bad.npy").write_text("no array")
     shape = Shape.grid("", origin=(3, 0), spacing=0.1)

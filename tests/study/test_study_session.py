@@ -10,7 +10,7 @@ import study_helpers
 from study_helpers import outcome, tiny_study
 
 from snowshed import InputError, SnowshedNote, _core
-from snowshed.base.notes import recorded
+from snowshed.base.notes import record_notes
 from snowshed.study import Study, StudyError, StudyInterrupted, cost_estimate, resume, session
 from snowshed.study.outcome import RunOutcome
 from snowshed.study.owner import ownership
@@ -221,10 +221,10 @@ def test_leftovers_of_killed_processes_are_removed(scripted, tmp_path):
         for name in (*HASHES[:2], "0" * 32):
             (store.running / name / "results").mkdir(parents=True)
         (store.running / "node-1-0123abcd.lock").touch()
-        session._tidy(store)
+        session._remove_leftovers(store)
         assert [path.name for path in store.running.iterdir()] == [HASHES[1]]
         with ownership(store):
-            session._tidy(store)
+            session._remove_leftovers(store)
             assert len(list(store.running.iterdir())) == 2
     STUDY.run(tmp_path / "store")
     assert not any((tmp_path / "store" / "running").iterdir())
@@ -288,7 +288,7 @@ def test_expected_durations():
 
 
 def test_speeds_count_as_much_as_the_work_they_stand_for(monkeypatch):
-    """Nine runs of one unit, and one of 21 that is half as fast: two of three speeds are its."""
+    """Nine runs of one unit, and one of 21 with half the speed: it gives two of three speeds."""
     monkeypatch.setattr(
         cost_estimate, "speed", lambda scene, threads: 1.0 if scene == "big" else 2.0
     )
@@ -336,7 +336,7 @@ def test_notes_on_runs_are_said_after_them_the_most_frequent_first(scripted, tmp
         return replace(outcome(task.hash), notes=notes)
 
     scripted.answer = noted
-    with pytest.warns(SnowshedNote), recorded() as said:
+    with pytest.warns(SnowshedNote), record_notes() as said:
         STUDY.run(tmp_path / "store")
     runs = len(states(tmp_path / "store"))
     assert said == [f"{runs} runs: the slab is thin", "1 run: one stays"]

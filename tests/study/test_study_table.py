@@ -59,7 +59,7 @@ def test_every_row_says_how_it_was_computed(computed):
 
 
 def test_rows_from_before_the_readings_had_names_are_of_the_one_there_was(mixed):
-    """An older store gains columns, which its rows leave empty; what failed has no measures."""
+    """An older store gains columns, which are empty in its rows; failed runs have no measures."""
     named = [name for name in MEASURED_TYPES if "trimm" in name or name.startswith("equal_pace")]
     with sqlite3.connect(mixed / FILE) as database:
         database.execute("DROP TABLE checksum")
@@ -179,7 +179,7 @@ def test_a_product_unfolds_into_a_dimension_per_parameter(tmp_path):
 
 
 def test_the_recipe_of_the_guide_works_with_files(tmp_path):
-    """Of a file xarray reads texts late, which it could not sort into dimensions."""
+    """xarray reads texts of a file late, and cannot sort such texts into dimensions."""
     study = Study.product(tiny_scene(), {"panel.tilt": [40, 50], "panel.height": [1.0, 2.0]})
     export(store_with(tmp_path / "store", study, *["done"] * 4), tmp_path / "t.nc")
     guide = (ROOT / "docs" / "reference" / "study-table.md").read_text(encoding="utf-8")

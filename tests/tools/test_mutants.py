@@ -116,7 +116,7 @@ def copy_of(project, faults):
 
 def test_a_fault_is_in_the_copy_alone_and_only_for_its_trial(project):
     copy = copy_of(project, [fault()])
-    with copy.changed(fault()):
+    with copy.inject(fault()):
         assert (copy.folder / "sum.py").read_text() == "a - b\n"
         assert (project / "sum.py").read_text() == "a + b\n"
     assert (copy.folder / "sum.py").read_text() == "a + b\n"
@@ -125,7 +125,7 @@ def test_a_fault_is_in_the_copy_alone_and_only_for_its_trial(project):
 @pytest.mark.parametrize("interruption", [KeyboardInterrupt, BuildError])
 def test_an_interrupted_trial_leaves_the_copy_as_it_was(project, interruption):
     copy = copy_of(project, [fault()])
-    with pytest.raises(interruption), copy.changed(fault()):
+    with pytest.raises(interruption), copy.inject(fault()):
         raise interruption
     assert (copy.folder / "sum.py").read_text() == "a + b\n"
 
@@ -139,7 +139,7 @@ signal.signal(signal.SIGINT, signal.default_int_handler)  # also where a shell i
 fault = Fault("minus", "sums", "sum.py", "a + b", "a - b", "why", ("tests/test_sum.py",))
 copy = SourceCopy(Path(sys.argv[1]), Path(sys.argv[2]), [fault])
 copy.update(["sum.py", "sum.cpp"])
-with copy.changed(fault):
+with copy.inject(fault):
     print("changed", flush=True)
     time.sleep(60)
 """

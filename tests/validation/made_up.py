@@ -1,4 +1,4 @@
-"""A case whose answers are known beforehand, and which can fail in every way."""
+"""A case with answers that are known beforehand, which can fail in every way."""
 
 import os
 import signal

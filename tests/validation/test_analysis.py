@@ -11,7 +11,7 @@ from validation.framework.cheapest import by_problem, cheapest, pareto_front
 from validation.framework.convergence import convergences, observed_order, pairwise_orders
 from validation.framework.criteria import compare
 from validation.framework.schemes import varying
-from validation.framework.sections import meant
+from validation.framework.sections import settings_text
 
 from snowshed.analysis.accuracy.measurements import Measured, MeasuredSolution, to_table
 from snowshed.analysis.accuracy.solutions import (
@@ -130,7 +130,7 @@ def test_the_quickest_is_accurate_enough_or_else_the_most_accurate():
 
 def test_cheapest_settings_for_each_accuracy():
     table = table_of(
-        ({"dx": 0.4}, 0.004, 1.0),  # luck: the next is worse
+        ({"dx": 0.4}, 0.004, 1.0),  # by chance: the next error is larger
         ({"dx": 0.2}, 0.04, 8.0),
         ({"dx": 0.1}, 0.015, 64.0),
     )
@@ -158,7 +158,7 @@ def test_an_easier_problem_buys_no_accuracy():
     assert [(problem, len(ways)) for problem, ways in found] == [
         *(({"friction": 0.0}, 1), ({"friction": 0.6}, 2), ({"friction": 0.8}, 1))
     ]
-    answers = cheapest(table, [case], wanted=[0.05])  # of what was solved in several ways
+    answers = cheapest(table, [case], wanted=[0.05])  # problems with several solutions
     assert [(one.problem, one.solution.settings["dx"]) for one in answers] == [
         ({"friction": 0.6}, 0.1)
     ]
@@ -171,8 +171,8 @@ def test_a_criterion_holds_if_the_worst_it_is_for_is_small_enough():
         ({"dx": 0.1, "transfer": "pic"}, 0.5, 1.0),
         ({"dx": 0.2, "transfer": "apic"}, 0.5, 1.0),
     )
-    meant = {"dx": 0.1, "transfer": "apic"}
-    (criterion,) = compare(table, [case_with(limit=0.05, limit_for=meant)])
+    applies_to = {"dx": 0.1, "transfer": "apic"}
+    (criterion,) = compare(table, [case_with(limit=0.05, limit_for=applies_to)])
     assert (criterion.kind, criterion.demanded, criterion.worst, criterion.count) == (
         "error",
         0.05,
@@ -181,7 +181,7 @@ def test_a_criterion_holds_if_the_worst_it_is_for_is_small_enough():
     )
     assert criterion.settings == {"dx": 0.1, "transfer": "apic", "seed": 1}
     assert criterion.holds is True
-    (strict,) = compare(table, [case_with(limit=0.03, limit_for=meant)])
+    (strict,) = compare(table, [case_with(limit=0.03, limit_for=applies_to)])
     assert strict.holds is False
     (other,) = compare(table, [case_with(limit=0.03, limit_for={"basis": "cubic"})])
     assert (other.holds, other.worst, other.count) == (None, None, 0)
@@ -192,7 +192,7 @@ def test_a_criterion_may_be_for_several_values_of_a_setting():
     table = table_of((flip, 0.01, 1.0), (apic, 0.5, 1.0), (none, 0.02, 1.0))
     (criterion,) = compare(table, [case_with(limit=0.1, limit_for={"transfer": ("flip", None)})])
     assert (criterion.holds, criterion.count, criterion.worst) == (True, 2, 0.02)
-    assert meant(criterion) == "flip or transfer default"
+    assert settings_text(criterion) == "flip or transfer default"
 
 
 @pytest.mark.parametrize("error", [nan, inf])
@@ -213,11 +213,11 @@ def test_every_series_must_converge_fast_enough():
     assert (criterion.kind, criterion.worst, criterion.count) == ("order", pytest.approx(1.0), 2)
     assert criterion.settings == {"transfer": "pic"}
     assert criterion.holds is False
-    # A criterion on the finest grid's error leaves the order one over all grids.
-    meant = {"dx": 0.1, "transfer": "apic"}
-    error, order = compare(table, [case_with(limit=0.02, limit_for=meant, **facts)])
+    # A criterion for the finest grid's error does not restrict the order to that grid.
+    applies_to = {"dx": 0.1, "transfer": "apic"}
+    error, order = compare(table, [case_with(limit=0.02, limit_for=applies_to, **facts)])
     assert error.holds and order.holds
-    assert order.meant == {"transfer": "apic"}
+    assert order.applies_to == {"transfer": "apic"}
     (one_size,) = compare(table, [case_with(limit_for={"transfer": "flip"}, **facts)])
     assert one_size.holds is None
 

@@ -44,7 +44,7 @@ def principal_stresses(p, q, dimension):
 @pytest.mark.parametrize("dimension", [2, 3])
 @pytest.mark.parametrize("angle", [22.0, 30.0])
 def test_the_snow_ends_at_coulombs_friction_when_it_is_sheared(dimension, angle):
-    """Shear at constant volume: the core's own return mapping comes to sin phi."""
+    """In shear at constant volume, the core's return mapping gives sin phi."""
     slope = granular_column.critical_state_slope(angle, dimension)
     law = CamClay(1e5, 0.3, slope, 0.0, collapse.HARDENING, dimension)
     p, q, ev = 300.0, 0.0, law.initial_plastic_strain(20.0)
@@ -113,7 +113,7 @@ def test_measure_compares_with_the_laws(dimension):
     assert runout.exact == granular_column.runout_law(1.0, dimension)
     for one in outcome.measured:
         assert one.error == pytest.approx(one.value / one.exact - 1)
-    # As far as the method gets at five cells to the radius; see the remarks.
+    # The run-out of the method at five cells to the radius; see the remarks.
     assert runout.error == pytest.approx({2: -0.30, 3: -0.51}[dimension], abs=0.06)
     assert height.error == pytest.approx(-0.15, abs=0.04)
     assert outcome.updates == outcome.steps * outcome.particles
@@ -134,4 +134,4 @@ def test_exponent_is_that_of_a_power_law(monkeypatch):
     (exponent,) = outcome.measured
     assert exponent.value == pytest.approx(0.6)
     assert exponent.error == pytest.approx(0.6 / (2 / 3) - 1)
-    assert outcome.wall_s == len(collapse.TALL[2])
+    assert outcome.wall_s == len(collapse.TALL_ASPECTS[2])

@@ -1,4 +1,4 @@
-"""Slabs on an incline: Coulomb's law, its coarse solutions, and what is measured of them."""
+"""Slabs on an incline: Coulomb's law, its coarse solutions, and their measurements."""
 
 from types import SimpleNamespace
 
@@ -69,7 +69,7 @@ def test_what_friction_cannot_hold_slides_as_coulomb_says(friction):
 
 
 def test_too_much_friction_would_be_noticed():
-    """The friction that acted is what the acceleration says, not what the settings say."""
+    """The measured friction follows from the acceleration, not from the settings."""
     sliding = incline.Sliding({**COARSE, "friction": 0.5}, incline.TILT)
     found = {one.quantity: one for one in incline._slide(sliding, 0.4)}
     assert found["effective_friction"].value == pytest.approx(0.5, rel=0.01)
@@ -90,7 +90,7 @@ def test_a_thrown_slab_stops_where_it_should():
 
 
 def test_the_angle_is_found_between_those_that_were_tried(monkeypatch):
-    """With slabs that slide exactly where Coulomb says, bisection is as good as its width."""
+    """With slabs that slide exactly by Coulomb's law, bisection is exact to its width."""
 
     core = SimpleNamespace(particle_updates=6, total_steps=3, particle_count=2)
 

@@ -93,7 +93,7 @@ def test_a_body_whose_motion_is_none_stays_where_it_is():
 
 
 def test_all_of_a_force_is_applied_although_steps_vary(monkeypatch):
-    """A force that is the same everywhere and always: momentum is force times time."""
+    """With a force that is constant in space and time, momentum is force times time."""
     monkeypatch.setattr(Vortex, "body_force", lambda self, points, time: 0 * points + [3.0, -1.0])
     body = ForcedBody(Vortex(0.5), {**SCHEME, **FLIP, "dx": 0.1})
     begun = body.drive.mean(body.drive.core.velocities())
@@ -103,7 +103,7 @@ def test_all_of_a_force_is_applied_although_steps_vary(monkeypatch):
         steps.add(round(body.drive.core.time_step_s, 12))
     assert len(steps) > 5
     gained = body.drive.mean(body.drive.core.velocities()) - begun
-    # The last step's change of length is still owed.
+    # The next force corrects the last step's change of length.
     still = body._velocity_correction.mean(axis=0)
     assert gained[[0, 2]] + still == pytest.approx(np.array([3.0, -1.0]) * body.time)
 

@@ -116,7 +116,7 @@ def test_without_cohesion_the_critical_state_is_on_q_equal_m_p(monkeypatch):
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
 @pytest.mark.parametrize("full", [False, True])
-def test_matrices_list_no_entry_twice_and_reach_the_bars(case, full):
+def test_matrices_list_no_entry_twice_and_reach_the_limits(case, full):
     entries = case.matrix(full)
     assert len({tuple(sorted(one.items())) for one in entries}) == len(entries)
     for quantity in case.quantities if full else ():

@@ -1,4 +1,4 @@
-"""A slab thrown from a panel's edge: the rigid slab, flights made up, and a coarse throw."""
+"""A slab thrown from a panel's edge: the rigid slab, made-up flights, and a coarse throw."""
 
 import math
 
@@ -11,8 +11,8 @@ from validation.panel_edge.rigid_slab import RigidSlab
 
 def test_a_tipping_slab_without_friction_keeps_its_energy():
     slab = RigidSlab(0.4, 0.05, tilt=35, friction=0.0, sliding_distance=0.6)
-    state = slab._leave()
-    x, z = slab._slope(state.position)
+    state = slab._departure()
+    x, z = slab._to_horizontal(state.position)
     tilt = math.radians(35)
     # It started `sliding_distance` up the slope from the edge, half its thickness above the face.
     start = 0.6 * math.sin(tilt) + 0.025 * math.cos(tilt)

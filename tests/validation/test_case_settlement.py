@@ -24,7 +24,7 @@ def test_the_elastic_column_is_in_equilibrium(dimension):
 
 @pytest.mark.parametrize("kind", COLUMNS)
 def test_settlement_is_the_integral_of_the_shortening(kind):
-    """Down the column: each layer's strain from the pressure, which one of the laws turned into."""
+    """Integrate down the column: each layer's strain follows from the pressure by the law."""
     column = COLUMNS[kind](2)
     slope = np.gradient(column.settlement(np.linspace(0.0, 0.4, 2001)), 0.4 / 2000)[20:-20]
     depth = np.linspace(0.0, 0.4, 2001)[20:-20]
@@ -33,7 +33,7 @@ def test_settlement_is_the_integral_of_the_shortening(kind):
         total, _ = quad(lambda h: 1 - np.exp(-float(column.compression(np.array(h)))), 0, 0.4)
         assert float(column.settlement(np.array(0.4))) == pytest.approx(total)
     else:
-        assert np.all(np.diff(slope) > -1e-6)  # the deeper, the shorter
+        assert np.all(np.diff(slope) > -1e-6)  # deeper layers are compressed more
 
 
 def test_a_column_that_never_yields_is_the_elastic_one(monkeypatch):

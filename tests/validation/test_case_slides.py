@@ -1,4 +1,4 @@
-"""Closed forms of the snow slide's cases, and what their measures would miss."""
+"""Closed forms of the snow slide's cases, and errors that their measures could miss."""
 
 import numpy as np
 import pytest
@@ -13,10 +13,10 @@ def test_the_dam_keeps_its_snow():
     time = 2.0
     s = np.linspace(-20.0, 40.0, 6001)
     thickness = dam_break.exact_thickness(s, time)
-    moved = 0.5 * dam_break.PLANE.coulomb(dam_break.FRICTION) * time**2  # what came from above
+    moved = 0.5 * dam_break.PLANE.coulomb(dam_break.FRICTION) * time**2  # mass from above
     assert np.trapezoid(thickness, s) == pytest.approx(20.0 + moved, rel=1e-4)
     at_front = dam_break.exact_thickness(np.array(dam_break.exact_front(time)), time)
-    assert at_front == pytest.approx(dam_break.SEEN)
+    assert at_front == pytest.approx(dam_break.FRONT_THICKNESS)
 
 
 @pytest.mark.parametrize(("shape", "mass"), [("ridge", 2 / 3 * 20 * 28), ("cap", np.pi * 100 / 2)])

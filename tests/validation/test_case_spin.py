@@ -1,4 +1,4 @@
-"""Spinning bodies: the closed form against its equation, what forces along the radius leave."""
+"""Spinning bodies: the closed form against its equation, and the effect of radial damping."""
 
 import numpy as np
 import pytest

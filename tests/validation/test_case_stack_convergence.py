@@ -66,7 +66,7 @@ def test_the_reference_is_the_finest_grid_of_the_scheme(dimension, scheme, runs)
 
 
 def test_an_event_that_the_reference_has_not_has_no_exact_value():
-    """The finest grid in space has two events; a coarser one is no reference of itself."""
+    """The finest grid in space has two events; a coarser grid is no reference for more events."""
     there = recorded(3, scheme="objective")
     assert there.events == 2
     assert there.mean("height", 2) > 0 and np.isnan(there.mean("height", 3))
@@ -91,7 +91,8 @@ def test_stacks_are_measured_as_the_recorded_ones_were():
 
 @pytest.mark.parametrize("scheme", REFERENCES)
 def test_recording_reproduces_what_was_recorded(tmp_path, scheme):
-    """Within four deviations: other processors round differently, and stacks are chaotic."""
+    """Stacks agree within four deviations: other processors round differently, and stacks are
+    chaotic."""
     path = tmp_path / "stacks.json"
     record(path, scheme, [Grid(2, 0.02, 1, events=1)])
     (run,) = json.loads(path.read_text(encoding="utf-8"))["runs"]
@@ -149,7 +150,7 @@ def test_every_entry_makes_a_scene_with_a_reference(settings):
 def test_snow_sleeps_as_by_default_but_in_the_reference():
     default = Scene.preset("lab-50").resolve().data["numerics"]["sleep_speed"]
     assert lab_scene(QUICK).resolve().data["numerics"]["sleep_speed"] == default > 0
-    awake = lab_scene({**QUICK, **lab_records.AWAKE}).resolve()
+    awake = lab_scene({**QUICK, **lab_records.NO_SLEEP}).resolve()
     assert awake.data["numerics"]["sleep_speed"] == 0
 
 
@@ -177,7 +178,7 @@ def test_each_scheme_is_compared_with_its_own_reference():
     there = recorded(2, 0.02, "objective")
     departure = (results["height"].value - there.mean("height", 1)) / there.spread("height", 1)
     assert results["height_noise"].error == pytest.approx(departure)
-    assert abs(departure) < stack_convergence.NOISE_BAR
+    assert abs(departure) < stack_convergence.MAX_NOISE
 
 
 def test_one_seeding_has_no_spread():
@@ -186,7 +187,7 @@ def test_one_seeding_has_no_spread():
 
 
 def test_without_sleep_a_stack_is_like_the_recorded_ones():
-    """The mean of four: its own deviation is half of a single one's."""
+    """The mean of four stacks has half the deviation of a single stack."""
     settings = {**QUICK, "seedings": 4, "sleep_speed": 0.0}
     found = {one.quantity: one for one in CASE.measure(settings).measured}
     there = recorded(2, 0.02)
@@ -217,7 +218,7 @@ def test_three_dimensions_are_compared_with_two(monkeypatch):
     assert ratio.value == pytest.approx(run.stacks[0].height / recorded(2, 0.02).mean("height", 1))
 
 
-def test_stacks_of_the_default_scheme_are_within_their_bar():
+def test_stacks_of_the_default_scheme_are_within_their_limits():
     outcome = CASE.measure({**QUICK, "transfer": "flip", "seedings": 4, "events": 3})
     criteria = {one.name: one for one in CASE.quantities if one.limit is not None}
     assert set(criteria) == {"height_noise", "length_noise"}
@@ -227,13 +228,13 @@ def test_stacks_of_the_default_scheme_are_within_their_bar():
 
 
 @pytest.mark.parametrize("full", [True, False])
-def test_the_bars_are_for_the_scheme_of_the_recorded_runs(full):
+def test_the_limits_apply_to_the_scheme_of_the_recorded_runs(full):
     wanted = stack_convergence.AS_RECORDED.items()
-    meant = [
+    listed = [
         one
         for one in CASE.matrix(full)
         if all(one.get(key) in alternatives(value) for key, value in wanted)
     ]
-    assert len(meant) >= 4
-    assert not any("flip_ratio" in one or one.get("transfer") == "apic" for one in meant)
-    assert {scheme_of(one) for one in meant} == set(REFERENCES)
+    assert len(listed) >= 4
+    assert not any("flip_ratio" in one or one.get("transfer") == "apic" for one in listed)
+    assert {scheme_of(one) for one in listed} == set(REFERENCES)

@@ -1,4 +1,4 @@
-"""Vibrations: the beam by its energies, smoothing by interpolating, and coarse bodies."""
+"""Vibrations: the beam against its energies, smoothing against interpolation, and coarse bodies."""
 
 import math
 
@@ -69,7 +69,8 @@ def spline(basis, u):
 @pytest.mark.parametrize("basis", ["quadratic", "cubic"])
 @pytest.mark.parametrize("transfer", TRANSFERS, ids=str)
 def test_smoothing_is_that_of_interpolating_a_wave(basis, transfer):
-    """Once from particles to grid and back, on a ring of 20 cells with 64 particles each."""
+    """Interpolate once from particles to grid and back, on a ring of 20 cells with 64 particles
+    each."""
     cells, count = 20, 64
     places = (np.arange(cells * count) + 0.5) / count
     arms = (np.arange(cells) - places[:, np.newaxis] + cells / 2) % cells - cells / 2
@@ -77,7 +78,7 @@ def test_smoothing_is_that_of_interpolating_a_wave(basis, transfer):
     k = 2 * np.pi / cells
     speeds = np.cos(k * places)
     affine = -k * np.sin(k * places)
-    # The grid's velocities of a wave that has been through the grid once before.
+    # The grid's velocities of a wave that has passed the grid once before.
     grid = weights.T @ speeds / count
     if transfer == APIC:
         scale = 4 if basis == "quadratic" else 3
@@ -88,7 +89,7 @@ def test_smoothing_is_that_of_interpolating_a_wave(basis, transfer):
         again = weights.T @ (ratio * speeds + (1 - ratio) * (weights @ grid))
     remaining = (again / count) @ grid / (grid @ grid)
     settings = {**transfer, "basis": basis, "dx": 1.0}
-    assert Smoothing.of(settings, k).remaining == pytest.approx(remaining, abs=1e-4)
+    assert Smoothing.of(settings, k).velocity_share == pytest.approx(remaining, abs=1e-4)
 
 
 @pytest.mark.parametrize("transfer", TRANSFERS, ids=str)
@@ -96,12 +97,12 @@ def test_what_smoothing_takes_per_period_is_what_its_recurrence_takes(transfer):
     smoothing = Smoothing.of({**transfer, "basis": "quadratic", "dx": 0.05}, np.pi)
     frequency, dt = 2.0, 0.001
     # Symplectic Euler raises a frequency by (omega dt)^2/24, which is left out.
-    stiffness = (2 * np.pi * frequency) ** 2 / smoothing.felt
+    stiffness = (2 * np.pi * frequency) ** 2 / smoothing.force_share
     q, v, values = 0.0, 1.0, []
     for _ in range(1500):
         force = -stiffness * q
         q += dt * (v + dt * force)
-        v = smoothing.remaining * v + smoothing.felt * dt * force
+        v = smoothing.velocity_share * v + smoothing.force_share * dt * force
         values.append(q)
     swing = Swing.fit(dt * np.arange(1, 1501), np.array(values), frequency)
     assert smoothing.loss_per_period(frequency, dt) == pytest.approx(

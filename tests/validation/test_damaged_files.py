@@ -1,4 +1,4 @@
-"""Damaged files of a validation folder are named, with the line and what is wrong."""
+"""Damaged files of a validation folder are named, with the line and the error."""
 
 import json
 import resource
@@ -16,7 +16,7 @@ from snowshed.analysis.accuracy.recorded import load_recorded
 
 WHOLE = MeasuredSolution("bar", {"dx": 0.1, "apic": True}, [Measured("height", 1.0, 2.0, -0.5)])
 
-# A line of measurements.jsonl, and what must be said of it.
+# A line of measurements.jsonl, and the message on it.
 LINES = {
     "nothing": (b"", "damaged: Expecting value"),
     "random bytes": (bytes(range(128, 250)), "damaged: 'utf-8' codec can't decode byte 0x80"),

@@ -1,4 +1,4 @@
-"""Results folders taken up among the recorded stacks, and measurements from recorded stacks."""
+"""Results folders imported into the recorded stacks, and measurements from recorded stacks."""
 
 import json
 from dataclasses import astuple
@@ -76,7 +76,7 @@ def test_an_unfinished_run_is_not_taken(reference, tmp_path):
 
 
 def test_the_package_brings_the_measurements_of_the_recorded_runs():
-    """Nobody typed them: they follow from lab_stack.json but for the last digits of sums."""
+    """They are not typed: they follow from lab_stack.json, except for the last digits of sums."""
     packaged = [
         one
         for one in load_recorded()
@@ -97,7 +97,7 @@ def test_the_package_brings_the_measurements_of_the_recorded_runs():
 
 
 def test_measurements_are_those_of_the_runs():
-    """One of them from the numbers of the file: mean, error of a single run, cost."""
+    """Compute one measurement from the numbers of the file: mean, error of a single run, cost."""
     runs = lab_records.read_entries(lab_records.FILE)
     mine = [r for r in runs if scheme_of(r) == SCHEME and r["dimension"] == 2]
     heights = [r["height"][1] for r in mine if r["dx"] == 0.01]
@@ -116,7 +116,7 @@ def test_measurements_are_those_of_the_runs():
     assert height.exact == pytest.approx(exact)
     assert height.error == pytest.approx((sum(squares) / len(squares)) ** 0.5)
     assert found.steps == round(sum(cost[1][2] for cost in costs) / len(costs))
-    # All updates at the pace of the quickest run, and of each run the share of two events.
+    # All updates at the speed of the fastest run; of each run only the share of two events.
     quickest = min(cost[-1][0] / cost[-1][1] for cost in costs)
     times = [cost[-1][1] * quickest * cost[1][0] / cost[-1][0] for cost in costs]
     assert found.wall_s == pytest.approx(sum(times) / len(times))

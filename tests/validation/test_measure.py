@@ -156,7 +156,7 @@ def test_the_estimate_follows_known_durations_and_the_present_pace(monkeypatch):
     known = {tasks[0].key: 1.0, tasks[1].key: 3.0}  # the third: 2 s, their mean
     estimate = Estimate(tasks, known)
     assert estimate.after(0) == (0.0, 6.0)
-    clock[0] += 2.0  # twice as slow as then
+    clock[0] += 2.0  # twice as slow as in the earlier runs
     assert estimate.after(1) == (pytest.approx(1 / 6), pytest.approx(10.0))
     assert Estimate(tasks, {}).after(0) == (0.0, None)
     assert Estimate(tasks, {}).after(3)[0] == 1.0

@@ -1,4 +1,4 @@
-"""The quick suite: every case over its quick matrix, and every criterion on what was measured."""
+"""The quick suite: every case over its quick matrix, and every criterion that it measures."""
 
 import pytest
 from validation.framework.cases import case_modules, cases_of
@@ -10,7 +10,7 @@ from validation.framework.report import Validation, problems
 from snowshed.analysis.accuracy.measurements import to_table
 
 MODULES = case_modules()
-#: Those that take longest. Quicker tests, here in `test_case_*.py` or in C++, cover the same code.
+#: The slowest modules. Faster tests, here in `test_case_*.py` or in C++, cover the same code.
 LONG = {
     "elastic_vibration",
     "laboratory_between_events",
@@ -35,7 +35,7 @@ def test_modules_are_found():
 
 
 @pytest.mark.parametrize("module", modules())
-def test_bars_hold(module, tmp_path):
+def test_criteria_hold(module, tmp_path):
     cases = cases_of(module)
     measurements = measure_cases(cases, MeasurementFile(tmp_path / "measurements.jsonl"))
     assert {one.case for one in measurements} == {case.name for case in cases}

@@ -126,7 +126,7 @@ def test_bad_input_is_refused_without_measures() -> None:
 
 
 def test_free_fall_differs_from_the_balance_by_what_symplectic_euler_does() -> None:
-    """It falls too far, by g t dt/2: a block that has not reached the ground shows nothing else."""
+    """A block in free fall shows one error alone: it falls too far by g t dt/2."""
     point = {**reference(), "kind": "throw", "speed": 0.1, "precision": "double"}
     scene = build(point, max_time=0.005)
     assert scene.events is not None
@@ -170,7 +170,7 @@ def test_tables_count_every_run_once(some: pd.DataFrame) -> None:
 
 
 def test_snow_comes_to_rest() -> None:
-    """Soft snow, cheap in steps, dropped from a hand's breadth."""
+    """Soft snow, which needs few steps, falls from a small height."""
     point = {**reference(), "kind": "throw", "youngs_modulus": 1e4, "cells": 1, "thickness": 0.1}
     record = solve(point, steps=5000)
     assert record["ended"] == "rest"
@@ -178,7 +178,7 @@ def test_snow_comes_to_rest() -> None:
 
 
 def test_a_particle_that_is_compressed_beyond_measure_is_named() -> None:
-    """Elastic snow of 10 kPa at Mach 15 has nothing to stop it."""
+    """Nothing stops elastic snow of 10 kPa at Mach 15."""
     point = {**reference(), "kind": "collide", "model": "elastic", "youngs_modulus": 1e4}
     record = solve({**point, "density": 917.0, "speed": 100.0, "transfer": "apic"}, steps=500)
     assert record["ended"] == "stopped"

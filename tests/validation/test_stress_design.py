@@ -1,4 +1,4 @@
-"""What the stress suite tries: ranges, coverage of pairs, scenes that the core accepts."""
+"""The design of the stress suite: ranges, coverage of pairs, scenes that the core accepts."""
 
 from collections.abc import Callable
 from itertools import combinations

@@ -26,7 +26,7 @@ def made_up_measure_of_height_only(settings):
 
 @pytest.fixture
 def cases(monkeypatch):
-    """Put one made-up case in the place of all, and return what can be changed about it."""
+    """Replace all cases by one made-up case, and return its settings, which tests change."""
     held = {"quantities": HOLDING, "entries": None}
 
     def cases_of(module):
@@ -62,7 +62,7 @@ def test_full_takes_the_full_matrix(cases, tmp_path):
     assert data["about"]["suite"] == "full"
 
 
-def test_the_exit_code_is_1_if_a_bar_does_not_hold(cases, tmp_path, capsys):
+def test_the_exit_code_is_1_if_a_criterion_does_not_hold(cases, tmp_path, capsys):
     cases["quantities"] = (Quantity("height", "height, m", limit=0.1),)
     assert validate(tmp_path / "out", "-q") == 1
     assert capsys.readouterr() == (

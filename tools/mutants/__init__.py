@@ -1,1 +1,1 @@
-"""Injected faults: which of them the tests catch. See docs/trust/injected-faults.md."""
+"""Injected faults, which test the tests. See docs/trust/injected-faults.md."""

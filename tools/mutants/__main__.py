@@ -75,7 +75,7 @@ def _chosen(faults: Sequence[Fault], options: argparse.Namespace, results: Resul
 
 
 def _run(chosen: Sequence[Fault], faults: Sequence[Fault]) -> None:
-    """Try the faults; those that need no compiler and those with a switch come first."""
+    """Try the faults, first those that need no compiler and those with a switch."""
     copy = SourceCopy(ROOT, FOLDER / "source", faults)
     workshop = Workshop(FOLDER, FOLDER / "source")
     copy.update()
@@ -97,7 +97,7 @@ def _run(chosen: Sequence[Fault], faults: Sequence[Fault]) -> None:
 
 
 def _require_sound(workshop: Workshop, test: str, sound: set[str]) -> None:
-    """Raise BuildError if a test fails without any fault: it would have caught nothing."""
+    """Raise BuildError if a test fails without any fault, because such a test proves nothing."""
     test = test.partition(" (")[0]
     if test not in sound and workshop.first_failure([test]):
         raise BuildError(f"{test} fails without any fault")
@@ -107,7 +107,7 @@ def _require_sound(workshop: Workshop, test: str, sound: set[str]) -> None:
 def _try(copy: SourceCopy, workshop: Workshop, fault: Fault) -> str:
     if fault.switch:
         return workshop.first_failure(fault.tests, copy.numbers[fault.name])
-    with copy.changed(fault):
+    with copy.inject(fault):
         if fault.is_cpp:
             workshop.build(*TARGETS)
         return workshop.first_failure(fault.tests)

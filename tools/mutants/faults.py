@@ -32,7 +32,7 @@ class Fault:
     file
         The source that it changes, from the root of the project.
     old, new
-        The text that occurs once in the source, and what replaces it.
+        The text that occurs once in the source, and its replacement.
     why
         The wrong behaviour of the program.
     tests
@@ -60,7 +60,7 @@ class Fault:
         return self.file.endswith((".cpp", ".hpp"))
 
     def place(self, text: str) -> tuple[int, int]:
-        """Return where the old text begins and ends in the source.
+        """Return the start and the end of the old text in the source.
 
         Raises
         ------

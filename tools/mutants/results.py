@@ -57,7 +57,7 @@ ABOUT = "Made by `make mutants`: the first test that failed with each fault; emp
 
 
 def summary(faults: Sequence[Fault], caught_by: Mapping[str, str]) -> str:
-    """Return as Markdown how many faults of each area were caught.
+    """Return the numbers of faults and of caught ones in each area, as Markdown.
 
     Parameters
     ----------

@@ -1,6 +1,6 @@
 """A copy of the project's sources, in which faults are injected.
 
-The project's own files are never written. Whatever happens to a run, they are as they were.
+The project's own files are never written. A run that is stopped at any time leaves them unchanged.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from pathlib import Path
 
 from tools.mutants.faults import Fault, FaultError
 
-#: Included by every C++ source of the copy. The number of the fault that is on comes from the
-#: environment; without one no fault is on.
+#: Text that every C++ source of the copy includes. The environment gives the number of the fault
+#: that is on; without a number no fault is on.
 SWITCH_HEADER = """#pragma once
 #include <cstdlib>
 inline int snowshed_fault_from_environment() {
@@ -29,7 +29,7 @@ inline const int snowshed_fault = snowshed_fault_from_environment();
 def with_faults(
     text: str, switched: Sequence[tuple[int, Fault]], fixed: Fault | None = None
 ) -> str:
-    """Return a source with switched faults in it, which are off, and perhaps one that is not.
+    """Return a source with switched faults, which are off, and perhaps one fault without a switch.
 
     Parameters
     ----------
@@ -95,7 +95,7 @@ class SourceCopy:
             self._switched.setdefault(fault.file, []).append((number, fault))
 
     def update(self, files: Sequence[str] | None = None) -> None:
-        """Make the copy that of the project as it is now; files that stay keep their times.
+        """Bring the copy up to date with the project; unchanged files keep their times.
 
         Parameters
         ----------
@@ -121,8 +121,8 @@ class SourceCopy:
         return [name for name in names if (self.root / name).is_file()]
 
     @contextmanager
-    def changed(self, fault: Fault) -> Iterator[None]:
-        """Inject a fault without a switch, and take it out again, whatever happens meanwhile."""
+    def inject(self, fault: Fault) -> Iterator[None]:
+        """Inject a fault without a switch, and remove it at the end, also after an error."""
         try:
             self._write(fault.file, fault)
             yield

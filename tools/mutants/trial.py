@@ -120,7 +120,7 @@ class Workshop:
         return ended.returncode, ended.stdout
 
     def _make_environment(self) -> None:
-        """Make an environment that finds the copy's snowshed, and all else as this Python does.
+        """Make an environment that finds the copy's snowshed, and everything else like this Python.
 
         Python ignores path files in the packages of another environment, so it does not find the
         installed snowshed there.

@@ -36,7 +36,7 @@ PRECONSOLIDATION = 0.02
 HARDENING = 10.0
 
 #: Aspect ratios from which the exponent for tall columns is fitted.
-TALL: Mapping[int, Sequence[float]] = {2: (3.0, 5.0, 7.0, 10.0), 3: (2.0, 3.0, 4.0)}
+TALL_ASPECTS: Mapping[int, Sequence[float]] = {2: (3.0, 5.0, 7.0, 10.0), 3: (2.0, 3.0, 4.0)}
 SAND, GLASS = 30.0, 22.0  # friction angles of sand and of glass beads, degrees
 CASE_SETTINGS = frozenset({"aspect", "friction_angle"})
 
@@ -87,7 +87,7 @@ def column_scene(settings: CaseSettings, aspect: float) -> Scene:
         bodies=[Body(shape=shape)],
         events=Events(max_time=10 * math.sqrt(height / GRAVITY)),
     )
-    return apply_settings(scene, settings, own=CASE_SETTINGS)
+    return apply_settings(scene, settings, case_settings=CASE_SETTINGS)
 
 
 def collapse(settings: CaseSettings, aspect: float) -> Deposit:
@@ -120,7 +120,7 @@ def measure(settings: CaseSettings) -> Outcome:
     """Measure one column, or the exponent of the tall ones."""
     dimension = int(settings["dimension"])
     if settings["aspect"] == "tall":
-        return _measure_exponent(settings, TALL[dimension])
+        return _measure_exponent(settings, TALL_ASPECTS[dimension])
     aspect = float(settings["aspect"])
     deposit = collapse(settings, aspect)
     if settings.get("friction_angle") == GLASS:
@@ -212,8 +212,8 @@ a > 2.8; for round columns 1.24 a for a < 1.7 and 1.6 a^(1/2) above. The height 
 the column as long as its middle does not sink; for taller columns it is a^(2/5) in the plane and
 0.88 a^(1/6) for round columns. Glass beads, more slippery (22 degrees), run out 1.8 a in the plane
 below a = 3. The experiments scatter by 10 to 20 % about their own laws. The error is the departure
-from the law. "Tall" fits the exponent of the run-out to a = 3, 5, 7, 10 in the plane and 2, 3, 4 in
-space; the laws say 2/3 and 1/2.
+from the law. The measurement "tall" fits the exponent of the run-out to a = 3, 5, 7, 10 in the
+plane and 2, 3, 4 in space; the laws say 2/3 and 1/2.
 
 Three settings make snow act as sand: no cohesion (beta = 0); an initial preconsolidation pressure
 of 2 % of the column's weight, so that it has no strength of its own; and a hardening factor of 10,
@@ -247,11 +247,12 @@ the law (a = 1; measured once, not part of the suite). In addition, M matched in
 compression makes snow in plane shear as strong as sand of 44 degrees; M = 0.866, matched in plane
 shear, runs out further and leaves the middle too low.
 
-FLIP damps per step. The share of PIC, 1 - flip_ratio, is taken in every step, whatever its length,
-so smaller steps, and stiffer snow, which needs them, damp more: a third of the time step shortens
-the run-out by 17 %. If flip_ratio is raised to 0.9967 as well, so that the share of PIC per second
-stays the same, the run-out changes by less than 2 %. The solution does not converge in the time
-step alone. APIC loses some energy in every step as well, with the same effect on the run-out.
+FLIP damps per step. The share of PIC, 1 - flip_ratio, is taken in every step, regardless of its
+length, so smaller steps, and stiffer snow, which needs them, damp more: a third of the time step
+shortens the run-out by 17 %. If flip_ratio is raised to 0.9967 as well, so that the share of PIC
+per second stays the same, the run-out changes by less than 2 %. The solution does not converge in
+the time step alone. APIC loses some energy in every step as well, with the same effect on the
+run-out.
 
 Snow that comes to rest may sleep without harm: with a sleep_speed of 5 or 20 mm/s the run-out and
 the height change by less than a thousandth (a = 1.5). All other columns never sleep.

@@ -8,7 +8,7 @@ import numpy as np
 
 from snowshed.base.arrays import Floats
 
-SECTORS = 24  # in which the front of a round deposit is looked for
+SECTORS = 24  # directions in which the front of a round deposit is measured
 
 
 def runout_law(aspect: float, dimension: int) -> float:
@@ -35,8 +35,8 @@ def runout_law(aspect: float, dimension: int) -> float:
 def height_law(aspect: float, dimension: int) -> float:
     """Return h_inf / r_0 of a collapsed column of grains.
 
-    The column's own height as long as its middle does not sink; above, a^(2/5) in the plane (Lube
-    et al. 2005) and 0.88 a^(1/6) for round columns (Lube et al. 2004).
+    It is the column's initial height as long as its middle does not sink. For taller columns it is
+    a^(2/5) in the plane (Lube et al. 2005) and 0.88 a^(1/6) if they are round (Lube et al. 2004).
 
     Examples
     --------
@@ -77,7 +77,7 @@ def critical_state_slope(friction_angle: float, dimension: int) -> float:
 
 
 def front(positions: Floats) -> float:
-    """Return how far a deposit reaches from the axis: the mean over all directions, m.
+    """Return the distance of a deposit's front from the axis, as the mean over directions, m.
 
     Parameters
     ----------
@@ -91,7 +91,7 @@ def front(positions: Floats) -> float:
     """
     x, y, _ = positions.T
     sectors = SECTORS if np.any(y) else 2
-    # Sectors are shifted by half, so that the two directions of a plane deposit are their middles.
+    # Sectors are shifted by half their width: plane deposits then lie in two middles.
     turn = (np.arctan2(y, x) / (2 * np.pi) + 0.5 / sectors) % 1.0
     sector = np.minimum((turn * sectors).astype(int), sectors - 1)
     farthest = np.zeros(sectors)

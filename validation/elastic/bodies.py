@@ -26,7 +26,7 @@ TRANSFERS: Sequence[CaseSettings] = (
 def elastic_scene(
     shape: Shape,
     settings: CaseSettings,
-    own: Collection[str] = (),
+    case_settings: Collection[str] = (),
     obstacles: Sequence[Obstacle] = (),
 ) -> Scene:
     """Return a scene of one elastic body without gravity; 2D unless the settings say otherwise.
@@ -38,7 +38,7 @@ def elastic_scene(
     settings
         As for `apply_settings`; with ``youngs_modulus`` (Pa), ``poissons_ratio``, ``density``
         (kg/m3).
-    own
+    case_settings
         Names of settings that belong to the case, not to the scene.
     obstacles
         Obstacles that hold the body, if any.
@@ -51,7 +51,7 @@ def elastic_scene(
     """
     scene = Scene(dimension=2, gravity=0.0, bodies=[Body(shape=shape)], obstacles=list(obstacles))
     scene.set("snow.model", "elastic")
-    return apply_settings(scene, settings, own)
+    return apply_settings(scene, settings, case_settings)
 
 
 def from_plane(vectors: Floats) -> Floats:

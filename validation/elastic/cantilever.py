@@ -15,8 +15,8 @@ from snowshed.base.arrays import Floats
 class Cantilever:
     """A beam of rectangular section, clamped at x = 0 and free at its length, in plane strain.
 
-    Per metre of width, with Young's modulus E/(1 - nu^2) and Poisson's ratio nu' = nu/(1 - nu) in
-    place of those of a beam that may widen. Timoshenko's theory has four states along the beam:
+    Quantities are per metre of width. In plane strain, E/(1 - nu^2) replaces Young's modulus, and
+    nu' = nu/(1 - nu) replaces Poisson's ratio. Timoshenko's theory has four states along the beam:
     deflection w, rotation psi, moment M and shear force Q,
 
         w' = psi + Q/(k G H),  psi' = M/(E I),  M' = -Q - rho I omega^2 psi,  Q' = -rho H omega^2 w,

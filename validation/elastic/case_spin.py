@@ -21,11 +21,11 @@ RATE = 0.2 * math.sqrt(YOUNGS_MODULUS / DENSITY) / RADIUS  # rad/s
 TURN = 2 * math.pi / RATE  # s
 #: Settings of this case that scenes do not have.
 CASE_SETTINGS = frozenset({"begins", "turns"})
-#: Steps between two samples, or between two damped velocities.
+#: Steps between two samples, or between two dampings of the velocities.
 STEPS = 4
 #: For bodies that begin in equilibrium: the number of turns in which the radial oscillation is
 #: damped, and the share of the radial velocities that is removed each time.
-SETTLING, DAMPED = 1.0, 0.1
+SETTLING_TURNS, DAMPED_SHARE = 1.0, 0.1
 
 DISC: CaseSettings = {
     "dimension": 2,
@@ -96,7 +96,7 @@ class Spinning:
 
     @property
     def angular_momentum(self) -> float:
-        """About the y axis, with that of the affine fields of APIC, kg m2/s."""
+        """Angular momentum about the y axis, with the part of APIC's affine fields, kg m2/s."""
         core = self.drive.core
         (x, z), (u, w) = in_plane(core.positions()).T, in_plane(core.velocities()).T
         turning = z * u - x * w
@@ -107,7 +107,7 @@ class Spinning:
 
     @property
     def energy(self) -> float:
-        """Kinetic and elastic, J."""
+        """Kinetic and elastic energy, J."""
         energy = self.drive.core.energy()
         return energy["kinetic_j"] + energy["elastic_j"]
 
@@ -120,12 +120,12 @@ class Spinning:
     def settle(self) -> None:
         """Damp the radial oscillation; radial forces do not change the angular momentum."""
         core = self.drive.core
-        while core.time_s < SETTLING * TURN:
+        while core.time_s < SETTLING_TURNS * TURN:
             self.drive.step(STEPS)
             points, speeds = in_plane(core.positions()), in_plane(core.velocities())
             outwards = points / np.hypot(*points.T)[:, np.newaxis]
             along = np.sum(outwards * speeds, axis=1)[:, np.newaxis]
-            core.add_velocity(from_plane(-DAMPED * along * outwards))
+            core.add_velocity(from_plane(-DAMPED_SHARE * along * outwards))
 
 
 def per_turn(ratio: float, time: float) -> float:
@@ -133,7 +133,7 @@ def per_turn(ratio: float, time: float) -> float:
 
     Examples
     --------
-    Half is left after two turns: a turn takes 29 %.
+    If half is left after two turns, each turn has removed 29 %.
 
     >>> round(per_turn(0.5, 2 * TURN), 2)
     -0.29
@@ -166,7 +166,7 @@ def measure(settings: CaseSettings) -> Outcome:
 
 
 def matrix(full: bool) -> list[CaseSettings]:
-    """Return transfers in 2D and 3D, and in full resolutions, precisions and other variations."""
+    """Return transfers in 2D and 3D, and if full resolutions, precisions and other variations."""
     sizes = (0.2, 0.1, 0.05) if full else (0.1,)
     listed: list[CaseSettings] = [
         {**DISC, "dx": dx, **transfer} for transfer in TRANSFERS for dx in sizes
@@ -201,8 +201,8 @@ CASE = Case(
     rim moves at a fifth of the speed of waves in a rod. From an undeformed start its radius
     oscillates about the centrifugal equilibrium; for a start in equilibrium, this oscillation is
     damped during a first turn by radial forces, which do not change the angular momentum. Angular
-    momentum, with that of the affine fields of APIC, and energy should not change. Its mean
-    expansion over time, half a percent of the radius, is compared with that of the equilibrium.
+    momentum, with that of the affine fields of APIC, and energy should not change. The mean
+    expansion of the body over time, half a percent of the radius, is compared with the equilibrium.
     """,
     quantities=(
         Quantity(

@@ -64,7 +64,7 @@ class Vibrating:
         drive.core.add_velocity(from_plane(2 * math.pi * frequency * height * mode))
 
     def swing(self, periods: float, steps: int) -> Swing:
-        """Let it vibrate and return the vibration fitted to samples every `steps` steps."""
+        """Let the body vibrate, and return the vibration fitted to a sample every `steps`."""
         times, values = [], []
         while self.drive.core.time_s < periods / self._frequency:
             self.drive.step(steps)
@@ -73,7 +73,7 @@ class Vibrating:
         return Swing.fit(np.array(times), np.array(values), self._frequency)
 
     def _deflection(self) -> float:
-        """Return the amplitude of its mode, without the parts of other modes."""
+        """Return the amplitude of the body's mode, without the parts of other modes."""
         moved = in_plane(self.drive.core.positions()) - self._start
         return float(self.drive.masses @ np.sum(self._mode * moved, axis=1)) / self._norm
 
@@ -82,7 +82,7 @@ class Vibrating:
 
 #: Height of the bar, in cells; for Poisson's ratio 0 it does not matter.
 BAR_CELLS = 4
-#: Largest strain, and for how many periods the bar vibrates.
+#: Largest strain, and number of periods in which the bar vibrates.
 BAR_STRAIN, BAR_PERIODS = 1e-3, 6
 BAR_FREQUENCY = math.sqrt(YOUNGS_MODULUS / DENSITY) / (2 * LENGTH)
 BAR_DEFAULTS: CaseSettings = {**DEFAULTS, "dx": 0.05}
@@ -98,7 +98,7 @@ def bar_scene(settings: CaseSettings) -> Scene:
 
 
 def measure_bar(settings: CaseSettings) -> Outcome:
-    """Let the bar vibrate along its length, its ends against each other."""
+    """Let the bar vibrate along its length; its ends move in opposite directions."""
     drive = TimedEventDriver(bar_scene(settings))
     wavenumber = math.pi / LENGTH
     along = in_plane(drive.core.positions())[:, 0]
@@ -124,7 +124,7 @@ def measure_bar(settings: CaseSettings) -> Outcome:
 
 
 def bar_matrix(full: bool) -> list[CaseSettings]:
-    """Return transfers and resolutions, and in full other variations."""
+    """Return transfers and resolutions, and if full other variations."""
     sizes = (0.1, 0.05, 0.025, 0.0125) if full else (0.1, 0.05)
     listed: list[CaseSettings] = [
         {**BAR_DEFAULTS, "dx": dx, **transfer} for transfer in TRANSFERS for dx in sizes
@@ -170,8 +170,8 @@ ELASTIC_BAR = Case(
     measure=measure_bar,
     remarks="""
     At 20 cells frequencies are 0.6 % too low with FLIP and 0.3 % with APIC, because the grid
-    smooths the forces that particles feel; cubic splines add a quarter. The error is of second
-    order.
+    smooths the forces that particles feel; cubic splines increase this error by a quarter. The
+    error is of second order.
 
     The loss agrees with the theory to a hundredth of a percent of the amplitude at 20 cells. Pure
     FLIP loses 0.2 % per period there and APIC 0.07 %; both losses fall with at least the third
@@ -200,7 +200,7 @@ def cantilever_scene(settings: CaseSettings) -> Scene:
     shape = Shape.box((face + length - size[0] / 2, CANTILEVER_HEIGHT / 2), size)
     clamp = Obstacle(shape=Shape.plane((face, 0.0), (1.0, 0.0)), condition="sticky")
     scene = elastic_scene(shape, _material(settings, POISSONS_RATIO), CASE_SETTINGS, [clamp])
-    return scene.set("misplaced_snow", "allow")  # the clamp holds what is within it
+    return scene.set("misplaced_snow", "allow")  # the clamp holds the particles within it
 
 
 def bending_mode(beam: Cantilever, points: Floats) -> Floats:
@@ -231,7 +231,7 @@ def measure_cantilever(settings: CaseSettings) -> Outcome:
 
 
 def cantilever_matrix(full: bool) -> list[CaseSettings]:
-    """Return transfers and resolutions, and in full other variations."""
+    """Return transfers and resolutions, and if full other variations."""
     sizes = (0.05, 0.025, 0.0125) if full else (0.05,)
     listed: list[CaseSettings] = [
         {**CANTILEVER_DEFAULTS, "dx": dx, **transfer} for transfer in TRANSFERS for dx in sizes
@@ -251,10 +251,10 @@ CANTILEVER = Case(
         "frequency from the boundary conditions (SciPy)"
     ),
     description="""
-    A beam 1 m long and 20 cm high, four to sixteen cells, sticks in a clamp and vibrates in its
-    slowest mode, in plane strain (Poisson's ratio 0.3), its end deflected by 0.2 % of its length. A
-    damped sine is fitted to one period and a half of its displacement in that mode. Euler's slender
-    beam would vibrate faster than Timoshenko's by 3.3 %, at twice the length by 0.9 %.
+    A beam 1 m long and 20 cm high (four to sixteen cells) sticks in a clamp and vibrates in its
+    slowest mode in plane strain (Poisson's ratio 0.3). Its end is deflected by 0.2 % of its length.
+    A damped sine is fitted to one period and a half of its displacement in that mode. Euler's
+    slender beam would vibrate faster than Timoshenko's by 3.3 %, at twice the length by 0.9 %.
     """,
     quantities=(
         Quantity(
@@ -271,13 +271,14 @@ CANTILEVER = Case(
     remarks="""
     The clamp acts like the floor of the settling column: if its face lies on a row of nodes, the
     beam behaves as if it were clamped a fraction of a cell deeper. With APIC its frequency is 2.8 %
-    too low at four cells of height, 1 % at eight, 0.3 % at sixteen. With the face half a cell past
-    the nodes the beam is longer by just that, and the error at eight cells is 3.4 %.
+    too low at four cells of height, 1 % at eight, 0.3 % at sixteen. If the face lies half a cell
+    past the nodes, the beam is longer by half a cell, and the error at eight cells is 3.4 %.
 
-    Bending is slow for its size, some 1600 steps per period at four cells and 6500 at sixteen, and
-    each section turns. Pure FLIP loses 2.7, 0.4 and 0.05 % of the amplitude per period at four,
-    eight and sixteen cells, APIC 0.7, 0.1 and 0.02 %. FLIP with 0.99, the default, loses 8, 3 and
-    1.3 %, with 0.95 27, 12 and 6 %, and PIC so much that it hardly vibrates (100, 91 and 67 %).
+    A period of bending takes many steps (1600 at four cells, 6500 at sixteen), and each section
+    rotates. Both increase the loss. Pure FLIP loses 2.7, 0.4 and 0.05 % of the amplitude per period
+    at four, eight and sixteen cells, APIC 0.7, 0.1 and 0.02 %. FLIP with 0.99, the default, loses
+    8, 3 and 1.3 %, with 0.95 27, 12 and 6 %, and PIC so much that it hardly vibrates (100, 91 and
+    67 %).
     """,
 )
 

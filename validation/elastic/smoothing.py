@@ -15,7 +15,7 @@ falls by the root of the step's determinant,
     g - dt^2 Omega^2 (g - f),  Omega^2 = omega^2/f,
 
 that is 1 - (1 - s^2) dt^2 Omega^2 even for pure FLIP: forces move the particles' positions without
-smoothing, but change their velocities smoothed.
+smoothing, but the changes of their velocities are smoothed.
 """
 
 from __future__ import annotations
@@ -32,14 +32,14 @@ class Smoothing:
 
     Attributes
     ----------
-    remaining
+    velocity_share
         g, the share of the velocity that remains after a step.
-    felt
+    force_share
         f, the share of the forces that changes the velocity.
     """
 
-    remaining: float
-    felt: float
+    velocity_share: float
+    force_share: float
 
     @classmethod
     def of(cls, settings: CaseSettings, wavenumber: float) -> Smoothing:
@@ -57,7 +57,7 @@ class Smoothing:
         PIC loses (k h/2)^2 of a long wave's velocity in every step.
 
         >>> pic = {"transfer": "flip", "flip_ratio": 0.0, "dx": 0.1, "basis": "quadratic"}
-        >>> round((1 - Smoothing.of(pic, 0.1).remaining) / (0.1 * 0.1 / 2) ** 2, 3)
+        >>> round((1 - Smoothing.of(pic, 0.1).velocity_share) / (0.1 * 0.1 / 2) ** 2, 3)
         1.0
         """
         dx, quadratic = float(settings["dx"]), settings["basis"] == "quadratic"
@@ -68,9 +68,9 @@ class Smoothing:
         if settings["transfer"] == "apic":
             slope = factors * wave ** (factors - 1) * (math.cos(half) - wave) / half / 2  # over dx
             affine = once**2 + slope**2 * (4 if quadratic else 3)
-            return cls(remaining=affine, felt=affine)
+            return cls(velocity_share=affine, force_share=affine)
         lost = (1 - float(settings["flip_ratio"])) * (1 - once**2)
-        return cls(remaining=1 - lost, felt=once**2)
+        return cls(velocity_share=1 - lost, force_share=once**2)
 
     def loss_per_period(self, frequency: float, time_step: float) -> float:
         """Return the share of the amplitude that is lost per period.
@@ -82,6 +82,6 @@ class Smoothing:
         time_step
             s.
         """
-        angle = (2 * math.pi * frequency * time_step) ** 2 / self.felt
-        step = self.remaining - angle * (self.remaining - self.felt)
+        angle = (2 * math.pi * frequency * time_step) ** 2 / self.force_share
+        step = self.velocity_share - angle * (self.velocity_share - self.force_share)
         return -math.expm1(math.log(step) / (2 * frequency * time_step))

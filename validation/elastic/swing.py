@@ -27,7 +27,7 @@ class Swing:
 
     @property
     def loss_per_period(self) -> float:
-        """Share of its amplitude that it loses per period."""
+        """Share of the amplitude that is lost per period."""
         return -math.expm1(-self.decay / self.frequency)
 
     @classmethod
@@ -39,9 +39,9 @@ class Swing:
         times
             s, shape (n,).
         values
-            Deflections, shape (n,), about zero, which the vibration starts from.
+            Deflections from zero, shape (n,); the vibration starts near zero.
         frequency
-            About that of the vibration, Hz.
+            Estimate of the frequency, Hz.
 
         Examples
         --------

@@ -1,7 +1,7 @@
 """Cases: problems with known answers, and ways of solving them.
 
-A module of cases makes one `Case`, or several. `measure_cases` takes every entry of its
-matrix of settings through `Case.measure`, in a process of its own, and the report compares.
+A module of cases makes one `Case`, or several. `measure_cases` passes every entry of its matrix of
+settings to `Case.measure`, in a separate process, and the report compares the results.
 """
 
 from __future__ import annotations
@@ -13,14 +13,14 @@ from typing import Optional, Union
 from snowshed.analysis.accuracy.measurements import CaseSettings, Measured, Value
 from snowshed.base.formatting import number, percent
 
-#: Settings that are asked for; None: not given. Of several values in a tuple any will do.
-Wanted = Mapping[str, Union[Value, tuple[Optional[Value], ...], None]]
+#: Values that settings must have, by name; None: not given; a tuple: any of its values.
+SettingsFilter = Mapping[str, Union[Value, tuple[Optional[Value], ...], None]]
 
 
 def alternatives(
     value: Union[Value, tuple[Optional[Value], ...], None],
 ) -> tuple[Optional[Value], ...]:
-    """Return the values of a setting that will do.
+    """Return the allowed values of a setting.
 
     Examples
     --------
@@ -32,7 +32,7 @@ def alternatives(
 
 @dataclass(frozen=True)
 class Quantity:
-    """A measured quantity, and the demand on it.
+    """A measured quantity, and its criteria.
 
     Parameters
     ----------
@@ -41,10 +41,10 @@ class Quantity:
     title:
         Name in texts, with the unit if it has one.
     limit:
-        Largest error allowed; `None` where nothing is demanded.
+        Largest error allowed; `None`: any.
     limit_for:
-        The settings that the limit is for: every name given here must have this value; None: it
-        must not be given.
+        The settings to which the limit applies: every name must have the value given here; None:
+        the setting must not be given.
     order_in:
         The setting whose power law the error follows (``"dx"``, ``"courant_factor"``), if any.
     min_order:
@@ -56,7 +56,7 @@ class Quantity:
     name: str
     title: str
     limit: Optional[float] = None
-    limit_for: Wanted = field(default_factory=dict)
+    limit_for: SettingsFilter = field(default_factory=dict)
     order_in: Optional[str] = None
     min_order: Optional[float] = None
     relative: bool = True
@@ -92,15 +92,16 @@ class Case:
     source:
         Where the answer comes from: closed form, equation, paper.
     description:
-        A paragraph for the report: the problem, the answer, what the error is.
+        A paragraph for the report: the problem, the answer, the definition of the error.
     quantities:
-        All that `measure` returns.
+        All quantities that `measure` returns.
     matrix:
         ``matrix(full)`` lists the settings to solve with; the quick list takes seconds in all.
     measure:
-        Solves once. Must not depend on anything but its settings.
+        Solves once. The result must depend on the settings alone.
     remarks:
-        Where the method is poor here, and why; the report prints it with the numbers.
+        Weaknesses of the method in this case, and their causes; the report prints them with the
+        numbers.
     """
 
     name: str

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 #: Accuracies for which the cheapest settings are looked up.
-WANTED = (0.10, 0.05, 0.02, 0.01)
+WANTED_ACCURACIES = (0.10, 0.05, 0.02, 0.01)
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class Cheapest:
     problem
         The settings that define the problem.
     error
-        Assured by all finer solutions (`assured_errors`).
+        Error that no finer solution exceeds (`assured_errors`).
     """
 
     case: str
@@ -50,7 +50,7 @@ class Cheapest:
 
 
 def pareto_front(costs: Sequence[float], errors: Sequence[float]) -> Booleans:
-    """Return which points no other point beats in both cost and error.
+    """Return a mask of the points that no other point beats in both cost and error.
 
     Examples
     --------
@@ -75,11 +75,11 @@ def by_problem(case: Case, listed: Iterable[Solution]) -> list[tuple[CaseSetting
 
 
 def cheapest(
-    table: pd.DataFrame, cases: Iterable[Case], wanted: Sequence[float] = WANTED
+    table: pd.DataFrame, cases: Iterable[Case], wanted: Sequence[float] = WANTED_ACCURACIES
 ) -> list[Cheapest]:
     """Return the quickest settings for each accuracy.
 
-    For each quantity with a relative error and each problem that was solved in several ways.
+    The list covers each quantity with a relative error, and each problem with several solutions.
     """
     return [
         _cheapest(case.name, quantity, problem, group, accuracy)

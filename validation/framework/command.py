@@ -1,4 +1,4 @@
-"""The command ``python -m validation``; what takes long to import is imported when it runs."""
+"""The command ``python -m validation``; slow modules are imported when it runs."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def validate(
     """Solve problems with known answers, and report the errors against run time.
 
     Writes validation.html, tables and figures. The exit code is 1 if an error is larger, or an
-    order of convergence smaller, than is demanded, or if anything failed.
+    order of convergence smaller, than allowed, or if anything failed.
 
     \b
     Example:

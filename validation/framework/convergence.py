@@ -39,7 +39,7 @@ class Convergence:
 def observed_order(sizes: Floats, errors: Floats) -> float:
     """Return the order of convergence: the least-squares slope of log error over log size.
 
-    NaN with fewer than two different sizes, or where an error is zero or not finite.
+    The order is NaN for fewer than two different sizes, or if an error is zero or not finite.
 
     Examples
     --------
@@ -66,7 +66,7 @@ def pairwise_orders(sizes: Floats, errors: Floats) -> Floats:
 
 
 def convergences(solutions: Sequence[Solution], order_in: str) -> list[Convergence]:
-    """Return how the error falls with a setting such as ``"dx"``, for each choice of the others."""
+    """Return the fall of the error with a setting (``"dx"``), for each choice of the others."""
     series = []
     for group in alike(solutions, order_in):
         if len(group) > 1:

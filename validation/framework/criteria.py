@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Optional
 
 from snowshed.analysis.accuracy.measurements import CaseSettings
 from snowshed.analysis.accuracy.solutions import records, rows_of, solutions
-from validation.framework.case import Case, Quantity, Wanted, alternatives
+from validation.framework.case import Case, Quantity, SettingsFilter, alternatives
 from validation.framework.convergence import convergences
 
 if TYPE_CHECKING:
@@ -18,16 +18,16 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Criterion:
-    """A demand on a quantity, and the worst result.
+    """A criterion for a quantity, and the worst result.
 
     Attributes
     ----------
     kind
         ``"error"`` (the largest allowed) or ``"order"`` of convergence (the smallest allowed).
     demanded, worst
-        The criterion, and the worst that was measured (NaN if that failed; None if nothing was).
+        The limit, and the worst measured value (NaN if a measurement failed; None without any).
     settings
-        Those of the worst.
+        Settings of the worst value.
     count
         Number of errors or orders that were compared with the criterion.
     """
@@ -41,8 +41,8 @@ class Criterion:
     count: int
 
     @property
-    def meant(self) -> Wanted:
-        """Settings that the criterion applies to; an order of convergence applies to all sizes."""
+    def applies_to(self) -> SettingsFilter:
+        """Settings to which the criterion applies; an order of convergence applies to all sizes."""
         order_in = self.quantity.order_in if self.kind == "order" else None
         return {name: value for name, value in self.quantity.limit_for.items() if name != order_in}
 
@@ -55,7 +55,7 @@ class Criterion:
 
 
 def compare(table: pd.DataFrame, cases: Iterable[Case]) -> list[Criterion]:
-    """Compare every demand of the cases with the measurements."""
+    """Compare the measurements with every criterion of the cases."""
     criteria = []
     for case in cases:
         for quantity in case.quantities:
@@ -67,36 +67,32 @@ def compare(table: pd.DataFrame, cases: Iterable[Case]) -> list[Criterion]:
     return criteria
 
 
-def _error_criterion(
-    case: str, quantity: Quantity, demanded: float, rows: pd.DataFrame
-) -> Criterion:
-    """Every single measurement must be within the limit; one that failed is not."""
-    meant = [row for row in records(rows) if _matches(row.settings, quantity.limit_for)]
-    if not meant:
-        return Criterion(case, quantity, "error", demanded, None, {}, 0)
-    worst = max(meant, key=lambda row: inf if isnan(row.error) else abs(row.error))
+def _error_criterion(case: str, quantity: Quantity, limit: float, rows: pd.DataFrame) -> Criterion:
+    """Return the criterion that every measurement is within the limit; failed ones are not."""
+    measured = [row for row in records(rows) if _matches(row.settings, quantity.limit_for)]
+    if not measured:
+        return Criterion(case, quantity, "error", limit, None, {}, 0)
+    worst = max(measured, key=lambda row: inf if isnan(row.error) else abs(row.error))
     return Criterion(
-        case, quantity, "error", demanded, abs(worst.error), worst.settings, len(meant)
+        case, quantity, "error", limit, abs(worst.error), worst.settings, len(measured)
     )
 
 
-def _order_criterion(
-    case: str, quantity: Quantity, demanded: float, rows: pd.DataFrame
-) -> Criterion:
-    """Every series must converge fast enough; one with a failed measurement does not."""
+def _order_criterion(case: str, quantity: Quantity, limit: float, rows: pd.DataFrame) -> Criterion:
+    """Return the criterion that every series converges fast enough; with a failure it does not."""
     order_in = quantity.order_in or ""
-    demand = {name: value for name, value in quantity.limit_for.items() if name != order_in}
-    meant = [
+    required = {name: value for name, value in quantity.limit_for.items() if name != order_in}
+    orders = [
         (convergence.order, convergence.settings)
         for convergence in convergences(solutions(rows), order_in)
     ]
-    meant += [(nan, row.settings) for row in records(rows) if isnan(row.error)]
-    meant = [(order, settings) for order, settings in meant if _matches(settings, demand)]
-    if not meant:
-        return Criterion(case, quantity, "order", demanded, None, {}, 0)
-    order, settings = min(meant, key=lambda pair: -inf if isnan(pair[0]) else pair[0])
-    return Criterion(case, quantity, "order", demanded, order, settings, len(meant))
+    orders += [(nan, row.settings) for row in records(rows) if isnan(row.error)]
+    orders = [(order, settings) for order, settings in orders if _matches(settings, required)]
+    if not orders:
+        return Criterion(case, quantity, "order", limit, None, {}, 0)
+    order, settings = min(orders, key=lambda pair: -inf if isnan(pair[0]) else pair[0])
+    return Criterion(case, quantity, "order", limit, order, settings, len(orders))
 
 
-def _matches(settings: CaseSettings, wanted: Wanted) -> bool:
-    return all(settings.get(name) in alternatives(value) for name, value in wanted.items())
+def _matches(settings: CaseSettings, required: SettingsFilter) -> bool:
+    return all(settings.get(name) in alternatives(value) for name, value in required.items())

@@ -22,7 +22,7 @@ def validation_bar(*, quiet: bool) -> AbstractContextManager[Optional[Reporter]]
 
 
 def print_criteria(criteria: Sequence[Criterion], cases: Sequence[Case]) -> None:
-    """Print the demands and their results, if there are any."""
+    """Print the criteria and their results, if there are any."""
     grid = sections.criteria_grid(criteria, cases)
     if not grid.rows:
         return

@@ -19,11 +19,15 @@ SECTIONS: Mapping[str, type[Record]] = {"numerics": MpmSettings, "seeding": Seed
 
 
 def apply_settings(
-    scene: Scene, settings: CaseSettings, own: Collection[str] = (), *, sleeping: bool = False
+    scene: Scene,
+    settings: CaseSettings,
+    case_settings: Collection[str] = (),
+    *,
+    sleeping: bool = False,
 ) -> Scene:
     """Set a scene's parameters from a case's settings, and one thread.
 
-    Small motions are what most cases measure, so snow never sleeps unless the settings say so.
+    Most cases measure small motions, so snow never sleeps unless the settings say so.
 
     Parameters
     ----------
@@ -31,7 +35,7 @@ def apply_settings(
         Changed, and returned.
     settings
         Names without their section, and values.
-    own
+    case_settings
         Names of settings that belong to the case, not to the scene; left out.
     sleeping
         Whether snow at rest sleeps as it does by default.
@@ -51,7 +55,7 @@ def apply_settings(
     if not sleeping:
         scene.set("numerics.sleep_speed", 0.0)
     for name, value in settings.items():
-        if name not in own:
+        if name not in case_settings:
             scene.set(_path(name), value)
     return scene
 

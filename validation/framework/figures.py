@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from matplotlib.axis import Axis
     from matplotlib.figure import Figure
 
-#: For a setting's name, how each of its values is drawn.
+#: The style of each value of a setting, by the setting's name.
 StylesOfValues = Mapping[str, Mapping[Optional[Value], Any]]
 
 #: The settings that define a problem, and its solutions.
@@ -39,15 +39,15 @@ Problem = Tuple[CaseSettings, Sequence[Solution]]
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
 DASHES = ("-", (0, (5, 2)), (0, (1, 1.4)), (0, (6, 1.5, 1, 1.5)), (0, (9, 3)))
 #: Settings that get colours; others get markers and dashes.
-FIRST = ("transfer", "law", "between", "dimension", "events", "basis", "precision")
+COLOURED_SETTINGS = ("transfer", "law", "between", "dimension", "events", "basis", "precision")
 #: Of two points on a Pareto front closer than this share only one gets a letter.
-NEARLY = 0.1
+MIN_POINT_DISTANCE = 0.1
 #: Problems of a quantity that get a Pareto front, at most.
 MAX_FRONTS = 3
 #: Times too short to be measured lie here, s.
 MIN_TIME = 1e-6
 #: Errors of exact answers are zero; on a logarithmic axis they lie here.
-ZERO = 1e-17
+MIN_SHOWN_ERROR = 1e-17
 
 
 class KeyLine(NamedTuple):
@@ -91,7 +91,11 @@ class LineStyles:
             Settings that the lines distinguish. Without any, dashes have no meaning.
         """
         names = [name for name in varying(drawn) if name not in along]
-        names.sort(key=lambda n: FIRST.index(n) if n in FIRST else len(FIRST))
+        names.sort(
+            key=lambda n: (
+                COLOURED_SETTINGS.index(n) if n in COLOURED_SETTINGS else len(COLOURED_SETTINGS)
+            )
+        )
         shapes = (COLOURS, MARKERS, DASHES) if along else (COLOURS, MARKERS)
         of_names: list[dict[str, dict[Optional[Value], Any]]] = [{}, {}, {}]
         for of_name, name, of_values in zip(of_names, names, shapes):
@@ -142,13 +146,13 @@ def convergence_figure(
 def work_precision_figure(
     panels: Sequence[tuple[Quantity, Sequence[Problem]]], choices: Sequence[CaseSettings]
 ) -> Figure:
-    """Draw errors against the time of the solution, with Pareto fronts and the names on them.
+    """Draw errors against the time of the solution, with Pareto fronts and their points' names.
 
     Parameters
     ----------
     panels
-        Quantities, and the problems they were solved for in. No more than `MAX_FRONTS` of these
-        get a front: those that were solved in most ways.
+        Quantities, each with the problems that were solved. At most `MAX_FRONTS` problems get a
+        front: those with the most solutions.
     choices
         All choices of settings of the case.
     """
@@ -204,7 +208,7 @@ def _draw_convergence(
     axes: Axes, quantity: Quantity, series: Sequence[Convergence], styles: LineStyles
 ) -> None:
     for convergence in series:
-        errors = np.maximum(convergence.errors, ZERO)
+        errors = np.maximum(convergence.errors, MIN_SHOWN_ERROR)
         axes.plot(
             convergence.sizes,
             errors,
@@ -229,7 +233,7 @@ def _draw_slope(axes: Axes, series: Sequence[Convergence], least: Optional[float
         return
     best = min(series, key=lambda convergence: convergence.errors[-1])
     ends = np.array([best.sizes.max(), best.sizes.min()])
-    line = 0.6 * max(best.errors[0], ZERO) * (ends / ends[0]) ** order
+    line = 0.6 * max(best.errors[0], MIN_SHOWN_ERROR) * (ends / ends[0]) ** order
     axes.plot(ends, line, color=FAINT, linewidth=1.2, linestyle=(0, (2, 2)), zorder=1)
     middle = np.sqrt(ends.prod()), np.sqrt(line.prod())
     place: dict[str, Any] = {"textcoords": "offset points", "va": "top", "fontsize": 8}
@@ -257,7 +261,7 @@ def _draw_work_precision(
 
 
 def _with_fronts(problems: Sequence[Problem]) -> list[Problem]:
-    """Return the problems that were solved in most ways; one way alone makes no front."""
+    """Return the problems with the most solutions; a single solution makes no front."""
     several = [problem for problem in problems if len(problem[1]) > 1]
     return sorted(several, key=lambda problem: -len(problem[1]))[:MAX_FRONTS]
 
@@ -300,7 +304,7 @@ def _time(solution: Solution) -> float:
 
 
 def _size(solution: Solution) -> float:
-    return max(abs(solution.error), ZERO)
+    return max(abs(solution.error), MIN_SHOWN_ERROR)
 
 
 def worth_naming(
@@ -325,9 +329,9 @@ def worth_naming(
     """
     named: list[int] = []
     for i, following in zip(front, [*front[1:], None]):
-        if following is not None and times[following] < (1 + NEARLY) * times[i]:
+        if following is not None and times[following] < (1 + MIN_POINT_DISTANCE) * times[i]:
             continue
-        if not named or errors[i] < (1 - NEARLY) * errors[named[-1]]:
+        if not named or errors[i] < (1 - MIN_POINT_DISTANCE) * errors[named[-1]]:
             named.append(i)
     return named
 
@@ -384,7 +388,7 @@ def _errors_on(axes: Axes, quantity: Quantity) -> None:
 
 
 def _label(axis: Axis, words: Callable[[float], str]) -> None:
-    """Label decades, or also twice and five times them where there are few."""
+    """Label the decades; if there are few, also two and five times each decade."""
     low, high = axis.get_view_interval()
     steps = (1.0,) if high > 200 * low else (1.0, 2.0, 5.0)
     axis.set_major_locator(LogLocator(subs=steps, numticks=9))

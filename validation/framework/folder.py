@@ -81,7 +81,7 @@ class ValidationFolder:
         stored = read_object(self._stress)
         check_values(stored, {"runs": list}, str(self._stress))
         digest, runs = stored.pop("digest", None), stored.pop("runs")
-        if stored != _identity(full, seed) or digest is None:  # of another suite, or earlier days
+        if stored != _identity(full, seed) or digest is None:  # other suite or version
             return None
         if digest != _digest(runs):
             raise InputError(f"{self._stress}: damaged: /runs is not what was written")
@@ -89,7 +89,7 @@ class ValidationFolder:
 
 
 def _digest(records: list[dict[str, Any]]) -> str:
-    """Return what tells whether runs are as they were written; their columns may be any."""
+    """Return the checksum of runs with any columns, by which damage is found."""
     return hashlib.sha256(json.dumps(records, sort_keys=True).encode()).hexdigest()
 
 

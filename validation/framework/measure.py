@@ -119,7 +119,7 @@ class Estimate:
         self._started = time.monotonic()
 
     def after(self, done: int) -> tuple[float, Optional[float]]:
-        """Return the part of the time that is over after so many tasks, and the time left, s."""
+        """Return the elapsed share of the time after a number of tasks, and the time left, s."""
         over, ahead = math.fsum(self._expected[:done]), math.fsum(self._expected[done:])
         if over > 0.0:
             pace = (time.monotonic() - self._started) / over
@@ -165,7 +165,7 @@ def _measurement(task: Task, answer: Answer) -> MeasuredSolution:
 
 
 def _breach(case: Case, outcome: Optional[Outcome]) -> str:
-    """Return how an outcome breaks the contract of its case; empty if it does not."""
+    """Return the way in which an outcome breaks its case's contract; empty if it does not."""
     returned = [measured.quantity for measured in outcome.measured] if outcome else []
     listed = [quantity.name for quantity in case.quantities]
     if not returned:

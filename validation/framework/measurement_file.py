@@ -1,7 +1,7 @@
 """Measurements as lines of a file that grows.
 
-Every measurement is written as soon as it is made, so an interrupted suite loses nothing and
-repeats none.
+Every measurement is written as soon as it is made, so an interrupted suite loses and repeats
+nothing.
 """
 
 from __future__ import annotations
@@ -63,6 +63,6 @@ class MeasurementFile:
             raise
 
     def _content(self) -> bytes:
-        """Return what is in the file up to the end of its last complete line."""
+        """Return the content of the file up to the end of its last complete line."""
         data = read_regular(self.path) if self.path.exists() else b""
         return data[: data.rfind(b"\n") + 1]

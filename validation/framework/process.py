@@ -21,7 +21,7 @@ from validation.framework.case import Outcome
 
 Measure = Callable[[CaseSettings], Outcome]
 
-WAIT_S = 3600.0  # between two checks of a measurement that has no limit
+WAIT_S = 3600.0  # between two checks of a measurement, whose time has no limit
 
 
 class Request(NamedTuple):
@@ -42,7 +42,7 @@ class Answer:
 
 
 def measuring_pool() -> Pool[Request, Answer]:
-    """Return the pool that measures, one request after another."""
+    """Return the pool that makes measurements, one after another."""
     return Pool(1, answer, Isolation(forked=True))
 
 
@@ -52,7 +52,7 @@ def measure_once(pool: Pool[Request, Answer], measure: Measure, settings: CaseSe
     Raises
     ------
     SimulationError
-        If no process starts that could measure.
+        If the measuring process does not start.
 
     Examples
     --------
@@ -89,7 +89,7 @@ def answer(request: Request, report: Callable[[float], None]) -> Answer:
 
 
 def _reason(error: Exception) -> str:
-    """Return what went wrong and, where it is known, in which line."""
+    """Return the error and, if it is known, the line that raised it."""
     message = f"{type(error).__name__}: {' '.join(str(error).split())}"
     frames = traceback.extract_tb(error.__traceback__)
     if error.__traceback__ is None or not frames:

@@ -88,7 +88,7 @@ class Validation:
 
 
 def write_report(validation: Validation, folder: Path) -> list[Criterion]:
-    """Write the report's files into a folder; return the demands and their results."""
+    """Write the report's files into a folder; return the criteria and their results."""
     table = to_table(validation.measurements)
     criteria = compare(table, validation.cases)
     answers = cheapest(table, validation.cases)
@@ -112,7 +112,7 @@ def problems(validation: Validation, criteria: Sequence[Criterion]) -> list[str]
     titles = {case.name: case.title for case in validation.cases}
     lines = [
         f"{titles[criterion.case]}, {criterion.quantity.title}: "
-        f"demanded {sections.demanded(criterion)}, worst {sections.worst_error(criterion)}, "
+        f"demanded {sections.limit_text(criterion)}, worst {sections.worst_error(criterion)}, "
         f"{setting_labels.settings_label(criterion.settings)}"
         for criterion in criteria
         if criterion.holds is False

@@ -1,7 +1,7 @@
 """Settings of the method, which decide how a problem is solved; all others define the problem.
 
-An accuracy may be bought with a better scheme, not with an easier problem, so only ways of solving
-the same problem are compared with each other.
+Only solutions of the same problem are compared with each other, because an easier problem is no
+better scheme.
 """
 
 from __future__ import annotations

@@ -34,7 +34,7 @@ COSTS: Mapping[str, Callable[[MeasuredSolution], str]] = {
     "memory, MB": lambda measurement: formatting.number(measurement.peak_memory_mb),
 }
 #: Stands for the text of the cell to the left.
-SAME = "←"
+SAME_AS_LEFT = "←"
 CONVERGENCE = "Dashed: the slope of the order named. Red line, if any: the largest allowed error."
 WORK_PRECISION = (
     "Points on the left are fast, points at the bottom are accurate. No other settings for the "
@@ -100,7 +100,7 @@ def section(case: Case, measurements: Sequence[MeasuredSolution], table: pd.Data
 
 
 def results_grid(case: Case, measurements: Sequence[MeasuredSolution]) -> HtmlTable:
-    """Return all measurements of a case: what varies, every quantity, the cost."""
+    """Return all measurements of a case: the settings that vary, every quantity, the cost."""
     solved = [measurement for measurement in measurements if not measurement.failure]
     names = varying([measurement.settings for measurement in measurements])
     given = {m.quantity for measurement in solved for m in measurement.measured}
@@ -151,7 +151,7 @@ def orders_grid(case: Case, series: Mapping[str, Sequence[Convergence]]) -> Html
 
 
 def extremes_grid(case: Case, solution_lists: Mapping[str, Sequence[Solution]]) -> HtmlTable:
-    """Return the smallest, the median and the largest error of every quantity, and where."""
+    """Return the smallest, the median and the largest error of every quantity, with settings."""
     rows = []
     for quantity in case.quantities:
         listed = sorted(solution_lists[quantity.name], key=lambda solution: abs(solution.error))
@@ -173,7 +173,7 @@ def extremes_grid(case: Case, solution_lists: Mapping[str, Sequence[Solution]]) 
 
 
 def criteria_grid(criteria: Sequence[Criterion], cases: Sequence[Case]) -> HtmlTable:
-    """Return the demands and their results, those that do not hold first."""
+    """Return the criteria and their results; those that do not hold come first."""
     titles = {case.name: case.title for case in cases}
     rank = {False: 0, True: 1, None: 2}
     rows = [
@@ -181,8 +181,8 @@ def criteria_grid(criteria: Sequence[Criterion], cases: Sequence[Case]) -> HtmlT
             {True: "holds", False: "does not hold", None: "not measured"}[criterion.holds],
             titles[criterion.case],
             criterion.quantity.title,
-            meant(criterion),
-            demanded(criterion),
+            settings_text(criterion),
+            limit_text(criterion),
             worst_error(criterion),
             setting_labels.settings_label(criterion.settings),
         ]
@@ -192,19 +192,19 @@ def criteria_grid(criteria: Sequence[Criterion], cases: Sequence[Case]) -> HtmlT
     return HtmlTable(head, rows, "llllrrl")
 
 
-def meant(criterion: Criterion) -> str:
-    """Return the text for the settings that a criterion is for."""
+def settings_text(criterion: Criterion) -> str:
+    """Return the text for the settings to which a criterion applies."""
     wanted = [
         " or ".join(
             setting_labels.setting_label(name, alternative) for alternative in alternatives(value)
         )
-        for name, value in criterion.meant.items()
+        for name, value in criterion.applies_to.items()
     ]
     return ", ".join(wanted) or "all settings"
 
 
-def demanded(criterion: Criterion) -> str:
-    """Return the text for a demand."""
+def limit_text(criterion: Criterion) -> str:
+    """Return the text for the limit of a criterion."""
     if criterion.kind == "order":
         return f"order ≥ {criterion.demanded:g} in {criterion.quantity.order_in}".replace("_", " ")
     return f"≤ {criterion.quantity.error_text(criterion.demanded)}"
@@ -345,7 +345,10 @@ def _cheapest_rows(
                 "" if rows else case.title,
                 titles[group[0].quantity],
                 setting_labels.settings_label(group[0].problem, problems),
-                *(SAME if text == left else text for left, text in zip(["", *texts], texts)),
+                *(
+                    SAME_AS_LEFT if text == left else text
+                    for left, text in zip(["", *texts], texts)
+                ),
             ]
         )
     return rows

@@ -11,7 +11,7 @@ from validation.framework.drive import relative
 from validation.grains.loading import grains_drive, load_all, residual
 
 VOXEL = 5e-5  # m
-WIDE, HIGH = 5, 6  # voxels; the bond lies in the middle
+BLOCK_WIDTH, SAMPLE_HEIGHT = 5, 6  # voxels; the bond lies in the middle
 MODULUS, RATIO, STRENGTH = 1e9, 0.3, 1e6  # Pa, 1, Pa
 CASE_SETTINGS = frozenset({"test", "speed"})
 DEFAULTS: CaseSettings = {
@@ -31,8 +31,8 @@ SPRINGS, COMPLIANCE = 3, 4 * (VOXEL / 2) / MODULUS
 
 
 def stage_of(test: str, speed: float) -> LoadingStage:
-    """Return the stage that loads the bond until it breaks, or elastically."""
-    to_break = STRENGTH * SPRINGS * COMPLIANCE / (HIGH * VOXEL)
+    """Return the stage that loads the bond until it breaks, or only elastically."""
+    to_break = STRENGTH * SPRINGS * COMPLIANCE / (SAMPLE_HEIGHT * VOXEL)
     if test == "pull":
         return LoadingStage(kind="stretch", speed=speed, strain=1.3 * to_break)
     if test == "shear":
@@ -43,14 +43,14 @@ def stage_of(test: str, speed: float) -> LoadingStage:
 def measure(settings: CaseSettings) -> Outcome:
     """Load two blocks that fill the box, frozen to the plates."""
     test = str(settings["test"])
-    labels = np.ones((HIGH, WIDE, WIDE), dtype=np.int64)
-    labels[HIGH // 2 :] = 2
+    labels = np.ones((SAMPLE_HEIGHT, BLOCK_WIDTH, BLOCK_WIDTH), dtype=np.int64)
+    labels[SAMPLE_HEIGHT // 2 :] = 2
     settings = {**settings, "bonded_plates": True}
     if test == "shear":  # it tilts no further than its springs let it, and breaks in shear alone
         settings["tensile_strength"] = 1e3 * STRENGTH
     stages = [stage_of(test, float(settings["speed"]))]
     drive = grains_drive(labels, VOXEL, stages, settings, CASE_SETTINGS)
-    curve = load_all(drive, stages, HIGH * VOXEL)
+    curve = load_all(drive, stages, SAMPLE_HEIGHT * VOXEL)
     missing = residual(curve)
     measured = [Measured("residual", missing, 0.0, missing)]
     if test == "pull":
@@ -58,7 +58,7 @@ def measure(settings: CaseSettings) -> Outcome:
     elif test == "shear":
         measured.append(relative("strength", float(curve["shear_stress_pa"].max()), STRENGTH))
     else:
-        exact = HIGH * VOXEL / (SPRINGS * COMPLIANCE)
+        exact = SAMPLE_HEIGHT * VOXEL / (SPRINGS * COMPLIANCE)
         slope = np.polyfit(curve["axial_strain"], curve["top_stress_pa"], 1)[0]
         measured.append(relative("modulus", float(slope), exact))
     return drive.outcome(measured)
@@ -97,6 +97,7 @@ CASE = Case(
     measure=measure,
     remarks="""
     The stress is instantaneous, so it oscillates with the waves that the plate's start sends
-    through the blocks, in proportion to the speed and to the root of the scaled density.
+    through the blocks. The amplitude is proportional to the speed and to the root of the scaled
+    density.
     """,
 )

@@ -20,7 +20,7 @@ VOXEL = GRAIN / 4
 
 
 def _balls() -> Integers:
-    """Two balls that do not touch each other, nor anything else."""
+    """Return two balls that touch neither each other nor anything else."""
     labels = np.zeros((12, 12, 12), dtype=np.int64)
     labels[2:5, 2:5, 2:5], labels[7:10, 7:10, 7:10] = 1, 2
     return labels
@@ -119,8 +119,8 @@ CASE = Case(
     Snow, a single voxel, a block, two balls that touch nothing, grains of one voxel and a layer of
     one voxel are compressed, stretched, sheared, pressed from all sides and penetrated; and snow is
     compressed with stiffness, strength, friction, density, damping, time step, speed and scaled
-    inertia at the extremes of what is allowed, some by nine tenths of its height. All coordinates
-    and energies must be finite. A test may stop with an error that names its cause.
+    inertia at the extremes of their allowed ranges; some of it by nine tenths of its height. All
+    coordinates and energies must be finite. A test may stop with an error that names its cause.
     """,
     quantities=(
         Quantity("unsound", "numbers that are not finite", limit=0.0, relative=False),

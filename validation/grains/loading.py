@@ -65,7 +65,7 @@ def grains_drive(
     voxel: float,
     stages: Sequence[LoadingStage],
     settings: CaseSettings,
-    own: Collection[str] = (),
+    case_settings: Collection[str] = (),
     cone_radius: float = GRAIN,
 ) -> TimedEventDriver:
     """Return a loading test that is ready to go, with its energy balance and without gravity.
@@ -74,14 +74,14 @@ def grains_drive(
     ----------
     settings
         Parameters of `GrainsSettings`; one thread computes.
-    own
+    case_settings
         Names of settings that belong to the case, not to the method.
     cone_radius
         Radius of the cone in stages that penetrate, m.
     """
     chosen = GrainsSettings(threads=1)
     for name, value in settings.items():
-        if name not in own:
+        if name not in case_settings:
             setattr(chosen, name, value)
     with TemporaryDirectory() as folder:
         file = Path(folder) / "labels.npy"

@@ -90,7 +90,7 @@ class Sliding:
 #: The time over which acceleration is averaged, s; before it, contact sets in.
 WINDOW = (0.1, 0.3)
 #: Time from which the speed of a thrown slab after stopping is measured, s.
-CONTACT = 0.05
+CONTACT_TIME = 0.05
 
 
 def measure_slab(settings: CaseSettings) -> Outcome:
@@ -113,10 +113,10 @@ def _slide(sliding: Sliding, friction: float) -> Iterator[Measured]:
 
 
 def _stop(sliding: Sliding, deceleration: float, settings: CaseSettings) -> Iterator[Measured]:
-    """Contact takes some time to develop, so measuring starts a little after the throw."""
-    sliding.drive.run_to(CONTACT)
+    """Yield the stopping distance and the creep; contact develops before they are measured."""
+    sliding.drive.run_to(CONTACT_TIME)
     speed, place = sliding.speed, sliding.place
-    sliding.drive.run_to(CONTACT + 1.2 * max(speed, 0.0) / deceleration + 0.1)
+    sliding.drive.run_to(CONTACT_TIME + 1.2 * max(speed, 0.0) / deceleration + 0.1)
     if settings["speed"]:
         exact = speed**2 / (2 * deceleration)
         yield relative("stopping_distance", sliding.place - place, exact)
@@ -124,7 +124,7 @@ def _stop(sliding: Sliding, deceleration: float, settings: CaseSettings) -> Iter
 
 
 def slab_matrix(full: bool) -> list[CaseSettings]:
-    """Return the friction at which the usual nodal rule fails, and in full other variations."""
+    """Return the friction at which the usual nodal rule fails, and if full other variations."""
     slides = (0.0, 0.3, 0.6, 0.8)
     trap: CaseSettings = {**DEFAULTS, "length": 2.0, "speed": 0.0}
     short: CaseSettings = {**trap, "length": 0.25}
@@ -173,7 +173,8 @@ SLAB = Case(
     measure=measure_slab,
     remarks="""
     Near the limit the acceleration is a small difference between two large numbers: at μ = 0.8 an
-    error of 0.04 % in friction is one of 1 % in acceleration. Seedings differ by that much there.
+    error of 0.04 % in friction causes an error of 1 % in acceleration. Seedings differ by that
+    much.
 
     Fast slabs meet too little friction. Friction follows the normal force with a delay of 40
     elastic time steps, 2.4 ms at dx 1 cm, and impulses still stored at nodes are lost once the slab
@@ -183,27 +184,27 @@ SLAB = Case(
 
     Where the plane is rougher than snow is inside (μ = 1.2 against M = 0.5), thrown snow does not
     stop as a block. At dx 1 cm it goes 2 % too far; at 5 mm its lowest layer breaks up and stays
-    behind, and the rest slides on over it. The limit is therefore for an elastic slab.
+    behind, and the rest slides on over it. The limit therefore applies to an elastic slab.
     """,
 )
 
 # --- the stopping angle -----------------------------------------------------------------------
 
 #: Half the range of tilts that is searched, and the width at which the search ends, degrees.
-SEARCHED, ANGLE_TOLERANCE = 4.0, 0.02
+SEARCHED_TILTS, ANGLE_TOLERANCE = 4.0, 0.02
 #: A slab slides if its speed grows by more than this, m/s2: a ten-thousandth of g.
-GROWING = 1e-4 * GRAVITY
+MIN_GROWTH = 1e-4 * GRAVITY
 
 
 def measure_angle(settings: CaseSettings) -> Outcome:
     """Find by bisection the tilt at which a slab begins to slide."""
     exact = math.degrees(math.atan(float(settings["friction"])))
-    holds, slides = exact - SEARCHED, exact + SEARCHED
+    holds, slides = exact - SEARCHED_TILTS, exact + SEARCHED_TILTS
     wall_s, updates, steps, particles = 0.0, 0, 0, 0
     while slides - holds > ANGLE_TOLERANCE:
         tilt = (holds + slides) / 2
         sliding = Sliding(settings, tilt)
-        if sliding.acceleration(*WINDOW) > GROWING:
+        if sliding.acceleration(*WINDOW) > MIN_GROWTH:
             slides = tilt
         else:
             holds = tilt
@@ -217,7 +218,7 @@ def measure_angle(settings: CaseSettings) -> Outcome:
 
 
 def angle_matrix(full: bool) -> list[CaseSettings]:
-    """Return frictions and resolutions, and in full methods and seedings."""
+    """Return frictions and resolutions, and if full methods and seedings."""
     slab: CaseSettings = {**DEFAULTS, "length": 0.25, "friction": 0.6}
     if not full:
         return [{**slab, "dx": 0.02}]

@@ -9,7 +9,7 @@ import numpy as np
 from snowshed.analysis.accuracy.measurements import CaseSettings, Measured
 from validation.framework.case import Case, Outcome, Quantity
 from validation.framework.drive import absolute, relative
-from validation.laboratory.lab_records import AWAKE, noise, recorded
+from validation.laboratory.lab_records import NO_SLEEP, noise, recorded
 from validation.laboratory.lab_stack import (
     COMPARED,
     Conversion,
@@ -22,7 +22,7 @@ from validation.laboratory.lab_stack import (
 FIRST_SEED = 101
 
 BASE: CaseSettings = {
-    **AWAKE,  # as the recorded stacks are
+    **NO_SLEEP,  # as the recorded stacks are
     "dimension": 2,
     "dx": 0.01,
     "events": 5,
@@ -88,7 +88,7 @@ def _space(runs: Sequence[LabRun]) -> float:
 
 
 def _mass(runs: Sequence[LabRun]) -> Measured:
-    """Return the worst of all masses that should be equal: at conversions and at the end."""
+    """Return the mass with the largest error, of all at conversions and at the end."""
     pairs = [(run.mass, run.brought_mass) for run in runs]
     pairs += [(conversion.mass_after, conversion.mass_before) for conversion in _conversions(runs)]
     value, exact = max(pairs, key=lambda pair: abs(pair[0] / pair[1] - 1))
@@ -116,9 +116,9 @@ has a limit: half a cell, because the solid is made of cubes of a cell's size. L
 because they depend on single grains, see "Where the method is poor".
 
 The last stacks, means over the seedings, are compared with the mean of the recorded runs on the
-same grid, whose snow was carried over: as a part of it, and in standard deviations between single
-recorded runs. None of these stacks sleep. For carried stacks, of other seeds than the recorded
-ones, the departure is noise: the mean of four departs by half a deviation on average.
+same grid, whose snow was carried over: relative to that mean, and in standard deviations between
+single recorded runs. None of these stacks sleep. Carried stacks have other seeds than the recorded
+ones, so their departure is noise: the mean of four departs by half a deviation on average.
 """
 
 REMARKS = """

@@ -8,7 +8,7 @@ import numpy as np
 
 from snowshed.analysis.accuracy.measurements import CaseSettings, Measured
 from snowshed.analysis.accuracy.mechanisms import scheme_of
-from validation.framework.case import Case, Outcome, Quantity, Wanted
+from validation.framework.case import Case, Outcome, Quantity, SettingsFilter
 from validation.framework.drive import relative
 from validation.laboratory.lab_records import noise, recorded
 from validation.laboratory.lab_stack import COMPARED, StackRun, outcome_of, run_seedings
@@ -56,7 +56,7 @@ SCHEMES: Sequence[CaseSettings] = (
 )
 
 #: Settings of the recorded runs of each scheme; a setting that is None is not given.
-AS_RECORDED: Wanted = {
+AS_RECORDED: SettingsFilter = {
     "transfer": ("flip", None),
     "flip_ratio": None,
     "basis": None,
@@ -65,7 +65,7 @@ AS_RECORDED: Wanted = {
     "courant_factor": None,
 }
 #: Standard deviations between seedings by which a mean of stacks may differ from the recorded one.
-NOISE_BAR = 3.0
+MAX_NOISE = 3.0
 
 #: Speeds below which snow may sleep, m/s; 0: never.
 SLEEP_SPEEDS = (0.0, 0.002, 0.005, 0.02)
@@ -109,7 +109,7 @@ def matrix(full: bool) -> list[CaseSettings]:
         {**grid, "events": events}
         for events in (1, 2, 3, 5)
         for grid in OBJECTIVE_GRIDS
-        if grid["dimension"] == 2 or events <= 2  # as far as the reference in space goes
+        if grid["dimension"] == 2 or events <= 2  # the reference in space has two events
     ]
     return [*grids, *affine, *schemes, *awake, *sleeping, *objective]
 
@@ -141,7 +141,7 @@ def _last(name: str, runs: Sequence[StackRun]) -> np.ndarray:
 def _against_reference(name: str, runs: Sequence[StackRun], settings: CaseSettings) -> Measured:
     """Return the mean over seedings, and the root-mean-square error of a single run.
 
-    Both the exact value and the error are NaN after an event that the reference has not.
+    Both the exact value and the error are NaN after an event that the reference does not have.
     """
     reference = recorded(int(settings["dimension"]), scheme=scheme_of(settings))
     exact = reference.mean(name, int(settings["events"]))
@@ -221,8 +221,8 @@ in space became 8 % higher and 3 % shorter at 20 mm/s, which is more than anothe
 mm/s they did not change, but only 8 % of the time was saved.
 
 3D stacks at dx 0.01 m are as high as 2D ones after up to three slabs (ratio 1.03, 1.02, 1.03), then
-0.88 and 0.74. The rule of thumb of two thirds is met when a pile is as high as it is wide enough to
-give way sideways.
+0.88 and 0.74. The rule of thumb of two thirds is met when a pile is about as high as it is wide,
+and therefore gives way sideways.
 
 The scheme objective is nearer to its finest grid than thesis is to its own, but not converged
 either. Its heights after one to five slabs in the plane are 0.045, 0.068, 0.082, 0.089, 0.092 m at
@@ -248,9 +248,9 @@ thesis. The error of the first stack changes its sign between these grids, so it
 0.01 m is no evidence of accuracy. Single runs scatter by 1 % in height at 0.01 m. The error after
 three and more slabs is unknown.
 
-Chunks that roll metres away, and grains more than two or three cells from their neighbours that no
-longer feel them (numerical fracture), count for the length by the 3 % rule; the largest body leaves
-them out.
+Chunks that roll metres away count for the length by the 3 % rule. So do grains that are more than
+two or three cells from their neighbours and no longer feel them (numerical fracture). The largest
+body contains neither.
 """
 
 CASE = Case(
@@ -271,14 +271,14 @@ CASE = Case(
         Quantity(
             "height_noise",
             "Height less that of recorded runs, standard deviations",
-            limit=NOISE_BAR,
+            limit=MAX_NOISE,
             limit_for=AS_RECORDED,
             relative=False,
         ),
         Quantity(
             "length_noise",
             "Length less that of recorded runs, standard deviations",
-            limit=NOISE_BAR,
+            limit=MAX_NOISE,
             limit_for=AS_RECORDED,
             relative=False,
         ),

@@ -69,7 +69,7 @@ def imported(folder: Path, machine: str, date: str) -> dict[str, Any]:
 
 
 def settings_of(scene: ResolvedScene, where: str) -> CaseSettings:
-    """Return the settings under which `record` makes the run of a scene.
+    """Return the settings with which `record` makes the run of a scene.
 
     Raises
     ------

@@ -32,8 +32,8 @@ FILE = Path(__file__).with_name("lab_stack.json")
 #: Events of a recorded run that does not name their number.
 EVENTS = 5
 
-#: The reference of `FIRST_SCHEME` is made with this besides the defaults: no snow sleeps.
-AWAKE: CaseSettings = {"sleep_speed": 0.0}
+#: The only setting of the reference of `FIRST_SCHEME` that is no default: no snow sleeps.
+NO_SLEEP: CaseSettings = {"sleep_speed": 0.0}
 
 
 @dataclass(frozen=True)
@@ -64,7 +64,7 @@ class Reference:
 
 REFERENCES: Mapping[str, Reference] = {
     FIRST_SCHEME: Reference(
-        AWAKE,
+        NO_SLEEP,
         (
             Grid(2, 0.02, 12),
             Grid(2, 0.01, 12),
@@ -344,7 +344,8 @@ def entry(
     ended
         The end of each event.
     costs
-        Cost up to the end of each event; the times are those of one thread, 0 where it had more.
+        Cost up to the end of each event; the times are those of one thread, 0 if the run had
+        several.
     origin
         Version, date and machine.
     """
@@ -362,7 +363,7 @@ def entry(
 
 
 def write_entries(runs: Iterable[Mapping[str, Any]], path: Path) -> None:
-    """Write a file of recorded runs, one a line."""
+    """Write a file of recorded runs, one per line."""
     about = (
         "Stacks of preset lab-50 after each event, in m, with panel friction 0.3 and the core's "
         "default numerics except for the settings that each run names. Costs are sums up to the "

@@ -146,7 +146,7 @@ def measure_of(stack: StackMeasure, name: str) -> float:
 def lab_scene(settings: CaseSettings) -> Scene:
     """Return the scene: preset lab-50 in 2D, panel friction 0.3, one thread, and the settings.
 
-    Snow at rest sleeps as it does by default, because stacks are what users run.
+    Snow at rest sleeps as it does by default, because users run stacks with these defaults.
 
     Examples
     --------
@@ -155,7 +155,7 @@ def lab_scene(settings: CaseSettings) -> Scene:
     """
     scene = Scene.preset("lab-50").update({"dimension": 2, "panel.friction": 0.3})
     scene.update({path: settings[name] for name, path in EVENTS.items() if name in settings})
-    return apply_settings(scene, settings, own=EVENTS, sleeping=True)
+    return apply_settings(scene, settings, case_settings=EVENTS, sleeping=True)
 
 
 def run_lab(settings: CaseSettings) -> LabRun:

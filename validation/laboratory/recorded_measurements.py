@@ -1,8 +1,8 @@
 """Measurements of `stack_convergence` from recorded runs, which need not be repeated.
 
-``python -m validation.laboratory.recorded_measurements`` writes those of the scheme objective among
-the package's recorded measurements, from which ``--accuracy`` and the error of a stack come. The
-full suite measures the same again.
+``python -m validation.laboratory.recorded_measurements`` adds those of the scheme objective to the
+package's recorded measurements, from which ``--accuracy`` and the error of a stack come. The full
+suite measures the same again.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ SCHEME = "objective"
 
 
 def measurements_of(scheme: str) -> list[MeasuredSolution]:
-    """Return the measurements of the full matrix with a scheme, that its runs provide.
+    """Return the measurements of the full matrix that the recorded runs of a scheme provide.
 
     Raises
     ------
@@ -62,7 +62,7 @@ def _measured(settings: CaseSettings) -> MeasuredSolution:
 def undisturbed(runs: Sequence[RecordedRun]) -> list[RecordedRun]:
     """Return the runs of one grid with wall times scaled to the speed of the fastest run.
 
-    Recorded runs are made several at once, on machines with other work, which only adds to their
+    Several recorded runs are made at once, on machines with other work. Both only increase their
     times. The speed is the number of particle updates per second, over all events of a run.
 
     Raises

@@ -57,7 +57,7 @@ VORTEX: CaseSettings = {"motion": "vortex", "amplitude": 1.0, "particles_per_vox
 
 
 def waves_matrix(full: bool) -> list[CaseSettings]:
-    """Return FLIP and APIC, and in full less stretch, fewer particles, and other schemes."""
+    """Return FLIP and APIC, and if full less stretch, fewer particles, and other schemes."""
     if not full:
         return _series((16, 24), {**WAVES, **FLIP}, {**WAVES, **APIC})
     few: CaseSettings = {**WAVES, "amplitude": 0.02, "particles_per_voxel": 9}
@@ -78,7 +78,7 @@ def waves_matrix(full: bool) -> list[CaseSettings]:
 
 
 def vortex_matrix(full: bool) -> list[CaseSettings]:
-    """Return FLIP and APIC, and in full more rotation, fewer particles, and other schemes."""
+    """Return FLIP and APIC, and if full more rotation, fewer particles, and other schemes."""
     if not full:
         return _series((16, 24, 32), {**VORTEX, **FLIP}, {**VORTEX, **APIC})
     listed = [
@@ -114,8 +114,8 @@ def measure_steps(settings: CaseSettings) -> Outcome:
 def _end(settings: CaseSettings) -> tuple[ForcedBody, Floats, Floats]:
     """Return the body, its residual and its displacement at the end of the duration.
 
-    The end lies between two steps. The residual changes little from one to the other, so it is
-    interpolated, and not the displacement.
+    The end lies between two steps. The residual changes little from one to the other, so the
+    residual is interpolated and not the displacement.
     """
     body = ForcedBody(motion_of(settings), settings)
     previous_time, previous_residual = 0.0, body.residual()
@@ -132,7 +132,7 @@ def _end(settings: CaseSettings) -> tuple[ForcedBody, Floats, Floats]:
 
 
 def steps_matrix(full: bool) -> list[CaseSettings]:
-    """Return Courant factors for pure FLIP, and in full for other transfers and small motions."""
+    """Return Courant factors for pure FLIP, and if full other transfers and small motions."""
     variants: list[CaseSettings] = [{"motion": "vortex", "amplitude": 1.0, **FLIP}]
     factors: Sequence[float] = (0.45, 0.225)
     if full:
@@ -155,7 +155,7 @@ SOURCE = (
     "manufactured solutions after Kamojjala, Brannon, Sadeghirad and Guilkey (2015); body force "
     "b = u'' - Div P/rho0 in closed form (docstring of validation.manufactured.motions)"
 )
-FORCED = """
+FORCED_MOTION = """
     A unit square of elastic snow (E = 1 MPa, Hencky) is forced into a chosen motion: the body force
     that the motion needs acts on every particle in every step. It swings from rest to its largest
     displacement, back, and to the largest one the other way. The error is the root mean square over
@@ -169,27 +169,29 @@ def _displacement(limit_for: CaseSettings) -> Quantity:
     return Quantity("displacement", title, limit_for=scheme, order_in="dx", min_order=1.8)
 
 
-IN_WAVES = Case(
+WAVES_CASE = Case(
     name="manufactured_waves",
     title="Manufactured solution: stretched and squeezed along the axes",
     source=SOURCE,
-    description=FORCED
+    description=FORCED_MOTION
     + """
-    Along x and z it is stretched and squeezed by turns, u = ±A sin(ωt) (sin 2πX - sin(4πX)/2):
-    stretches from 0.75 to 1.25 for A = 2 cm, from 0.5 to 1.5 for A = 4 cm. Poisson's ratio is 0.
+    The square is stretched and squeezed by turns along x and z, u = ±A sin(ωt)
+    (sin 2πX - sin(4πX)/2). The stretches go from 0.75 to 1.25 for A = 2 cm, and from 0.5 to 1.5
+    for A = 4 cm. Poisson's ratio is 0.
     """,
     quantities=(_displacement({"amplitude": 0.04, "particles_per_voxel": 64}),),
     matrix=waves_matrix,
     measure=measure,
     remarks="""
     Second order needs many particles. The forces on the nodes are sums over particles in place of
-    integrals, of gradients that for quadratic splines have kinks at every row of nodes. As
+    integrals. The summed gradients of quadratic splines have kinks at every row of nodes. As
     particles of stretched snow cross these rows, the sums get a relative error that depends on the
     number of particles per cell, and not on the cell's size. Finer cells do not reduce this part:
     at stretches of 0.75 to 1.25 the order of APIC from 16 to 48 cells is 1.3 with 4 particles per
     cell, 1.5 with 9 and 1.9 with 36; at 0.5 to 1.5 its error grows from 5.4 to 7.6 % with 4, stops
-    at 2.2 % with 9, and falls with the order 1.75 with 36 and 1.9 with 64. Hence the limit is for
-    64. Cubic splines, whose gradients have no kinks, need only 9 (1.9 to 2.1).
+    at 2.2 % with 9, and falls with the order 1.75 with 36 and 1.9 with 64. The limit therefore
+    applies to 64 particles per cell. Cubic splines, whose gradients have no kinks, need only 9 (1.9
+    to 2.1).
 
     With FLIP the order between 32 and 48 cells at 0.5 to 1.5 is 2.4 with 36 particles per cell, but
     the error at 16 cells is 70 %, and it stays four to five times that of APIC. Its forces are
@@ -202,14 +204,15 @@ IN_WAVES = Case(
     apart.
     """,
 )
-IN_VORTEX = Case(
+VORTEX_CASE = Case(
     name="manufactured_vortex",
     title="Manufactured solution: vortex",
     source=SOURCE,
-    description=FORCED
+    description=FORCED_MOTION
     + """
-    Rings about its centre turn, each by its own angle, A sin(ωt) (1 - (R/0.45 m)²)⁴: the middle
-    by A = 1 rad to either side, the outside not at all. Between them snow is sheared by 0.84.
+    Rings about the square's centre turn, each by its own angle, A sin(ωt) (1 - (R/0.45 m)²)⁴. The
+    middle turns by A = 1 rad to either side, and the outside does not turn. Between them snow is
+    sheared by 0.84.
     """,
     quantities=(_displacement({"amplitude": 1.0, "particles_per_voxel": 9, "pattern": "regular"}),),
     matrix=vortex_matrix,
@@ -224,14 +227,14 @@ IN_VORTEX = Case(
     in the first four digits. PIC is off by 20 to 50 %, of first order at best.
     """,
 )
-IN_TIME = Case(
+STEPS_CASE = Case(
     name="manufactured_steps",
     title="Manufactured solutions: size of the time step",
     source=SOURCE + "; self-convergence against a step 32 times smaller",
     description="""
-    The same motions with 16 cells along the square's side, with smaller and smaller steps. Their
-    displacements at the end are compared with those of a Courant factor of 0.9/32, and with the
-    exact ones. The reference's own error raises the observed orders by 0.05 to 0.1.
+    The same motions are computed with 16 cells along the square's side and with smaller and smaller
+    steps. Their displacements at the end are compared with those of a Courant factor of 0.9/32, and
+    with the exact ones. The reference's own error raises the observed orders by 0.05 to 0.1.
     """,
     quantities=(
         Quantity(
@@ -250,7 +253,7 @@ IN_TIME = Case(
     remarks="""
     The scheme is of first order in time, though symplectic Euler, with velocities half a step
     before positions, is a leapfrog of second order. There are two reasons. Forces move the
-    positions at once but reach particle velocities smoothed, so that the displacement is ahead by
+    positions at once but reach particle velocities smoothed, so the displacement is ahead by
     (1 - s²) dt v, with 1 - s² = (k dx)²/4 for a wave of wave number k (docstring of
     validation.elastic.smoothing): first order in the step, but vanishing with dx². And steps become
     shorter as particles become faster, by up to a fifth here. For pure FLIP the effect is 4 % in
@@ -260,12 +263,12 @@ IN_TIME = Case(
     In the axial waves the order is lower (0.6 to 0.8), because particles that cross rows of nodes
     excite short vibrations, whose phase depends on every step.
 
-    No other transfer has the right limit as the step goes to zero: they smooth in each step, and
-    more steps smooth more. Compared with a step 32 times smaller the vortex with FLIP 0.99 differs
-    by 28 %, with APIC by 55 % and with PIC by 73 %. The small steps are the wrong ones, as the
-    errors of displacement show: PIC's rises from 34 to 86 % as the step becomes four times smaller.
-    A small Courant factor therefore does not make these transfers more accurate.
+    Only pure FLIP has the right limit as the step goes to zero. The other transfers smooth in each
+    step, and more steps smooth more. Compared with a step 32 times smaller the vortex with FLIP
+    0.99 differs by 28 %, with APIC by 55 % and with PIC by 73 %. The small steps are the wrong
+    ones, as the errors of displacement show: PIC's rises from 34 to 86 % as the step becomes four
+    times smaller. A small Courant factor therefore does not make these transfers more accurate.
     """,
 )
 
-CASES = (IN_WAVES, IN_VORTEX, IN_TIME)
+CASES = (WAVES_CASE, VORTEX_CASE, STEPS_CASE)

@@ -39,7 +39,7 @@ class ForcedBody:
     drive
         The simulation.
     time
-        s, since the body was at rest in its place.
+        Time since the body was at rest at its initial position, s.
 
     Examples
     --------

@@ -108,7 +108,7 @@ class Vortex(ManufacturedMotion):
     """Rings that turn about the square's centre, each by its own angle.
 
     A particle at the radius R turns by alpha = A sin(omega t) (1 - (R/R1)^2)^4, R < R1 = 0.45 m;
-    outside, nothing moves. Seen in directions that turn along, F is a simple shear by
+    outside, nothing moves. In axes that turn with the particle, F is a simple shear by
     s = R dalpha/dR. Its Hencky strain has no trace, so Poisson's ratio matters through mu alone,
     and
 

@@ -23,11 +23,11 @@ SOURCE = (
 )
 #: Points of each path at which states are compared.
 POINTS = 20
-COARSE = (1e-3, 1e-4, 1e-5)
-FINE = (1e-6, 2.5e-8)
+COARSE_INCREMENTS = (1e-3, 1e-4, 1e-5)
+FINE_INCREMENTS = (1e-6, 2.5e-8)
 #: Largest deviation allowed, and the strain increments at which plain and extrapolated backward
 #: Euler must reach it.
-MAX_DEVIATION, AT_INCREMENT, EXTRAPOLATED_AT_INCREMENT = 1e-6, 2.5e-8, 1e-5
+MAX_DEVIATION, PLAIN_INCREMENT, EXTRAPOLATED_INCREMENT = 1e-6, 2.5e-8, 1e-5
 
 
 @dataclass(frozen=True)
@@ -203,15 +203,15 @@ STRESS = Quantity(
     "stress",
     "largest deviation of p or q over the largest stress",
     limit=MAX_DEVIATION,
-    limit_for={"increment": AT_INCREMENT},
+    limit_for={"increment": PLAIN_INCREMENT},
     order_in="increment",
     min_order=0.9,
 )
-EXTRAPOLATED = Quantity(
+EXTRAPOLATED_STRESS = Quantity(
     "extrapolated_stress",
     "the same, extrapolated from increments and their halves",
     limit=MAX_DEVIATION,
-    limit_for={"increment": EXTRAPOLATED_AT_INCREMENT},
+    limit_for={"increment": EXTRAPOLATED_INCREMENT},
     order_in="increment",
     min_order=1.5,
 )
@@ -226,20 +226,21 @@ best, so these errors are far below their uncertainty.
 
 
 def _matrix(full: bool, variants: list[CaseSettings]) -> list[CaseSettings]:
-    """Return every increment for every variant; else coarse ones for the first."""
+    """Return every increment for every variant if full, else coarse ones for the first variant."""
     listed: list[CaseSettings] = []
     for variant in variants if full else variants[:1]:
         plain: CaseSettings = {**variant, "method": "backward Euler"}
-        increments = (*COARSE, *FINE) if full else COARSE
+        increments = (*COARSE_INCREMENTS, *FINE_INCREMENTS) if full else COARSE_INCREMENTS
         listed += [{**plain, "increment": increment} for increment in increments]
         listed += [
-            {**plain, "method": "extrapolated", "increment": increment} for increment in COARSE
+            {**plain, "method": "extrapolated", "increment": increment}
+            for increment in COARSE_INCREMENTS
         ]
     return listed
 
 
 def isotropic_matrix(full: bool) -> list[CaseSettings]:
-    """Return senses and dimensions; the answer does not depend on the increment."""
+    """Return both senses of strain in each dimension; the increment does not change the answer."""
     return [
         {
             "sense": sense,
@@ -249,17 +250,17 @@ def isotropic_matrix(full: bool) -> list[CaseSettings]:
         }
         for sense in ("compression", "tension")
         for dimension in ((3, 2) if full else (3,))
-        for increment in (COARSE if full else COARSE[:1])
+        for increment in (COARSE_INCREMENTS if full else COARSE_INCREMENTS[:1])
     ]
 
 
 def plane_and_space_matrix(full: bool) -> list[CaseSettings]:
-    """Return increments in 3D, and in full in 2D."""
+    """Return increments in 3D, and if full also in 2D."""
     return _matrix(full, [{"dimension": 3}, {"dimension": 2}])
 
 
 def triaxial_matrix(full: bool) -> list[CaseSettings]:
-    """Return increments from a stress on the wet side, and in full from none and the dry side."""
+    """Return increments from a stress on the wet side, and if full from none and the dry side."""
     return _matrix(full, [{"consolidation": 0.8}, {"consolidation": 0.0}])
 
 
@@ -271,7 +272,7 @@ def _case(
     matrix: Callable[[bool], list[CaseSettings]],
     measure: Callable[[CaseSettings], Outcome],
 ) -> Case:
-    quantities = (STRESS, EXTRAPOLATED, *more)
+    quantities = (STRESS, EXTRAPOLATED_STRESS, *more)
     return Case(name, title, SOURCE, description, quantities, matrix, measure, REMARKS)
 
 
@@ -289,7 +290,7 @@ ISOTROPIC = Case(
     measure=measure_isotropic,
     remarks="""
     On this path the end of an increment does not depend on its size: backward Euler is exact, and
-    the rest of the error is the tolerances of both sides.
+    the remaining error comes from the tolerances of both integrations.
     """,
 )
 OEDOMETER = _case(

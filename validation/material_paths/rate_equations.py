@@ -1,10 +1,10 @@
 """Cohesive Modified Cam-Clay snow in rates, integrated by an adaptive Runge-Kutta method.
 
-An independent witness for the return mapping. Nothing is shared with the core: stress and strain
-are principal values instead of p and q, and the plastic multiplier comes from the consistency
-condition instead of a projection. With yield function y, stress tau, elastic stiffness C and the
-volumetric plastic strain e_v (thesis 1.2.5-1.2.7; flow is associative, compression positive in p
-and negative in e_v):
+The module checks the return mapping independently and shares nothing with the core: stress and
+strain are principal values instead of p and q, and the plastic multiplier comes from the
+consistency condition instead of a projection. With yield function y, stress tau, elastic stiffness
+C and the volumetric plastic strain e_v (thesis 1.2.5-1.2.7; flow is associative, compression
+positive in p and negative in e_v):
 
     plastic strain rate = g dy/dtau,    e_v' = tr(plastic strain rate),
     g = (dy/dtau : C : rate) / (dy/dtau : C : dy/dtau - dy/de_v tr(dy/dtau)).
@@ -22,9 +22,9 @@ from snowshed.base.arrays import Floats
 
 #: Softening snow is followed until its strength has fallen to this part; stress and strength then
 #: vanish together, and their ratio would be lost in rounding.
-SPENT = 1e-3
+MIN_STRENGTH_SHARE = 1e-3
 #: Tolerances of the integration: of the solution, and of strains.
-RELATIVE, ABSOLUTE = 1e-12, 1e-15
+RELATIVE_TOLERANCE, ABSOLUTE_TOLERANCE = 1e-12, 1e-15
 
 
 @dataclass(frozen=True)
@@ -121,7 +121,7 @@ class RateEquations:
             The state at time 0, inside the yield surface, (d + 1).
         rate
             Rate of the principal strains, (d). Once the path has reached the yield surface it must
-            go on loading.
+            continue to load.
         times
             Times of the states, (n).
 
@@ -148,7 +148,7 @@ class RateEquations:
         return states
 
     def _yield_time(self, start: Floats, rate: Floats, end: float) -> float:
-        """Return when an elastic path reaches the yield surface, or `end`; y is convex along it."""
+        """Return the time at which an elastic path yields, or `end`; y is convex along the path."""
 
         def overshoot(time: float) -> float:
             return self.yield_function(self._elastic(start, rate, time))
@@ -164,7 +164,7 @@ class RateEquations:
             return self._rates(state, rate)
 
         def strength_left(_: float, state: Floats) -> float:
-            return float(state[-1] - SPENT * start[-1])
+            return float(state[-1] - MIN_STRENGTH_SHARE * start[-1])
 
         strength_left.terminal = True  # type: ignore[attr-defined]
         from scipy.integrate import solve_ivp
@@ -176,8 +176,8 @@ class RateEquations:
             method="DOP853",
             t_eval=times,
             events=strength_left,
-            rtol=RELATIVE,
-            atol=ABSOLUTE,
+            rtol=RELATIVE_TOLERANCE,
+            atol=ABSOLUTE_TOLERANCE,
         )
         if not solution.success:
             raise ArithmeticError(f"the rate equations became singular: {solution.message}")
@@ -202,7 +202,7 @@ class RateEquations:
         return np.append(rate - flow, flow.sum())
 
     def _loose(self, last: Floats, rate: Floats, after: Floats) -> Floats:
-        """Return the states `after` the strength is nearly zero: no stress, all strain plastic."""
+        """Return states at times `after` the loss of strength: no stress, only plastic strain."""
         unresolved = -2 * last[-1] / rate.sum()
         if np.any((after > 0) & (after < unresolved)):
             raise ArithmeticError("a time falls where the strength nearly vanishes; choose others")

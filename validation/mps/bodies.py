@@ -42,7 +42,7 @@ def mps_drive(
     obstacles: Sequence[Obstacle],
     bodies: Sequence[Body],
     settings: CaseSettings,
-    own: Collection[str] = (),
+    case_settings: Collection[str] = (),
 ) -> TimedEventDriver:
     """Return a drive of a fluid with a case's settings, on one thread."""
     scene = Scene(
@@ -51,6 +51,6 @@ def mps_drive(
     )  # fmt: skip
     scene.set("numerics.threads", 1)
     for name, value in settings.items():
-        if name not in own:
+        if name not in case_settings:
             scene.set(f"numerics.{name}", value)
     return TimedEventDriver(scene)

@@ -14,18 +14,18 @@ from validation.framework.drive import relative
 from validation.mps.bodies import GRAVITY, mps_drive
 
 HALF_GAP, LENGTH = 0.1, 2.4  # m
-STEADY, MEAN_OVER = 0.2, 0.2  # s
+STEADY_FROM_S, AVERAGED_S = 0.2, 0.2  # s
 DENSITY, VISCOSITY = 100.0, 20.0  # kg/m3, Pa s
-FORCE = DENSITY * GRAVITY  # Pa/m, what drives the flow
-PLUG = 0.5 * HALF_GAP  # m, half the width of what does not yield
-MUD = MpsSettings(
+FORCE = DENSITY * GRAVITY  # Pa/m, the weight that drives the flow
+PLUG_HALF_WIDTH = 0.5 * HALF_GAP  # m; the plug does not yield
+FLUID = MpsSettings(
     density=DENSITY,
     viscosity=VISCOSITY,
-    cohesion=FORCE * PLUG,
+    cohesion=FORCE * PLUG_HALF_WIDTH,
     friction_angle=0.0,
     rheology="bingham",
 )
-ACROSS = (10, 20, 40)  # particles
+PARTICLES_ACROSS = (10, 20, 40)  # particles
 
 
 def exact_speed(positions: Floats) -> Floats:
@@ -36,21 +36,21 @@ def exact_speed(positions: Floats) -> Floats:
     >>> exact_speed(np.array([0.0, 0.05, 0.1])).round(4).tolist()
     [0.0613, 0.0613, 0.0]
     """
-    sheared = np.maximum(np.abs(positions) - PLUG, 0.0)
-    return np.asarray(FORCE / (2 * VISCOSITY) * ((HALF_GAP - PLUG) ** 2 - sheared**2))
+    sheared = np.maximum(np.abs(positions) - PLUG_HALF_WIDTH, 0.0)
+    return np.asarray(FORCE / (2 * VISCOSITY) * ((HALF_GAP - PLUG_HALF_WIDTH) ** 2 - sheared**2))
 
 
-def plug_width(positions: Floats, speeds: Floats) -> float:
+def plug_half_width(positions: Floats, speeds: Floats) -> float:
     """Return half the width of the plug, m: the top of the sheared fluid's parabola.
 
     Examples
     --------
     >>> positions = np.linspace(-0.1, 0.1, 81)
-    >>> round(plug_width(positions, exact_speed(positions)), 4)
+    >>> round(plug_half_width(positions, exact_speed(positions)), 4)
     0.05
     """
-    top = float(speeds[np.abs(positions) < 0.5 * PLUG].mean())
-    sheared = np.abs(positions) > 0.5 * (HALF_GAP + PLUG)
+    top = float(speeds[np.abs(positions) < 0.5 * PLUG_HALF_WIDTH].mean())
+    sheared = np.abs(positions) > 0.5 * (HALF_GAP + PLUG_HALF_WIDTH)
     below = np.maximum(top - speeds[sheared], 0.0)
     return float((np.abs(positions[sheared]) - np.sqrt(below * 2 * VISCOSITY / FORCE)).mean())
 
@@ -59,8 +59,8 @@ def middle_flow(positions: Floats, fall: Floats) -> tuple[float, float, float]:
     """Return the plug's speed, the mean speed and half the plug's width, in a slug's middle."""
     middle = np.abs(positions[:, 2] - positions[:, 2].mean()) < LENGTH / 6
     positions_x, speeds = positions[middle, 0], fall[middle]
-    plug = float(speeds[np.abs(positions_x) < 0.5 * PLUG].mean())
-    return plug, float(speeds.mean()), plug_width(positions_x, speeds)
+    plug = float(speeds[np.abs(positions_x) < 0.5 * PLUG_HALF_WIDTH].mean())
+    return plug, float(speeds.mean()), plug_half_width(positions_x, speeds)
 
 
 def measure(settings: CaseSettings) -> Outcome:
@@ -71,27 +71,31 @@ def measure(settings: CaseSettings) -> Outcome:
         for name, x, normal in (("left", -HALF_GAP, (1, 0)), ("right", HALF_GAP, (-1, 0)))
     ]
     slug = Body(shape=Shape.box((0, 0), (2 * HALF_GAP, LENGTH)))
-    drive = mps_drive(MUD, plates, [slug], {**settings, "spacing": spacing}, {"across"})
-    drive.run_to(STEADY)
+    drive = mps_drive(FLUID, plates, [slug], {**settings, "spacing": spacing}, {"across"})
+    drive.run_to(STEADY_FROM_S)
     flows = []
-    while drive.core.time_s < STEADY + MEAN_OVER:
+    while drive.core.time_s < STEADY_FROM_S + AVERAGED_S:
         drive.step()
         flows.append(middle_flow(drive.core.positions(), -drive.core.velocities()[:, 2]))
     speed, discharge, width = np.mean(flows, axis=0)
-    ratio = PLUG / HALF_GAP
+    ratio = PLUG_HALF_WIDTH / HALF_GAP
     mean = FORCE * HALF_GAP**2 / (3 * VISCOSITY) * (1 - 1.5 * ratio + 0.5 * ratio**3)
     return drive.outcome(
         [
             relative("speed", float(speed), float(exact_speed(np.zeros(1))[0])),
             relative("discharge", float(discharge), mean),
-            relative("width", float(width), PLUG),
+            relative("width", float(width), PLUG_HALF_WIDTH),
         ]
     )
 
 
 def matrix(full: bool) -> list[CaseSettings]:
     """Return distances between particles, with both kinds of walls."""
-    across, beside = (ACROSS, ACROSS[:2]) if full else (ACROSS[:2], ACROSS[:1])
+    across, beside = (
+        (PARTICLES_ACROSS, PARTICLES_ACROSS[:2])
+        if full
+        else (PARTICLES_ACROSS[:2], PARTICLES_ACROSS[:1])
+    )
     listed: list[CaseSettings] = [{"across": count} for count in across]
     return listed + [{"across": count, "walls": "particles"} for count in beside]
 

@@ -1,4 +1,4 @@
-"""Fluids of particles at the extremes of their settings: sound, and on the right side of walls."""
+"""Fluids of particles at the extremes of their settings: values are finite, and walls hold."""
 
 from __future__ import annotations
 
@@ -18,7 +18,10 @@ SNOW = MpsSettings(density=200.0, friction_angle=24.0)
 CASE_SETTINGS = frozenset({"tilt", "board"})
 STEPS = 60
 EDGE = 0.2  # m, of a block of snow that falls by a quarter of it onto a tilted plane
-BOARD_AT, BOARD_HEIGHT = 0.25, 0.3  # m, down the plane from the block's middle; above the plane
+BOARD_DISTANCE, BOARD_HEIGHT = (
+    0.25,
+    0.3,
+)  # m, down the plane from the block's middle; above the plane
 
 DEFAULTS: CaseSettings = {"spacing": 0.02, "tilt": 35.0, "board": 0.0}
 VALUES = (0.0, 1.0, 1e2, 1e4)
@@ -34,7 +37,7 @@ def measure(settings: CaseSettings) -> Outcome:
     if board > 0:
         size = (board * float(settings["spacing"]), BOARD_HEIGHT)
         obstacles.append(
-            _sticky("board", _box(BOARD_AT * down + 0.5 * size[1] * normal, size, tilt))
+            _sticky("board", _box(BOARD_DISTANCE * down + 0.5 * size[1] * normal, size, tilt))
         )
     snow = Body(shape=_box(0.75 * EDGE * normal, (EDGE, EDGE), tilt))
     drive = mps_drive(SNOW, obstacles, [snow], settings, CASE_SETTINGS)
@@ -49,10 +52,12 @@ def measure(settings: CaseSettings) -> Outcome:
     height, distance = positions @ normal, positions @ down
     through = int((height < 0).sum())
     if board > 0:
-        inside = np.abs(distance - BOARD_AT) < 0.5 * board * float(settings["spacing"])
+        inside = np.abs(distance - BOARD_DISTANCE) < 0.5 * board * float(settings["spacing"])
         through += int((inside & (height < BOARD_HEIGHT)).sum())
         low = height < 0.8 * BOARD_HEIGHT  # nothing has come over the board
-        through += int((low & (distance > BOARD_AT)).sum()) if height.max() < BOARD_HEIGHT else 0
+        through += (
+            int((low & (distance > BOARD_DISTANCE)).sum()) if height.max() < BOARD_HEIGHT else 0
+        )
     density = float(drive.core.field_by_id("number_density").max())
     return drive.outcome(
         [
@@ -93,10 +98,10 @@ CASE = Case(
     title="Fluids of particles at the extremes of their settings",
     source="all values are finite, no particle is behind a wall",
     description="""
-    A block of snow falls a little and slides down a plane, against a board that stands on it or
-    not. Viscosity and yield stress go up to 1e4 Pa s and Pa, tilts to 85 degrees, boards are
-    thinner than a particle (their thickness is in distances between particles). After 60 steps
-    every value must be finite and no particle behind or in a wall; a run may stop with an error.
+    A block of snow falls a little and slides down a plane, with or without a board that stands on
+    it. Viscosity and yield stress go up to 1e4 Pa s and Pa, tilts to 85 degrees, boards are thinner
+    than a particle (their thickness is in distances between particles). After 60 steps every value
+    must be finite and no particle behind or in a wall; a run may stop with an error.
     """,
     quantities=(
         Quantity("unsound", "values that are no numbers", limit=0.0, relative=False),

@@ -16,12 +16,12 @@ from validation.framework.drive import absolute, relative
 from validation.mps.bodies import GRAVITY, block, floor_and_sides, mps_drive
 
 SNOW = MpsSettings(density=200.0, viscosity=0.012, friction_angle=24.0, rheology="bingham")
-SLAB, LENGTH, SLIDING = 0.1, 2.4, 0.2  # m, m, s
+SLAB_THICKNESS, LENGTH, SLIDING_TIME = 0.1, 2.4, 0.2  # m, m, s
 TILTS = (30.0, 35.0, 45.0)  # degrees
-MUD = MpsSettings(
+FLUID = MpsSettings(
     density=1000.0, viscosity=5.0, cohesion=100.0, friction_angle=0.0, rheology="bingham"
 )
-HEAP = (0.3, 0.2)  # m, width and height before it slumps
+HEAP_SIZE = (0.3, 0.2)  # m, width and height before it slumps
 
 
 def coulomb(tilt: float) -> float:
@@ -43,12 +43,14 @@ def measure_slab(settings: CaseSettings) -> Outcome:
     down, normal = (math.cos(angle), -math.sin(angle)), (math.sin(angle), math.cos(angle))
     plane = Obstacle(name="plane", shape=Shape.plane((0, 0), normal), condition="sticky")
     slab = Shape.transform(
-        Shape.box((0, SLAB / 2), (LENGTH, SLAB)), angle=tilt, translate=(0.0, 0.0)
+        Shape.box((0, SLAB_THICKNESS / 2), (LENGTH, SLAB_THICKNESS)),
+        angle=tilt,
+        translate=(0.0, 0.0),
     )
     drive = mps_drive(SNOW, [plane], [Body(shape=slab)], settings, {"tilt"})
     along = np.array([down[0], 0.0, down[1]])
     middle = np.abs(drive.core.positions() @ along) < LENGTH / 12
-    drive.run_to(SLIDING)
+    drive.run_to(SLIDING_TIME)
     speed = float((drive.core.velocities()[middle] @ along).mean())
     return drive.outcome([relative("speed", speed, coulomb(tilt) * drive.core.time_s)])
 
@@ -66,7 +68,7 @@ SCALE = 2 * 100.0 / (1000.0 * GRAVITY)
 
 def resting_front() -> float:
     """Return the end of a heap of this volume at rest, m."""
-    return float((1.5 * HEAP[0] * HEAP[1] / math.sqrt(SCALE)) ** (2 / 3))
+    return float((1.5 * HEAP_SIZE[0] * HEAP_SIZE[1] / math.sqrt(SCALE)) ** (2 / 3))
 
 
 def resting_heap(positions: Floats) -> Floats:
@@ -82,7 +84,7 @@ def resting_heap(positions: Floats) -> Floats:
 
 def measure_heap(settings: CaseSettings) -> Outcome:
     """Let a heap slump until it rests, and compare its height in columns of four particles."""
-    drive = mps_drive(MUD, floor_and_sides(), [block(*HEAP)], settings)
+    drive = mps_drive(FLUID, floor_and_sides(), [block(*HEAP_SIZE)], settings)
     drive.run_to(2.0)
     spacing = float(settings["spacing"])
     width = 4 * spacing
@@ -90,11 +92,11 @@ def measure_heap(settings: CaseSettings) -> Outcome:
     counts = np.bincount((x / width).astype(int), minlength=int(2.0 / width))
     height = counts * spacing**2 / width
     exact = resting_heap((np.arange(len(height), dtype=np.float64) + 0.5) * width)
-    off = float(np.sqrt(((height - exact) ** 2).sum() / (exact**2).sum()))
+    error = float(np.sqrt(((height - exact) ** 2).sum() / (exact**2).sum()))
     density = float(drive.core.field_by_id("number_density").max())
     return drive.outcome(
         [
-            absolute("profile", off, 0.0),
+            absolute("profile", error, 0.0),
             relative("front", float(x.max()) + spacing / 2, resting_front()),
             absolute("density", density - 1, 0.0),
         ]

@@ -13,18 +13,18 @@ from validation.framework.drive import TimedEventDriver, absolute, relative
 from validation.mps.bodies import GRAVITY, VARIANTS, WATER, block, floor_and_sides, mps_drive
 
 HEIGHT = 0.2  # m, of the column at rest, which is as wide
-DAM = 0.05715  # m, 2 1/4 inches, width of the column that collapses; it is twice as high
+DAM_WIDTH = 0.05715  # m, 2 1/4 inches, width of the column that collapses; it is twice as high
 SPACINGS = (0.02, 0.01, 0.005)  # m
-ACROSS = (10, 20, 40)  # particles across the dam
+PARTICLES_ACROSS = (10, 20, 40)  # particles across the dam
 #: T* = t sqrt(2 g/L) and X* = x/L of the front.
 MARTIN_MOYCE = ((0.832, 1.217), (1.219, 1.474), (1.997, 2.292), (2.547, 2.995), (3.345, 4.134), (4.034, 4.944))  # fmt: skip # noqa: E501
 KOSHIZUKA_OKA = ((0.381, 1.111), (0.769, 1.252), (1.153, 1.505), (1.537, 1.892), (1.935, 2.241), (2.323, 2.615), (2.719, 3.003), (3.096, 3.624))  # fmt: skip # noqa: E501
 #: Front of suddenly released water by the volume of fluid (benchmarks/engines/gerris_dam.gfs).
 GERRIS = ((0.5, 1.16), (1.0, 1.53), (1.5, 2.03), (2.0, 2.64), (2.5, 3.32), (3.0, 4.07), (3.5, 4.85))
-#: Martin and Moyce's tables, as others print them, do not count the time from the release of the
-#: water, but so that the fronts of both columns twice as high as wide (1 1/8 and 2 1/4 inches) meet
-#: here.
-ORIGIN = (1.19, 1.44)  # T*, X*
+#: Origin of time in Martin and Moyce's tables, as others print them. It is not the release of the
+#: water: the fronts of both columns that are twice as high as wide (1 1/8 and 2 1/4 inches) meet at
+#: this point.
+TABLE_ORIGIN = (1.19, 1.44)  # T*, X*
 
 
 def pressure_slope(drive: TimedEventDriver, spacing: float) -> float:
@@ -79,39 +79,39 @@ def deviation(
 
 def measure_dam(settings: CaseSettings) -> Outcome:
     """Let a column of water collapse, and compare its front."""
-    spacing = DAM / int(settings["across"])
+    spacing = DAM_WIDTH / int(settings["across"])
     drive = mps_drive(
-        WATER, floor_and_sides(8 * DAM), [block(DAM, 2 * DAM)],
+        WATER, floor_and_sides(8 * DAM_WIDTH), [block(DAM_WIDTH, 2 * DAM_WIDTH)],
         {**settings, "spacing": spacing}, {"across"},
     )  # fmt: skip
-    unit = math.sqrt(DAM / (2 * GRAVITY))
+    unit = math.sqrt(DAM_WIDTH / (2 * GRAVITY))
     front = [(0.0, 1.0)]
     while front[-1][0] < 4.1:
         drive.step()
         place = float(drive.core.positions()[:, 0].max()) + 0.5 * spacing
-        front.append((drive.core.time_s / unit, place / DAM))
+        front.append((drive.core.time_s / unit, place / DAM_WIDTH))
     times, fronts = np.array(front).T
-    delay = ORIGIN[0] - float(np.interp(ORIGIN[1], fronts, times))
+    delay = TABLE_ORIGIN[0] - float(np.interp(TABLE_ORIGIN[1], fronts, times))
     return drive.outcome(
         [
-            _off("martin_moyce", deviation(front, MARTIN_MOYCE)),
-            _off("koshizuka_oka", deviation(front, KOSHIZUKA_OKA)),
-            _off("gerris", deviation(front, GERRIS)),
+            _absolute_error("martin_moyce", deviation(front, MARTIN_MOYCE)),
+            _absolute_error("koshizuka_oka", deviation(front, KOSHIZUKA_OKA)),
+            _absolute_error("gerris", deviation(front, GERRIS)),
             Measured("delay", delay, 0.0, delay),
-            _off("martin_moyce_delayed", deviation(front, MARTIN_MOYCE, delay)),
-            _off("koshizuka_oka_delayed", deviation(front, KOSHIZUKA_OKA, delay)),
+            _absolute_error("martin_moyce_delayed", deviation(front, MARTIN_MOYCE, delay)),
+            _absolute_error("koshizuka_oka_delayed", deviation(front, KOSHIZUKA_OKA, delay)),
             Measured("front_at_2", float(np.interp(2.0, times, fronts)), 2.7, 0.0),
         ]
     )
 
 
-def _off(name: str, value: float) -> Measured:
+def _absolute_error(name: str, value: float) -> Measured:
     return Measured(name, value, 0.0, value)
 
 
 def dam_matrix(full: bool) -> list[CaseSettings]:
     """Return distances between particles, and the other walls and gradients."""
-    across = ACROSS if full else ACROSS[:2]
+    across = PARTICLES_ACROSS if full else PARTICLES_ACROSS[:2]
     listed: list[CaseSettings] = [{"across": count} for count in across]
     return listed + [{"across": count, **variant} for variant in VARIANTS for count in across[:2]]
 

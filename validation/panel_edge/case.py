@@ -17,7 +17,7 @@ from validation.panel_edge.rigid_slab import RigidSlab
 
 TILT, PANEL_LENGTH, PANEL_HEIGHT = 40.0, 2.0, 5.0  # degrees, m, m
 LENGTH, THICKNESS, WIDTH = 0.2, 0.04, 0.1  # of the slab, m; the width in 3D only
-DROP = 1.0  # m below the edge, where it lands
+DROP = 1.0  # m below the edge, where the slab lands
 #: Settings that are no parameters of the scene's numerics.
 CASE_SETTINGS = frozenset({"friction", "condition", "length"})
 SLAB: CaseSettings = {
@@ -31,7 +31,7 @@ SLAB: CaseSettings = {
     "model": "cam_clay",
     "length": LENGTH,
 }
-#: Steps between two samples, and the cells past the edge after which a slab is free.
+#: Steps between two samples, and the distance past the edge, in cells, where a slab is free.
 STEPS, FREE_CELLS = 20, 3
 
 
@@ -138,7 +138,7 @@ def measure(settings: CaseSettings) -> Outcome:
 
 
 def matrix(full: bool) -> list[CaseSettings]:
-    """Return frictions, and in full resolutions, methods and lengths."""
+    """Return frictions, and if full resolutions, methods and lengths."""
     if not full:
         coarse: CaseSettings = {**SLAB, "dx": 0.02}
         return [{**coarse, "friction": 0.0}, coarse, {**SLAB, "transfer": "apic"}]
@@ -194,9 +194,9 @@ CASE = Case(
     The slab lands at the right place to half a percent, but its rotation is wrong. It leaves the
     edge with 1.1 to 1.6 times the angular velocity of a rigid slab, however fine the grid. The
     panel's nodes stop the snow along the panel's normal, not along that of the slab's tipped face.
-    A gap between the two that is much thinner than a cell still counts as contact, so the rear of
-    the tipping slab, which lifts off by tenths of a millimetre, still touches the panel for the
-    method.
+    A gap between the two that is much thinner than a cell still counts as contact, so for the
+    method the rear of the tipping slab still touches the panel, although it has lifted off by
+    tenths of a millimetre.
 
     FLIP with 0.99 then damps the rotation of a slab a few cells thick: it has lost 70 % after a
     fall of 1 m at dx 1 cm, and 95 % at 2 cm. APIC keeps the whole rotation, pure FLIP 98 %.

@@ -82,11 +82,11 @@ class RigidSlab:
         """
         if self.acceleration <= 0:
             raise ValueError(f"friction {self.friction:g} holds the slab at {self.tilt:g} degrees")
-        start, position, velocity, spin, left_at = self._leave()
-        x, z = self._slope(position)
-        along, up = self._slope(velocity)
+        start, position, velocity, spin, departure_time = self._departure()
+        x, z = self._to_horizontal(position)
+        along, up = self._to_horizontal(velocity)
         falls = (up + math.sqrt(up**2 + 2 * self.gravity * (z + drop))) / self.gravity
-        return Landing(x + along * falls, start + left_at + falls, spin)
+        return Landing(x + along * falls, start + departure_time + falls, spin)
 
     @property
     def acceleration(self) -> float:
@@ -105,7 +105,7 @@ class RigidSlab:
         """Moment of inertia over mass, m2."""
         return (self.length**2 + self.thickness**2) / 12
 
-    def _slope(self, vector: Floats) -> tuple[float, float]:
+    def _to_horizontal(self, vector: Floats) -> tuple[float, float]:
         """Turn a vector (down the slope, normal to it) into (x, z)."""
         tilt = math.radians(self.tilt)
         along, off = vector
@@ -113,12 +113,12 @@ class RigidSlab:
         return float(x), float(off * math.cos(tilt) - along * math.sin(tilt))
 
     def _rates(self, state: Floats) -> tuple[float, float, float]:
-        """Return the edge's push over mass, and the second derivatives of `state`'s coordinates.
+        """Return the edge's normal force over mass, and the accelerations of both coordinates.
 
-        The state is how far the centre of mass has passed the edge along the slab's face, its rate,
-        the angle by which the slab has tipped, its rate. Friction mu N along the face and the push
-        N across it act at the edge, half the thickness below the centre of mass:
-        I angle'' = N (past + mu thickness/2).
+        The state has two coordinates, each followed by its rate: the distance by which the centre
+        of mass has passed the edge along the slab's face, and the angle by which the slab has
+        tipped. Friction mu N along the face and the normal force N act at the edge, half the
+        thickness below the centre of mass: I angle'' = N (past + mu thickness/2).
         """
         past, speed, angle, turn = state
         half = self.thickness / 2
@@ -131,8 +131,8 @@ class RigidSlab:
         sliding = self._gravity @ face - self.friction * push - half * turning + past * turn**2
         return float(push), float(sliding), float(turning)
 
-    def _leave(self) -> _Leaving:
-        """Slide until the push's centre has reached the edge, then tip over it."""
+    def _departure(self) -> _Departure:
+        """Slide until the centre of the normal force reaches the edge, then tip over the edge."""
         from scipy.integrate import solve_ivp
 
         half = self.thickness / 2
@@ -160,14 +160,14 @@ class RigidSlab:
         position = past * face + half * across
         velocity = (speed_now + half * turn) * face - past * turn * across
         began = speed / self.acceleration
-        return _Leaving(began, position, velocity, float(turn), float(solution.t[-1]))
+        return _Departure(began, position, velocity, float(turn), float(solution.t[-1]))
 
 
-class _Leaving(NamedTuple):
+class _Departure(NamedTuple):
     """The state in which a slab leaves the edge; vectors (down the slope, normal to it)."""
 
-    tips_at: float
+    tip_time: float
     position: Floats
     velocity: Floats
     spin: float
-    left_at: float  # s after it began to tip
+    departure_time: float  # s after it began to tip

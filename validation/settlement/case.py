@@ -42,7 +42,7 @@ class ElasticColumn:
     Attributes
     ----------
     dimension
-        2 or 3; it decides what the pressure is (K_d).
+        2 or 3; the definition of the pressure depends on it (K_d).
 
     Examples
     --------
@@ -82,7 +82,7 @@ class ElasticColumn:
     def settlement(self, depth: Floats) -> Floats:
         """Return the shortening of the snow down to a depth, m.
 
-        The integral of 1 - exp(-x), with exp(-W(w)) = W(w)/w.
+        It is the integral of 1 - exp(-x), with exp(-W(w)) = W(w)/w.
         """
         x = self.compression(depth)
         return depth - self.modulus / (DENSITY * GRAVITY) * (x + x**2 / 2)
@@ -253,7 +253,7 @@ METHODS: tuple[CaseSettings, ...] = (
 
 
 def elastic_matrix(full: bool) -> list[CaseSettings]:
-    """Return resolutions, and in full seedings, bases and other variations."""
+    """Return resolutions, and if full seedings, bases and other variations."""
     sizes = (0.04, 0.02, 0.01, 0.005, 0.0025) if full else (0.02, 0.01, 0.005)
     listed: list[CaseSettings] = [{**REGULAR, "dx": dx} for dx in sizes]
     if not full:
@@ -268,7 +268,7 @@ def elastic_matrix(full: bool) -> list[CaseSettings]:
 
 
 def yielding_matrix(full: bool) -> list[CaseSettings]:
-    """Return resolutions, and in full seedings and other variations."""
+    """Return resolutions, and if full seedings and other variations."""
     sizes = (0.02, 0.01, 0.005, 0.0025) if full else (0.02, 0.01)
     listed: list[CaseSettings] = [{**REGULAR, "dx": dx} for dx in sizes]
     if full:
@@ -325,7 +325,7 @@ ELASTIC = Case(
     ),
     description=SETTING
     + """
-    The snow is elastic and soft (E = 20 kPa), so that the top sinks by 1.5 % of the height and the
+    The snow is elastic and soft (E = 20 kPa), so the top sinks by 1.5 % of the height and the
     strain at the bottom is no longer small.
     """,
     quantities=_quantities(0.005),

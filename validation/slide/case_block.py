@@ -16,7 +16,7 @@ PLANE = Plane(35.0)
 FRICTION, TURBULENCE, THICKNESS = 0.325, 300.0, 0.5  # 1, m/s2, m
 HALF = 15.0  # m, half the block's edge on the map
 MIDDLE = 3.0  # m, from the block's middle: particles whose motion is measured
-SLIDING = 3.0  # s; edges make themselves felt in the middle only later
+SLIDING_TIME = 3.0  # s; edges make themselves felt in the middle only later
 #: Friction that stops a block, and the speed at which it starts down the slope, m/s.
 STOPPING, THROWN = 1.1, 4.0
 CASE_SETTINGS = frozenset({"law"})
@@ -32,7 +32,7 @@ class BlockMotion(NamedTuple):
 
 
 def block_motion(law: str, time: float) -> BlockMotion:
-    """Return how far a block has slid from rest, and its speed.
+    """Return the distance of a block that slides from rest, and its speed.
 
     Coulomb: du/dt = a = g (sin - mu cos). Voellmy: du/dt = a - g u^2/(xi h), so that
     u = U tanh(a t/U) with U^2 = a xi h/g, and the distance is U^2/a ln cosh(a t/U).
@@ -71,7 +71,7 @@ def measure(settings: CaseSettings) -> Outcome:
     down = np.array([math.cos(PLANE.angle), 0.0, -math.sin(PLANE.angle)])
     if stops:
         drive.core.add_velocity(np.tile(THROWN * down, (len(start), 1)))
-    drive.run_to(SLIDING)
+    drive.run_to(SLIDING_TIME)
     distance = float(((drive.core.positions() - start)[middle] @ down).mean())
     speed = float((drive.core.velocities()[middle] @ down).mean())
     if stops:

@@ -17,7 +17,7 @@ FRICTION = math.tan(math.radians(20.0))
 THICKNESS, DURATION = 1.0, 3.0  # m, s
 LENGTH, HALF_WIDTH = 40.0, 14.0  # m, along the slope; on the map
 MEASURED = 3.0  # m, half the width of the strip whose mean is compared: no side is felt there
-SEEN = 0.05  # share of the dam's height; the front is where the snow is thicker
+FRONT_THICKNESS = 0.05  # share of the dam's height; the front is where the snow is thicker
 
 DEFAULTS: CaseSettings = {"cell": 2.0, "time_step": 0.02}
 #: Snow of this thickness over a cell makes a particle, m: about 4, 9, 16 and 36 particles per cell.
@@ -26,7 +26,7 @@ LAYERS = (0.28, 0.126, 0.071, 0.0317)
 
 def wave_speed() -> float:
     """Return the speed of small waves behind the dam, sqrt(g h cos), m/s."""
-    return math.sqrt(PLANE.pressing * THICKNESS)
+    return math.sqrt(PLANE.normal_gravity * THICKNESS)
 
 
 def exact_thickness(s: Floats, time: float) -> Floats:
@@ -38,21 +38,21 @@ def exact_thickness(s: Floats, time: float) -> Floats:
 
     Examples
     --------
-    At the dam, seen from the moving snow, it is 4/9 of what it was.
+    At the dam, seen from the moving snow, it is 4/9 of the initial thickness.
 
     >>> exact_thickness(np.array([PLANE.coulomb(FRICTION) / 2]), 1.0).round(6).tolist()
     [0.444444]
     """
     c = wave_speed()
     place = (s - 0.5 * PLANE.coulomb(FRICTION) * time**2) / time
-    fan = (2 * c - np.clip(place, -c, 2 * c)) ** 2 / (9 * PLANE.pressing)
+    fan = (2 * c - np.clip(place, -c, 2 * c)) ** 2 / (9 * PLANE.normal_gravity)
     return np.asarray(fan)
 
 
 def exact_front(time: float) -> float:
-    """Return the distance down the slope at which the thickness is `SEEN` of the dam's, m."""
+    """Return the distance down the slope where the thickness is `FRONT_THICKNESS`, m."""
     c = wave_speed()
-    ahead = c * (2 - 3 * math.sqrt(SEEN)) * time
+    ahead = c * (2 - 3 * math.sqrt(FRONT_THICKNESS)) * time
     return 0.5 * PLANE.coulomb(FRICTION) * time**2 + ahead
 
 
@@ -79,10 +79,10 @@ def measure(settings: CaseSettings) -> Outcome:
 
 
 def _front(s: Floats, thickness: Floats) -> float:
-    """Return where the thickness falls below `SEEN`, between nodes, m."""
-    last = int(np.flatnonzero(thickness > SEEN * THICKNESS)[-1])
+    """Return the position of the front, interpolated between nodes, m."""
+    last = int(np.flatnonzero(thickness > FRONT_THICKNESS * THICKNESS)[-1])
     above, below = thickness[last], thickness[last + 1]
-    share = (above - SEEN * THICKNESS) / (above - below)
+    share = (above - FRONT_THICKNESS * THICKNESS) / (above - below)
     return float(s[last] + share * (s[last + 1] - s[last]))
 
 
@@ -112,8 +112,8 @@ CASE = Case(
     After 3 s the thickness along the middle of a strip 28 m wide, which its sides and its upper end
     have not reached, is compared. The error of the profile is the mean absolute difference over the
     way of the wave behind the dam, in parts of the dam's height. The front is where the thickness
-    is a twentieth of the dam's; its error is in parts of the length of the fan. No bonds, no
-    artificial viscosity.
+    is a twentieth of the dam's; its error is in parts of the length of the fan. There are no bonds
+    and no artificial viscosity.
     """,
     quantities=(
         Quantity(
@@ -145,9 +145,9 @@ CASE = Case(
     matrix=matrix,
     measure=measure,
     remarks="""
-    The error falls with the number of particles within a cell, that is within the kernel: about
-    with the distance of particles, which is the square root of the layer's thickness. Four
-    particles per cell are too few: where snow thins to a third, they have no neighbours any more,
+    The error falls with the number of particles within a cell, that is within the kernel. It is
+    about proportional to the distance of the particles, the square root of their area. Four
+    particles per cell are too few: where the snow has thinned to a third, they have no neighbours,
     and the front stays behind. Smaller cells alone do not help.
 
     Artificial viscosity (the default, after SamosAT) slows the front far more than anything else.

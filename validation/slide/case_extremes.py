@@ -97,9 +97,8 @@ CASE = Case(
     description="""
     A slab slides over cliffs, steps, pits, a gully of one cell, level ground and a sharp ridge, 1
     mm to 10 m thick; and on a slope with time steps, bonds, friction, viscosity and particles at
-    the extremes of what is allowed. All numbers must be finite, the mass on and
-    beyond the terrain must be conserved, and with μ = 2 snow on a slope of 38 degrees must not
-    move.
+    the extremes of their allowed ranges. All numbers must be finite, the mass on and beyond the
+    terrain must be conserved, and with μ = 2 snow on a slope of 38 degrees must not move.
     """,
     quantities=(
         Quantity("unsound", "coordinates that are not finite", limit=0.0, relative=False),

@@ -40,7 +40,7 @@ def spread(shape: str, time: float) -> float:
     constant).
 
     >>> a = spread("cap", 2.0)
-    >>> round(float(a**2 - 100 - 2 * PLANE.pressing * 4), 6)
+    >>> round(float(a**2 - 100 - 2 * PLANE.normal_gravity * 4), 6)
     0.0
     """
     from scipy.integrate import solve_ivp
@@ -49,7 +49,7 @@ def spread(shape: str, time: float) -> float:
 
     def rates(_: float, state: Floats) -> list[float]:
         thickness = THICKNESS * (RADIUS / state[0]) ** power
-        return [state[1], 2 * PLANE.pressing * thickness / state[0]]
+        return [state[1], 2 * PLANE.normal_gravity * thickness / state[0]]
 
     solution = solve_ivp(rates, (0.0, time), [RADIUS, 0.0], rtol=1e-10, atol=1e-12)
     return float(solution.y[0, -1])
@@ -72,7 +72,7 @@ def measure(settings: CaseSettings) -> Outcome:
 
 
 def terraces(shape: str) -> list[Area]:
-    """Return the parabola in steps, each of the mean thickness over it."""
+    """Return the parabola as terraces, each with the mean thickness of its part."""
     cosine = math.cos(PLANE.angle)
     edges = np.linspace(0.0, 1.0, TERRACES + 1)
     areas = []
@@ -99,7 +99,7 @@ def terraces(shape: str) -> list[Area]:
 
 
 def _ellipse(radius: float) -> list[tuple[float, float]]:
-    """Return what is a circle on the ground, of the same area, as the map shows it."""
+    """Return the ellipse on the map whose area on the ground is that of a circle of this radius."""
     corners = 48
     angles = 2 * math.pi * np.arange(corners) / corners
     radius *= math.sqrt(2 * math.pi / (corners * math.sin(2 * math.pi / corners)))
@@ -108,9 +108,9 @@ def _ellipse(radius: float) -> list[tuple[float, float]]:
 
 
 def _half_length(drive: TimedEventDriver, shape: str) -> float:
-    """Return it from the second moment: a^2/5 of a parabola, a^2/6 along an axis of a cap."""
+    """Return a from the second moment, a^2/5 for a ridge and a^2/6 along an axis of a cap."""
     x, y = drive.core.positions()[:, :2].T
-    masses = drive.core.masses()  # without what left the terrain
+    masses = drive.core.masses()  # without snow that left the terrain
     if shape == "ridge":
         masses = masses * (np.abs(y - np.average(y, weights=masses)) < MEASURED)
     s = x / math.cos(PLANE.angle)
@@ -119,7 +119,7 @@ def _half_length(drive: TimedEventDriver, shape: str) -> float:
 
 
 def _profile_error(drive: TimedEventDriver, shape: str, exact: float) -> float:
-    """Return the mean absolute error of thickness over the snow, in parts of its largest."""
+    """Return the mean absolute error of the thickness, relative to the largest thickness."""
     maps = maps_of(drive)
     x, y = np.meshgrid(*node_axes(maps))
     time = drive.core.time_s
@@ -136,7 +136,7 @@ def _profile_error(drive: TimedEventDriver, shape: str, exact: float) -> float:
 
 
 def matrix(full: bool) -> list[CaseSettings]:
-    """Return both shapes over the size of particles, and in full cells and steps."""
+    """Return both shapes over the size of particles, and if full cells and steps."""
     layers = LAYERS if full else LAYERS[:3]
     listed: list[CaseSettings] = [
         {**DEFAULTS, "shape": shape, "layer_thickness": layer}
@@ -167,8 +167,8 @@ CASE = Case(
     as a ridge 28 m wide with a friction angle of 20 degrees, and as a round cap without friction.
     It slides and spreads, and stays a parabola; an ordinary differential equation gives its half
     length. After 3 s the half length, from the second moment of the mass, and the profile are
-    compared; of the ridge only the middle 6 m, which its ends have not reached. The parabola is
-    seeded as ten terraces. No bonds, no artificial viscosity.
+    compared; for the ridge only in the middle 6 m, which its ends have not reached. The parabola is
+    seeded as ten terraces. There are no bonds and no artificial viscosity.
     """,
     quantities=(
         Quantity(
@@ -189,9 +189,9 @@ CASE = Case(
     matrix=matrix,
     measure=measure,
     remarks="""
-    Every terrace is seeded apart. The coarsest particles are farther from each other (1.07 m) than
-    a terrace is wide (0.87 m): a terrace then holds a row or two, not where they would be in one
-    lattice, and the half length errs by 4 % (ridge) and 9 % (cap). With particles half as far apart
-    it errs by 0.05 and 1 %.
+    Every terrace is seeded separately. The coarsest particles are farther from each other (1.07 m)
+    than a terrace is wide (0.87 m). A terrace then holds one or two rows, which do not form a
+    lattice with those of other terraces, and the half length errs by 4 % (ridge) and 9 % (cap).
+    With particles half as far apart it errs by 0.05 and 1 %.
     """,
 )

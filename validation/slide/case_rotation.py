@@ -1,4 +1,4 @@
-"""The same slide with terrain and release turned on the map."""
+"""A slide whose terrain and release are turned on the map."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ STEEP = math.tan(math.radians(35.0))
 BEND, LEVEL = 0.0, 30.0  # m, where the slope begins to run out and where the ground is level
 CORNERS = ((-52.0, -9.0), (-36.0, -12.0), (-34.0, 3.0), (-38.0, 12.0), (-54.0, 8.0))
 THICKNESS = 1.0  # m
-REST = 12.0  # s, by when nearly all lies still
+REST_TIME = 12.0  # s, by when nearly all lies still
 CASE_SETTINGS = frozenset({"turned", "shape"})
 
 DEFAULTS: CaseSettings = {
@@ -66,7 +66,7 @@ def peaks(settings: CaseSettings, degrees: float) -> tuple[TimedEventDriver, Sli
         [Area(outline=[(float(x), float(y)) for x, y in corners], thickness=THICKNESS)],
     )
     drive = slide_drive(site, settings, CASE_SETTINGS)
-    drive.run_to(REST)
+    drive.run_to(REST_TIME)
     return drive, maps_of(drive)
 
 
@@ -106,7 +106,7 @@ def _turned(maps: SlideMaps, values: Floats, degrees: float) -> Floats:
 
 
 def matrix(full: bool) -> list[CaseSettings]:
-    """Return ground and angles, and in full cells and sizes of particles."""
+    """Return ground and angles, and if full cells and sizes of particles."""
     angles = (10.0, 30.0, 45.0, 77.0) if full else (30.0,)
     listed: list[CaseSettings] = [
         {**DEFAULTS, "shape": shape, "turned": angle}
@@ -126,8 +126,8 @@ CASE = Case(
     A slab 1 m thick breaks loose on a slope of 35 degrees that runs out onto level ground, a plane
     or a channel, with Voellmy's friction and artificial viscosity. Terrain and release are turned
     by an angle. The peak fields, turned back, are compared with those of the slide that was not
-    turned, over the whole map: the norms L1 and L2 of the difference, over those of the error of
-    the cell's interpolation, which is what a map loses that is turned and turned back bilinearly.
+    turned, over the whole map: the norms L1 and L2 of the difference, relative to those of the
+    interpolation error, which is the loss of a map that is turned and turned back bilinearly.
     """,
     quantities=tuple(
         Quantity(
@@ -143,8 +143,8 @@ CASE = Case(
     measure=measure,
     remarks="""
     The speed at a node is a mean over the nodes around, with weights that have no direction on the
-    map. Where it was that of the nearest particles alone, the peak speed changed by up to 1.3 (L1)
-    and 1.7 (L2) times the error of interpolation: at the rim, where a node has the speed of the one
-    particle that came near it, or of none.
+    map. When only the nearest particles counted, the peak speed changed by up to 1.3 (L1) and 1.7
+    (L2) times the error of interpolation. The changes were at the rim, where only one particle
+    comes near a node, or none.
     """,
 )

@@ -56,7 +56,7 @@ class Plane:
         return math.radians(self.tilt)
 
     @property
-    def pressing(self) -> float:
+    def normal_gravity(self) -> float:
         """The part of gravity normal to the plane, m/s2."""
         return GRAVITY * math.cos(self.angle)
 
@@ -89,7 +89,9 @@ def rectangle(west: float, south: float, east: float, north: float, thickness: f
     return Area(outline=corners, thickness=thickness)
 
 
-def slide_drive(site: Site, settings: CaseSettings, own: Collection[str] = ()) -> TimedEventDriver:
+def slide_drive(
+    site: Site, settings: CaseSettings, case_settings: Collection[str] = ()
+) -> TimedEventDriver:
     """Return a slide that is ready to go.
 
     Parameters
@@ -99,14 +101,14 @@ def slide_drive(site: Site, settings: CaseSettings, own: Collection[str] = ()) -
     settings
         Parameters of `SlideSettings`. Unless they say otherwise there are no bonds and no
         artificial viscosity, friction is Coulomb's, and one thread computes.
-    own
+    case_settings
         Names of settings that belong to the case, not to the method.
     """
     bare = SlideSettings(
         bonds=False, artificial_viscosity=0.0, friction_law="coulomb", stop_ratio=0.0, threads=1
     )
     for name, value in settings.items():
-        if name not in own:
+        if name not in case_settings:
             setattr(bare, name, value)
     cell = float(settings["cell"])
     columns = round((site.east - site.west) / cell) + 1

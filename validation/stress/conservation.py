@@ -36,36 +36,36 @@ class Conservation:
         self.simulation = simulation
         self.gravity = gravity
         self.dx = dx
-        self._brought = 0.0  # J, motion of thrown snow, less what reseeding took
-        self._thrown = 0.0  # J, the same without what reseeding took
-        self._laid = 0.0  # J, gravitational energy of all snow where it was laid
-        self._dropped = 0.0  # J, largest work of gravity either way
+        self._motion_input = 0.0  # J, motion of thrown snow, less the loss by reseeding
+        self._thrown_energy = 0.0  # J, the same without the loss by reseeding
+        self._initial_potential = 0.0  # J, gravitational energy of all snow where it was laid
+        self._max_gravity_work = 0.0  # J, largest work of gravity either way
         self._residual = (0.0, 0.0)  # J, lowest and highest
         self._excess = (-math.inf, -math.inf)  # J, highest and last
         self._mass = 0.0  # kg
         self._momentum = np.zeros(3)  # kg m/s, of all snow when it was laid
-        self._momenta = 0.0  # kg m/s, sum of their magnitudes
+        self._momentum_sum = 0.0  # kg m/s, sum of their magnitudes
 
     def begin(self, before: dict[str, float]) -> None:
         """Take in the snow that an event has brought; `before` is the energy before it."""
         after = self.simulation.energy()
-        self._brought += _in_motion(after) - _in_motion(before)
-        self._thrown += max(after["kinetic_j"] - before["kinetic_j"], 0.0)
-        self._laid += after["gravitational_j"] - before["gravitational_j"]
+        self._motion_input += _motion_energy(after) - _motion_energy(before)
+        self._thrown_energy += max(after["kinetic_j"] - before["kinetic_j"], 0.0)
+        self._initial_potential += after["gravitational_j"] - before["gravitational_j"]
         masses, velocities = self.simulation.masses(), self.simulation.velocities()
         self._mass = float(masses.sum())
         self._momentum = masses @ velocities
-        self._momenta = float(masses @ np.linalg.norm(velocities, axis=1))
+        self._momentum_sum = float(masses @ np.linalg.norm(velocities, axis=1))
 
     def sample(self) -> None:
         """Compare the present mass, momentum and energy with their inputs."""
         energy = self.simulation.energy()
-        work = self._laid - energy["gravitational_j"]
-        excess = _in_motion(energy) - self._brought - work
+        work = self._initial_potential - energy["gravitational_j"]
+        excess = _motion_energy(energy) - self._motion_input - work
         residual = excess + sum(energy[name] for name in _SPENT)
         if not math.isfinite(residual):
             work, excess, residual = 0.0, math.inf, math.inf
-        self._dropped = max(self._dropped, abs(work))
+        self._max_gravity_work = max(self._max_gravity_work, abs(work))
         self._excess = (max(self._excess[0], excess), excess)
         self._residual = (min(self._residual[0], residual), max(self._residual[1], residual))
 
@@ -80,7 +80,7 @@ class Conservation:
             (stored - input).
         """
         least = self._mass * self.gravity * self.dx * MIN_DROP
-        scale = max(self._thrown + self._dropped, least)
+        scale = max(self._thrown_energy + self._max_gravity_work, least)
         low, high = self._residual
         return {
             "energy_error": max(-low, high) / scale,
@@ -94,8 +94,8 @@ class Conservation:
         now = self.simulation.masses() @ self.simulation.velocities()
         fallen = self._mass * self.gravity * time_s
         expected = self._momentum - np.array([0.0, 0.0, fallen])
-        return float(np.linalg.norm(now - expected) / (self._momenta + fallen))
+        return float(np.linalg.norm(now - expected) / (self._momentum_sum + fallen))
 
 
-def _in_motion(energy: dict[str, Any]) -> float:
+def _motion_energy(energy: dict[str, Any]) -> float:
     return float(energy["kinetic_j"] + energy["elastic_j"])

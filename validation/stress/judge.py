@@ -40,7 +40,7 @@ _NAMES = re.compile(
 
 
 def momentum_bound(precision: str, steps: int) -> float:
-    """Return the largest relative error of the momentum: a few roundings in every step.
+    """Return the allowed relative error of the momentum: a few roundings in every step.
 
     Examples
     --------
@@ -65,7 +65,7 @@ def has_cause(message: str) -> bool:
 
 
 def judge(record: Mapping[str, Any]) -> tuple[str, str]:
-    """Return a run's outcome, one of `OUTCOMES`, and where it failed, why."""
+    """Return a run's outcome, one of `OUTCOMES`, and the reason if it failed."""
     ended = str(record["ended"])
     if ended not in OUTCOMES:
         return "failed", f"{ended}: {record['message']}"

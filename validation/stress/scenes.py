@@ -108,14 +108,14 @@ class _SceneOf:
         side = 2 * self.dx
         above = self.thickness + (GAP + 1) * self.dx
         chunk = Shape.sphere(self._vector(centre + above * self._upward()), 0.5 * side)
-        scene.bodies = [self._thrown(chunk, -self._upward())]
+        scene.bodies = [self._thrown_body(chunk, -self._upward())]
 
     def _throw(self, scene: Scene) -> None:
         scene.ground = self._ground()
-        scene.bodies = [self._thrown(self._block(self._above_ground()), self._aslant())]
+        scene.bodies = [self._thrown_body(self._block(self._above_ground()), self._aslant())]
 
     def _coincident(self, scene: Scene) -> None:
-        """Without random numbers, two bodies of one shape get their particles at one place."""
+        """Throw two equal bodies; without random numbers, their particles coincide."""
         self._throw(scene)
         assert scene.seeding is not None and scene.bodies is not None
         scene.seeding.pattern = "regular"
@@ -138,13 +138,13 @@ class _SceneOf:
             )
         ]
         away = 0.5 * math.hypot(self.thickness, self.length) + GAP * self.dx
-        scene.bodies = [self._thrown(self._block(away * self._upward()), -self._upward())]
+        scene.bodies = [self._thrown_body(self._block(away * self._upward()), -self._upward())]
 
     def _collide(self, scene: Scene) -> None:
         apart = np.array([0.5 * (self.length + GAP * self.dx), 0.25 * self.thickness])
         scene.bodies = [
-            self._thrown(self._block(-apart), np.array([0.5, 0.0])),
-            self._thrown(self._block(apart), np.array([-0.5, 0.0])),
+            self._thrown_body(self._block(-apart), np.array([0.5, 0.0])),
+            self._thrown_body(self._block(apart), np.array([-0.5, 0.0])),
         ]
 
     def _single(self, scene: Scene) -> None:
@@ -153,7 +153,7 @@ class _SceneOf:
         per_voxel = int(self.point["particles_per_voxel"])
         edge = 0.999 * self.dx * per_voxel ** (-1.0 / self.dimension)
         cube = Shape.box(self._vector(self._above_ground()), self._vector(np.full(2, edge), edge))
-        scene.bodies = [self._thrown(cube, self._aslant())]
+        scene.bodies = [self._thrown_body(cube, self._aslant())]
 
     # --- parts -------------------------------------------------------------------------------
 
@@ -196,7 +196,7 @@ class _SceneOf:
             friction=float(self.point["friction"]),
         )
 
-    def _thrown(self, shape: Shape, direction: Plane) -> Body:
+    def _thrown_body(self, shape: Shape, direction: Plane) -> Body:
         """Return a body that appears in every event, with the point's speed."""
         return Body(shape=shape, velocity=self._vector(self.speed * direction), event=0)
 

@@ -147,7 +147,7 @@ class _Run:
     def _leaves_a_checkpoint(self) -> bool:
         """Return whether a sound checkpoint remains: the present one, or else the one before.
 
-        A simulation whose particles are no longer sound refuses to be saved, so that the checkpoint
+        A simulation whose particles are no longer sound refuses to be saved, so the checkpoint
         from before stays.
         """
         with tempfile.TemporaryDirectory() as folder:

@@ -126,8 +126,8 @@ def _balances(frame: pd.DataFrame) -> SummaryTable:
                 row[label] = f"{max(float(values.quantile(q)), 0.0):.2g}"
             rows.append({**row, "bound": bound})
     remark = (
-        "Largest error of each run, looked at every 16 steps. Energy is relative to all that came "
-        "in with thrown snow and as work of gravity, momentum to the sum of all momenta. The last "
+        "Largest error of each run, measured every 16 steps. Energy is relative to the whole input "
+        "by thrown snow and work of gravity, momentum to the sum of all momenta. The last "
         "rows matter most: they show energy without a source. The error of the balance is of first "
         "order in the time step; it is largest where few steps cover the whole motion, in soft "
         "snow, and in blows at many times the speed of sound in the snow."
@@ -154,8 +154,8 @@ def _cost(frame: pd.DataFrame) -> SummaryTable:
             }
         )
     remark = (
-        "By Young's modulus. The first step is what the elastic wave and the speed of the snow as "
-        "laid allow; it is shortened where snow gets faster, and by rejection where one step "
+        "Rows by Young's modulus. The elastic wave and the initial speed of the snow limit the "
+        "first step. Steps become shorter if snow gets faster, or if a step is rejected because it "
         "would strain a particle beyond the limit. Wall times are those of tiny scenes, in which "
         "the fixed cost of a step dominates."
     )
@@ -208,7 +208,7 @@ def _failures(frame: pd.DataFrame) -> SummaryTable:
             "point": [json.dumps(_plain(row)) for _, row in failed[names].iterrows()],
         }
     )
-    remark = "Nothing, if all is well; otherwise what `solve` needs to repeat the run."
+    remark = "Failed runs, with the point from which `solve` repeats each; empty if all is well."
     return SummaryTable("failures", "Failures", remark, rows)
 
 

@@ -19,14 +19,14 @@ const Solver& grains_of(const Simulation& sim) {
   return *grains;
 }
 
-/// The rows so far, column by column.
+/// The rows of the curve so far, as columns by name.
 py::dict curve(const Simulation& sim) {
-  grains_of(sim);  // or throws
+  grains_of(sim);  // throws for other methods
   return columns_of(sim.curve()->columns(), sim.curve()->values());
 }
 
-/// Grains that touch: their numbers (n, 2), the place, the force on the first, and whether they are
-/// bonded.
+/// The contacts between grains: the numbers of both grains (n, 2), the position (m), the force on
+/// the first grain (N), and whether the grains are bonded.
 py::tuple contacts(const Simulation& sim) {
   const std::vector<GrainContact> contacts = grains_of(sim).grain_contacts();
   py::array_t<std::int64_t> grains({py::ssize_t(contacts.size()), py::ssize_t(2)});
@@ -43,7 +43,7 @@ py::tuple contacts(const Simulation& sim) {
   return py::make_tuple(grains, rows(points), rows(forces), column<bool>(bonded));
 }
 
-/// Centres of the spheres (n, 3), and the grain that each belongs to.
+/// Centres of the spheres (n, 3), m, and the number of the grain of each.
 py::tuple spheres(const Simulation& sim) {
   return py::make_tuple(rows(grains_of(sim).sphere_positions()),
                         column<std::int64_t>(grains_of(sim).sphere_grains()));
@@ -79,11 +79,12 @@ void bind_labels(py::module_& m) {
   m.attr("min_grain_diameter") = min_grain_diameter;
   m.attr("max_grain_diameter") = max_grain_diameter;
   m.def("check_grain_diameter", &check_grain_diameter, py::arg("median"),
-        "InputError unless the median diameter of grains (m) is that of snow.");
+        "Throws InputError unless the median diameter of grains (m) is that of snow.");
   m.def("label_note", &checked_label_note, py::arg("labels"), py::arg("split"),
-        "Warnings about labels (nz, ny, nx), or an empty text; InputError if they are not labels.");
+        "Warnings about labels (nz, ny, nx), or an empty text. Throws InputError if they are not "
+        "labels.");
   m.def("split_labels", &split_labels, py::arg("labels"),
-        "Labels of which each piece has a number of its own.");
+        "Labels in which each connected piece has a number of its own.");
 }
 
 const AddedBindings added{{&bind_labels, [](SimulationClass& c) {

@@ -52,7 +52,7 @@ py::dict slide_facts(const Simulation& sim) {
   return d;
 }
 
-/// The bonds that hold: ids of their particles (n, 2), and rest lengths (n).
+/// The intact bonds: ids of their particles (n, 2), and rest lengths (n), m.
 py::tuple slide_bonds(const Simulation& sim) {
   const Solver& slide = slide_of(sim);
   const Bonds& bonds = slide.bonds();

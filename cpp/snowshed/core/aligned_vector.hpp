@@ -1,5 +1,6 @@
 // A vector on cache-line boundaries, whose elements `resize` leaves uninitialised: the kernels
-// write them before anything reads them. Others may hold its memory beyond the vector's own use.
+// write them before anything reads them. Other objects may keep its memory when the vector no
+// longer uses it.
 #pragma once
 
 #include <atomic>

@@ -41,7 +41,7 @@ class Pipe {
     ends_[1] = -1;
   }
 
-  /// The bytes that are written until the other end is closed.
+  /// Returns the bytes that are written until the other end is closed.
   std::string drain() {
     std::string all;
     char buffer[1 << 16];

@@ -26,8 +26,8 @@ class SimulationError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// A failure to read or write a file: the file, the action, and the system's number of the reason
-/// (errno; 0 if it gives none).
+/// A failure to read or write a file: the file, the action, and the system's error number (errno; 0
+/// if it gives none).
 class FileError : public std::runtime_error {
  public:
   FileError(std::string file, const std::string& what, int code)

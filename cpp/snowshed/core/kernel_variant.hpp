@@ -12,8 +12,8 @@ KernelVariant kernel_variant();
 /// Returns the name of `kernel_variant()`.
 const char* kernel_variant_name();
 
-/// Returns a sentence on the cost of kernels that are narrower than possible, because of the build
-/// or of the processor; empty if they are not. (benchmarks/results has the times of all kernels.)
+/// Returns a sentence on the cost if the build or the processor has no wider kernels; otherwise an
+/// empty text. (benchmarks/results has the times of all kernels.)
 const char* slow_kernels_note();
 
 }  // namespace snowshed

@@ -95,7 +95,7 @@ std::uint64_t installed_memory_bytes() {
 }  // namespace
 
 std::uint64_t peak_resident_bytes() {
-  // getrusage also counts memory of the parent from before it started this program; this does not.
+  // Unlike getrusage, this does not count the parent's memory from before it started this program.
   if (const Bytes peak = field_in_kilobytes("/proc/self/status", "VmHWM:")) return *peak;
   rusage usage{};
   if (::getrusage(RUSAGE_SELF, &usage) != 0) return 0;

@@ -25,7 +25,8 @@ std::size_t edits(const std::string& a, const std::string& b) {
   return row.back();
 }
 
-/// The length in bytes of the character of UTF-8 that begins at `at`, with its code; 0 for none.
+/// Returns the length in bytes of the UTF-8 character that begins at `at`, and sets its code; 0 if
+/// there is no valid one.
 std::size_t decode(const std::string& text, std::size_t at, std::uint32_t& code) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned char lead = byte(at);
@@ -40,7 +41,8 @@ std::size_t decode(const std::string& text, std::size_t at, std::uint32_t& code)
   return length;
 }
 
-/// Whether a terminal would take a character for a command, or write backwards because of it.
+/// Returns whether a terminal would take a character for a command or for a change of the direction
+/// of writing.
 bool is_control(std::uint32_t code) {
   return code < 0x20 || (code >= 0x7F && code < 0xA0) || code == 0x200E || code == 0x200F ||
          (code >= 0x2028 && code <= 0x202E) || (code >= 0x2066 && code <= 0x2069) ||

@@ -20,13 +20,13 @@ namespace snowshed {
 /// which is OMP_NUM_THREADS or else all cores.
 inline int threads_to_use(int wanted) { return wanted > 0 ? wanted : omp_get_max_threads(); }
 
-/// The threads for a step: no more than `max_threads`, and fewer where each would get less than
-/// `share` of the items.
+/// The number of threads for a step: at most `max_threads`, and fewer if each would get fewer than
+/// `share` items.
 inline int threads_for(std::size_t items, std::size_t share, int max_threads) {
   return int(std::clamp<std::size_t>(items / share, 1, std::size_t(max_threads)));
 }
 
-/// The exception of the first iteration, by index, of those that threw on any thread. An exception
+/// Keeps the exception of the first iteration (by index) that threw on any thread. An exception
 /// that left a parallel region would end the process.
 class FirstException {
  public:
@@ -46,7 +46,8 @@ class FirstException {
   std::exception_ptr exception_;
 };
 
-/// f(i) for i in [begin, end) of a loop that other threads share; ends with the first that throws.
+/// Calls f(i) for i in [begin, end), a part of a loop that other threads share; ends at the first
+/// call that throws.
 template <class F>
 void run_piece(std::ptrdiff_t begin, std::ptrdiff_t end, std::ptrdiff_t stride, F& f,
                FirstException& thrown) noexcept {
@@ -92,10 +93,9 @@ inline std::vector<LoopShare> equal_shares(std::ptrdiff_t n, int threads) {
 }
 #endif
 
-/// f(i) for i in [0, n); threads take `grain` iterations at a time. Each has its own share of the
-/// range, so that it finds the data of the last loop in its cache. When it has done its own share
-/// it helps with those of the others. Where memory for this is short, it throws before the first
-/// iteration.
+/// Calls f(i) for i in [0, n); threads take `grain` iterations at a time. Each thread begins with
+/// its own share of the range, whose data the last loop left in its cache, and then helps with the
+/// shares of the others. If memory for the shares is short, throws before the first iteration.
 template <class F>
 void parallel_for_dynamic(std::ptrdiff_t n, int threads, [[maybe_unused]] int grain, F f) {
 #ifdef SNOWSHED_STD_THREADS
@@ -135,8 +135,8 @@ void parallel_for_static(std::ptrdiff_t n, int threads, F f) {
 #endif
 }
 
-/// f(begin, end) for pieces of at most `piece` iterations each, which do not depend on the
-/// number of threads. f must not throw. Allocates nothing.
+/// Calls f(begin, end) for pieces of at most `piece` iterations each. The pieces do not depend on
+/// the number of threads. f must not throw. Allocates nothing.
 template <class F>
 void parallel_pieces(std::ptrdiff_t n, int threads, std::ptrdiff_t piece, F f) {
   const std::ptrdiff_t pieces = (n + piece - 1) / piece;

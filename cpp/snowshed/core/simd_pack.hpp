@@ -67,7 +67,7 @@ inline constexpr bool is_simd_pack = !std::is_floating_point_v<V>;
 template <class V>
 inline constexpr int lane_count = int(sizeof(V) / sizeof(Scalar<V>));
 
-/// A value as a pack: all lanes equal to it, or the pack itself where it is one already.
+/// Returns a scalar as a pack with this value in all lanes; returns a pack unchanged.
 template <class V, class C>
 SNOWSHED_INLINE V broadcast(const C& value) {
   if constexpr (std::is_same_v<V, C>)
@@ -84,7 +84,7 @@ SNOWSHED_INLINE V select(const M& mask, const V& a, const V& b) {
   return mask ? a : b;
 }
 
-/// The lanes combined, a half with the other half until one is left.
+/// Combines the lanes: one half with the other, until a single lane is left.
 template <class V, class Combine, int... lane>
 SNOWSHED_INLINE auto combine_lanes(const V& x, Combine combine,
                                    std::integer_sequence<int, lane...>) {
@@ -186,8 +186,8 @@ SNOWSHED_INLINE void exchange(V& a, V& b, std::integer_sequence<int, lane...>) {
   a = first;
 }
 
-/// a and b become their even and odd halves of {a0 b0 a1 b1 ...}, within each four lanes: one
-/// instruction each.
+/// Interleaves a and b within each four lanes: a becomes {a0 b0 a1 b1} and b becomes {a2 b2 a3 b3},
+/// by one instruction each.
 template <class V, int... lane>
 SNOWSHED_INLINE void interleave(V& a, V& b, std::integer_sequence<int, lane...>) {
   constexpr int n = int(sizeof...(lane));
@@ -207,8 +207,8 @@ SNOWSHED_INLINE void exchange_rows(V (&rows)[n]) {
   }
 }
 
-/// Transposes a square of as many packs as they have lanes: lane j of row i becomes lane i of row
-/// j. With fewer packs, each square block is transposed.
+/// Transposes n packs of n lanes: lane j of row i becomes lane i of row j. If the packs have more
+/// lanes, each square block is transposed.
 template <class V, int n>
 SNOWSHED_INLINE void transpose(V (&rows)[n]) {
   static_assert(lane_count<V> % n == 0);
@@ -229,7 +229,7 @@ SNOWSHED_INLINE void transpose(V (&rows)[n]) {
   }
 }
 
-/// In each lane whether it is one of the first n.
+/// Returns a mask that is set in the first n lanes.
 template <class V, int... lane>
 SNOWSHED_INLINE auto first_lanes(int n, std::integer_sequence<int, lane...>) {
   using Mask = decltype(V{} < V{});
@@ -241,7 +241,8 @@ SNOWSHED_INLINE auto first_lanes(int n) {
   return first_lanes<V>(n, std::make_integer_sequence<int, lane_count<V>>());
 }
 
-/// The first n lanes from memory, the others from `rest`, without touching the memory behind them.
+/// Loads the first n lanes from memory and takes the others from `rest`, without touching memory
+/// behind the n values.
 template <class V>
 SNOWSHED_INLINE V load_first(const Scalar<V>* p, int n, const V& rest) {
   [[maybe_unused]] constexpr bool single = sizeof(Scalar<V>) == 4;

@@ -26,8 +26,9 @@ SNOWSHED_INLINE Quad load_row(const double* p) {
 }
 SNOWSHED_INLINE void store_row(double* p, const Quad& v) { std::memcpy(p, &v, sizeof v); }
 
-/// 1/sqrt(x) for 1e-37 < x < 1e37, to the last digit or two: an estimate that the processor gives,
-/// improved. A root and a division would take several times as long. With e = 1 - x y^2, 1/sqrt(x)
+/// 1/sqrt(x) for 1e-37 < x < 1e37, with an error of one or two units in the last digit. It improves
+/// the processor's estimate y, because a root and a division would take several times as long. With
+/// e = 1 - x y^2, 1/sqrt(x)
 /// is y (1 - e)^(-1/2) = y (1 + e/2 + 3 e^2/8 + 5 e^3/16 + ...). The series is truncated where an
 /// estimate with a relative error below 2^-14 reaches 2^-53. A less accurate estimate first takes
 /// one Newton step (the first two terms).

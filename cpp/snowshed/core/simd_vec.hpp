@@ -29,7 +29,7 @@ template <class V>
 SNOWSHED_INLINE SimdVec<V> cross(const SimdVec<V>& a, const SimdVec<V>& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-/// Those of `a` where the mask is set, those of `b` elsewhere.
+/// Returns the components of `a` where the mask is set, and those of `b` elsewhere.
 template <class Mask, class V>
 SNOWSHED_INLINE SimdVec<V> select(const Mask& mask, const SimdVec<V>& a, const SimdVec<V>& b) {
   return {select(mask, a.x, b.x), select(mask, a.y, b.y), select(mask, a.z, b.z)};

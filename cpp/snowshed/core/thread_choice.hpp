@@ -1,4 +1,4 @@
-// Number of threads for a short step: as many as make it faster, as trials show.
+// Chooses the number of threads for short steps by trials.
 #pragma once
 
 #include <algorithm>
@@ -37,7 +37,7 @@ class ThreadChoice {
     // On cores that other programs use, threads wait long: give up after two trials that took twice
     // the time.
     if (step_ == trials + 1) gave_up_ = std::min(spent, seconds_[1][0]) > 2 * with_one_;
-    if (step_ + 1 == 2 * trials) many_ = median(seconds_[1]) < worthwhile * with_one_;
+    if (step_ + 1 == 2 * trials) many_ = median(seconds_[1]) < max_time_ratio * with_one_;
     trial_ = false;
   }
 
@@ -45,7 +45,7 @@ class ThreadChoice {
   using Clock = std::chrono::steady_clock;
   // Steps. The first trials are soon repeated: a program that has just begun is slower.
   static constexpr std::size_t first_period = 64, max_period = 1024, trials = 9;
-  static constexpr double worthwhile = 0.9;  // share of the time with one thread
+  static constexpr double max_time_ratio = 0.9;  // share of the time with one thread
   using Times = std::array<double, trials>;
 
   static double median(Times times) {
@@ -54,9 +54,9 @@ class ThreadChoice {
   }
 
   std::size_t period_ = first_period;  // number of steps between trials
-  std::size_t steps_ = 0, step_ = 0;   // since this trial began: steps begun, and the present one
+  std::size_t steps_ = 0, step_ = 0;   // since the trials began: steps begun, and the present one
   bool trial_ = false, many_ = false, gave_up_ = false;
-  double with_one_ = 0;  // s
+  double with_one_ = 0;  // time of a step with one thread, s
   Clock::time_point begin_;
   std::array<Times, 2> seconds_{};  // times of the trials, s: with one thread and with many
 };

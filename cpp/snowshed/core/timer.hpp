@@ -5,7 +5,7 @@
 
 namespace snowshed {
 
-/// Runs from its construction.
+/// A clock that starts at its construction.
 class Stopwatch {
  public:
   /// Seconds since construction or the last `restart`.

@@ -25,7 +25,7 @@
   }
 
 #define SNOWSHED_INLINE inline __attribute__((always_inline))
-// Arrays of packs stay in registers only where the loops over them are taken apart early.
+// Arrays of packs stay in registers only if the loops over them are unrolled early.
 #if defined(__clang__)
 #define SNOWSHED_UNROLL _Pragma("clang loop unroll(full)")
 #else

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double min_cliff = 10;       // m; lower ones are rocks and walls in fine rasters
 constexpr double max_cliff = 100;      // m
-constexpr double max_rock_slope = 80;  // degrees, of faces that are higher than that
+constexpr double max_rock_slope = 80;  // degrees, of faces higher than `max_cliff`
 
 /// Two neighbouring nodes, the second one in the east or in the north of the first.
 struct HeightStep {

@@ -8,14 +8,14 @@
 
 namespace snowshed {
 
-/// Describes the first step between neighbouring nodes that no ground has: more than 100 m at more
-/// than 80 degrees and `max_slope`, or more than 10 m from exactly 0 m at more than `max_slope`
-/// degrees. Returns an empty text if there is none.
+/// Describes the first step between neighbouring nodes that is impossible on ground: more than 100
+/// m at more than 80 degrees and `max_slope`, or more than 10 m from exactly 0 m at more than
+/// `max_slope` degrees. Returns an empty text if there is none.
 std::string impossible_cliff(const HeightField& field, double max_slope);
 
-/// Describes the first step between neighbouring nodes in or beside an area that is higher than 10
-/// m and steeper than `max_slope` degrees. Returns an empty text if there is none. The area is
-/// given from the south-west node.
+/// Describes the first step higher than 10 m and steeper than `max_slope` degrees between
+/// neighbouring nodes in or beside an area. Returns an empty text if there is none. Coordinates of
+/// the area begin at the south-west node.
 std::string cliff_under(const Polygon& area, const HeightField& field, double max_slope);
 
 }  // namespace snowshed

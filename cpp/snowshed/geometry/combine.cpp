@@ -21,9 +21,9 @@ std::pair<const LevelSet*, double> nearest(const std::vector<Shape>& shapes, con
   return {best, smallest};
 }
 
-Bounds varied_bounds_of(const std::vector<Shape>& shapes) {
+Bounds non_planar_bounds_of(const std::vector<Shape>& shapes) {
   Bounds result = no_bounds();
-  for (const Shape& shape : shapes) result = unite(result, shape->varied_bounds());
+  for (const Shape& shape : shapes) result = unite(result, shape->non_planar_bounds());
   return result;
 }
 
@@ -55,7 +55,7 @@ class Union final : public LevelSet {
     return result;
   }
 
-  Bounds varied_bounds() const override { return varied_bounds_of(shapes_); }
+  Bounds non_planar_bounds() const override { return non_planar_bounds_of(shapes_); }
 
  private:
   std::vector<Shape> shapes_;
@@ -78,8 +78,8 @@ class Difference final : public LevelSet {
   Bounds bounds() const override { return first_->bounds(); }
   double inradius() const override { return first_->inradius(); }
 
-  Bounds varied_bounds() const override {
-    const Bounds all = unite(first_->varied_bounds(), varied_bounds_of(others_));
+  Bounds non_planar_bounds() const override {
+    const Bounds all = unite(first_->non_planar_bounds(), non_planar_bounds_of(others_));
     const Bounds within = first_->bounds();
     return {all.min.cwiseMax(within.min), all.max.cwiseMin(within.max)};
   }
@@ -97,8 +97,8 @@ class Transformed final : public LevelSet {
   double distance(const Vec3& x) const override { return shape_->distance(local(x)); }
   Vec3 normal(const Vec3& x) const override { return rotation_ * shape_->normal(local(x)); }
   Bounds bounds() const override { return moved(shape_->bounds(), rotation_, translation_); }
-  Bounds varied_bounds() const override {
-    return moved(shape_->varied_bounds(), rotation_, translation_);
+  Bounds non_planar_bounds() const override {
+    return moved(shape_->non_planar_bounds(), rotation_, translation_);
   }
   double inradius() const override { return shape_->inradius(); }
   double half_thickness(const Vec3& x) const override { return shape_->half_thickness(local(x)); }
@@ -125,7 +125,9 @@ class Dilated final : public LevelSet {
   double distance(const Vec3& x) const override { return shape_->distance(x) - offset_; }
   Vec3 normal(const Vec3& x) const override { return shape_->normal(x); }
   Bounds bounds() const override { return expanded(shape_->bounds(), offset_); }
-  Bounds varied_bounds() const override { return expanded(shape_->varied_bounds(), offset_); }
+  Bounds non_planar_bounds() const override {
+    return expanded(shape_->non_planar_bounds(), offset_);
+  }
   double inradius() const override { return shape_->inradius() + offset_; }
   double half_thickness(const Vec3& x) const override {
     return shape_->half_thickness(x) + offset_;

@@ -21,7 +21,7 @@ class DisjointSets {
     while (parents_[i] != i) i = parents_[i] = parents_[parents_[i]];
     return i;
   }
-  /// The smaller root stays.
+  /// Merges the sets of a and b; the smaller root stays the root.
   void merge(std::uint32_t a, std::uint32_t b) {
     a = root(a);
     b = root(b);
@@ -67,12 +67,12 @@ std::vector<EdgeUse> around_edge(const TriangleMesh& mesh, const EdgeUse* first,
     return Vec3(r - r.dot(axis) * axis);
   };
   const Vec3 x = away(*first).normalized(), y = axis.cross(x);
-  constexpr double same = 1e-9;  // rad; faces that coincide
+  constexpr double angle_tolerance = 1e-9;  // rad; faces that coincide
   std::vector<std::pair<double, EdgeUse>> uses;
   for (const EdgeUse* use = first; use != end; ++use) {
     const Vec3 r = away(*use);
     double angle = std::atan2(r.dot(y), r.dot(x));
-    if (angle < -same) angle += 2 * pi;
+    if (angle < -angle_tolerance) angle += 2 * pi;
     uses.emplace_back(angle, *use);
   }
   std::stable_sort(uses.begin(), uses.end(),
@@ -80,7 +80,7 @@ std::vector<EdgeUse> around_edge(const TriangleMesh& mesh, const EdgeUse* first,
   // Where faces coincide, one solid ends before the next begins.
   for (auto begin = uses.begin(); begin != uses.end();) {
     auto last = begin + 1;
-    while (last != uses.end() && last->first - (last - 1)->first < same) ++last;
+    while (last != uses.end() && last->first - (last - 1)->first < angle_tolerance) ++last;
     std::stable_partition(begin, last, [](const auto& use) { return use.second.upward; });
     begin = last;
   }
@@ -91,7 +91,7 @@ std::vector<EdgeUse> around_edge(const TriangleMesh& mesh, const EdgeUse* first,
 
 /// Calls pair(use, use) for the triangles that are neighbours at an edge. Seen along the edge, the
 /// solid begins at a triangle that passes it downward and ends at one that passes it upward, as
-/// angles grow. So they match as parentheses do.
+/// angles grow. The triangles therefore match like parentheses.
 template <class Pair>
 void pair_neighbours(const TriangleMesh& mesh, const EdgeUse* first, const EdgeUse* end,
                      Pair pair) {
@@ -116,7 +116,7 @@ void pair_neighbours(const TriangleMesh& mesh, const EdgeUse* first, const EdgeU
   }
 }
 
-/// Corners of triangles that are one vertex, and triangles that are one shell.
+/// Sets of triangle corners that form a vertex, and of triangles that form a shell.
 struct Connections {
   DisjointSets corners, triangles;
 };

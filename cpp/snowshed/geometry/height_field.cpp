@@ -17,7 +17,7 @@ std::array<double, 4> cubic_weights(double t) {
           0.5 * t3 - 0.5 * t2};
 }
 
-/// The height at a node; outside the grid, extrapolated linearly from the two nodes at the border.
+/// The height at a node. Outside the grid it is extrapolated linearly from two nodes at the border.
 double height_beyond(const HeightField& f, int column, int row) {
   if (column < 0) return 2 * height_beyond(f, 0, row) - height_beyond(f, 1, row);
   if (column >= f.columns)
@@ -27,7 +27,7 @@ double height_beyond(const HeightField& f, int column, int row) {
   return f.height(column, row);
 }
 
-double bicubic(const HeightField& f, const GridPlace& p) {
+double bicubic(const HeightField& f, const CellPosition& p) {
   const auto along = cubic_weights(p.east), up = cubic_weights(p.north);
   double sum = 0;
   for (int j = 0; j < 4; ++j)
@@ -36,16 +36,16 @@ double bicubic(const HeightField& f, const GridPlace& p) {
   return sum;
 }
 
-double bilinear(const HeightField& f, const GridPlace& p) {
+double bilinear(const HeightField& f, const CellPosition& p) {
   const auto row = [&](int j) {
     return (1 - p.east) * f.height(p.column, j) + p.east * f.height(p.column + 1, j);
   };
   return (1 - p.north) * row(p.row) + p.north * row(p.row + 1);
 }
 
-/// As `place_in`, but the last row and column belong to the cells before them.
-GridPlace place_on(const HeightField& f, double x, double y) {
-  GridPlace p;
+/// Finds the cell of a point within the field; the last row and column belong to the cells before.
+CellPosition find_cell_with_border(const HeightField& f, double x, double y) {
+  CellPosition p;
   p.column = std::min(int(x), f.columns - 2);
   p.row = std::min(int(y), f.rows - 2);
   p.east = x - p.column;
@@ -69,7 +69,8 @@ HeightField resampled(const HeightField& field, double cell) {
   fine.heights.resize(std::size_t(fine.columns) * std::size_t(fine.rows));
   for (int row = 0; row < fine.rows; ++row)
     for (int column = 0; column < fine.columns; ++column) {
-      const GridPlace p = place_on(field, column * cell / field.cell, row * cell / field.cell);
+      const CellPosition p =
+          find_cell_with_border(field, column * cell / field.cell, row * cell / field.cell);
       const double z = bicubic(field, p);
       fine.heights[fine.index(column, row)] = std::isnan(z) ? bilinear(field, p) : z;
     }

@@ -23,29 +23,30 @@ struct HeightField {
   double length() const { return (rows - 1) * cell; }
 };
 
-/// Where a point lies in a grid: its cell and how far from the cell's south-west node, 0 to 1.
-struct GridPlace {
+/// Position of a point in a grid: its cell, and its distances from the cell's south-west node in
+/// cells, 0 to 1.
+struct CellPosition {
   int column = -1, row = -1;  // -1: outside
   double east = 0, north = 0;
 
   bool inside() const { return column >= 0; }
 };
 
-/// The place of a point given from the south-west node, in cells. Points on the last row or column
-/// are outside, as no cell begins there.
-inline GridPlace place_in(double x, double y, int columns, int rows) {
-  GridPlace place;
-  if (!(x >= 0 && y >= 0 && x < columns - 1 && y < rows - 1)) return place;
-  place.column = int(x);
-  place.row = int(y);
-  place.east = x - place.column;
-  place.north = y - place.row;
-  return place;
+/// Finds the cell of a point, whose distances from the south-west node are given in cells. Points
+/// on the last row or column are outside, because no cell begins there.
+inline CellPosition find_cell(double x, double y, int columns, int rows) {
+  CellPosition position;
+  if (!(x >= 0 && y >= 0 && x < columns - 1 && y < rows - 1)) return position;
+  position.column = int(x);
+  position.row = int(y);
+  position.east = x - position.column;
+  position.north = y - position.row;
+  return position;
 }
 
-/// The field on a grid of another cell size with the same south-west node: bicubic where all
-/// sixteen heights around are known, bilinear where only four are, NaN elsewhere. It covers the
-/// field and no more. Throws InputError if the new grid would have more than 2^31 nodes.
+/// Interpolates a field on a grid of another cell size with the same south-west node: bicubic where
+/// all sixteen heights around a node are known, bilinear where only four are, NaN elsewhere. The
+/// grid does not reach beyond the field. Throws InputError if it would have more than 2^31 nodes.
 HeightField resampled(const HeightField& field, double cell);
 
 }  // namespace snowshed

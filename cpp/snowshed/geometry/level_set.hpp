@@ -38,7 +38,7 @@ class LevelSet {
 
   /// Returns bounds of the part in which the surface is not a plane: finite for a half-space with a
   /// pit.
-  virtual Bounds varied_bounds() const { return bounds(); }
+  virtual Bounds non_planar_bounds() const { return bounds(); }
 
   /// Returns the greatest depth below the surface, metres (infinite for a half-space).
   virtual double inradius() const = 0;
@@ -48,7 +48,7 @@ class LevelSet {
   virtual double half_thickness(const Vec3& /*x*/) const { return inradius(); }
 
   /// Returns a lower bound of half of the thickness anywhere, metres; 0 if none is known. Contact
-  /// uses it to leave solids alone that the grid resolves.
+  /// uses it to skip solids that the grid resolves.
   virtual double min_half_thickness() const { return is_convex() ? inradius() : 0.0; }
 
   virtual bool is_convex() const { return false; }

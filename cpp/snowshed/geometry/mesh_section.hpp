@@ -13,10 +13,11 @@ namespace snowshed {
 /// Meshes that do not meet the plane give none.
 ///
 /// Where faces, edges or corners lie in the plane, or nearer to it than a millionth of the solid's
-/// size, the section is that beside them, on the side where it is larger. So a solid that ends at
-/// the plane is as large in two dimensions as it is just behind its end.
+/// size, the section is taken just beside them, on the side where it is larger. A solid that ends
+/// at the plane is thus as large in two dimensions as just inside its end.
 ///
-/// Throws InputError at `where` if no mesh meets the plane; it says where along y the solid lies.
+/// Throws InputError at `where` if no mesh meets the plane; the message gives the solid's extent
+/// along y.
 std::vector<TriangleMesh> sections_at_y0(const std::vector<TriangleMesh>& meshes,
                                          const std::string& where);
 

@@ -40,14 +40,14 @@ void turn(TriangleMesh& mesh) {
   for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
 }
 
-/// A shell that faces outward, and its place among the others.
+/// A shell that faces outward, and its relation to the others.
 struct Shell {
   TriangleMesh mesh;
   Bounds bounds;
   double volume;                        // m3
   int sense;                            // sense in the file: 1 outward, -1 inward
   std::vector<std::size_t> containers;  // shells around it, from the smallest to the largest
-  Shape solid;                          // where it may contain others
+  Shape solid;                          // made when the shell may contain others
 };
 
 /// Orders the shells by volume, and omits those without volume.
@@ -162,8 +162,8 @@ double winding_number(const TriangleMesh& mesh, const Vec3& x) {
   return sum / (4 * pi);
 }
 
-/// Samples of the surface must have the solid on one side of them, and nothing on the other. Where
-/// two sheets coincide, as at a cut that joins a hole to an outline, both sides are the same.
+/// Checks samples of the surface: the solid must lie on one side of them, and nothing on the other.
+/// Where two sheets coincide, as at a cut that joins a hole to an outline, both sides are the same.
 void check_sides(const TriangleMesh& mesh, const std::string& where) {
   constexpr std::size_t work = 20'000'000, min_samples = 8, max_samples = 100;
   const std::size_t n = mesh.triangles.size();
@@ -231,7 +231,7 @@ ShellSolid solid_of_shells(const TriangleMesh& mesh, const std::string& where) {
   return solid;
 }
 
-TriangleMesh joined(const ShellSolid& solid) {
+TriangleMesh merged_layers(const ShellSolid& solid) {
   TriangleMesh mesh;
   for (const TriangleMesh& layer : solid.layers) append(layer, mesh);
   return mesh;

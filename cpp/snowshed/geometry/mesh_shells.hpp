@@ -17,13 +17,13 @@ struct ShellSolid {
 /// Returns the solid bounded by `mesh`, which must satisfy require_closed.
 ///
 /// A shell is a part of the surface that is connected by edges. Where more than two triangles share
-/// an edge, those are neighbours that have the solid between them, so that solids that touch along
-/// an edge or a face are shells of their own.
+/// an edge, two of them are neighbours if the solid lies between them. Solids that touch along an
+/// edge or a face are therefore separate shells.
 ///
-/// - A shell that lies in no other faces outward, even if the file turns it inward.
-/// - Shells within others count by the rule of non-zero winding: one that turns the opposite way as
-///   the shell around it is a cavity, a shell in a cavity is solid again, and one that turns the
-///   same way lies in the solid and bounds nothing.
+/// - A shell that lies in no other shell faces outward, even if the file turns it inward.
+/// - Shells within others follow the rule of non-zero winding. If a shell is turned opposite to the
+///   shell around it, it is a cavity, and a shell in a cavity is solid again. If both are turned
+///   the same way, the inner shell lies in the solid and bounds nothing.
 /// - Shells that overlap are united.
 /// - Shells without volume, such as sheets with two faces, are left out.
 ///
@@ -32,6 +32,6 @@ struct ShellSolid {
 ShellSolid solid_of_shells(const TriangleMesh& mesh, const std::string& where);
 
 /// Returns all triangles of a solid's layers as one mesh.
-TriangleMesh joined(const ShellSolid& solid);
+TriangleMesh merged_layers(const ShellSolid& solid);
 
 }  // namespace snowshed

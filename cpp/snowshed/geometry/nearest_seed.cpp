@@ -36,7 +36,7 @@ void NearestSeed::offer_to_cell(std::uint32_t seed) {
   }
 }
 
-/// Visits every node after those neighbours of it from which the sweep comes.
+/// Visits the nodes in the direction of the sweep, each one after its neighbours upstream.
 void NearestSeed::sweep(int di, int dj, int dk) {
   const auto start = [](int d, std::int64_t n) { return d > 0 ? 0 : n - 1; };
   Index n;

@@ -21,7 +21,7 @@ Point2 offset_vector(const Point2& from, const Point2& to, double distance) {
 
 Point2 plus(const Point2& a, const Point2& b) { return {a[0] + b[0], a[1] + b[1]}; }
 
-/// A point on the way from a to b.
+/// The point at the given part of the way from a to b.
 Point2 between(const Point2& a, const Point2& b, double part) {
   return {a[0] + (b[0] - a[0]) * part, a[1] + (b[1] - a[1]) * part};
 }
@@ -118,7 +118,7 @@ Ring widened(const Ring& ring, double distance) {
 
 bool crosses_itself(const Ring& ring) {
   const std::size_t n = ring.size();
-  // Edges by their westernmost point, so that only those are compared that overlap along x.
+  // Edges in the order of their westernmost points: only edges that overlap along x are compared.
   std::vector<std::size_t> order(n);
   std::iota(order.begin(), order.end(), 0u);
   const auto from = [&](std::size_t e) -> const Point2& { return ring[e]; };

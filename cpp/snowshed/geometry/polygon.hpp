@@ -27,17 +27,17 @@ double twice_signed_area(const Ring& ring);
 /// The area of a ring within a rectangle, m2 (clipped edge by edge: Sutherland and Hodgman 1974).
 double area_within(const Ring& ring, const Point2& low, const Point2& high);
 
-/// The same of a polygon, without its holes.
+/// The same for a polygon, without its holes.
 double area_within(const Polygon& polygon, const Point2& low, const Point2& high);
 
 /// The ring with every edge moved outward by a distance (> 0, m) and the corners mitred; where a
 /// mitre would reach farther than four distances it is cut off.
 Ring widened(const Ring& ring, double distance);
 
-/// The same toward the left of the ring's direction where `distance` < 0, the right where > 0.
+/// The same, with the edges moved to the right of the ring's direction, or left if `distance` < 0.
 Ring offset_ring(const Ring& ring, double distance);
 
-/// Whether two edges of a ring cross or touch, other than neighbours at their common corner.
+/// Whether two edges of a ring cross or touch anywhere except at a corner that they share.
 bool crosses_itself(const Ring& ring);
 
 }  // namespace snowshed

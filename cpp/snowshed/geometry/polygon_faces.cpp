@@ -10,7 +10,7 @@
 namespace snowshed {
 namespace {
 
-/// Comparisons of a corner with an ear, over all faces of a file: some seconds.
+/// Comparisons of a corner with an ear, over all faces of a file; they take some seconds.
 constexpr std::size_t max_comparisons = 300'000'000;
 
 /// The corners of a face as they lie in a plane, counter-clockwise.
@@ -28,7 +28,7 @@ Vec3 area_vector(const std::vector<Vec3>& vertices, const Face& face) {
   return sum;
 }
 
-/// Drops the coordinate in which the area vector is largest, which rounds nothing.
+/// Projects a face along the axis nearest to its area vector, which rounds nothing.
 Outline flattened(const std::vector<Vec3>& vertices, const Face& face, const Vec3& area) {
   int away;
   area.cwiseAbs().maxCoeff(&away);
@@ -40,7 +40,7 @@ Outline flattened(const std::vector<Vec3>& vertices, const Face& face, const Vec
   return outline;
 }
 
-/// Drops repeated corners, and begins with that of the smallest coordinates.
+/// Drops repeated corners, and begins with the corner of the smallest coordinates.
 Face without_repetitions(const std::vector<Vec3>& vertices, const Face& face) {
   Face corners;
   for (const std::uint32_t corner : face)
@@ -64,7 +64,7 @@ bool is_convex(const Outline& outline) {
   const std::size_t n = p.size();
   for (std::size_t i = 0; i < n; ++i)
     if (!(orientation(p[i], p[(i + 1) % n], p[(i + 2) % n]) > 0)) return false;
-  for (std::size_t i = 2; i + 1 < n; ++i)  // turns around but once
+  for (std::size_t i = 2; i + 1 < n; ++i)  // turns around only once
     if (!(orientation(p[0], p[i], p[i + 1]) > 0)) return false;
   return true;
 }
@@ -112,12 +112,12 @@ class EarClipper {
     --left_;
   }
 
-  /// Whether no other corner lies in the triangle at i or on its border, or keeps i from being cut
-  /// off because the outline comes back to the same point and goes on into the triangle.
+  /// Whether the triangle at i can be cut off. No other corner may lie in it or on its border. A
+  /// corner at the point of i itself is allowed unless its edges lead into the triangle.
   bool is_ear(std::size_t i) {
     const std::size_t first = before_[i], last = after_[i];
     const Point2 &a = p_[first], &b = p_[i], &c = p_[last];
-    if (a == c) return true;  // to a point and back
+    if (a == c) return true;  // the outline leads to a point and back
     if (!(orientation(a, b, c) > 0)) return false;
     for (std::size_t k = after_[last]; k != first; k = after_[k]) {
       if (++comparisons_ > max_comparisons) return false;
@@ -147,7 +147,7 @@ class EarClipper {
     return true;
   }
 
-  /// Triangles without area keep the neighbouring faces connected.
+  /// Cuts the rest into triangles without area, which keep the neighbouring faces connected.
   bool fan(std::size_t i, std::vector<Triangle>& triangles) {
     while (left_ > 2) cut(after_[i], triangles);
     return true;

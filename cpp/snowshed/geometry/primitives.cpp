@@ -27,7 +27,7 @@ class Plane final : public Convex {
   double distance(const Vec3& x) const override { return (x - point_).dot(normal_); }
   Vec3 normal(const Vec3&) const override { return normal_; }
   Bounds bounds() const override { return unbounded(); }
-  Bounds varied_bounds() const override { return no_bounds(); }
+  Bounds non_planar_bounds() const override { return no_bounds(); }
   double inradius() const override { return infinity; }
 
  private:

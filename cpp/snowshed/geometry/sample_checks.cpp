@@ -13,15 +13,15 @@
 namespace snowshed {
 namespace {
 
-/// Neighbouring samples of an exact distance differ by at most the spacing. Approximate distances
-/// may differ by this factor more.
+/// Neighbouring samples of an exact distance differ by at most the spacing; those of approximate
+/// distances may differ by the spacing times this factor.
 constexpr double slope_tolerance = 1.25;
-/// Over all of the surface the mean slope of a distance is 1; below this it is none.
+/// The mean slope of a distance over the whole surface is 1; values below this are no distances.
 constexpr double min_slope = 0.6;
 
 using Sample = std::array<std::size_t, 3>;
 
-std::string place(const Sample& at) {
+std::string sample_name(const Sample& at) {
   std::ostringstream text;
   text << "sample [" << at[0] << "][" << at[1] << "][" << at[2] << "]";
   return text.str();
@@ -50,8 +50,8 @@ void check_slopes(const GridSamples& s, const std::string& where) {
       const double step = std::abs(double(value_at(s, at)) - value_at(s, next));
       if (step <= slope_tolerance * s.spacing) return;
       std::ostringstream what;
-      what << place(std::max(at, next)) << " differs from its neighbour by " << step << " m over "
-           << s.spacing << " m: not a signed distance in metres";
+      what << sample_name(std::max(at, next)) << " differs from its neighbour by " << step
+           << " m over " << s.spacing << " m: not a signed distance in metres";
       throw InputError(where, what.str());
     });
   });
@@ -118,9 +118,9 @@ double mean_slope_at_surface(const GridSamples& s) {
   return count > 0 ? sum / double(count) : 1.0;
 }
 
-/// The largest and the smallest value where these were cut off.
+/// The magnitudes of the largest and the smallest value if values were cut off there, or infinity.
 Band cut_off(const GridSamples& s) {
-  // Distances by other norms have some level samples in corners.
+  // Distances in other norms have some samples in corners that equal all their neighbours.
   constexpr std::size_t min_level_samples = 4;
   const auto [low, high] = std::minmax_element(s.values.begin(), s.values.end());
   if (!(*low < 0) || !(*high > 0)) return {infinity, infinity};
@@ -160,7 +160,7 @@ void require_counts(const GridSamples& s, const std::string& where) {
   if (total != s.values.size()) throw InputError(where, "the counts do not fit the values");
   s.for_each([&](std::size_t i, std::size_t j, std::size_t k) {
     if (!std::isfinite(s.values[s.index(i, j, k)]))
-      throw InputError(where, place({i, j, k}) + " is not finite");
+      throw InputError(where, sample_name({i, j, k}) + " is not finite");
   });
 }
 
@@ -193,16 +193,16 @@ void repair_distances(GridSamples& samples, const std::string& where,
 
 GridSamples samples_at_y0(const GridSamples& s, const std::string& where) {
   if (s.is_flat()) return s;
-  const double place = -s.origin.y() / s.spacing, last = double(s.counts[1] - 1);
+  const double plane = -s.origin.y() / s.spacing, last = double(s.counts[1] - 1);
   constexpr double rounding = 1e-6;
-  if (!(place >= -rounding && place <= last + rounding)) {
+  if (!(plane >= -rounding && plane <= last + rounding)) {
     std::ostringstream text;
     text << "the grid lies between y = " << s.origin.y() << " and "
          << s.origin.y() + s.spacing * last
          << " m and does not reach the plane y = 0 of a two-dimensional scene";
     throw InputError(where, text.str());
   }
-  const double inside = std::clamp(place, 0.0, last);
+  const double inside = std::clamp(plane, 0.0, last);
   const std::size_t low = std::min(std::size_t(inside), s.counts[1] - 2);
   const double part = inside - double(low);
   GridSamples section{s.origin, s.spacing, {s.counts[0], 1, s.counts[2]}, {}};

@@ -12,19 +12,19 @@ namespace snowshed {
 void require_counts(const GridSamples& samples, const std::string& where);
 
 /// Throws InputError at `where` if no value is negative; if neighbours differ by clearly more than
-/// the spacing, because a distance cannot; or if the sign is the other way round. The sign is the
-/// other way round if the solid would fill most of the border of the grid and most of its top, and
-/// either nothing of its bottom, or the largest value is neither at its sides nor at its top. The
-/// samples must satisfy require_counts.
+/// the spacing, because a distance cannot; or if the sign is the other way round. The sign is taken
+/// to be the other way round if most values at the border of the grid and most at its top are
+/// negative, and either none at its bottom is, or the largest value is neither at the sides nor at
+/// the top. The samples must satisfy require_counts.
 void require_distances(const GridSamples& samples, const std::string& where);
 
-/// Replaces values that are no distances, where the surface is known, and adds a note on it.
+/// Replaces values that are no distances by distances to the surface (rebuild_distance), and adds a
+/// note on the change.
 ///
-/// - Values that were cut off, as those of a narrow band are: the largest or the smallest value
-///   recurs on all neighbours of a sample, as no distance does. They become distances
-///   (rebuild_distance).
-/// - All values, if they change at the surface by less than 0.6 over a distance of 1: they are in
-///   another unit, or no distances at all.
+/// - Values that were cut off, as in a narrow band, are replaced. There the largest or the smallest
+///   value is also that of all neighbours, as in no distance.
+/// - All values are replaced if they change at the surface by less than 0.6 over a distance of 1:
+///   they are in another unit, or no distances at all.
 ///
 /// The samples must satisfy require_counts.
 void repair_distances(GridSamples& samples, const std::string& where,

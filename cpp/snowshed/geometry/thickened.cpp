@@ -34,7 +34,7 @@ class Thickened final : public LevelSet {
 
   double distance(const Vec3& x) const override {
     const double given = shape_->distance(x);
-    if (given > exact_within * half_) return given - half_;  // a lower bound
+    if (given > max_exact_distance * half_) return given - half_;  // a lower bound
     const auto middle = nearest_part(x, given);
     return middle ? std::sqrt(middle->squared_distance) - half_ : given;
   }
@@ -52,7 +52,7 @@ class Thickened final : public LevelSet {
   Bounds bounds() const override {
     return snowshed::unite(shape_->bounds(), expanded(middles_.bounds(), half_));
   }
-  Bounds varied_bounds() const override { return expanded(shape_->varied_bounds(), half_); }
+  Bounds non_planar_bounds() const override { return expanded(shape_->non_planar_bounds(), half_); }
   double inradius() const override { return std::max(shape_->inradius(), half_); }
   double min_half_thickness() const override { return half_; }
 
@@ -61,11 +61,11 @@ class Thickened final : public LevelSet {
   }
 
  private:
-  /// Farther from the solid than this, in half thicknesses, a lower bound of the distance is
+  /// At more than this many half thicknesses from the solid, a lower bound of the distance is
   /// enough.
-  static constexpr double exact_within = 5.0;
+  static constexpr double max_exact_distance = 5.0;
 
-  /// The nearest middle of a thin part, if its grown surface is nearer than the given one.
+  /// The nearest middle of a thin part, if its grown surface is nearer than the original one.
   std::optional<Nearest> nearest_part(const Vec3& x, double given) const {
     const double limit = given + half_;
     if (!(limit > 0)) return std::nullopt;
@@ -81,11 +81,12 @@ class Thickened final : public LevelSet {
   std::vector<Vec3> normals_;
 };
 
-/// Dilates a solid with this thickness everywhere, or at its thickest part if it is convex.
+/// Dilates a solid to the half thickness `half`. `half_thickness` is that of the whole solid, or of
+/// its thickest part if it is convex.
 ThickSolid dilated(Shape shape, double half_thickness, double half) {
   const double missing = half - half_thickness;
-  const Thickening told{Vec3::Zero(), 2 * half_thickness, missing, true};
-  return {dilate(std::move(shape), missing), told};
+  const Thickening thickening{Vec3::Zero(), 2 * half_thickness, missing, true};
+  return {dilate(std::move(shape), missing), thickening};
 }
 
 }  // namespace
@@ -102,8 +103,8 @@ ThickSolid thickened(Shape shape, double half, int dimension) {
   if (parts.empty()) return {std::move(shape), {}};
   const ThinPart& thinnest = *std::min_element(
       parts.begin(), parts.end(), [](const auto& a, const auto& b) { return a.half < b.half; });
-  const Thickening told{thinnest.middle, 2 * thinnest.half, half - thinnest.half, false};
-  return {std::make_shared<Thickened>(std::move(shape), parts, half), told};
+  const Thickening thickening{thinnest.middle, 2 * thinnest.half, half - thinnest.half, false};
+  return {std::make_shared<Thickened>(std::move(shape), parts, half), thickening};
 }
 
 }  // namespace snowshed

@@ -17,17 +17,17 @@ struct Thickening {
   bool is_dilated;   // the solid is dilated as a whole
 };
 
-/// A solid, and how it differs from the one that was given.
+/// A solid and its changes.
 struct ThickSolid {
   Shape shape;
   std::optional<Thickening> thickening;  // none if the solid was not changed
 };
 
-/// Returns a solid that is nowhere thinner than `2 half` metres, and is as given where that is
-/// thicker. Convex solids are dilated until they are thick enough. In other solids the parts that
-/// find_thin_parts finds grow: all points within `half` of their middle are added, which for a
-/// plate is the same. Solids that are thick enough are returned themselves; a second call changes
-/// nothing.
+/// Returns a solid that is nowhere thinner than `2 half` metres, and equals the given one where
+/// that is thicker. Convex solids are dilated until they are thick enough. In other solids the
+/// parts that find_thin_parts finds grow: all points within `half` of their middle are added. (A
+/// plate is dilated by this, too.) Solids that are thick enough are returned unchanged, so a second
+/// call changes nothing.
 ThickSolid thickened(Shape shape, double half, int dimension);
 
 }  // namespace snowshed

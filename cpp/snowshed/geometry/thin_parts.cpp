@@ -12,15 +12,15 @@ namespace snowshed {
 namespace {
 
 constexpr std::size_t max_cells = 400'000;
-/// Thin cells are divided once more where that does not make more pieces than this.
+/// Thin cells are divided once more unless that makes more pieces than this.
 constexpr std::size_t max_fine_pieces = 100'000;
-/// Minimum cosine between a normal and the opposite of that at the other end of its chord.
-constexpr double parallel = 0.77;
+/// Minimum cosine between a normal and the reversed normal at the other end of its chord.
+constexpr double min_parallel_cosine = 0.77;
 
 /// The lengths below are relative to the requested half thickness.
-constexpr double on_surface = 1e-6, min_step = 2e-3, thick = 0.999;
+constexpr double surface_tolerance = 1e-6, min_step = 2e-3, min_thickness = 0.999;
 /// The middle of a bent part may leave it along its tangent by this distance.
-constexpr double slack = 0.1;
+constexpr double bend_tolerance = 0.1;
 
 class ThinPartSearch {
  public:
@@ -28,7 +28,7 @@ class ThinPartSearch {
       : shape_(shape), half_(half), dimension_(dimension) {}
 
   std::vector<ThinPart> run() {
-    const Bounds within = expanded(shape_.varied_bounds(), 2 * half_);
+    const Bounds within = expanded(shape_.non_planar_bounds(), 2 * half_);
     if (!is_finite(within, dimension_)) return {};
     std::vector<Vec3> cells = cover(within);
     while (edge_ > 1.001 * half_ && children() / 2 * cells.size() <= max_cells)
@@ -38,7 +38,7 @@ class ThinPartSearch {
     return parts_of(divided(around_thin(cells)));
   }
 
-  /// The same of a solid without varied bounds, near the origin.
+  /// The same for a solid that only planes bound; the search is near the origin.
   std::optional<ThinPart> run_at_origin() {
     edge_ = half_;
     const std::optional<Vec3> touch = nearest_on_surface(Vec3::Zero(), infinity);
@@ -51,7 +51,7 @@ class ThinPartSearch {
   /// Half of the diagonal of a cell.
   double reach() const { return 0.5 * edge_ * std::sqrt(double(dimension_)); }
 
-  /// The smallest cube whose edge is a power of two times `half_`.
+  /// Covers bounds with a single cell, a cube whose edge is `half_` times a power of two.
   std::vector<Vec3> cover(const Bounds& within) {
     const Vec3 size = (within.max - within.min).cwiseProduct(in_space());
     edge_ = half_;
@@ -62,7 +62,7 @@ class ThinPartSearch {
     return {middle};
   }
 
-  /// A number for the cell that holds x, and those for the cells around it.
+  /// Returns a number that differs between the cell that holds x and the cells around it.
   std::uint64_t key(const Vec3& x) const {
     std::uint64_t sum = 0;
     for (int axis = 0; axis < 3; ++axis)
@@ -71,8 +71,8 @@ class ThinPartSearch {
     return sum;
   }
 
-  /// Thin cells and their neighbours. The neighbours count, because a cell between a thin and a
-  /// thick part is as near to either.
+  /// Returns the thin cells and their neighbours. A cell that is equally near to a thin and a thick
+  /// part may not count as thin, but must be searched.
   std::vector<Vec3> around_thin(const std::vector<Vec3>& cells) const {
     std::unordered_set<std::uint64_t> thin;
     for (const Vec3& cell : thin_cells_)
@@ -95,7 +95,7 @@ class ThinPartSearch {
       for (std::size_t k = 0; k < children(); ++k) {
         const double sign[3] = {k & 1 ? 0.5 : -0.5, k & 4 ? 0.5 : -0.5, k & 2 ? 0.5 : -0.5};
         const Vec3 middle = cell + edge_ * in_space().cwiseProduct(Vec3(sign[0], sign[1], sign[2]));
-        if (std::abs(shape_.distance(middle)) <= reach() + on_surface * half_)
+        if (std::abs(shape_.distance(middle)) <= reach() + surface_tolerance * half_)
           middles.push_back(middle);
       }
     return middles;
@@ -115,7 +115,7 @@ class ThinPartSearch {
   }
 
   double depth(const Vec3& x) const { return -shape_.distance(x); }
-  bool is_inside(const Vec3& x) const { return depth(x) >= -on_surface * half_; }
+  bool is_inside(const Vec3& x) const { return depth(x) >= -surface_tolerance * half_; }
 
   Vec3 normal(const Vec3& x) const {
     Vec3 n = shape_.normal(x);
@@ -125,19 +125,19 @@ class ThinPartSearch {
     return length > 1e-9 ? Vec3(n / length) : Vec3::UnitZ();
   }
 
-  /// The thin part of which the surface is nearest to the middle of a cell.
+  /// The thin part whose surface is nearest to the middle of a cell.
   std::optional<ThinPart> part_near(const Vec3& cell) const {
     const std::optional<Vec3> touch = nearest_on_surface(cell, 4 * reach());
     if (!touch) return std::nullopt;
     const Vec3 n = normal(*touch);
     if (depth(*touch - half_ * n) >= 0.98 * half_) return std::nullopt;  // a ball fits in
-    // Within a union, the surface of a part is not that of the whole: the chord goes on outward.
+    // The surface of one operand of a union may lie within another: the chord then goes on outward.
     const double out = is_inside(*touch + min_step * half_ * n) ? distance_out(*touch, n) : 0.0;
     const double in = distance_out(*touch, -n);
-    if (in + out >= thick * 2 * half_) return std::nullopt;
+    if (in + out >= min_thickness * 2 * half_) return std::nullopt;
     const Vec3 middle = *touch + 0.5 * (out - in) * n;
     const Vec3 begin = normal(*touch + out * n), end = normal(*touch - in * n);
-    if (begin.dot(end) <= -parallel) return piece(middle, n, 0.5 * (in + out));
+    if (begin.dot(end) <= -min_parallel_cosine) return piece(middle, n, 0.5 * (in + out));
     return deepest_near(middle, n, begin + end);
   }
 
@@ -145,7 +145,7 @@ class ThinPartSearch {
     constexpr int max_steps = 12;
     const Vec3 start = x;
     double distance = shape_.distance(x);
-    for (int step = 0; step < max_steps && std::abs(distance) > on_surface * half_; ++step) {
+    for (int step = 0; step < max_steps && std::abs(distance) > surface_tolerance * half_; ++step) {
       x -= distance * normal(x);
       distance = shape_.distance(x);
     }
@@ -158,7 +158,8 @@ class ThinPartSearch {
     const double longest = 2 * half_, shortest = min_step * half_;
     double distance = 0;
     for (double d = 0; distance < longest; d = depth(x + distance * direction)) {
-      if (d < -on_surface * half_) return std::max(0.0, distance + d);  // back to the surface
+      if (d < -surface_tolerance * half_)
+        return std::max(0.0, distance + d);  // back to the surface
       distance += std::max(d, shortest);
     }
     return longest;
@@ -167,7 +168,7 @@ class ThinPartSearch {
   /// The distance along the middle of a part to its edge, less half of the thickness.
   double distance_to_edge(const Vec3& middle, const Vec3& direction, double half,
                           double longest) const {
-    const double allowed = slack * half_, end = longest + half + allowed;
+    const double allowed = bend_tolerance * half_, end = longest + half + allowed;
     double distance = 0;
     while (distance < end) {
       const double d = depth(middle + distance * direction) + allowed;
@@ -192,7 +193,7 @@ class ThinPartSearch {
     part.corners[2] = middle + a1 * along + b1 * across;
     part.corners[3] = middle - a0 * along + b1 * across;
     if (dimension_ == 3)
-      for (Vec3& corner : part.corners) {  // an edge that runs aslant cuts it off
+      for (Vec3& corner : part.corners) {  // an oblique edge cuts the corner off
         const double distance = (corner - middle).norm();
         const Vec3 direction = (corner - middle) / distance;
         corner = middle +
@@ -209,8 +210,8 @@ class ThinPartSearch {
     return {along, n.cross(along)};
   }
 
-  /// The part around the deepest point near x, if that is not deep enough. `outward` leads to where
-  /// the faces meet.
+  /// The thin part around the deepest point near x; none if this point is deep enough. `outward`
+  /// points to the edge at which the faces meet.
   std::optional<ThinPart> deepest_near(const Vec3& x, const Vec3& n, const Vec3& outward) const {
     constexpr int max_steps = 60;
     const auto [along, across] = tangents(n);
@@ -248,7 +249,7 @@ std::vector<ThinPart> find_thin_parts(const LevelSet& shape, double half, int di
 }
 
 std::optional<ThinPart> find_thin_plate(const LevelSet& shape, double half, int dimension) {
-  if (!is_empty(shape.varied_bounds())) return std::nullopt;
+  if (!is_empty(shape.non_planar_bounds())) return std::nullopt;
   return ThinPartSearch(shape, half, dimension).run_at_origin();
 }
 

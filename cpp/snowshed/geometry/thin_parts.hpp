@@ -1,4 +1,4 @@
-// Where a solid is thinner than a grid can resolve.
+// The parts of a solid that are thinner than a grid can resolve.
 #pragma once
 
 #include <optional>
@@ -18,20 +18,21 @@ struct ThinPart {
   Vec3 corners[4];  // corners of the rectangle, m
 };
 
-/// Returns pieces of all parts of a solid that are thinner than `2 half`, so near to each other
-/// that balls of the radius `half` around them leave no gap; in 2D within the plane y = 0.
+/// Returns pieces of all parts of a solid that are thinner than `2 half`. They are so near to each
+/// other that balls of the radius `half` around them leave no gap. In 2D they lie in the plane
+/// y = 0.
 ///
 /// The surface is found cell by cell, each as large as `half`. The thickness at a point of the
-/// surface is the length of the chord along its normal. It counts where the faces at both ends are
-/// parallel within 40 degrees, so that corners of thick parts are not thin. At other ends, as of
-/// triangular bars, the greatest depth within reach decides. Signs alone are used to measure,
-/// because depths of combined solids are lower bounds.
+/// surface is the length of the chord along its normal. It counts if the faces at both ends are
+/// parallel within 40 degrees, so that corners of thick parts are not thin. If the faces are not
+/// parallel, as in a triangular bar, the greatest depth within reach decides. Only the signs of
+/// distances are used, because depths of combined solids are lower bounds.
 ///
-/// A solid whose surface fills more than 400000 cells is searched in larger ones; parts that are
-/// smaller than those may be missed.
+/// A solid whose surface fills more than 400000 cells is searched in larger cells; parts that are
+/// smaller than the cells may be missed.
 std::vector<ThinPart> find_thin_parts(const LevelSet& shape, double half, int dimension);
 
-/// Returns a piece of a solid that planes alone bound, if two of them are as near to each other.
+/// Returns a thin part of a solid that only planes bound, if two of them are nearer than `2 half`.
 std::optional<ThinPart> find_thin_plate(const LevelSet& shape, double half, int dimension);
 
 }  // namespace snowshed

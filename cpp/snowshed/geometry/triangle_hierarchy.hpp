@@ -54,8 +54,8 @@ class TriangleHierarchy {
     build(0, static_cast<std::uint32_t>(order_.size()));
   }
 
-  /// Returns the nearest point of the mesh to x. Without one whose squared distance is below a
-  /// limit, m2, returns that limit as the squared distance.
+  /// Returns the nearest point of the mesh to x. If no point has a squared distance below the limit
+  /// (m2), returns the limit as the squared distance.
   Nearest nearest(const Vec3& x, double squared_limit = infinity) const {
     Nearest best;
     best.squared_distance = squared_limit;

@@ -28,7 +28,8 @@ std::string describe(const Vec3& v) {
   return text.str();
 }
 
-/// Edges that several solids of a file share are passed as often one way as the other.
+/// Checks that triangles pass every edge as often in one direction as in the other; several solids
+/// of a file may share an edge.
 void check_closed(const TriangleMesh& mesh, const std::string& where) {
   std::vector<DirectedEdge> edges;
   edges.reserve(3 * mesh.triangles.size());
@@ -98,7 +99,7 @@ void merge_identical_vertices(TriangleMesh& mesh) {
 void cancel_opposite_triangles(TriangleMesh& mesh) {
   struct Facet {
     Triangle vertices;  // in ascending order
-    bool turned;        // the order of the mesh is an odd permutation of that
+    bool turned;        // the order in the mesh is an odd permutation of the ascending order
     std::uint32_t number;
   };
   std::vector<Facet> facets;

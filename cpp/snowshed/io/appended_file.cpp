@@ -53,7 +53,7 @@ void append_to_file(const std::filesystem::path& path, const void* data, std::si
     if (written < 0) {
       const int error = errno;
       if (::ftruncate(file.number(), status.st_size) != 0) {
-        // Readers detect that the rest is incomplete.
+        // Readers detect the incomplete bytes that remain.
       }
       fail_at(path, "cannot write the file", error);
     }

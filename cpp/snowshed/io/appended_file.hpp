@@ -6,8 +6,8 @@
 
 namespace snowshed {
 
-/// Appends bytes to an existing file. Where that fails, the file is as long as before; if the
-/// process is killed meanwhile, it may hold a part of them.
+/// Appends bytes to an existing file. If that fails, the file keeps its former length. If the
+/// process is killed meanwhile, the file may end with a part of the bytes.
 void append_to_file(const std::filesystem::path& path, const void* data, std::size_t bytes);
 
 /// Cuts a file to a length.

@@ -48,8 +48,8 @@ class AtomicFile {
 /// that is still writing.
 bool is_leftover(const std::filesystem::directory_entry&);
 
-/// Removes such files from a folder; the caller must hold the lock of the folder. Files that cannot
-/// be removed stay.
+/// Removes temporary files from a folder; the caller must hold the lock of the folder. Files that
+/// cannot be removed stay.
 void remove_leftovers(const std::filesystem::path& folder);
 
 /// Writes the whole content of a file atomically.

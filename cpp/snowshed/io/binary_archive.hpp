@@ -140,7 +140,7 @@ class BinaryReader {
     return {reinterpret_cast<const T*>(bytes() + section.offset), section.count};
   }
 
-  /// The same; throws InputError unless it has `count` elements, too.
+  /// The same; also throws InputError unless the array has `count` elements.
   template <class T>
   ArrayView<T> view(std::string_view name, std::size_t count) const {
     require_count(name, count);

@@ -37,7 +37,7 @@ class NumberWriter {
   std::vector<std::uint8_t> bytes;
 };
 
-/// Takes them off again.
+/// Reads the numbers of a NumberWriter.
 class NumberReader {
  public:
   static constexpr bool reads = true;
@@ -101,8 +101,8 @@ void transfer_ids(Stream& stream, std::vector<std::uint32_t>& ids) {
 
 }  // namespace
 
-/// Where the particles of a frame were in the last one; -1 if they are new.
-std::vector<std::int64_t> FilmCodec::places_before(const FilmFrame& frame) const {
+/// Returns the indices of a frame's particles in the last frame; -1 for new particles.
+std::vector<std::int64_t> FilmCodec::previous_indices(const FilmFrame& frame) const {
   std::vector<std::int64_t> before(frame.ids.size(), -1);
   std::size_t k = 0;
   for (std::size_t i = 0; i < frame.ids.size(); ++i) {
@@ -116,7 +116,7 @@ std::vector<std::int64_t> FilmCodec::places_before(const FilmFrame& frame) const
 /// it.
 template <class Stream>
 void FilmCodec::transfer(Stream& stream, FilmFrame& frame) {
-  const std::vector<std::int64_t> before = places_before(frame);
+  const std::vector<std::int64_t> before = previous_indices(frame);
   for (std::size_t axis = 0; axis < frame.positions.size(); ++axis) {
     std::int32_t neighbour = 0;
     for (std::size_t i = 0; i < before.size(); ++i) {
@@ -191,7 +191,7 @@ void FilmCodec::decode(const std::vector<std::uint8_t>& bytes, bool lists, std::
 
 std::vector<std::uint8_t> deflated(const std::vector<std::uint8_t>& bytes) {
   z_stream stream{};
-  // Runs of zeros are where the snow rests; longer matches are rare and cost time.
+  // Resting snow gives runs of zeros. Other matches are rare, and searching for them costs time.
   if (deflateInit2(&stream, 1, Z_DEFLATED, 15, 9, Z_RLE) != Z_OK) throw std::bad_alloc();
   std::vector<std::uint8_t> packed;
   try {

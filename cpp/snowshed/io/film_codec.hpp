@@ -23,7 +23,7 @@ class FilmCodec {
   std::vector<std::uint8_t> encode(const FilmFrame&);
 
   /// Fills a frame of this number of particles. Throws InputError at `where` if the bytes are not
-  /// those of such a frame; then the codec is of no further use.
+  /// those of such a frame; the codec must not be used after that.
   void decode(const std::vector<std::uint8_t>& bytes, bool lists_particles, std::size_t particles,
               const std::string& where, FilmFrame& frame);
 
@@ -33,14 +33,14 @@ class FilmCodec {
   }
 
  private:
-  std::vector<std::int64_t> places_before(const FilmFrame&) const;
+  std::vector<std::int64_t> previous_indices(const FilmFrame&) const;
   template <class Stream>
   void transfer(Stream&, FilmFrame&);
   void keep(const FilmFrame&, const std::vector<std::int64_t>& before);
 
   FilmHeader header_;
   FilmFrame last_;
-  // One list per axis, from the frame before the last.
+  // The last displacement of each particle, one list per axis, in quanta.
   std::vector<std::vector<std::int32_t>> steps_;
 };
 
@@ -50,11 +50,11 @@ std::vector<std::uint8_t> deflated(const std::vector<std::uint8_t>& bytes);
 /// Whether deflate can reach this ratio of bytes: it is at most 1032 to 1.
 bool could_be_deflated(std::size_t packed, std::size_t raw);
 
-/// The bytes that were deflated; throws InputError, in the name of `where`, unless there are `raw`.
+/// Returns the bytes before deflation. Throws InputError at `where` unless their number is `raw`.
 std::vector<std::uint8_t> inflated(const std::uint8_t* packed, std::size_t packed_bytes,
                                    std::size_t raw, const std::string& where);
 
-/// CRC-32 of RFC 1952; of bytes that follow others, whose checksum is `before`.
+/// CRC-32 (RFC 1952) of bytes; `before` is the checksum of the bytes that precede them.
 std::uint32_t crc32_of(const void* data, std::size_t bytes, std::uint32_t before = 0);
 
 }  // namespace snowshed

@@ -44,7 +44,7 @@ std::string header_text(const FilmHeader& h) {
   return json.dump();
 }
 
-/// The checksum of a header; version 1 sums its text alone.
+/// The checksum of a header; in version 1 it covers the text alone.
 std::uint32_t header_sum(std::uint32_t version, const char* text, std::size_t length) {
   if (version == 1) return crc32_of(text, length);
   std::vector<std::uint8_t> fixed(film_magic, film_magic + sizeof film_magic);
@@ -74,7 +74,7 @@ struct RecordInfo {
   std::uint32_t event, flags, particles, raw, packed;
 };
 
-/// The head of a record behind one with the checksum `before`, which becomes its own.
+/// The head of a record that follows one with the checksum `before`; `before` becomes its checksum.
 std::vector<std::uint8_t> record_bytes(std::uint32_t tag, const RecordInfo& info,
                                        std::uint32_t content_sum, std::uint32_t& before) {
   std::vector<std::uint8_t> bytes;
@@ -261,7 +261,7 @@ FilmFrame FilmReader::next() {
   return frame;
 }
 
-/// The header and the first frames as the present version has them.
+/// The header and the first frames in the format of the present version.
 std::string FilmReader::in_present_version(std::size_t frames) const {
   std::string bytes = header_bytes(header_);
   std::uint32_t sum = 0;

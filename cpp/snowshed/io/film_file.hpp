@@ -41,7 +41,7 @@ class FilmReader {
   const FilmHeader& header() const { return header_; }
   const std::vector<FilmFrameInfo>& frames() const { return frames_; }
   bool is_complete() const { return is_complete_; }  ///< no frame is cut off
-  bool closed() const { return closed_; }  ///< the run came to its end; never of version 1
+  bool closed() const { return closed_; }  ///< the run came to its end; false in version 1
 
   /// End of the first `frames` frames, bytes from the start of the file, and their checksum.
   std::size_t end_of(std::size_t frames) const {

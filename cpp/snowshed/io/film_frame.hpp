@@ -9,8 +9,8 @@
 
 namespace snowshed {
 
-/// A quantity of particles in a film. A value v is stored as round(64 asinh(v / (64 step))): in
-/// steps where it is small, to 1.6 % where it is large.
+/// A quantity of particles in a film. A value v is stored as round(64 asinh(v / (64 step))):
+/// the resolution is `step` for small values, and 1.6 % for large ones.
 struct FilmQuantity {
   std::string name, unit, meaning;
   double step = 0;

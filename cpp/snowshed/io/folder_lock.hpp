@@ -5,8 +5,9 @@
 
 namespace snowshed {
 
-/// Holds a folder for as long as it lives; the system releases it too when the process dies. Throws
-/// InputError if another holds the folder. A file system without locks is not locked.
+/// Locks a folder during its lifetime; the system also releases the lock when the process dies.
+/// Throws InputError if another process holds the lock. On a file system without locks it does
+/// nothing.
 class FolderLock {
  public:
   explicit FolderLock(const std::filesystem::path& folder);
@@ -14,7 +15,7 @@ class FolderLock {
   FolderLock(FolderLock&&) noexcept;
   FolderLock& operator=(FolderLock&&) noexcept;
 
-  /// Lets another hold the folder.
+  /// Releases the folder to other processes.
   void release();
 
  private:

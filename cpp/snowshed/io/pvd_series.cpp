@@ -65,7 +65,7 @@ std::optional<PvdSeries::Entry> parse_line(const std::string& line, const std::s
 
 const std::string comment_begins = "<!-- checksum ";
 
-/// The comment behind a text with its checksum.
+/// The comment that follows a text and contains its checksum.
 std::string comment_of(const std::string& text) {
   Crc32 sum;
   sum.update(text.data(), text.size());

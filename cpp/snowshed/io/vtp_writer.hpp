@@ -19,7 +19,7 @@ struct PointArray {
       values;
 };
 
-/// Lines between two points each, by their places.
+/// Lines, each by the indices of its two points.
 using PointPairs = std::vector<std::array<std::uint32_t, 2>>;
 
 /// Writes each point (metres) as a vertex, and lines, atomically. Throws FileError if that fails,

@@ -85,8 +85,8 @@ struct CamClayLaw {
   }
 
   /// Brings an elastic trial back to the yield surface by backward Euler with hardening; returns
-  /// whether any particle of the pack yielded. The share `overstress` of the way back is left out;
-  /// it is used only if regularised. With D the change of e_v,
+  /// whether any particle of the pack yielded. The stress keeps the share `overstress` of its
+  /// distance from the surface. This share is used only if regularised. With D the change of e_v,
   ///   p = p_tr + K_d D,   q = q_tr N / (N - c D),   y(p, q, p0(e_v + D)) = 0,
   /// where N = 2p - (1 - beta) p0 is y_p/M^2 and c = 6 mu (1 + 2 beta)/M^2. D is bracketed. At one
   /// end D = 0, the trial, and y > 0. At the other the flow becomes purely deviatoric (N = 0, y <
@@ -104,7 +104,7 @@ struct CamClayLaw {
   }
 
  private:
-  /// The plastic strain that replaces e_v in (1.2.7).
+  /// Returns the plastic strain that replaces e_v in (1.2.7).
   template <class V>
   SNOWSHED_INLINE V softened(const V& ev) const {
     if constexpr (regularised)
@@ -112,7 +112,7 @@ struct CamClayLaw {
     else
       return ev;
   }
-  /// Change of that strain while e_v changes by d.
+  /// Returns the change of that strain when e_v changes by d.
   template <class V>
   SNOWSHED_INLINE V softened_by(const V& ev, const V& d) const {
     if constexpr (regularised) {
@@ -123,7 +123,7 @@ struct CamClayLaw {
       return d;
     }
   }
-  /// e_v from which on p0 is zero.
+  /// Returns the e_v from which on p0 is zero.
   template <class V>
   SNOWSHED_INLINE V end_of_strength(const V&) const {
     if constexpr (regularised)
@@ -302,7 +302,7 @@ struct CamClayLaw {
       const V next = select(usable, stepped, V(T(0.5) * (near + end)));
       const V change = abs(V(next - d));
       const V change_of_p = change * (elastic.bulk - p0_slope);
-      // After a small step the next one is that small again by comparison, hence below rounding.
+      // After a small step the next one is smaller by the same factor again, hence below rounding.
       const auto small = (change <= root_of_tolerance * abs(next)) &
                          (change_of_p <= root_of_tolerance * pressure) & usable;
       const auto settled = ((change_of_p <= rounding) | small) & (abs(y) <= T(0.01) * size);

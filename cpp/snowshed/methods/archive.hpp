@@ -1,13 +1,13 @@
 // Writes, reads and checks the states of methods. A state presents each of its arrays and numbers
 // to an archive once, in the order of the file. A writer stores them, and a reader fills them.
 //
-//   array(name, values, count)             one section; read back, it must have `count` elements
+//   array(name, values, count)             one section; a reader demands `count` elements
 //   numbers(name, number...)               one section of numbers of floating point
-//   counts(name, count...)                 the same of whole numbers, which are not negative
+//   counts(name, count...)                 one section of integers that are not negative
 //   packed(name, items, count, visit)      one section; visit(item, f) calls f(number) for each of
 //                                          the numbers of an item
 //   columns(items, column...)              a section for each member of the items
-//   size(name, values)                     the number of elements, which arrays beside it share
+//   size(name, values)                     the number of elements, for arrays of equal length
 #pragma once
 
 #include <algorithm>

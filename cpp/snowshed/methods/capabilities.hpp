@@ -22,12 +22,12 @@ auto* capability(SomeMethod& method) {
   return dynamic_cast<Kind*>(&method);
 }
 
-/// Its snow compacts between events.
+/// A method whose snow compacts between events.
 class Settles {
  public:
   /// Lowers each particle, ordered by id, by a height (m) and adds to its volumetric plastic
-  /// strain, if its law has one. Elastic strains and velocities stay. The energy balance counts it
-  /// as added. Throws as `Method::add_velocity`, and SimulationError if a particle would lie
+  /// strain, if its law has one. Elastic strains and velocities stay. The energy balance counts the
+  /// change as added. Throws as `Method::add_velocity`, and SimulationError if a particle would lie
   /// outside the space that the method can address.
   virtual void settle(const std::vector<double>& drops,
                       const std::vector<double>& plastic_changes) = 0;
@@ -36,7 +36,7 @@ class Settles {
   ~Settles() = default;
 };
 
-/// It makes its particles itself, from the parts of a scene that only this method takes.
+/// A method that makes its particles itself, from parts of a scene that only this method takes.
 class SeedsItself {
  public:
   /// The particles of an event, to be added. Throws InputError, and Stopped on request.
@@ -47,20 +47,21 @@ class SeedsItself {
   ~SeedsItself() = default;
 };
 
-/// It can keep a balance of energy.
+/// A method that can keep an energy balance.
 class KeepsEnergy {
  public:
-  /// The balance as tables have it; all zero unless the method was made to keep it.
+  /// The energies of the balance, named as in tables. All are zero unless the method was made to
+  /// keep them.
   virtual NamedEnergies energies() const = 0;
 
  protected:
   ~KeepsEnergy() = default;
 };
 
-/// Its snow drops out of the steps while it is at rest.
+/// A method whose snow drops out of the steps while it is at rest.
 class Sleeps {
  public:
-  /// Particle updates that sleeping particles did not need.
+  /// Number of particle updates that were saved by sleep.
   virtual std::int64_t slept_updates() const = 0;
 
  protected:
@@ -77,7 +78,7 @@ class Curve {
  public:
   virtual ~Curve() = default;
 
-  /// Adds the row that is due, if one is. To be called at the beginning and after each step.
+  /// Adds a row if one is due. Callers call it at the beginning and after each step.
   virtual void record(const Method&) = 0;
   virtual const std::vector<std::string>& columns() const = 0;
   virtual const std::vector<double>& values() const = 0;  ///< row by row
@@ -86,7 +87,7 @@ class Curve {
   virtual void load(const BinaryReader&) = 0;
 };
 
-/// It is measured after each step. Its curve has its energies, too, if it keeps them.
+/// A method that is measured after each step. If it keeps energies, its curve has them, too.
 class HasCurve {
  public:
   virtual std::unique_ptr<Curve> empty_curve() const = 0;
@@ -95,7 +96,7 @@ class HasCurve {
   ~HasCurve() = default;
 };
 
-/// It adds facts of its own to run.json.
+/// A method that adds a section to run.json.
 class ReportsRun {
  public:
   struct Section {

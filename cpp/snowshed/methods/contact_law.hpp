@@ -7,9 +7,9 @@ namespace snowshed {
 /// those of the thesis (1.2.3); `separate` is its SEPARATE with a short memory (see
 /// NodeKernels::apply).
 ///
-/// sticky    all of it is zero
-/// slip      its normal part is zero both ways: snow stays in the surface; Coulomb friction
-/// separate  no normal part inward, snow may leave; Coulomb friction
+/// sticky    the whole relative velocity is zero
+/// slip      the normal part is zero: snow neither enters nor leaves; Coulomb friction
+/// separate  the normal part does not point inward: snow may leave; Coulomb friction
 enum class Condition { sticky, slip, separate };
 
 struct ContactLaw {

@@ -16,10 +16,10 @@ namespace snowshed {
 struct SnowMotion {
   bool slides = false;         // gravity overcomes the panel's friction
   double sliding_time = 0.0;   // s, until the slab's rear leaves the panel
-  double fall_time = 0.0;      // s, of that rear or the last body; infinite if it never lands
+  double fall_time = 0.0;      // s, of the rear or the last body; infinite if it never lands
   double first_landing = 0.0;  // s, when the front of the slab, or a body, reaches the ground
   double distance = 0.0;       // m, of the fastest snow, until it lands; within events.max_time
-  double stretch = 1.0;        // length of snow that never lands, at the end, over that of the slab
+  double stretch = 1.0;        // final length of snow that never lands, over the slab's length
   double event_time = 0.0;     // s, sliding, falling and settling; at most events.max_time
 };
 
@@ -32,15 +32,15 @@ struct SceneOutline {
   std::vector<bool> conditions;  // indexed by Condition: whether an obstacle has it
   bool has_moving_obstacle = false;
   bool has_domain = false;
-  double obstacles = 0;         // number of obstacles
-  double most_overlapping = 0;  // largest number of obstacles that overlap at a point
+  double obstacles = 0;    // number of obstacles
+  double max_overlap = 0;  // largest number of obstacles that overlap at a point
   SnowMotion motion;
 };
 
 /// Estimates, in double because an absurd scene may ask for more than an integer holds.
 struct CostEstimate {
   std::vector<double> particles;  // new in each event
-  double total_particles = 0.0;   // sum over the events; the last one carries all
+  double total_particles = 0.0;   // sum over the events; all take part in the last one
   double time_step = 0.0;         // s
   double event_time = 0.0;        // s, of an event; at most events.max_time
   double steps = 0.0;             // all events

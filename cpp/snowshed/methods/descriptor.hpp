@@ -1,5 +1,5 @@
-// Descriptors: all that the program needs to know about a method. Each has one class, and one line
-// in registry.cpp. Scenes, runs and programs ask descriptors, and name no method.
+// Descriptors: all that the program needs to know about a method. A method has one such class, and
+// one line in registry.cpp. Scenes, runs and programs ask descriptors, and name no method.
 #pragma once
 
 #include <cstdint>
@@ -42,7 +42,7 @@ struct MethodInfo {
   const char* name;                     // as scenes give it
   const char* doc;                      // in the schema
   Parts takes;                          // parts of a scene that it takes
-  const char* length_unit = "cells";    // name of what `resolution` measures, for messages
+  const char* length_unit = "cells";    // plural name of `resolution` as a unit, for messages
   std::vector<std::string> energies{};  // names with units, as in tables; the last is the residual
   // Quantities of its particles beside those that all methods share.
   std::vector<Quantity> quantities{};
@@ -72,16 +72,16 @@ class MethodDescriptor {
   virtual std::string step_setting() const = 0;
   /// The floating-point type of the particles.
   virtual const char* scalar() const { return "double"; }
-  /// The mean rate of numerical damping over `steps` steps in `time` (s), 1/s; none for methods
-  /// without it.
+  /// The mean rate of numerical damping over `steps` steps in `time` (s), 1/s. Methods without
+  /// damping return nothing.
   virtual std::optional<double> damping_rate(std::int64_t /*steps*/, double /*time*/) const {
     return std::nullopt;
   }
 
   // --- a scene ---------------------------------------------------------------------------------
 
-  /// Throws InputError if settings or parts of the scene contradict each other. Each is in its
-  /// range, and the scene has no part that the method does not take.
+  /// Throws InputError if settings or parts of the scene contradict each other. Callers have
+  /// checked the range of each value, and that the method takes all parts of the scene.
   virtual void validate(const SceneView&) const {}
   /// Returns the solid with thin parts thickened to the method's resolution.
   virtual ThickSolid thickened(const Shape& shape, int /*dimension*/) const {
@@ -93,26 +93,26 @@ class MethodDescriptor {
                                                   const std::filesystem::path& /*base_dir*/) const {
     return nullptr;
   }
-  /// The method, before any snow.
+  /// Builds the method, without snow.
   virtual std::unique_ptr<Method> build(const SceneView&, const Surroundings&) const = 0;
 
   // --- filling of bodies, for methods with their own seeding -------------------------------------
 
-  /// The number of particles that `fill` will place. Throws as it.
+  /// The number of particles that `fill` will place. Throws as `fill`.
   virtual std::size_t count_particles(const LevelSet&, int dimension) const;
-  /// Fills a solid with particles; notes report on a solid that these do not resolve. Throws
-  /// InputError if that fails, and Stopped on request.
+  /// Fills a solid with particles; adds a note if they do not resolve the solid. Throws InputError
+  /// if the solid cannot be filled, and Stopped on request.
   virtual void fill(const LevelSet&, int dimension, const StopRequest&, ParticleBatch&,
                     std::vector<std::string>& notes) const;
 
   // --- cost ------------------------------------------------------------------------------------
 
-  /// The cost of a scene with so many new particles in each event, before anything is built; for
-  /// methods that take bodies.
+  /// The cost of a scene from the number of new particles in each event, before anything is built.
+  /// For methods that take bodies.
   virtual CostEstimate cost_of_bodies(const SceneView&, const SceneOutline&,
                                       std::vector<double> particles) const;
-  /// The cost of a scene for which a method was built, before any snow, for all other methods.
-  /// Throws InputError if the scene cannot be run.
+  /// The cost of a scene whose method was built without snow. For all other methods. Throws
+  /// InputError if the scene cannot be run.
   virtual CostEstimate cost_of_method(const SceneView&, const Surroundings&, const Method&) const;
   /// Features that the method has, and whether the scene uses them.
   virtual std::vector<Feature> features(const SceneView&, const SceneOutline&) const = 0;
@@ -120,7 +120,7 @@ class MethodDescriptor {
 
 namespace detail {
 
-/// Finds `describe` beside the settings.
+/// Calls the `describe` of the settings' namespace.
 template <class Settings>
 void describe_settings(SettingsVisitor& visitor, Settings& settings) {
   describe(visitor, settings);
@@ -128,7 +128,7 @@ void describe_settings(SettingsVisitor& visitor, Settings& settings) {
 
 }  // namespace detail
 
-/// A method with settings of this type, by which scenes find it.
+/// A descriptor with settings of this type. Scenes find a method by the type of its settings.
 template <class Settings>
 class WithSettings : public MethodDescriptor {
  public:

@@ -1,4 +1,4 @@
-// Where the energy went.
+// The energy balance of a simulation.
 #pragma once
 
 #include <string>
@@ -7,14 +7,15 @@
 
 namespace snowshed {
 
-/// The energy balance, J (per metre of width in 2D). The first three are the present store; the
-/// others are sums over all steps of the energy that left it. `residual` is the energy that the
-/// time integration gained (> 0) or lost: the balance closes when it is small beside the rest.
+/// The energy balance, J (per metre of width in 2D). The first three are the energies stored now,
+/// and `added` is the energy of added snow. The others are sums over all steps of the energy that
+/// left the store. `residual` is the energy that the time integration gained (> 0) or lost: the
+/// balance closes when it is small beside the rest.
 struct EnergyBalance {
   double kinetic = 0, gravitational = 0, elastic = 0;
   double plastic = 0, friction = 0, sticking = 0, impact = 0, transfer = 0;
-  double sleep = 0;    // motion that snow lost as it fell asleep
-  double damping = 0;  // over a length; that of PIC is part of the transfer
+  double sleep = 0;    // kinetic energy that snow lost as it fell asleep
+  double damping = 0;  // damping over a length; the damping of PIC is part of `transfer`
   double added = 0;    // energy of particles when they were added
 
   double stored() const { return kinetic + gravitational + elastic; }
@@ -33,7 +34,7 @@ inline std::vector<std::string> names_of(const NamedEnergies& energies) {
   return names;
 }
 
-/// Returns the balance as tables have it, names with units.
+/// Returns the energies of the balance with the names of tables, which end in the unit.
 inline NamedEnergies named_energies(const EnergyBalance& e) {
   return {{"kinetic_j", e.kinetic},   {"gravitational_j", e.gravitational},
           {"elastic_j", e.elastic},   {"plastic_j", e.plastic},

@@ -93,7 +93,7 @@ class FieldSources {
 /// The fields that `visit_fields` shows: it calls its argument with (info, view) for each of them,
 /// where view() returns the view.
 template <class VisitFields>
-std::vector<FieldInfo> listed_fields(const VisitFields& visit_fields) {
+std::vector<FieldInfo> list_fields(const VisitFields& visit_fields) {
   std::vector<FieldInfo> all;
   visit_fields([&all](const FieldInfo& info, const auto&) { all.push_back(info); });
   return all;
@@ -101,7 +101,7 @@ std::vector<FieldInfo> listed_fields(const VisitFields& visit_fields) {
 
 /// The view of the field of this name; throws InputError if there is none.
 template <class VisitFields>
-FieldView found_field(const std::string& name, const VisitFields& visit_fields) {
+FieldView find_field(const std::string& name, const VisitFields& visit_fields) {
   std::optional<FieldView> match;
   std::string names;
   visit_fields([&](const FieldInfo& info, const auto& view) {

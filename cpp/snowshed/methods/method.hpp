@@ -54,7 +54,7 @@ struct ParticleState {
 struct MotionSummary {
   double mass = 0;         // kg
   double rms_speed = 0;    // m/s
-  double moving_mass = 0;  // kg faster than the given speed
+  double moving_mass = 0;  // kg of snow faster than the given speed
 };
 
 /// Counters since the method was made.
@@ -90,22 +90,23 @@ class Method {
 
   // --- time ------------------------------------------------------------------------------------
 
-  /// Takes one step, of a length that the method chooses. Throws SimulationError if it cannot go
-  /// on: without snow, if the time step falls to zero, and if a particle is lost, all three with
-  /// the state as it was; or if a particle is not finite or strained beyond the resolution, with
-  /// the method failed (see the top).
+  /// Takes one step, of a length that the method chooses. Throws SimulationError if there is no
+  /// snow, if the time step falls to zero, or if a particle is lost; the state is then as it was.
+  /// Throws SimulationError, too, if a particle is not finite or strained beyond the resolution;
+  /// the method has then failed (see the top).
   virtual void step() = 0;
 
-  /// Whether all that the method keeps follows from what `save` writes, so that a checkpoint taken
-  /// now resumes to the same bits. A checkpoint taken elsewhere is sound, too, but resumes to other
-  /// last bits. A method is at a safe point again after a bounded number of steps.
+  /// Whether `save` writes all data on which later steps depend, so that a checkpoint taken now
+  /// resumes to the same bits. A checkpoint taken at another time is valid, too, but resumes to
+  /// results that differ in the last bits. A method is at a safe point again after a bounded number
+  /// of steps.
   virtual bool at_safe_point() const = 0;
 
   /// Whether the snow has come to rest, if the method has a criterion of its own; without one the
   /// caller decides.
   virtual std::optional<bool> at_rest() const { return std::nullopt; }
 
-  /// The finished part of an event, 0 to 1, if the method knows it better than the time shows.
+  /// The finished part of an event, 0 to 1, if the method has a better measure than the time.
   virtual std::optional<double> progress() const { return std::nullopt; }
 
   virtual double time() const = 0;       ///< s
@@ -114,17 +115,17 @@ class Method {
 
   /// The readable quantities of the particles, and whether each is stored.
   virtual std::vector<FieldInfo> fields() const = 0;
-  /// One of them, in the order of storage: the particles' memory where it is stored, otherwise a
-  /// copy computed now. Throws InputError if there is no such field.
+  /// The quantity of this name, in the order of storage: a view of memory if it is stored,
+  /// otherwise a copy computed now. Throws InputError if there is no such field.
   virtual FieldView field(const std::string& name) const = 0;
-  /// Where the particles are stored, ordered by id.
+  /// The storage index of each particle, ordered by id.
   virtual const std::vector<std::uint32_t>& order_by_id() const = 0;
 
   // --- state and motion of the snow; allowed after a failure, too ------------------------------
 
   virtual std::size_t size() const = 0;  ///< particles
   virtual ParticleState state() const = 0;
-  virtual MotionSummary motion(double speed) const = 0;  ///< m/s, which counts as moving
+  virtual MotionSummary motion(double speed) const = 0;  ///< snow above `speed`, m/s, is moving
   /// Memory of the particles and of the largest arrays that the steps need.
   virtual std::size_t bytes() const = 0;
 
@@ -137,11 +138,11 @@ class Method {
   /// written: no other call is allowed until then. Throws SimulationError if the method has failed.
   virtual void save(BinaryWriter&) const = 0;
 
-  /// Takes over the state from an archive that a method of the same scene has saved, or of one that
-  /// has only the first of its snows. Throws InputError if the archive is not sound.
+  /// Takes over the state from an archive. A method of the same scene has saved it, or of a scene
+  /// with only the first of these snows. Throws InputError if the archive is not sound.
   virtual void load(const BinaryReader&) = 0;
 
-  /// Makes the checks of `load`, and throws as it, but takes nothing over and needs less memory.
+  /// Makes the checks of `load` and throws as `load`, but changes nothing and needs less memory.
   virtual void check(const BinaryReader&) const = 0;
 };
 

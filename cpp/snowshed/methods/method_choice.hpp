@@ -31,7 +31,7 @@ class MethodChoice {
   bool takes(Part part) const { return descriptor_->info().takes.has(part); }
   bool is_default() const;
 
-  /// Whether these are the settings of the method.
+  /// Whether the method's settings have this type.
   template <class Settings>
   bool is() const {
     return holder<Settings>(*descriptor_) != nullptr;

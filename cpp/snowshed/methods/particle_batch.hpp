@@ -14,7 +14,7 @@ struct ParticleBatch {
   std::vector<Vec3> positions;   // m
   Vec3 velocity = Vec3::Zero();  // m/s
   double mass = 0;               // kg each (per metre of width in 2D)
-  std::vector<double> masses;    // kg, of each in place of `mass`; empty if they are equal
+  std::vector<double> masses;    // kg each, in place of `mass`; empty if all are equal
   int event = 1;
   int material_id = 0;
 

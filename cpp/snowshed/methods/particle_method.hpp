@@ -1,4 +1,4 @@
-// Common parts of methods of particles.
+// Parts that all particle methods share.
 #pragma once
 
 #include <cmath>
@@ -15,7 +15,7 @@
 
 namespace snowshed {
 
-/// Whether the last step left particles that are not sound; then the method may only be looked at.
+/// Whether the last step left particles that are not sound; the method can then only be read.
 class Soundness {
  public:
   /// Throws SimulationError unless the particles are sound.
@@ -40,8 +40,8 @@ class Soundness {
   std::string fault_;
 };
 
-/// Where particles are stored, ordered by id: computed when first asked for, then known until it is
-/// forgotten.
+/// The storage index of each particle, ordered by id. It is computed at the first request and kept
+/// until `forget`.
 class IdOrder {
  public:
   template <class Ids>
@@ -59,21 +59,21 @@ class IdOrder {
   mutable bool known_ = false;
 };
 
-/// Throws InputError unless there is a value for each particle.
+/// Throws InputError unless there is one value for each particle.
 inline void check_count(const char* what, std::size_t given, std::size_t particles) {
   if (given != particles)
     throw InputError(
         what, std::to_string(given) + " given for " + std::to_string(particles) + " particles");
 }
 
-/// Throws InputError unless there is a finite change for each particle.
+/// Throws InputError unless there is one finite change for each particle.
 inline void check_velocity_changes(const std::vector<Vec3>& changes, std::size_t particles) {
   check_count("velocity changes", changes.size(), particles);
   for (const Vec3& change : changes)
     if (!change.allFinite()) throw InputError("velocity changes", "not finite");
 }
 
-/// Motion of particles as a whole: `mass(i)` and `square(i)` are a particle's mass and squared
+/// Motion of all particles together: `mass(i)` and `square(i)` are a particle's mass and squared
 /// speed.
 template <class Mass, class Square>
 MotionSummary motion_of(std::size_t particles, double speed, Mass mass, Square square) {
@@ -89,7 +89,7 @@ MotionSummary motion_of(std::size_t particles, double speed, Mass mass, Square s
   return m;
 }
 
-/// The memory that arrays hold.
+/// The memory of arrays, bytes.
 template <class... Arrays>
 std::size_t bytes_of(const Arrays&... arrays) {
   return (std::size_t(0) + ... + (arrays.capacity() * sizeof(arrays[0])));

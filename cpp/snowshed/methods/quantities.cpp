@@ -22,7 +22,7 @@ const std::vector<Quantity>& shared_quantities() {
   return all;
 }
 
-/// Calls visit(quantity) for each.
+/// Calls visit(quantity) for each quantity.
 template <class Visit>
 void for_each_quantity(const Visit& visit) {
   for (const Quantity& q : shared_quantities()) visit(q);

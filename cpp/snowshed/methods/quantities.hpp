@@ -9,13 +9,13 @@ namespace snowshed {
 struct Quantity {
   std::string name, unit, meaning;
   int components = 1;
-  double film_step = 0;  // in which a film stores small values; 0: films do not hold it
+  double film_step = 0;  // resolution of small values in films; 0: not in films
 };
 
-/// Those that all methods share, then those of each method in turn.
+/// The quantities that all methods share, then those of each method in turn.
 std::vector<Quantity> quantities();
 
-/// The quantity of this name; throws std::out_of_range if the method has none.
+/// The quantity of this name; throws std::out_of_range if there is none.
 const Quantity& quantity(const std::string& name);
 
 }  // namespace snowshed

@@ -8,13 +8,13 @@
 
 namespace snowshed {
 
-/// All of them, with their default settings. The first is the default of scenes.
+/// All methods, with their default settings. The first is the default of scenes.
 const std::vector<const MethodDescriptor*>& all_methods();
 
 std::vector<std::string> method_names();
 
-/// A further method of a program that links the library, as long as this object exists. No method
-/// may be added or removed while others are looked up.
+/// Adds a method of a program that links the library, as long as this object exists. No method may
+/// be added or removed while another thread looks up methods.
 class RegisteredMethod {
  public:
   explicit RegisteredMethod(const MethodDescriptor&);

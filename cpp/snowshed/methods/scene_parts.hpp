@@ -10,7 +10,7 @@
 
 namespace snowshed {
 
-/// A part of an area that does not belong to it.
+/// A hole in an area.
 struct HoleSpec {
   Ring outline;  // m, in the terrain's coordinates
 };
@@ -35,10 +35,10 @@ struct TerrainSpec {
   std::string file;  // ESRI ASCII grid
   std::string crs;   // coordinate reference system of raster and areas; results are written in it
   bool single_precision = true;  // rounds elevations in compatible mode
-  std::string thickness_file;    // thickness of the release in place of the areas'; an ASCII grid
-  double max_thickness = 10;     // m, of the snow in the areas
-  double max_slope = 70;         // degrees, of cliffs under a release
-  std::string notes;             // assumptions about the files; results repeat them
+  std::string thickness_file;  // thicknesses of the release, in place of the areas'; an ASCII grid
+  double max_thickness = 10;   // m, of the snow in the areas
+  double max_slope = 70;       // degrees, of cliffs under a release
+  std::string notes;           // assumptions about the files; results repeat them
   std::vector<AreaSpec> release, entrainment;
   std::vector<ResistanceSpec> resistance;
 };
@@ -50,25 +50,25 @@ struct SampleSpec {
   bool split_labels = false;  // whether each piece of a label is a grain
 };
 
-/// Parts that move in a stage. Plates are at the bottom, fixed, and at the top; sides are walls or
-/// periodic. In `isotropic` the speed is that of the height, and the stress is the mean over top
-/// and sides. `hold` ends when the kinetic energy has fallen to 1e-4 of its peak in the stage, or
-/// after the time in which the speed would bring about the strain; `unload` ends at the strain,
-/// too.
+/// Motion in a stage of a loading. The bottom plate is fixed, the top plate can move, and the sides
+/// are walls or periodic. In `isotropic` the speed is the rate of the height, and the stress is the
+/// mean over top and sides. `hold` ends when the kinetic energy has fallen to 1e-4 of its peak in
+/// the stage, or after the time in which the speed would cause the strain. `unload` also ends at
+/// the strain.
 enum class LoadingKind {
   compress,   // the top plate moves down
   unload,     // the top plate moves up, until the stress on it falls to `stress`
   stretch,    // the top plate moves up (bonded plates)
   shear,      // the top plate moves along x; at constant height, or under a constant normal stress
   isotropic,  // all six sides move inward at the same rate of strain (walls, or a shrinking period)
-  penetrate,  // a cone is pushed down through the top, with the top plate away
-  hold        // nothing moves, until the kinetic energy has gone
+  penetrate,  // a cone is pushed down through the top, without a top plate
+  hold        // nothing moves, until the kinetic energy has decayed
 };
 
 struct LoadingStage {
   LoadingKind kind = LoadingKind::compress;
   double speed = 0.02;  // m/s, of the moving parts
-  double strain = 0.3;  // at which the stage ends: displacement over the sample's initial height
+  double strain = 0.3;  // at the end of the stage: displacement over the sample's initial height
   double stress = 0;    // Pa; compress, isotropic: ends the stage if reached, 0: never;
                         // unload: see above; shear: normal stress, 0: constant height
 };
@@ -90,7 +90,7 @@ struct Seeding {
 /// Treatment of the stack between two events.
 enum class Between { carry, reseed };
 
-/// When an event ends.
+/// Number of events, and the criteria that end an event.
 struct Events {
   int count = 1;
   Between between = Between::carry;
@@ -102,7 +102,7 @@ struct Events {
 struct Output {
   double snapshot_interval = 0.0;  // s between particle snapshots; 0: only at the end of an event
   bool film = true;                // record the run, so that it can be viewed
-  double film_interval = 0.0;      // s between its frames; 0: chosen by the events' duration
+  double film_interval = 0.0;      // s between its frames; 0: from the events' duration
   bool energy = false;             // keep the energy balance
   double checkpoint_interval = 60.0;  // s of wall time between checkpoints; 0: none
 };

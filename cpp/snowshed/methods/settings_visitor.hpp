@@ -18,7 +18,7 @@ namespace snowshed {
 class Choice {
  public:
   template <class E, class = std::enable_if_t<std::is_enum_v<E>>>
-  Choice(E& value)  // so that visitors take any enumeration
+  Choice(E& value)  // implicit, so that visitors take any enumeration
       : address_(&value), type_(typeid(E)), number_(int(value)), name_(name_of(value)) {
     for (const auto& named : EnumNames<E>::list) names_.emplace_back(named.name);
     choose_ = [&value](std::size_t i) { value = EnumNames<E>::list[i].value; };
@@ -42,7 +42,7 @@ class Choice {
   std::function<void(std::size_t)> choose_;
 };
 
-/// A visitor of settings; scene/describe.hpp says what the calls mean.
+/// A visitor of settings; scene/describe.hpp explains the calls.
 class SettingsVisitor {
  public:
   virtual ~SettingsVisitor() = default;

@@ -1,4 +1,4 @@
-// Contents of files of particles for methods that add nothing to it.
+// Default contents of a file of particles.
 #include "snowshed/methods/method.hpp"
 
 namespace snowshed {

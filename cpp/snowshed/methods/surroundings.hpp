@@ -25,15 +25,15 @@ class MethodInput {
   /// The section of a checkpoint that holds the fingerprints of these files.
   virtual const char* section() const = 0;
   virtual std::vector<FilePrint> files() const = 0;
-  /// A remark on the files that a user should read before the run; empty if there is none.
+  /// A remark on the files, for the user before the run; empty if there is none.
   virtual std::string remark() const { return ""; }
 };
 
 struct Surroundings {
   std::vector<Snow> snows;                   // indexed by material_id
   std::vector<Obstacle> obstacles;           // all of them, as they are given
-  std::vector<Obstacle> resolved;            // the same as the method sees them
-  std::vector<std::string> notes;            // on assumptions and changes, a sentence each
+  std::vector<Obstacle> resolved;            // the same, thickened to the method's resolution
+  std::vector<std::string> notes;            // assumptions and changes, a sentence each
   std::shared_ptr<const MethodInput> input;  // null if the method reads no files
 };
 

@@ -20,9 +20,9 @@ class CellOrder {
   using Coordinates = std::array<std::int32_t, D>;
 
   /// Finds the order of the points in cells whose edges are `edge` or longer, m. With a `period` >
-  /// 0 all is repeated along x with it; it must then be at least three edges long, and the points'
-  /// x lie in [0, period). Throws SimulationError if a point is not finite, or too far away from
-  /// another one to be numbered.
+  /// 0 the points are repeated along x. The period must then be at least three edges long, and the
+  /// x of all points must lie in [0, period). Throws SimulationError if a point is not finite, or
+  /// if two points are too far apart for the numbers of cells.
   void update(const Points& points, double edge, double period = 0);
 
   /// Indices of the points in the order of cells; points of a cell keep their order.
@@ -44,7 +44,7 @@ class CellOrder {
   /// The points of a cell and of all cells around it; returns the number of ranges.
   int rows_around(std::size_t cell, Range* rows) const;
 
-  /// Cells along x after which all is repeated, or 0.
+  /// The period in cells along x, or 0 without a period.
   std::int32_t period_cells() const { return periodic_ ? counts_[0] - 2 : 0; }
 
   std::size_t bytes() const;

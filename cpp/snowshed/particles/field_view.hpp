@@ -29,8 +29,8 @@ struct FieldInfo {
   bool stored = false;  // its view is the particles' memory; otherwise a computed copy
 };
 
-/// The values of a field. Those of a stored field follow the particles until the next call that
-/// changes the simulation; then a new view is needed. Its memory stays as long as it does.
+/// The values of a field. The view of a stored field shows the particles until the next call that
+/// changes the simulation; then a new view is needed. A view keeps its memory alive.
 struct FieldView {
   FieldInfo info;
   std::size_t count = 0;                 // particles

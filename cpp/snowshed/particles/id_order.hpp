@@ -7,7 +7,7 @@
 
 namespace snowshed {
 
-/// Where the particles are stored, in ascending order of their ids: a radix sort, O(n).
+/// Returns the indices of the particles in ascending order of their ids, by a radix sort in O(n).
 std::vector<std::uint32_t> order_by_id(const std::uint32_t* ids, std::size_t count);
 
 }  // namespace snowshed

@@ -7,8 +7,8 @@
 
 namespace snowshed {
 
-/// Points by axes, in the order of their cells, m. Kernels read and write some values at a time, so
-/// there is memory for `spare` more behind the last point and behind the neighbours.
+/// Points by axes, in the order of their cells, m. Kernels read and write several values at a time,
+/// so there is memory for `spare` more values behind the last point and behind the neighbours.
 template <int D>
 struct SearchedPoints {
   static constexpr std::size_t spare = 16;

@@ -50,7 +50,7 @@ std::vector<std::string> body_paths(const Scene& scene, int event) {
 /// coarsely, in the solid itself, whose files are read here before anything is run.
 double body_volume(const BodySpec& body, const Scene& scene, const std::string& path,
                    const std::filesystem::path& base_dir) {
-  if (const auto told = shape_volume(body.shape, scene.dimension)) return *told;
+  if (const auto volume = shape_volume(body.shape, scene.dimension)) return *volume;
   return with_path(path, [&] {
     const Shape shape = build_shape(body.shape, scene.dimension, path, base_dir);
     Vec3 size = shape->bounds().max - shape->bounds().min;
@@ -64,9 +64,9 @@ double body_volume(const BodySpec& body, const Scene& scene, const std::string& 
 /// many for any machine.
 double particles_of(const BodySpec& body, const Scene& scene, const std::string& path,
                     const std::filesystem::path& base_dir) {
-  const double told = shape_volume(body.shape, scene.dimension).value_or(0.0);
-  const double about = told / std::pow(scene.numerics->resolution(), scene.dimension);
-  if (about > 2 * max_particles) return about;  // and none are counted
+  const double volume = shape_volume(body.shape, scene.dimension).value_or(0.0);
+  const double about = volume / std::pow(scene.numerics->resolution(), scene.dimension);
+  if (about > 2 * max_particles) return about;  // too many to be counted
   return with_path(path, [&] {
     const Shape shape = build_shape(body.shape, scene.dimension, path, base_dir);
     return double(scene.numerics->count_particles(*shape, scene.dimension));
@@ -131,7 +131,7 @@ double slab_mass(const Scene& scene, int event) {
 
 namespace {
 
-/// As many as `seed_event` will place.
+/// Returns the numbers of particles that `seed_event` will place.
 std::vector<double> count_exactly(const Scene& scene, const std::filesystem::path& base_dir) {
   std::vector<double> counts;
   for (int event = 1; event <= scene.events.count; ++event) {

@@ -20,8 +20,8 @@ namespace {
 
 /// Largest number of obstacles that overlap at a point. Boxes are counted at the middles of some
 /// obstacles.
-double most_overlapping(const std::vector<ObstacleSpec>& obstacles) {
-  constexpr std::size_t places = 200;
+double max_overlap(const std::vector<ObstacleSpec>& obstacles) {
+  constexpr std::size_t sampled_boxes = 200;
   std::vector<Eigen::AlignedBox3d> boxes;
   double everywhere = 0;
   for (const ObstacleSpec& o : obstacles) {
@@ -32,7 +32,7 @@ double most_overlapping(const std::vector<ObstacleSpec>& obstacles) {
       ++everywhere;
   }
   std::size_t most = 0;
-  const std::size_t stride = std::max<std::size_t>(1, boxes.size() / places);
+  const std::size_t stride = std::max<std::size_t>(1, boxes.size() / sampled_boxes);
   for (std::size_t i = 0; i < boxes.size(); i += stride)
     most = std::max(most, std::size_t(std::count_if(boxes.begin(), boxes.end(), [&](const auto& b) {
                       return b.contains(boxes[i].center());
@@ -89,7 +89,7 @@ SceneOutline outline_of(const Scene& scene) {
   }
   outline.has_domain = scene.domain.has_value();
   outline.obstacles = double(obstacles.size());
-  outline.most_overlapping = most_overlapping(obstacles);
+  outline.max_overlap = max_overlap(obstacles);
   outline.motion = estimate_motion(scene);
   return outline;
 }

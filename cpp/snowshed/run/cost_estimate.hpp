@@ -11,9 +11,9 @@ namespace snowshed {
 /// Totals of the solids and the snow of a resolved scene.
 SceneOutline outline_of(const Scene& scene);
 
-/// The cost of a scene whose method takes bodies. `particles`, new in each event, replace the
-/// estimate from the volumes, which leaves out snow whose volume the scene does not give (meshes
-/// and grids).
+/// The cost of a scene whose method takes bodies. `particles`, the number of new particles in each
+/// event, replaces the estimate from the volumes, which leaves out snow whose volume the scene does
+/// not give (meshes and grids).
 CostEstimate estimate_cost(const Scene& scene);
 CostEstimate estimate_cost(const Scene& scene, std::vector<double> particles);
 
@@ -21,8 +21,8 @@ CostEstimate estimate_cost(const Scene& scene, std::vector<double> particles);
 /// time for (10^12), or be recorded more than a million times.
 void check_duration(const Scene&, const CostEstimate&);
 
-/// Throws InputError naming both numbers when `bytes` exceeds `available`; by default the memory
-/// of the machine, or of the container where it has less.
+/// Throws InputError naming both numbers when `bytes` exceeds `available`; by default this is the
+/// memory of the machine, or of the container if it has less.
 void check_memory(double bytes);
 void check_memory(double bytes, double available);
 

@@ -14,9 +14,9 @@ namespace {
 
 constexpr double measured_particles = 50000;
 
-/// The speed is measured on a slab still whole; spread and yielding snow takes longer by this
-/// factor over an event of the laboratory scene (2D 1.3, 3D 1.4).
-constexpr double broken_snow = 1.35;
+/// The speed is measured on an unbroken slab. An event of the laboratory scene takes longer by this
+/// factor, because its snow yields and spreads (2D 1.3, 3D 1.4).
+constexpr double broken_snow_factor = 1.35;
 
 double speed_of(const Scene& scene, const std::filesystem::path& base_dir) {
   Simulation sim(scene, base_dir);
@@ -26,8 +26,8 @@ double speed_of(const Scene& scene, const std::filesystem::path& base_dir) {
   return double(sim.method().counters().particle_updates) / clock.seconds();
 }
 
-/// Particle updates per second on this machine, on the scene with fewer particles that are seeded
-/// fast; where its bodies are too small for these, on the scene as it is.
+/// Particle updates per second on this machine. They are measured on the scene with fewer particles
+/// that are seeded fast, or on the scene itself if its bodies are too small for these.
 double measured_speed(const Scene& scene, const std::filesystem::path& base_dir,
                       const CostEstimate& cost) {
   const double n = cost.particles.empty() ? 0.0 : cost.particles.front();
@@ -42,9 +42,9 @@ double measured_speed(const Scene& scene, const std::filesystem::path& base_dir,
   }
 }
 
-/// Number of updates of whole snow that take as long as the updates of an event.
+/// Number of updates of unbroken snow that take as long as the updates of an event.
 double work_of(const CostEstimate& cost) {
-  return std::max(broken_snow, cost.scattering) * cost.updates;
+  return std::max(broken_snow_factor, cost.scattering) * cost.updates;
 }
 
 }  // namespace

@@ -18,8 +18,8 @@ struct CostReport {
   std::string kernels;  // instruction set
 };
 
-/// Expected work of a run: particle updates of whole snow, of which updates of spread and yielding
-/// snow count more. Nothing is measured. Throws InputError as running would.
+/// Expected work of a run in particle updates of unbroken snow; updates of spread and yielding snow
+/// count more. Nothing is measured. Throws InputError as a run would.
 double expected_work(const Scene& scene, const std::filesystem::path& base_dir = ".");
 
 /// Reports the cost; throws InputError as a run would. It takes a fraction of a second: the speed

@@ -19,7 +19,7 @@ EnergyHistory::EnergyHistory(const std::vector<std::string>& energies, double in
   columns_.insert(columns_.end(), energies.begin(), energies.end());
 }
 
-/// When the event was recorded last, s.
+/// The time of the event's last record, s.
 double EnergyHistory::last_time(int event) const {
   return values_.empty() || event_of(rows() - 1) != event ? never : time_of(rows() - 1);
 }

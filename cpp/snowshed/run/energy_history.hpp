@@ -29,8 +29,8 @@ class EnergyHistory {
   const std::vector<double>& values() const { return values_; }  ///< row by row
 
   void save(BinaryWriter&) const;
-  /// Begins again if the archive's version kept no such rows. Throws InputError if the rows are not
-  /// of these energies.
+  /// Reads the rows; the history begins without rows if the archive's version kept none. Throws
+  /// InputError if the rows are not of these energies.
   void load(const BinaryReader&);
 
  private:

@@ -43,7 +43,7 @@ EventSequence::EventSequence(std::unique_ptr<Simulation> sim, ResultsFolder fold
     wall_before_ += record.wall;
   }
   const int done = sim_->event() - int(sim_->event_running());
-  // Checkpoints of the version before have no such record.
+  // Folders of the previous version have no such record.
   if (int(record_.finished.size()) < done)
     count_from(sim_->method().counters().steps, earlier_wall_);
 }
@@ -155,7 +155,7 @@ void EventSequence::give_up_files() {
 void EventSequence::record_failure(const std::string& error) {
   try {
     if (sim_->event_running()) sim_->save(folder_.checkpoint());
-  } catch (const std::exception&) {  // the last good one stays
+  } catch (const std::exception&) {  // the last good checkpoint stays
   }
   write_record(RunStatus::failed, error);
 }

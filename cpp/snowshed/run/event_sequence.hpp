@@ -19,17 +19,17 @@ class EventObserver {
  public:
   virtual ~EventObserver() = default;
 
-  /// Before the next event begins; the snow may be settled.
+  /// Called before the next event begins; the snow may be settled then.
   virtual void between_events(Simulation&) {}
-  /// An event has begun or is resumed; `reseeding` describes the change of the stack before it.
+  /// Called when an event has begun or resumes; `reseeding` is the change of the stack before it.
   virtual void event_begun(const Simulation&, const std::optional<Reseeding>& /*reseeding*/) {}
-  /// A note for readers of the results on the snow that was just laid, a sentence; run.json will
-  /// have it.
+  /// Called with a note, a sentence for readers of the results on the snow that was just laid;
+  /// run.json will contain it.
   virtual void noted(const std::string& /*note*/) {}
   virtual void progress(const Simulation&, const RunReport&) {}
-  /// An event has ended and its particles are in the folder, but there is no checkpoint of it yet.
+  /// Called when an event has ended and its particles are in the folder, before its checkpoint.
   virtual void event_ended(const Simulation&, const EventRecord&) {}
-  /// A checkpoint is about to be written; records that must be as new as it are saved now.
+  /// Called before a checkpoint is written; records that must be as new as it are saved now.
   virtual void before_checkpoint(const Simulation&) {}
   /// Called at every report, between events and while snow is seeded; true interrupts the sequence.
   virtual bool stop_requested() { return false; }
@@ -47,17 +47,18 @@ class EventSequence {
   static EventSequence resume(const Scene& scene, const std::filesystem::path& base_dir,
                               const std::filesystem::path& folder);
 
-  /// Runs the events that are left, with a report every `report_interval` seconds of wall time and
-  /// checkpoints as the scene's output.checkpoint_interval asks, and after each event. Returns
-  /// false if the observer stopped it, after a checkpoint; during seeding the last checkpoint has
-  /// the same snow. Exceptions of the simulation or the observer pass through.
+  /// Runs the remaining events, with a report every `report_interval` seconds of wall time.
+  /// Checkpoints are written at the scene's output.checkpoint_interval and after each event.
+  /// Returns false if the observer stopped the run, which writes a checkpoint first, except during
+  /// seeding, because the last checkpoint has the same snow. Exceptions of the simulation or the
+  /// observer pass through.
   bool run(EventObserver&, double report_interval);
 
-  /// Throws InputError if a file that Python wrote has been changed, and forgets all of them,
-  /// for callers that do not update them.
+  /// Throws InputError if a file that Python wrote has been changed. Otherwise, unless all events
+  /// are done, removes these files from the record, for callers that do not update them.
   void give_up_files();
 
-  /// Writes run.json again, with the changes of `record` since, up to the present progress.
+  /// Writes run.json again, with the present progress and all changes of `record`.
   void rewrite_record();
 
   /// Records in the folder that the run cannot go on, with a checkpoint of its last good state.

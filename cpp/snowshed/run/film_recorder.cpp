@@ -21,7 +21,7 @@ double smallest_length(const Scene& scene, const Method& method, bool has_radius
   const FieldView radii = method.field("equivalent_radius");
   double smallest = *radii.at<double>(0);
   for (std::size_t i = 1; i < radii.count; ++i) smallest = std::min(smallest, *radii.at<double>(i));
-  return smallest / 8;  // such particles move little
+  return smallest / 8;  // particles with radii move little
 }
 
 /// A power of two, so that positions in single precision are exact.
@@ -36,7 +36,7 @@ const FieldInfo* find(const std::vector<FieldInfo>& fields, const std::string& n
   return field == fields.end() ? nullptr : &*field;
 }
 
-/// The chosen particles' values of a field: `convert` of each, all components.
+/// Calls convert(i, components) for the values of a field of the chosen particles.
 template <class Convert>
 void each_value(const FieldView& view, const std::vector<std::uint32_t>& indices, Convert convert) {
   with_field_type(view.info.type, [&](auto zero) {
@@ -46,8 +46,8 @@ void each_value(const FieldView& view, const std::vector<std::uint32_t>& indices
 }
 
 template <class T>
-std::vector<T> whole_values(const Method& method, const std::string& name,
-                            const std::vector<std::uint32_t>& indices) {
+std::vector<T> integer_values(const Method& method, const std::string& name,
+                              const std::vector<std::uint32_t>& indices) {
   std::vector<T> values(indices.size());
   each_value(method.field(name), indices, [&](std::size_t i, const auto* v) { values[i] = T(*v); });
   return values;
@@ -57,11 +57,11 @@ std::int32_t in_quanta(double metres, double quantum) {
   return std::int32_t(std::lround(std::clamp(metres / quantum, -max_quanta, max_quanta)));
 }
 
-/// Places of the recorded particles in storage, ordered by id; `ids` are their ids.
+/// Returns the indices of the recorded particles, ordered by id; `ids` receives their ids.
 std::vector<std::uint32_t> recorded_indices(const Method& method, const FilmHeader& header,
                                             std::vector<std::uint32_t>& ids) {
   const std::vector<std::uint32_t>& order = method.order_by_id();
-  const auto all = whole_values<std::uint32_t>(method, "id", order);
+  const auto all = integer_values<std::uint32_t>(method, "id", order);
   std::vector<std::uint32_t> indices;
   for (std::size_t k = 0; k < order.size(); ++k)
     if (header.records(all[k])) {
@@ -88,9 +88,9 @@ FilmFrame frame_of(const Method& method, const FilmHeader& header, int event) {
   frame.event = std::uint32_t(event);
   const auto indices = recorded_indices(method, header, frame.ids);
   const std::vector<FieldInfo> fields = method.fields();
-  frame.events = whole_values<std::uint16_t>(method, "event", indices);
+  frame.events = integer_values<std::uint16_t>(method, "event", indices);
   frame.materials = find(fields, "material_id")
-                        ? whole_values<std::uint8_t>(method, "material_id", indices)
+                        ? integer_values<std::uint8_t>(method, "material_id", indices)
                         : std::vector<std::uint8_t>(indices.size());
   if (header.has_radius) {
     frame.radii.resize(indices.size());
@@ -110,12 +110,12 @@ FilmFrame frame_of(const Method& method, const FilmHeader& header, int event) {
 }
 
 FilmWriter open_film(const std::filesystem::path& file, const FilmHeader& header,
-                     const RunPosition& place, const std::optional<FilmMark>& mark) {
+                     const RunPosition& position, const std::optional<FilmMark>& mark) {
   if (!std::filesystem::exists(file)) return FilmWriter(file, header);
-  const auto keeps = [&place](const FilmFrameInfo& frame) {
+  const auto keeps = [&position](const FilmFrameInfo& frame) {
     const int event = int(frame.event);
-    if (event != place.event) return event < place.event;
-    return !place.running || frame.time < place.time;
+    if (event != position.event) return event < position.event;
+    return !position.running || frame.time < position.time;
   };
   try {
     return FilmWriter::reopen(file, keeps, mark);
@@ -142,8 +142,8 @@ FilmHeader film_header(const Scene& scene, const Method& method, const CostEstim
 }
 
 FilmRecorder::FilmRecorder(const std::filesystem::path& file, const FilmHeader& header,
-                           const RunPosition& place, const std::optional<FilmMark>& mark)
-    : film_(open_film(file, header, place, mark)) {}
+                           const RunPosition& position, const std::optional<FilmMark>& mark)
+    : film_(open_film(file, header, position, mark)) {}
 
 bool FilmRecorder::begun(int event) const {
   return !film_.frames().empty() && int(film_.frames().back().event) == event;
@@ -157,8 +157,8 @@ double FilmRecorder::next_time() const {
                           film_.header().interval);
 }
 
-bool FilmRecorder::due(const RunPosition& place) const {
-  return !begun(place.event) || place.time >= next_time();
+bool FilmRecorder::due(const RunPosition& position) const {
+  return !begun(position.event) || position.time >= next_time();
 }
 
 void FilmRecorder::record(const Method& method, int event) {

@@ -17,27 +17,27 @@ struct RunPosition {
   double time = 0;  // s, through all events
 };
 
-/// Chooses the contents of a run's film: of at most about `max_particles` particles, some, chosen
-/// by their ids; positions to a 16th of the resolution (with radii: to a 128th of the smallest),
-/// and to half a millimetre at least; frames at the `record_interval`.
+/// Chooses the contents of a run's film. At most about `max_particles` particles are recorded,
+/// chosen by their ids, at the `record_interval`. Positions are accurate to a 16th of the
+/// resolution (with radii: to a 128th of the smallest radius), and at least to half a millimetre.
 FilmHeader film_header(const Scene&, const Method&, const CostEstimate&);
 
 class FilmRecorder {
  public:
   static constexpr double max_particles = 40000;
 
-  /// Begins a film, or continues after the frames that a run had recorded up to `place`, so that a
-  /// resumed run makes the same film. `mark` is that of the film then, where it is known. Throws
-  /// InputError if the film is damaged.
+  /// Begins a film, or continues after the frames that a run had recorded up to `position`, so that
+  /// a resumed run makes the same film. `mark` identifies the film at that time, if it is known.
+  /// Throws InputError if the film is damaged.
   FilmRecorder(const std::filesystem::path& file, const FilmHeader& header,
-               const RunPosition& place, const std::optional<FilmMark>& mark);
+               const RunPosition& position, const std::optional<FilmMark>& mark);
 
   /// Whether the first frame of an event is missing, or the next one's time has come.
   bool due(const RunPosition&) const;
   void record(const Method&, int event);
-  /// The last frame of an event, unless it is recorded already.
+  /// Records the last frame of an event, unless it has been recorded.
   void record_end(const Method&, int event);
-  /// Says that no frame will follow.
+  /// Marks the film as complete: no frame will follow.
   void close() { film_.close(); }
   FilmMark mark() const { return film_.mark(); }
 

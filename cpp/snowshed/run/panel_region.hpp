@@ -9,17 +9,17 @@
 
 namespace snowshed {
 
-/// Empty if the scene has no panel.
+/// The region over the panel; it is empty if the scene has no panel.
 class PanelRegion {
  public:
   explicit PanelRegion(const Scene& scene);
 
-  /// Returns for each position whether snow there lies on the panel, on which the snow of all
-  /// events together could lie no higher than `laid_height` (m).
+  /// Returns for each position whether snow there lies on the panel. `laid_height` (m) is the
+  /// height that all snow laid so far would have there.
   std::vector<bool> contains(const std::vector<Vec3>& positions, double laid_height) const;
 
-  /// Returns how far positions over the face reach along its normal, from the lowest to the highest
-  /// of them, m.
+  /// Returns the distance along the normal between the lowest and the highest of the positions over
+  /// the face, m.
   double height_of(const std::vector<Vec3>& positions) const;
 
   /// Snow that lies on the panel.

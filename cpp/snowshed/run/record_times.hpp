@@ -8,8 +8,8 @@
 
 namespace snowshed {
 
-/// Simulated time between two records, s: the scene's output.film_interval, or so that an event has
-/// 40 of them, and fewer where there are more than ten events.
+/// Simulated time between two records, s. It is the scene's output.film_interval; by default an
+/// event has 40 records, and fewer if there are more than ten events.
 double record_interval(const Scene&, const CostEstimate&);
 
 /// Time of an event's next record, s, after `count` records since `first`, the last one at `last`.

@@ -37,7 +37,8 @@ int material_id_of(const ParticleState& particles, std::size_t i) {
 }
 
 /// Distributes the mass of old particles over the new ones that replace them (`old_of`): each snow
-/// keeps its mass, in equal parts. The mass of a snow without new particles goes to all.
+/// keeps its mass, in equal parts. The mass of a snow without new particles goes to all new
+/// particles.
 std::vector<double> share_masses(const ParticleState& old, const std::vector<std::size_t>& old_of,
                                  std::size_t snows) {
   std::vector<double> mass(snows), count(snows);
@@ -64,7 +65,7 @@ std::vector<Vec3> fill_stack(const Scene& scene, const std::vector<Vec3>& stack,
               s.seed + 1000003u * std::uint64_t(event) + 500000u, stop);
 }
 
-/// The new particles by event and snow, which they have from the old ones.
+/// The new particles by event and snow, which are those of the old particles that they replace.
 std::vector<ParticleBatch> batches_of(const Reseeding::Cloud& cloud, const ParticleState& old,
                                       const std::vector<std::size_t>& old_of) {
   std::map<std::pair<int, int>, ParticleBatch> sorted;

@@ -1,12 +1,12 @@
-// When is snow at rest?
+// Decides when snow is at rest.
 #pragma once
 
 namespace snowshed {
 
-/// The snow rests when for `rest_time` seconds on end its speed (root of twice the kinetic energy
-/// over the mass that the event brought, so that a large stack at rest does not hide a small slab
-/// in motion) stays below `rest_speed`, and has not grown meanwhile, because snow that is just
-/// setting off is slow, too.
+/// The snow rests when its speed has stayed below `rest_speed` for `rest_time` seconds and has not
+/// grown during this time, because snow that starts to move is slow, too. The speed is the root of
+/// twice the kinetic energy over the mass that the event brought: a large stack at rest thus does
+/// not hide a small slab in motion.
 class RestDetector {
  public:
   RestDetector(double rest_speed, double rest_time) : limit_(rest_speed), duration_(rest_time) {}
@@ -19,7 +19,7 @@ class RestDetector {
   /// Tells the detector the speed (m/s) at a time (s); returns whether the snow rests.
   bool at_rest(double time, double speed);
 
-  /// Speed that was told last, m/s.
+  /// The speed that the detector got last, m/s.
   double speed() const { return speed_; }
 
   /// State for checkpoints.

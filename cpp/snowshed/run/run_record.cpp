@@ -200,7 +200,7 @@ void RunRecord::write(const std::filesystem::path& file, const Simulation& sim, 
     j["film"] = {{"frames", film->frames}, {"checksum", hexadecimal(film->checksum)}};
   j["status"] = name_of(status);
   if (!error.empty()) j["error"] = error;
-  write_atomic(file, sealed(j));
+  write_atomic(file, sealed_text(j));
 }
 
 void RunRecord::check_files(const std::filesystem::path& folder) const {

@@ -53,7 +53,7 @@ std::string name_of(RunStatus);
 class RunRecord {
  public:
   /// Reads run.json; returns an empty record if the file is missing. Throws InputError if it is
-  /// damaged. `energies` names those that events have, in order, if they have any.
+  /// damaged. `energies` are the names of an event's energies, in order, if it has any.
   static RunRecord read(const std::filesystem::path& file,
                         const std::vector<std::string>& energies);
 

@@ -81,7 +81,7 @@ std::string Simulation::input_remark() const {
 const EnergyHistory& Simulation::energy_history() const {
   if (!energies_)
     throw InputError("/output/energy", curve_ ? "the curve of this method has the energies"
-                                              : "false; energies are kept only where true");
+                                              : "false; energies are kept only if it is true");
   return *energies_;
 }
 
@@ -113,8 +113,8 @@ SeededSnow Simulation::seed_next_event(double lift, const StopRequest& stop) con
   return seed_event(scene_, base_dir_, panel_, event_ + 1, lift, stop);
 }
 
-/// Returns notes on the new snow; throws InputError if it lies where snow may not be. Snow that
-/// the program lays on a stack that has grown up to it only gives a note, so that a winter can
+/// Returns notes on the new snow; throws InputError if it lies where snow may not be. A slab that
+/// is laid where the stack has grown up to the panel only gives a note, so that a winter can
 /// continue.
 std::vector<std::string> Simulation::check_placement_of(
     const SeededSnow& snow, const std::optional<Reseeding>& reseeding) const {
@@ -160,7 +160,7 @@ void Simulation::advance() {
   if (curve_) curve_->record(*method_);
 }
 
-/// The only change that beginning an event makes to the particles, so that it is all or nothing.
+/// Makes the only change to the particles at the beginning of an event, all or nothing.
 void Simulation::change_snow(const std::optional<Reseeding>& reseeding,
                              std::vector<ParticleBatch> added, const StopRequest& stop) try {
   if (!reseeding) return method_->add(added, stop);
@@ -210,7 +210,7 @@ void Simulation::settle(const std::vector<double>& drops,
       throw InputError("settling", "snow of this method does not settle between events");
 }
 
-/// Signed distance to the nearest of obstacles where they are at a time, m.
+/// Signed distance to the nearest obstacle, at its position at the given time, m.
 static double nearest_distance(const std::vector<Obstacle>& obstacles, double time, const Vec3& x) {
   double nearest = std::numeric_limits<double>::infinity();
   for (const Obstacle& o : obstacles)
@@ -258,12 +258,13 @@ void Simulation::record() {
   if (film_ && film_->due({event_, running_, method_->time()})) film_->record(*method_, event_);
 }
 
-/// Reason for which the event has ended, or none while it goes on. Its last step is a whole one,
-/// which may reach beyond the time limit; one that misses it by rounding reaches it.
+/// Reason for which the event has ended, or none while it goes on. The last step is not shortened,
+/// so it may end beyond the time limit. A step that ends before the limit by rounding alone has
+/// reached it.
 std::optional<RunEnd> Simulation::event_end() {
   constexpr double rounding = 1e-6;  // share of a step
-  const std::optional<bool> own = method_->at_rest();
-  const bool rests = own ? *own : rest_.due(method_->time()) && is_at_rest();
+  const std::optional<bool> method_rests = method_->at_rest();
+  const bool rests = method_rests ? *method_rests : rest_.due(method_->time()) && is_at_rest();
   if (event_time() <= 0) return std::nullopt;  // snow cannot have been at rest for zero seconds
   if (rests) return RunEnd::rest;
   if (event_time() >= scene_.events.max_time - rounding * method_->time_step())

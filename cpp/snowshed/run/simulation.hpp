@@ -53,18 +53,18 @@ class Simulation {
   /// between = "reseed", the stack is reseeded from the second event on (`reseed_stack`). All or
   /// nothing: throws InputError if the snow of this event cannot be seeded, or lies where snow may
   /// not be (snow_placement.hpp), SimulationError if the stack cannot be converted or an event
-  /// still runs, Stopped on request, and leaves everything as it was.
+  /// still runs, and Stopped on request. The simulation is then unchanged.
   std::optional<Reseeding> begin_event(const StopRequest& stop = {});
 
-  /// Runs the present event until the snow rests, the time limit, or `observer`, called every
-  /// `interval` seconds of wall time, returns false; then it continues to the next safe point, so
-  /// that a checkpoint resumes to the same bits, and returns `paused`. Another call resumes the
-  /// event.
+  /// Runs the present event until the snow rests or the time limit is reached. `observer` is called
+  /// every `interval` seconds of wall time. If it returns false, the run continues to the next safe
+  /// point, so that a checkpoint resumes to the same bits, and returns `paused`. Another call
+  /// resumes the event.
   RunEnd run(const std::function<bool(const RunReport&)>& observer, double interval);
 
-  /// Adds particles of the present event, beside those that begin_event seeds; before the first
-  /// event they belong to it. `batch.event` is set here. Throws InputError if they lie where
-  /// snow may not be.
+  /// Adds particles of the present event, beside those that begin_event seeds. Particles that are
+  /// added before the first event belong to the first event. `batch.event` is set here. Throws
+  /// InputError if the particles lie where snow may not be.
   void add_snow(ParticleBatch batch);
 
   /// Takes `count` steps of the present event, whether the snow rests or not. Callers that drive
@@ -75,7 +75,7 @@ class Simulation {
   }
 
   /// Applies the effects of time on the snow between two events, see Settles. Throws InputError
-  /// while an event runs, and where snow of the method does not settle, but should.
+  /// while an event runs, and for changes to snow of a method that does not settle.
   void settle(const std::vector<double>& drops, const std::vector<double>& plastic_changes);
 
   /// Writes a snapshot to `folder` every `interval` seconds of simulated time from now on.
@@ -87,7 +87,7 @@ class Simulation {
   void record_film(const std::filesystem::path& file);
   bool films() const { return film_ != nullptr; }
   void close_film();  ///< no frame will follow
-  /// The film as it is now, or was when the checkpoint was made that this was loaded from.
+  /// The mark of the film as it is now, or as it was when the loaded checkpoint was made.
   std::optional<FilmMark> film_mark() const;
 
   /// Writes a checkpoint, which replaces an older one only once it has been read back. Throws
@@ -98,9 +98,9 @@ class Simulation {
   /// gives the same bits; by default it is that of the checkpoint's scene.
   static std::unique_ptr<Simulation> load(const std::filesystem::path& checkpoint,
                                           std::optional<int> threads = {});
-  /// The same in another scene, which lays other snow from the next event on, or has more events:
-  /// of the same method and obstacles, with the snows of the checkpoint's scene as the first of its
-  /// own. Throws InputError also where an event was running.
+  /// The same for another scene, which may lay other snow from the next event on, or have more
+  /// events. It must have the same method and obstacles, and its snows must begin with those of the
+  /// checkpoint's scene. Also throws InputError if an event was running.
   static std::unique_ptr<Simulation> load_into(const Scene&, const std::filesystem::path& base_dir,
                                                const std::filesystem::path& checkpoint);
 
@@ -113,8 +113,8 @@ class Simulation {
   const Curve* curve() const { return curve_.get(); }
   /// A remark on the files that the method reads; empty if there is none.
   std::string input_remark() const;
-  /// The energies over time while `run` ran; throws InputError if the scene does not keep them,
-  /// and where a curve has them.
+  /// The energies over time while `run` ran. Throws InputError if the scene does not keep them, or
+  /// if a curve has them.
   const EnergyHistory& energy_history() const;
   int event() const { return event_; }
   /// Notes for readers of the results on the snow that was laid since this object was made, a
@@ -135,8 +135,8 @@ class Simulation {
   /// Height that all snow laid so far would have on the panel if none had left it, m.
   double laid_height() const { return laid_height_; }
 
-  /// Returns for each position whether it is that of snow on the panel, now or when the snow laid
-  /// until then had the given height.
+  /// Returns for each position whether snow there lies on the panel, now or at the time when the
+  /// snow laid so far had the given height.
   std::vector<bool> on_panel(const std::vector<Vec3>& positions) const {
     return on_panel(positions, laid_height_);
   }
@@ -144,11 +144,11 @@ class Simulation {
     return panel_.contains(positions, laid_height);
   }
 
-  /// Signed distance to the nearest of the scene's obstacles where they are now, m; ground, panel
-  /// and domain do not count. Infinite without any.
+  /// Signed distance to the nearest obstacle of the scene's list at its present position, m;
+  /// ground, panel and domain do not count. Infinite without obstacles.
   double obstacle_distance(const Vec3& x) const;
 
-  /// The same to the obstacles with thin parts thickened, on which snow lies.
+  /// The same for the obstacles with thickened thin parts, on which snow lies.
   double resolved_distance(const Vec3& x) const;
 
   /// One .vtp with all particles and their quantities.
@@ -183,7 +183,7 @@ class Simulation {
   CostEstimate cost_;
   PanelRegion panel_;
   Surroundings surroundings_;
-  // Those of the scene's list, as given and thickened.
+  // The obstacles of the scene's list, as given and thickened.
   std::vector<Obstacle> listed_obstacles_, resolved_obstacles_;
   std::unique_ptr<Method> method_;
   std::unique_ptr<SnapshotSeries> snapshots_;

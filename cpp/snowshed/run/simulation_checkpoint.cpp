@@ -38,8 +38,8 @@ std::vector<std::int64_t> prints_of(const MethodInput& input) {
   return prints;
 }
 
-/// The same of the files that shapes are read from; a checkpoint of an earlier version does not
-/// have them.
+/// The same for the files that shapes are read from; a checkpoint of an earlier version has no
+/// fingerprints of them.
 void check_shape_files(const BinaryReader& in, const Scene& scene,
                        const std::vector<std::int64_t>& now) {
   const std::vector<std::string> files = shape_files(scene);
@@ -94,8 +94,8 @@ void Simulation::save(const std::filesystem::path& checkpoint) const {
   }
 }
 
-/// Makes the checks of `load`, and throws as it. This needs memory for the particles twice; if that
-/// is not available, only the file is checked.
+/// Makes the checks of `load`, and throws as `load` does. This needs memory for the particles
+/// twice; if that is not available, only the file is checked.
 void Simulation::read_back(const std::filesystem::path& checkpoint) const {
   const BinaryReader in = BinaryReader::load(checkpoint);
   in.require_finite();

@@ -47,8 +47,8 @@ double falling_distance(const Scene& scene, double speed, double time) {
   return time * (speed + scene.gravity * time / 2.0);
 }
 
-/// The distance of the slab's rear within the time limit, and how far a slab that never lands flies
-/// apart: its front falls freely while its rear still slides.
+/// Adds the distance of the slab's rear within the time limit, and the stretch of a slab that never
+/// lands: its front falls freely while its rear still slides.
 void add_flight(const Scene& scene, double front_slides, SnowMotion& motion) {
   const double slides = std::min(motion.sliding_time, scene.events.max_time);
   const double falls = std::min(motion.fall_time, scene.events.max_time - slides);
@@ -79,7 +79,7 @@ void add_slab(const Scene& scene, SnowMotion& motion) {
   add_flight(scene, front_slides, motion);
 }
 
-/// Speed at which the snow that falls last lands, over gravity.
+/// The speed at which the last snow lands, divided by gravity, s.
 double time_to_lose_speed(const Scene& scene, const SnowMotion& motion) {
   if (!(scene.gravity > 0.0) || !motion.slides) return 0.0;
   const double along = sliding_acceleration(scene) * motion.sliding_time;

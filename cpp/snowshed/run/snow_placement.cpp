@@ -19,11 +19,12 @@ constexpr std::size_t particles_in_box = 64;
 
 constexpr double depth_over_resolution = 1e-3;  // less is rounding of files, not an overlap
 
-/// Where old snow surrounds a point: within this many particle distances there are ...
+/// Old snow surrounds a point if the ball of this radius around it, in particle distances, has
+/// enough old particles, and their centre is near to the point.
 constexpr double reach = 2.2;
-constexpr double min_filling = 0.4;  // ... this share of the particles that whole snow would have,
-constexpr double max_offset = 0.28;  // and their centre is nearer than this, over the reach. On a
-                                     // flat surface it is at 0.38 (3D) and 0.42 (2D).
+constexpr double min_filling = 0.4;  // number of particles over that in unbroken snow
+/// Distance of their centre over the reach. On a flat surface it is 0.38 (3D) and 0.42 (2D).
+constexpr double max_offset = 0.28;
 
 constexpr std::size_t max_notes = 10;  // notes on the bodies of an event
 constexpr std::size_t max_parts = 3;   // parts in a sentence
@@ -86,7 +87,7 @@ class Particles {
     return others;
   }
 
-  /// Marks the particles for which `is_there(x)` in the boxes that meet another box.
+  /// Marks the particles for which `is_there(x)` holds; searches only boxes that meet another box.
   template <class Test>
   void find_where(const std::string& where, const PointBox& other, const Test& is_there) {
     for (std::size_t b = 0; b < boxes_.size(); ++b) {
@@ -137,7 +138,7 @@ class Particles {
   std::vector<Part> parts_;
 };
 
-/// Whether a point is surrounded by particles of old snow.
+/// Decides whether a point is surrounded by particles of old snow.
 class OldSnow {
  public:
   OldSnow(const OccupiedSpace& space, const PointBox& new_snow, int dimension)
@@ -175,7 +176,7 @@ class OldSnow {
   std::optional<PointGrid> grid_;
 };
 
-std::string place(const Vec3& x, int dimension) {
+std::string position_text(const Vec3& x, int dimension) {
   char text[100];
   if (dimension == 2)
     std::snprintf(text, sizeof text, "(%.4g, %.4g) m", x.x(), x.z());
@@ -184,7 +185,7 @@ std::string place(const Vec3& x, int dimension) {
   return text;
 }
 
-/// Texts for the obstacles and their places.
+/// The obstacles, and texts for positions inside them.
 class Obstacles {
  public:
   Obstacles(const Scene& scene, const OccupiedSpace& space)
@@ -264,7 +265,7 @@ std::string sentence_of(const Particles& snow, int dimension, int event) {
     const Part& part = snow.parts()[i];
     const std::string share = percent(snow.share_of(part.count));
     text += text.empty() ? share + " of its particles lie " : " and " + share + " ";
-    text += part.where + ", such as at " + place(part.example, dimension);
+    text += part.where + ", such as at " + position_text(part.example, dimension);
   }
   if (snow.parts().size() > max_parts) text += ", and others elsewhere";
   return event > 1 ? "in event " + std::to_string(event) + ", " + text : text;

@@ -32,14 +32,14 @@ struct OccupiedSpace {
 };
 
 /// Looks for particles of new snow that lie more than a thousandth of the scene's resolution inside
-/// an obstacle, beyond the sides of the domain, or in another new body, and for those that old snow
-/// surrounds. (Old snow has no surface. Particles that reach less than half the distance of two
-/// particles into it are not seen.) Returns a sentence for each body that has such particles, and
-/// for those that lie only where a thin obstacle is made thicker: from there they are pushed out.
+/// an obstacle, beyond the sides of the domain, or in another new body, and for particles that old
+/// snow surrounds. (Old snow has no surface. Particles that reach less than half the distance of
+/// two particles into it are not found.) Returns a sentence for each body that has such particles,
+/// and one for particles that lie only where a thin obstacle is made thicker and are pushed out.
 ///
-/// Throws InputError with share and place where it is more than `max_misplaced` of a body's
-/// particles, not counting the thickening, unless the scene allows that or the body's
-/// `is_only_noted` is set.
+/// Throws InputError with share and position if more than `max_misplaced` of a body's particles are
+/// found, without those in thickened parts. It only notes them if the scene allows misplaced snow
+/// or the body's `is_only_noted` is set.
 std::vector<std::string> check_placement(const Scene&, const std::vector<PlacedBody>&,
                                          const OccupiedSpace&);
 

@@ -74,7 +74,7 @@ Vec3 shift_to_lowest_corner(const Bounds& bounds, double spacing) {
   return shift;
 }
 
-/// The same of another solid: its lattice begins at the lowest corner of its bounds.
+/// The same for another solid: its lattice begins at the lowest corner of its bounds.
 std::vector<Cell> cells_of(const LevelSet& shape, int dimension, double spacing,
                            const StopRequest& stop) {
   const Vec3 shift = shift_to_lowest_corner(shape.bounds(), spacing);
@@ -86,9 +86,9 @@ std::vector<Cell> cells_of(const LevelSet& shape, int dimension, double spacing,
   return cells;
 }
 
-/// Chooses among the cells that the surface cuts. They are taken in groups of neighbours, each of
-/// which gets as many points as its cells hold snow: the fullest cells first, and among equally
-/// full ones those farthest apart.
+/// Chooses among the cells that the surface cuts. Each group of neighbouring cells gets points in
+/// proportion to the snow in its cells: the fullest cells first, and among equally full cells those
+/// that are farthest apart.
 class CutCells {
  public:
   void add(const Cell& cell) { cells_.push_back(cell); }
@@ -121,7 +121,7 @@ class CutCells {
   }
 
   std::array<std::size_t, group> ranked(std::size_t begin, std::size_t end) const {
-    // Ordered by share, rounded, so that equal cells are equal.
+    // Sorted by share; shares are rounded, so that equal cells remain equal.
     std::array<std::size_t, group> order{};
     for (std::size_t i = begin; i < end; ++i) order[i - begin] = i;
     std::sort(order.begin(), order.begin() + std::ptrdiff_t(end - begin),

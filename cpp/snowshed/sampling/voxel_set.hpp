@@ -35,7 +35,7 @@ std::optional<OrientedBox> scene_box(const LevelSet& shape, int dimension);
 
 /// Returns the volume (3D, m3) or area (2D, m2) of a bounded solid. It is exact for boxes in any
 /// orientation. For other solids, voxels on the boundary are subdivided and cut by the tangent
-/// plane, with an error of second order in the voxel size. Throws as `voxelize`.
+/// plane, with an error of second order in the voxel size. Throws as `voxelize` does.
 double measure(const LevelSet& shape, int dimension, double voxel, const StopRequest& stop = {});
 
 }  // namespace snowshed

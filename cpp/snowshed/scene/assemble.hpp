@@ -32,7 +32,7 @@ PanelFrame panel_frame(const Scene& scene);
 /// Vertical distance of a point above the ground (above z = 0 if the scene has no ground).
 double height_above_ground(const Scene& scene, const Vec3& point);
 
-/// "ground", "panel", then the scene's own obstacles. The domain's sides are not among them.
+/// The obstacles "ground" and "panel", then the scene's own, without the domain's sides.
 std::vector<ObstacleSpec> assemble_obstacles(const Scene& scene);
 
 /// Whether a layer or body is laid at the start of `event` (1 is the first).
@@ -46,7 +46,7 @@ bool is_added_in(const Part& part, int event) {
 /// lie on the snow that remained there.
 std::vector<BodySpec> assemble_slab(const Scene& scene, int event, double lift = 0.0);
 
-/// Its thickness, m.
+/// The thickness of the slab laid at the start of `event`, m.
 double slab_thickness(const Slab& slab, int event);
 
 /// The bodies that appear at the start of `event`: the slab, then the scene's bodies of that event.

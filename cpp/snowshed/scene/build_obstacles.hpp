@@ -12,11 +12,11 @@ namespace snowshed {
 
 /// Builds the ground, the panel, the obstacles of the scene's list and the sides of its domain, in
 /// this order. Relative file names are looked for in `base_dir`. Throws InputError naming the
-/// obstacle whose shape cannot be built. `notes`, if given, are as of build_shape.
+/// obstacle whose shape cannot be built. `notes`, if given, are those of build_shape.
 std::vector<Obstacle> build_obstacles(const Scene& scene, const std::filesystem::path& base_dir,
                                       std::vector<std::string>* notes = nullptr);
 
-/// Returns those of the scene's list among the obstacles that `build_obstacles` built.
+/// Returns the obstacles of the scene's list from the result of `build_obstacles`.
 std::vector<Obstacle> listed_obstacles(const Scene& scene, const std::vector<Obstacle>& built);
 
 }  // namespace snowshed

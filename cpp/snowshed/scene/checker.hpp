@@ -56,7 +56,7 @@ class Checker : public PathVisitor<Checker> {
   void direction(const char* key, Vec3& value, const char* doc) {
     vector(key, value, "", between(-1e6, 1e6), doc);
     const double length = dimension_ == 2 ? std::hypot(value.x(), value.z()) : value.norm();
-    // Shorter ones lose their direction to rounding when squared.
+    // Shorter vectors lose their direction to rounding when squared.
     constexpr double min_length = 1e-100;
     if (length < min_length) throw InputError(at(key), "a direction must not be zero");
   }

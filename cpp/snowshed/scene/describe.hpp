@@ -21,9 +21,9 @@
 //   method(key, settings_key, member, doc, settings_doc)
 //                                            the name of a method, and the settings of that method
 //   method_ahead(key, member)                before parts that only some methods take
-//   shows(member, part)                      whether to go on to a part: does the method take it?
-//   taken_by(part)                           before a part that may be left out: who takes it
-//   alias(key, other)                        before a field: another key that is read for it
+//   shows(member, part)                      whether to visit a part: does the method take it?
+//   taken_by(part)                           before a part that may be left out: its methods
+//   alias(key, other)                        before a field: another key for the same field
 //   accuracy({key...})                       before fields: those that trade accuracy for time
 #pragma once
 
@@ -357,7 +357,7 @@ void describe(V& v, MethodChoice& m) {
 template <class V>
 void describe(V& v, Scene& s) {
   v.version("snowshed", scene_version, "Version of the scene format");
-  // Before any vector: it decides how they are written.
+  // Stands before any vector, because it decides how vectors are written.
   v.integer("dimension", s.dimension, between(2, 3), "2: the plane (x, z); 3: space");
   v.text("title", s.title, "Title of the scene");
   v.number("gravity", s.gravity, "m/s2", non_negative.up_to(1e3), "Gravity, along -z");

@@ -15,7 +15,7 @@ namespace snowshed {
 namespace {
 
 /// Files in millimetres that are read as metres, or the reverse, are 1000 times too large or small.
-constexpr double too_different = 300;
+constexpr double max_size_ratio = 300;
 
 struct Solid {
   std::string file;  // empty: of no file
@@ -78,10 +78,10 @@ void add_notes_on_files(const Scene& scene, const std::filesystem::path& base_di
       if (&other != &solid && std::isfinite(other.size)) largest = std::max(largest, other.size);
     if (solid.size < cell)
       notes.push_back(size + "less than a cell of " + show_briefly(cell) + " m" + question);
-    else if (largest > 0 && solid.size > too_different * largest)
+    else if (largest > 0 && solid.size > max_size_ratio * largest)
       notes.push_back(size + "and everything else at most " + show_briefly(largest) + " m" +
                       question);
-    else if (largest > too_different * solid.size)
+    else if (largest > max_size_ratio * solid.size)
       notes.push_back(size + "and others up to " + show_briefly(largest) + " m" + question);
   }
 }

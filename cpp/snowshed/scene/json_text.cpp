@@ -14,7 +14,7 @@ namespace {
 using nlohmann::json;
 using nlohmann::ordered_json;
 
-std::string place(const std::string& text, std::size_t position, const std::string& name) {
+std::string location(const std::string& text, std::size_t position, const std::string& name) {
   // The parser counts the characters it has read, the offending one included.
   const std::size_t end = std::min(text.size(), position > 0 ? position - 1 : 0);
   const auto begin = text.begin();
@@ -117,7 +117,7 @@ class ValueBuilder {
       throw InputError(path(),
                        (last_read.size() > 60 ? last_read.substr(0, 60) + "..." : last_read) +
                            " is too large for a number");
-    throw InputError(place(text_, position, name_), plain_message(error.what(), last_read));
+    throw InputError(location(text_, position, name_), plain_message(error.what(), last_read));
   }
 
  private:
@@ -171,7 +171,7 @@ class ValueBuilder {
 
 const std::string seal_begins = ",\n  \"checksum\": \"";
 
-/// The end of an object that begins with this text.
+/// The end of an object, with the checksum of the text before.
 std::string seal_of(const std::string& text) {
   Crc32 sum;
   sum.update(text.data(), text.size());
@@ -209,7 +209,7 @@ json parse_json(const std::string& text, const std::string& name) {
   json::sax_parse(with_plain_blanks(text), &builder);
   const std::size_t nul = text.find('\0');  // where the parser takes the text to end
   if (nul != std::string::npos)
-    throw InputError(place(text, nul + 1, name), "not valid JSON: a NUL character");
+    throw InputError(location(text, nul + 1, name), "not valid JSON: a NUL character");
   return builder.take();
 }
 
@@ -220,13 +220,13 @@ void check_seal(const std::string& text, const std::string& name) {
     throw InputError(name, "its checksum is not that of its content");
 }
 
-std::string sealed(const ordered_json& object) {
-  std::string text = pretty(object);
+std::string sealed_text(const ordered_json& object) {
+  std::string text = indented_text(object);
   text.erase(text.rfind("\n}"));
   return text + seal_of(text);
 }
 
-std::string pretty(const ordered_json& value) {
+std::string indented_text(const ordered_json& value) {
   std::string out;
   append(out, value, "");
   return out + "\n";

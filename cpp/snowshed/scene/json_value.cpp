@@ -31,7 +31,7 @@ std::string to_text(const json& value, const std::string& path) {
   return value.get<std::string>();
 }
 
-std::size_t to_place(const json& value, const std::string& path,
+std::size_t to_index(const json& value, const std::string& path,
                      const std::vector<std::string>& names) {
   for (std::size_t i = 0; i < names.size(); ++i)
     if (value == names[i]) return i;

@@ -53,8 +53,8 @@ Int to_integer(const nlohmann::json& value, const std::string& path, const Range
   return value.get<Int>();
 }
 
-/// Where among `names` the value is.
-std::size_t to_place(const nlohmann::json& value, const std::string& path,
+/// The index of the value among `names`.
+std::size_t to_index(const nlohmann::json& value, const std::string& path,
                      const std::vector<std::string>& names);
 
 }  // namespace snowshed

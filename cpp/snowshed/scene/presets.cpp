@@ -35,7 +35,7 @@ Scene lab_scene(double tilt) {
   panel.tilt = tilt;
   panel.condition = Condition::separate;
   Slab& slab = scene.slab.emplace();
-  slab.thickness = 0.02;  // its length stays 0: as long as the panel, also if that is changed
+  slab.thickness = 0.02;  // its length stays 0: as long as the panel, even if that is changed
   slab.width = 0.142;
   scene.ground.emplace().condition = Condition::sticky;
   scene.events.count = 5;

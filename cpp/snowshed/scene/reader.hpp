@@ -81,7 +81,7 @@ class Reader : public Checker {
   }
 
   void choice(const char* key, const Choice& value, const char*) {
-    if (const json* given = take(key)) value.choose(to_place(*given, at(key), value.names()));
+    if (const json* given = take(key)) value.choose(to_index(*given, at(key), value.names()));
   }
 
   void vector(const char* key, Vec3& value, const char* unit, const Range& range, const char* doc) {
@@ -142,7 +142,7 @@ class Reader : public Checker {
   void method_ahead(const char* key, MethodChoice& method) {
     const auto given = object_.find(key);
     if (given != object_.end())
-      method = MethodChoice(*all_methods()[to_place(*given, at(key), method_names())]);
+      method = MethodChoice(*all_methods()[to_index(*given, at(key), method_names())]);
   }
 
   void method(const char* key, const char* settings_key, MethodChoice& method, const char*,

@@ -14,7 +14,7 @@
 namespace snowshed {
 namespace {
 
-/// At most one byte more than is allowed, even from an endless file.
+/// Reads at most one byte more than is allowed, even from an endless file.
 std::string read_text(const std::filesystem::path& file) {
   std::error_code failed;
   const auto status = std::filesystem::status(file, failed);
@@ -36,7 +36,7 @@ std::string read_text(const std::filesystem::path& file) {
   return text;
 }
 
-/// Absolute names stay, and so do those that are not given.
+/// Makes a relative name absolute; an absolute or empty name stays.
 void make_absolute(const std::filesystem::path& folder, std::string& file) {
   if (!file.empty()) file = (folder / file).lexically_normal().string();
 }
@@ -52,7 +52,7 @@ void add_files(const ShapeSpec& shape, std::vector<std::string>& files) {
   for (const auto& part : shape.shapes) add_files(part, files);
 }
 
-/// Completes snow of a layer or body by the scene's, both as they were given.
+/// Adds the values that the snow of a layer or body lacks from the scene's snow, both as given.
 void complete_snow(const nlohmann::json& of_scene, nlohmann::json& part) {
   if (!part.is_object() || !part.contains("snow") || !part["snow"].is_object()) return;
   nlohmann::json complete = of_scene;
@@ -120,7 +120,7 @@ Scene load_scene(const std::filesystem::path& file, std::vector<std::string>* no
 std::string write_scene(const Scene& scene) {
   validate(scene);
   Scene copy = scene;  // visitors see members they may write to
-  return pretty(Writer::write(copy, copy.dimension));
+  return indented_text(Writer::write(copy, copy.dimension));
 }
 
 Scene with_threads(Scene scene, int threads) {
@@ -140,7 +140,7 @@ std::string scene_checksum(const std::string& text) {
 
 std::string write_snow(const Snow& snow) {
   Snow copy = snow;
-  return pretty(Writer::write(copy, 3));
+  return indented_text(Writer::write(copy, 3));
 }
 
 void validate(const Scene& scene) {

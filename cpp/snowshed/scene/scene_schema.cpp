@@ -17,7 +17,7 @@ std::string scene_schema() {
   };
   schema.update(scene);
   schema["$defs"] = definitions;
-  return pretty(schema);
+  return indented_text(schema);
 }
 
 }  // namespace snowshed

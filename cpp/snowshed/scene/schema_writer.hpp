@@ -18,8 +18,8 @@ class SchemaWriter {
  public:
   using json = nlohmann::ordered_json;
 
-  /// Shared by all visitors of one schema: definitions that contain themselves, and are therefore
-  /// referred to.
+  /// `definitions` is shared by all visitors of one schema. It holds the types that contain
+  /// themselves, to which the schema therefore refers.
   explicit SchemaWriter(json& definitions) : definitions_(definitions) {}
 
   /// The schema of T; its defaults are those of a new T.

@@ -168,7 +168,7 @@ class SceneRules {
     check_event(body.event);
   }
 
-  /// Whether the method can provide for the scene's snow, events and output.
+  /// Checks that the method supports the scene's snow, events and output.
   void check_snow_and_events() const {
     const MethodInfo& method = scene_.numerics->info();
     const std::string name = "the method " + quote(method.name);

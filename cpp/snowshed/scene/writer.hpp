@@ -73,8 +73,8 @@ class Writer {
   bool shows(const MethodChoice& method, Part part) const { return method.takes(part); }
   void taken_by(Part) {}
 
-  /// The default method is left out: its scenes and their hashes are those of versions without a
-  /// choice.
+  /// Leaves out the default method: its scenes and their hashes equal those of versions without a
+  /// choice of method.
   void method(const char* key, const char* settings_key, MethodChoice& method, const char*,
               const char*) {
     if (!method.is_default()) json_[key] = method->info().name;

@@ -6,8 +6,8 @@
 
 namespace snowshed {
 
-/// While it lives, the n-th call of `operator new` from its making on, on any thread, throws
-/// std::bad_alloc; those before and after do not. One at a time.
+/// During its lifetime the n-th call of `operator new` on any thread throws std::bad_alloc; other
+/// calls do not. Only one such object may exist at a time.
 class AllocationFault {
  public:
   explicit AllocationFault(std::int64_t n);
@@ -21,8 +21,8 @@ class AllocationFault {
 
 enum class FaultOutcome { no_fault, failed, done_without };
 
-/// Makes a call during which the n-th allocation fails. It may not come so far, throw
-/// std::bad_alloc, or do without the memory.
+/// Makes a call during which the n-th allocation fails. The call may end before that allocation,
+/// throw std::bad_alloc, or do without the memory.
 FaultOutcome with_allocation_fault(std::int64_t n, const std::function<void()>& call);
 
 }  // namespace snowshed

@@ -14,7 +14,7 @@
 namespace snowshed {
 namespace {
 
-std::atomic<std::int64_t> allocations_left{0};  // until one fails; none does below 1
+std::atomic<std::int64_t> allocations_left{0};  // until one fails; below 1 none fails
 
 void* allocate(std::size_t bytes, std::size_t alignment) {
   if (allocations_left > 0 && --allocations_left == 0) {
@@ -23,8 +23,8 @@ void* allocate(std::size_t bytes, std::size_t alignment) {
   }
   void* p = nullptr;
   if (posix_memalign(&p, alignment, bytes > 0 ? bytes : 1) != 0) throw std::bad_alloc();
-  // Numbers that are read before they are written are no numbers, in every test of this program:
-  // memory that happens to hold zeros would hide them.
+  // In every test of this program, floating-point numbers are NaN until they are written. Memory
+  // that happens to hold zeros would hide that they are read too early.
   std::memset(p, 0xff, bytes);
   return p;
 }

@@ -56,7 +56,7 @@ TEST(Parallel, TakesAsManyThreadsAsOpenMpWouldUnlessToldHowMany) {
 }
 
 #ifdef SNOWSHED_STD_THREADS
-/// Iteration i writes element i and, which is not its own, the one before.
+/// Iteration i writes element i and the element before, which is not its own.
 void race() {
   std::vector<int> written(100, 0);
   parallel_for_dynamic(100, 2, 1, [&](std::ptrdiff_t i) {

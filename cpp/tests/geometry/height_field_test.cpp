@@ -10,14 +10,14 @@ namespace snowshed {
 namespace {
 
 TEST(HeightField, APlaceIsACellAndTheWayFromItsCorner) {
-  const GridPlace p = place_in(2.25, 1.5, 4, 3);
+  const CellPosition p = find_cell(2.25, 1.5, 4, 3);
   EXPECT_EQ(p.column, 2);
   EXPECT_EQ(p.row, 1);
   EXPECT_DOUBLE_EQ(p.east, 0.25);
   EXPECT_DOUBLE_EQ(p.north, 0.5);
-  EXPECT_FALSE(place_in(3.0, 1.0, 4, 3).inside());  // no cell begins at the last node
-  EXPECT_FALSE(place_in(-1e-9, 1.0, 4, 3).inside());
-  EXPECT_FALSE(place_in(std::nan(""), 1.0, 4, 3).inside());
+  EXPECT_FALSE(find_cell(3.0, 1.0, 4, 3).inside());  // no cell begins at the last node
+  EXPECT_FALSE(find_cell(-1e-9, 1.0, 4, 3).inside());
+  EXPECT_FALSE(find_cell(std::nan(""), 1.0, 4, 3).inside());
 }
 
 TEST(HeightField, ResamplingKeepsAQuadraticSurface) {

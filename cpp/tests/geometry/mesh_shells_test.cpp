@@ -74,7 +74,7 @@ TEST(MeshShells, TurnsEachShellForItself) {
     }
 }
 
-// As large shells of equal size enclose no volume together if one is turned.
+// Two shells of equal size enclose no volume together if one of them is turned.
 TEST(MeshShells, OppositeTwinsAreTwoSolids) {
   EXPECT_NEAR(solid_of(cubes({{zero, one}, {{2, 0, 0}, {3, 1, 1}, true}})).volume(), 2, 1e-9);
 }

@@ -36,7 +36,7 @@ TEST(Polygon, AreaWithinRectanglesAddsUp) {
   for (int j = -1; j < 7; ++j)
     for (int i = -1; i < 7; ++i) sum += area_within(u, {double(i), double(j)}, {i + 1.0, j + 1.0});
   EXPECT_NEAR(sum, std::abs(twice_signed_area(u.outline)) / 2 - 5.0, 1e-12);
-  // Between the arms there is none, though their ends lie on either side.
+  // The rectangle between the arms has no area, though their ends lie on either side of it.
   EXPECT_EQ(area_within(u, {2.5, 3}, {3.5, 4}), 0.0);
 }
 

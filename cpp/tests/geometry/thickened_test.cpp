@@ -146,7 +146,7 @@ TEST(Thickened, RodsAndBallsGrowEvenly) {
 }
 
 TEST(Thickened, OnlyThinPartsGrow) {
-  // A shelf on a post, as a union and as one of a difference; a bin; a gutter of three plates.
+  // A shelf on a post, a bin cut from a box, and a gutter of three plates.
   const double thin = 0.02;
   const Shape shelf = unite({box2(0, 0, 0.6, 1.6), box2(0.7, 0.3, 1, thin)});
   const ThickSolid solid = thickened(shelf, half, 2);

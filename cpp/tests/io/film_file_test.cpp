@@ -25,7 +25,7 @@ FilmHeader small_header() {
   return header;
 }
 
-/// Particles come and go, and move in ways that nothing foretells.
+/// Returns a frame in which particles come, go and move unpredictably.
 FilmFrame some_frame(int number) {
   std::mt19937 random(std::uint32_t(number) + 1);
   FilmFrame frame;

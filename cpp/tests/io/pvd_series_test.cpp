@@ -58,7 +58,7 @@ TEST_F(PvdSeriesTest, AChangedFileIsRefused) {
     std::string bytes = sound;
     bytes[at] = bytes[at] == '3' ? '4' : '3';
     std::ofstream(path("snow.pvd")) << bytes;
-    // Where the word is changed that announces the checksum, there is none, as in older files.
+    // If the word before the checksum is changed, the file has no checksum, as older files.
     if (at < sound.find("<!--") || at >= sound.find("checksum ") + 9)
       EXPECT_THROW(PvdSeries::reopen(path("snow.pvd")), InputError) << at;
   }

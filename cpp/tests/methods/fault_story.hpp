@@ -1,5 +1,5 @@
-// Lack of memory in a method: every allocation of a story, told by two equal methods, fails once in
-// one of them. Each failed call must leave it as the other is.
+// Tests of lack of memory: two equal methods get the same calls, and every allocation fails once in
+// one of them. After a failed call both methods must have the same state.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -16,8 +16,8 @@
 
 namespace snowshed {
 
-/// Calls that are made of a method one after the other; those that read or write a checkpoint use
-/// a file of their own.
+/// A method and the calls that it gets, in order. Calls that read or write a checkpoint use the
+/// story's own file.
 template <class M>
 class FaultStory {
  public:
@@ -50,8 +50,9 @@ class FaultStory {
   std::filesystem::path file_;
 };
 
-/// Tells both stories, lets every allocation of the second fail once, and returns how many there
-/// were. `expect_same(now, wanted)` compares, `seen` is shown the first after each call.
+/// Makes the calls of both stories, lets every allocation of the second fail once, and returns the
+/// number of failures. `expect_same(faulty, whole)` compares the methods, and `seen(whole)` is
+/// called after each call of the first story.
 template <class M, class ExpectSame, class Seen>
 int fail_every_allocation(FaultStory<M>& whole, FaultStory<M>& faulty, ExpectSame expect_same,
                           Seen seen) {
@@ -62,7 +63,8 @@ int fail_every_allocation(FaultStory<M>& whole, FaultStory<M>& faulty, ExpectSam
       if (outcome == FaultOutcome::no_fault) break;
       ++faults;
       SCOPED_TRACE("call " + std::to_string(k) + ", allocation " + std::to_string(n));
-      // Streams do without some memory; what reads or writes a file may be done again.
+      // Streams can do without some memory. The call has then succeeded, and is made again; this
+      // changes nothing, because such calls read or write files.
       if (outcome == FaultOutcome::done_without) whole.calls[k]();
       expect_same(*faulty.method, *whole.method);
       if (testing::Test::HasFailure()) return faults;

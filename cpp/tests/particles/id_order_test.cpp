@@ -25,7 +25,7 @@ TEST(OrderById, IsThatOfASort) {
   }
 }
 
-/// Ids of a forged checkpoint may be the same: every place is still there once.
+/// Ids of a forged checkpoint may be equal; the order still contains every particle once.
 TEST(OrderById, KeepsParticlesOfTheSameId) {
   const std::vector<std::uint32_t> ids{7, 7, 0, 4294967295u, 7};
   EXPECT_EQ(order_by_id(ids.data(), ids.size()), (std::vector<std::uint32_t>{2, 0, 1, 4, 3}));

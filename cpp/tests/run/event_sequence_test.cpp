@@ -20,7 +20,7 @@ class EventSequenceTest : public TemporaryFolder {
   }
 };
 
-/// Notes what it is told; stops or throws at a report.
+/// Records the calls; stops or throws at a report.
 class Witness : public EventObserver {
  public:
   explicit Witness(int stops_at = -1, int throws_at = -1)
@@ -160,7 +160,7 @@ TEST_F(EventSequenceTest, AFailureIsRecordedAndCanBeResumedFrom) {
   EXPECT_TRUE(resumed.run(second, never));
 }
 
-/// The state between two events may have aged already, which would happen to it twice.
+/// The state between two events may have aged already, and would age twice when resumed.
 TEST_F(EventSequenceTest, AFailureBetweenEventsLeavesTheCheckpointOfTheLast) {
   Witness quiet;
   Scene scene = two_events();

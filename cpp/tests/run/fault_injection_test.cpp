@@ -40,7 +40,7 @@ class Story {
     return all;
   }
 
-  /// Those after the end of the first event.
+  /// Calls after the end of the first event.
   std::vector<std::function<void()>> later_calls() {
     std::vector<std::function<void()>> all;
     all.push_back([this] {

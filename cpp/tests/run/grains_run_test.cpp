@@ -1,4 +1,4 @@
-// Loading tests as simulations: their curve, resuming, and files that are not what they were.
+// Loading tests as simulations: their curve, resuming, and files that have changed.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -36,7 +36,7 @@ class GrainsRun : public TemporaryFolder {
                   npy_file(1, npy_header("|u1", "(4, 4, 4)"), npy_data(labels)));
   }
 
-  /// Compressed by a thousandth and unloaded, in some hundred steps.
+  /// A sample that is compressed by a thousandth and unloaded, in about a hundred steps.
   Scene scene() const {
     write_labels(two_grains());
     Scene s;
@@ -227,7 +227,7 @@ TEST_F(GrainsRun, AnImageWithoutGrainsIsRefused) {
 }
 
 TEST_F(GrainsRun, StagesThatTakeLongerThanAnEventMayAreRefused) {
-  Scene s = scene();  // 4e-4 m, by a thousandth and two at 0.02 m/s
+  Scene s = scene();  // 4e-4 m high, moved by 0.001 and 0.002 of this at 0.02 m/s
   s.events.max_time = 6.1e-5;
   s.events.rest_time = 0;
   EXPECT_NO_THROW(Simulation{s});

@@ -27,8 +27,8 @@ Snow light_snow() {
   return snow;
 }
 
-/// The small scene with a light layer below the scene's own snow in every event, and more of that
-/// in the second.
+/// The small scene with a light layer below the scene's own snow in every event, and another layer
+/// of the own snow in the second event.
 Scene layered_scene(mpm::Transfer transfer = mpm::Transfer::flip) {
   Scene scene = small_scene(transfer);
   scene.slab->thickness = 0;
@@ -131,9 +131,10 @@ TEST_F(Layers, OfAnUnknownSnowAreRefusedInACheckpoint) {
   EXPECT_THROW(Simulation::load(path("forged")), InputError);
 }
 
-// --- what stays on the panel --------------------------------------------------------------------
+// --- snow that stays on the panel ---------------------------------------------------------------
 
-/// On a panel too rough to slide, slabs of a layer that differs from event to event.
+/// Slabs of a single layer, whose thickness differs from event to event. Friction holds them on the
+/// panel.
 Scene rough_scene(const std::vector<double>& thicknesses) {
   Scene scene = small_scene();
   scene.panel->friction = 2;

@@ -7,7 +7,7 @@
 namespace snowshed {
 namespace {
 
-/// When the detector first finds rest while `speed(t)` goes on for 2 s; negative: never.
+/// The time at which the detector first finds rest in 2 s of `speed(t)`; negative if it never does.
 template <class Speed>
 double time_of_rest(RestDetector detector, double start, Speed speed) {
   detector.start_event(start);

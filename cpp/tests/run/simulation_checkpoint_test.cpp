@@ -46,7 +46,7 @@ TEST_F(SimulationCheckpoint, WithoutATimeIsRefused) {
     }
 }
 
-/// They would take memory out of all proportion to the file.
+/// Blocks without particles would take memory out of all proportion to the file.
 TEST_F(SimulationCheckpoint, WithBlocksWithoutParticlesIsRefused) {
   Simulation sim(drop(0.01));
   sim.begin_event();
@@ -55,7 +55,7 @@ TEST_F(SimulationCheckpoint, WithBlocksWithoutParticlesIsRefused) {
   const auto first = BinaryReader::load(path("good")).get<std::int32_t>("blocks/first");
   ASSERT_GT(first.size(), 2u);
   const std::string table(reinterpret_cast<const char*>(first.data()), 4 * first.size());
-  // The second block begins where the first does, which is left with nothing.
+  // The second block begins where the first does, so the first has no particles.
   write_plainly(path("forged"), forged(bytes, bytes.find(table) + 4, std::int32_t{0}));
   EXPECT_THROW(Simulation::load(path("forged")), InputError);
 }

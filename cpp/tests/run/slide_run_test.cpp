@@ -1,4 +1,4 @@
-// Slides as simulations: checkpoints beside files that are not what they were.
+// Slides as simulations: checkpoints beside files that have changed.
 #include <gtest/gtest.h>
 
 #include "io/forged_archive.hpp"
@@ -12,7 +12,7 @@ namespace {
 
 class SlideRun : public TemporaryFolder {
  protected:
-  /// Saves half a metre of snow on an incline, of which no map is given, and returns the bytes.
+  /// Saves half a metre of snow on an incline, without a map of thickness, and returns the bytes.
   std::string checkpoint() const {
     std::string heights = "ncols 20\nnrows 15\nxllcenter 0\nyllcenter 0\ncellsize 2\n";
     for (int row = 0; row < 15; ++row) {
@@ -30,8 +30,8 @@ class SlideRun : public TemporaryFolder {
     return content(path("checkpoint"));
   }
 
-  /// Returns what a checkpoint is refused with whose mark of a file is another, 0: that of the
-  /// terrain, 1: that of the map of thickness.
+  /// Returns the message with which a checkpoint is refused after the mark of a file was changed:
+  /// 0 the terrain, 1 the map of thickness.
   std::string refusal_with_mark_of(int file) const {
     const std::string bytes = checkpoint();
     const std::size_t mark = data_of(bytes, "ground") + 8 * std::size_t(file);

@@ -90,7 +90,7 @@ TEST_P(SnowPlacement, RefusesBodiesOneInAnother) {
   const std::string text = said(box(0, 0.1, 0.4, 0.2) + "," + box(0.1, 0.1, 0.4, 0.2));
   expect_part(text, "refused: /bodies/0/shape: 7");
   expect_part(text, "within the snow of /bodies/1");
-  // A small one in a large one is all within it, and hardly a part of the large one.
+  // A small body in a large one lies within it as a whole, but takes up little of the large one.
   expect_part(said(box(0, 0.25, 0.5, 0.5) + "," + box(0, 0.25, 0.04, 0.04)),
               "/bodies/1/shape: 100 % of its particles lie within the snow of /bodies/0");
 }
@@ -137,7 +137,7 @@ TEST(SnowPlacementNotes, TellOfASliver) {
 }
 
 TEST(SnowPlacementNotes, MeetAnObstacleWhereItIsNow) {
-  // It has left the place of the second body by the time the second event begins.
+  // The obstacle has left the place of the second body before the second event begins.
   const std::string moving =
       R"("ground": {}, "events": {"count": 2, "max_time": 0.2, "rest_time": 0.01}, "obstacles":
       [{"shape": {"type": "box", "center": [2, 0.1], "size": [0.2, 0.2]},
@@ -210,7 +210,7 @@ TEST(SnowPlacementNotes, TellOfASlabThatMeetsTheStackAndLetTheWinterGoOn) {
   Simulation sim(scene);
   sim.begin_event();
   sim.run(go_on, never);
-  // A stack that has grown through the panel's lower end, on which hardly any snow counts as lying.
+  // The stack has grown through the panel's lower end, though hardly any snow lies on the panel.
   const PanelFrame panel = panel_frame(resolve(scene));
   ParticleBatch stack = mpm::filled_box(2, panel.lower_edge() + Vec3(-0.01, 0, -0.1),
                                         panel.lower_edge() + Vec3(0.15, 0, 0.1), 0.004);
@@ -263,7 +263,7 @@ struct Sized {
   double volume;
 };
 
-/// Boxes, turned ones, balls: their volumes in closed form.
+/// Boxes, rotated boxes and balls, with their volumes in closed form.
 std::vector<Sized> solids(int dimension) {
   if (dimension == 2)
     return {{R"({"type": "box", "center": [0, 1], "size": [0.47, 0.113]})", 0.47 * 0.113},
@@ -348,7 +348,7 @@ TEST(MassOfBodies, IsThatOfTheLayersByMps) {
   EXPECT_TRUE(sim.notes().empty()) << sim.notes().front();
 }
 
-// --- what runs tell -----------------------------------------------------------------------------
+// --- notes of runs ------------------------------------------------------------------------------
 
 class NotesOfRuns : public TemporaryFolder {};
 

@@ -102,7 +102,7 @@ TEST(Lattice, StandsOnTheLowestFaceHoweverABoxIsTurned) {
 }
 
 TEST(Lattice, IsTheSameForABoxWhoeverDescribesIt) {
-  // Subtracting what does not touch it hides that it is a box.
+  // Subtracting a solid that does not touch the box hides that it is a box.
   const Shape box = make_box(Vec3::Zero(), Vec3(0.4, infinity, 0.1));
   const Shape hidden = subtract(box, {make_sphere({5, 0, 5}, 0.1)});
   auto one = fill_lattice(*box, 2, 0.02).positions,

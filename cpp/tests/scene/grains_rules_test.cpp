@@ -65,7 +65,7 @@ INSTANTIATE_TEST_SUITE_P(
          [](Scene& s) { s.loading[1] = {LoadingKind::isotropic, 0.02, 0.56, 0}; }},
         {"/loading/0/kind", "nothing to unload",
          [](Scene& s) { s.loading[0].kind = LoadingKind::unload; }},
-        {"/loading/4/kind", "the top plate is away",
+        {"/loading/4/kind", "has removed the top plate",
          [](Scene& s) { s.loading[4].kind = LoadingKind::shear; }},
         {"/loading/2/kind", "\"stretch\" pulls at the plates; set /numerics/bonded_plates",
          [](Scene& s) { s.loading[2] = {LoadingKind::stretch, 0.02, 0.1, 0}; }},

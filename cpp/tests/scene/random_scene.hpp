@@ -112,7 +112,7 @@ class Randomizer {
   std::string type_;
 };
 
-/// Makes a scene one of a slide, which has terrain and no more than its method takes.
+/// Turns a scene into a slide, which has terrain and only the parts that its method takes.
 inline void mend_slide(Randomizer& randomizer, Scene& scene) {
   scene.panel.reset();
   scene.slab.reset();
@@ -130,7 +130,7 @@ inline void mend_slide(Randomizer& randomizer, Scene& scene) {
   if (settings.mode == slide::Mode::compatible) scene.terrain->thickness_file.clear();
 }
 
-/// Makes a scene one of grains: a sample that is loaded, in stages that may follow on each other.
+/// Turns a scene into a loading test of a sample, in stages that may follow each other.
 inline void mend_grains(Randomizer& randomizer, Scene& scene) {
   scene.panel.reset();
   scene.slab.reset();
@@ -152,7 +152,7 @@ inline void mend_grains(Randomizer& randomizer, Scene& scene) {
   if (scene.cone) scene.loading.push_back({LoadingKind::penetrate, 0.5, 0.2, 0});
 }
 
-/// Makes a scene one of MPS, whose snow is that of its settings.
+/// Turns a scene into one of MPS, whose snow is that of the method's settings.
 inline void mend_mps(Scene& scene) {
   scene.snow = {};
   scene.seeding = {};
@@ -165,7 +165,7 @@ inline void mend_mps(Scene& scene) {
   settings.order = mps::Order::single_move;
 }
 
-/// Its fields are independent of each other, so what the rules between them demand is mended.
+/// Returns a scene with random fields, which are then changed to obey the rules between fields.
 inline Scene random_scene(std::uint64_t seed) {
   std::mt19937_64 random(seed);
   Scene scene;

@@ -120,7 +120,7 @@ bool operator==(const T& a, const T& b) {
   return tied(a) == tied(b);
 }
 
-/// Whether both are settings of this type, and the same.
+/// Whether both are settings of this type, and equal.
 template <class Settings>
 bool have_same(const MethodChoice& a, const MethodChoice& b) {
   return a.is<Settings>() && b.is<Settings>() && a.as<Settings>() == b.as<Settings>();

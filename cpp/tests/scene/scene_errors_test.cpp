@@ -352,7 +352,7 @@ TEST(SceneErrorsText, BlankLinesAreNoPartOfTheMessage) {
   const std::string message = said("\n\t\r\n\n ?");
   EXPECT_EQ(message.substr(0, 26), "scene:4:2: not valid JSON:");
   EXPECT_EQ(message.substr(message.rfind(", after")), ", after \"?\"");
-  // Each blank took nine bytes of the message, several times over.
+  // The parser writes nine bytes for each blank, several times over.
   EXPECT_LT(said(std::string(1 << 22, '\n') + "x").size(), 200u);
   EXPECT_EQ(where_of("{\"a\\\"\n\": 1}"), "name:1:6");  // within a text they remain escaped
 }

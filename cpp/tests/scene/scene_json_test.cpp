@@ -259,7 +259,7 @@ TEST(SceneJson, TheMethodIsAChoiceAndTheDefaultGoesWithoutSaying) {
   EXPECT_FALSE(nlohmann::json::parse(write_scene(scene)).contains("method"));
 }
 
-// `slip` of version 1 is `separate` now: a scene of that version must go on as it did.
+// `slip` of version 1 is `separate` now. The meaning of a scene of version 1 must not change.
 TEST(SceneJson, SlipOfVersion1IsSeparate) {
   const std::string rest = R"(, "ground": {"condition": "slip"}, "slab": {"thickness": 0.1},
     "panel": {"height": 1, "length": 2, "width": 3, "condition": "slip"},

@@ -87,7 +87,7 @@ TEST(SceneSchema, EveryObjectIsClosedAndEveryFieldExplained) {
           << path << "/" << key;
     }
   });
-  // The structs of scene.hpp but ShapeSpec, snow of layers and bodies, and the kinds of shape;
+  // The structs of scene.hpp except ShapeSpec, snow of layers and bodies, and the kinds of shape;
   // terrain with its three kinds of areas and their holes, and the settings of the slide; sample,
   // stage, cone and settings of grains; the settings of MPS.
   EXPECT_EQ(objects, 14 + 2 + 12 + 7 + 1 + 4 + 1);

@@ -3,7 +3,7 @@ from .accuracy.stack_errors import stack_error as stack_error
 from .calibration.comparison import SimulatedStacks as SimulatedStacks
 from .calibration.comparison import compare_stacks as compare_stacks
 from .calibration.comparison import read_simulated_stacks as read_simulated_stacks
-from .calibration.design import calibration_study as calibration_study
+from .calibration.grid_study import calibration_study as calibration_study
 from .calibration.measurements import Measurement as Measurement
 from .calibration.measurements import measurements_template as measurements_template
 from .calibration.measurements import read_measurements as read_measurements
@@ -16,8 +16,8 @@ from .calibration.report import evaluate_calibration as evaluate_calibration
 from .calibration.surrogate import Surrogate as Surrogate
 from .clearance.answer import ClearanceResult as ClearanceResult
 from .clearance.answer import required_clearance as required_clearance
-from .clearance.design import Design as Design
-from .clearance.design import Ranges as Ranges
+from .clearance.panel_design import Design as Design
+from .clearance.panel_design import Ranges as Ranges
 from .clearance.winters import Winter as Winter
 from .clearance.winters import split_winters as split_winters
 from .grains.material.fit import fit_material as fit_material

@@ -112,7 +112,7 @@ def coverage_nrel(
     blocked: pd.Series,
     **options: float,
 ) -> pd.Series:
-    """Return the covered part of a row by the NREL model, whose snow cannot slide onto a pile.
+    """Return the covered share of a row by the NREL model, with slides blocked by the pile.
 
     While the pile reaches the lower edge, the model is given air so cold that nothing slides; all
     else is `pvlib.snow.coverage_nrel`.
@@ -229,7 +229,7 @@ def _dates(season: pd.DataFrame) -> pd.Series:
 
 
 def _daily(rows: pd.DataFrame) -> pd.DataFrame:
-    """Return a row for each day from the first to the last, of rows of any length.
+    """Return a row for each day from the first to the last, for rows of any spacing.
 
     A day without a row has the state of the last row before it; for a day with rows, its initial
     state counts, too.

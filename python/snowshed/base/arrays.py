@@ -92,7 +92,7 @@ def flags(name: str, given: ArrayLike, count: int) -> Booleans:
     Raises
     ------
     InputError
-        If there are more or fewer, or anything else.
+        If their number differs, or some are not booleans.
 
     Examples
     --------

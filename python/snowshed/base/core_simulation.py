@@ -1,4 +1,4 @@
-"""The core's simulation inside the one that users hold."""
+"""The core's simulation inside a `snowshed.Simulation`."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import snowshed._core as _core
 
 
 class HoldsCore(Protocol):
-    """The part of `snowshed.Simulation` that the rooms below it need."""
+    """The part of `snowshed.Simulation` that lower layers need."""
 
     _core: _core.Simulation
 
@@ -17,5 +17,5 @@ AnySimulation = Union[HoldsCore, _core.Simulation]
 
 
 def core_of(simulation: AnySimulation) -> _core.Simulation:
-    """Return the core's simulation of a `snowshed.Simulation`; or itself, if it is one."""
+    """Return the core's simulation of a simulation; the core's own is returned unchanged."""
     return simulation if isinstance(simulation, _core.Simulation) else simulation._core

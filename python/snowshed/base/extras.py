@@ -16,7 +16,7 @@ def require(module: str, extra: str, purpose: str) -> Any:
     module
         Name of the module to import.
     extra
-        The extra of snowshed that brings it.
+        The extra of snowshed that installs it.
     purpose
         Purpose of the import, for the message.
 

@@ -48,7 +48,7 @@ def convert(value: object, hint: object, where: str) -> object:
     """
     if value is None:
         return None
-    if hasattr(value, "tolist"):  # NumPy's
+    if hasattr(value, "tolist"):  # a scalar or an array of NumPy
         value = value.tolist()
     alternatives = alternatives_of(hint)
     for kind in alternatives:
@@ -125,7 +125,7 @@ def _as_number(value: object, where: str) -> object:
 
 
 def _as_integer(value: object, where: str) -> object:
-    """Return a whole number; 5.0 is one too, as in JSON Schema."""
+    """Return a whole number; 5.0 counts as one, as in JSON Schema."""
     number = _as_number(value, where)
     if isinstance(number, float):
         return int(number) if number.is_integer() else MISMATCH

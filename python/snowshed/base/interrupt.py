@@ -38,8 +38,8 @@ class InterruptRequest:
 def deferred_interrupts() -> Iterator[InterruptRequest]:
     """Turn Ctrl-C (SIGINT), SIGTERM and SIGHUP into a request; a second signal acts immediately.
 
-    An ignored signal stays ignored: SIGHUP of a command started with nohup. If one block is within
-    another, both are asked to stop.
+    An ignored signal stays ignored, such as SIGHUP of a command started with nohup. If one block is
+    within another, both are asked to stop.
 
     Outside the main thread nothing changes, because only the main thread may handle signals.
     """

@@ -1,4 +1,4 @@
-"""The types of JSON data, and data that nobody changes."""
+"""The types of JSON data, and JSON data that cannot be changed."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def _refuse(*_: object, **__: object) -> NoReturn:
 
 
 class _ReadOnlyObject(dict):  # type: ignore[type-arg]
-    """A JSON object; a dict, so that `json` writes it and checks of types hold."""
+    """A read-only JSON object. It is a dict, so that `json` writes it and type checks accept it."""
 
     __setitem__ = __delitem__ = __ior__ = _refuse
     clear = pop = popitem = setdefault = update = _refuse
@@ -47,7 +47,7 @@ class _ReadOnlyObject(dict):  # type: ignore[type-arg]
 
 
 class _ReadOnlyList(list):  # type: ignore[type-arg]
-    """A JSON array; a list for the same reason."""
+    """A read-only JSON array; it is a list for the same reasons."""
 
     __setitem__ = __delitem__ = __iadd__ = __imul__ = _refuse
     append = extend = insert = remove = pop = clear = sort = reverse = _refuse

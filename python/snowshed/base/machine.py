@@ -19,11 +19,11 @@ def cpu_name() -> str:
 
 
 def peak_memory_mb() -> float:
-    """Return the most memory this process has held so far, MB."""
+    """Return the peak memory of this process so far, MB."""
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     return peak / 1e6 if sys.platform == "darwin" else peak * 1024 / 1e6
 
 
 def machine_facts() -> dict[str, str]:
-    """Return what run.json says of the machine."""
+    """Return the facts about the machine that run.json holds."""
     return {"machine": platform.platform(), "cpu": cpu_name()}

@@ -1,7 +1,7 @@
-"""Texts from files and callers in messages, on terminals and in tables, where they do no harm.
+"""Texts from files and callers, made harmless for messages, terminals and tables.
 
-They may be long, and hold what a terminal takes for commands, what turns the direction of writing,
-or what a spreadsheet computes.
+Such texts may be long. They may contain commands to a terminal, characters that reverse the
+direction of writing, or formulas for a spreadsheet.
 """
 
 from __future__ import annotations
@@ -11,16 +11,16 @@ import re
 from collections.abc import Iterable
 
 MAX_LENGTH = 60  # characters
-#: Control characters (but tab and end of line), line separators, marks and overrides of the
-#: direction, and substitutes of bytes of names that are not UTF-8.
+#: Control characters (except tab and end of line), line separators, marks and overrides of the
+#: direction of writing, and substitutes for bytes of names that are not UTF-8.
 HARMFUL = re.compile(
     "[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff]"
 )
-FORMULA = ("=", "+", "-", "@", "\t", "\r")  # what a cell begins with that spreadsheets compute
+FORMULA = ("=", "+", "-", "@", "\t", "\r")  # beginnings of cells that spreadsheets compute
 
 
 def shortened(text: str, longest: int = MAX_LENGTH) -> str:
-    """Return text without its end where it is long.
+    """Return a text, cut off after `longest` characters.
 
     Examples
     --------
@@ -31,7 +31,7 @@ def shortened(text: str, longest: int = MAX_LENGTH) -> str:
 
 
 def quoted(text: str) -> str:
-    """Return text in quotes, without its end where it is long.
+    """Return a text in quotes, cut off if it is long.
 
     Examples
     --------
@@ -57,7 +57,7 @@ def suggestion(given: str, allowed: Iterable[str]) -> str:
 
 
 def printable(text: object) -> str:
-    r"""Return a text as a terminal or a page may show it; what would do harm becomes "?".
+    r"""Return a text for a terminal or a page; harmful characters become "?".
 
     Examples
     --------
@@ -68,7 +68,7 @@ def printable(text: object) -> str:
 
 
 def csv_cell(value: object) -> object:
-    """Return a cell as a spreadsheet may open it; a text that it would compute is quoted.
+    """Return a cell for a spreadsheet; a text that a spreadsheet would compute is quoted.
 
     Examples
     --------

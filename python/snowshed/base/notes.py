@@ -1,8 +1,8 @@
 """Notes: assumptions and changes that a reader made, issued as warnings.
 
 A note is a Python warning of its own class, so that scripts can filter it, turn it into an error or
-record it. The command line prints it as "note: …". `recorded` collects the notes that are stored
-with results.
+record it. The command line prints it as "note: …". `record_notes` collects the notes that results
+store.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ def issue_note(text: str) -> None:
 
     Examples
     --------
-    >>> with recorded() as notes:
+    >>> with record_notes() as notes:
     ...     issue_note("the raster has feet; they were turned into metres")
     >>> notes
     ['the raster has feet; they were turned into metres']
@@ -39,7 +39,7 @@ def issue_note(text: str) -> None:
 def caller_level() -> int:
     """Return the `stacklevel` at which the caller of this function warns its user.
 
-    It is that of the first frame outside the package, or of the outermost one.
+    This is the level of the first frame outside the package, or of the outermost frame.
     """
     level, frame = 1, sys._getframe(1)
     package = __name__.partition(".")[0]
@@ -53,8 +53,8 @@ def _package(frame: FrameType) -> str:
 
 
 @contextmanager
-def recorded() -> Iterator[list[str]]:
-    """Collect the notes of a block, each once, and issue them after it again."""
+def record_notes() -> Iterator[list[str]]:
+    """Collect the notes of a block, each once, and issue them again after the block."""
     notes: list[str] = []
     log: list[warnings.WarningMessage] = []
     try:
@@ -89,7 +89,7 @@ def held_notes() -> Iterator[list[str]]:
 
 
 @contextmanager
-def issued_on_failure(notes: Iterable[str]) -> Iterator[None]:
+def issue_notes_on_failure(notes: Iterable[str]) -> Iterator[None]:
     """Issue notes if the block fails, because no result will show them."""
     try:
         yield

@@ -16,7 +16,7 @@ def utf8_path(path: PathLike) -> str:
     Raises
     ------
     InputError
-        If it is not UTF-8, or holds a NUL character: scenes and tables could not name it.
+        If the name is not UTF-8 or holds a NUL character, because scenes cannot hold such a name.
 
     Examples
     --------

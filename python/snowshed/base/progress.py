@@ -1,4 +1,4 @@
-"""Progress of long work: one form for runs, studies, regressions and all that shows them."""
+"""Progress of long work, in one form for runs, studies and regressions."""
 
 from __future__ import annotations
 

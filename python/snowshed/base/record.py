@@ -1,7 +1,7 @@
 """Records: dataclasses that mirror JSON objects. A field that is None was not given.
 
-A record knows its fields: a name that is none of them, and a value that its field does not take,
-are errors at once, wherever they are used. It keeps copies of given records.
+A name that is not a field, and a value that a field does not take, are errors at once. A record
+keeps copies of given records.
 """
 
 from __future__ import annotations
@@ -79,15 +79,15 @@ class Record(metaclass=_RecordClass):
     snowshed.base.record.UnknownFieldError: Panel.tlit: Panel has no such field; did you mean tilt?
     """
 
-    #: Fields, and those in whose place they stand: of the two one is given, and setting one of
-    #: them unsets the other.
+    #: Fields that take the place of another field. Only one of the two is given; setting one
+    #: unsets the other.
     INSTEAD_OF: ClassVar[Mapping[str, str]] = {}
-    #: Fields that name a choice of several others. A new choice unsets these, because it decides
-    #: them; what is set after it, or with it, stands.
+    #: Fields that name a choice of several others. A new choice unsets these other
+    #: fields, because it decides them; values that are set with it or after it stay.
     ADOPTS: ClassVar[Mapping[str, tuple[str, ...]]] = {}
 
     def __init_subclass__(cls) -> None:
-        """Give subclasses this text, which `dataclass` would replace by one of all fields."""
+        """Give subclasses the `repr` of records, which `dataclass` would replace by its own."""
         if "__repr__" not in vars(cls):
             cls.__repr__ = Record.__repr__  # type: ignore[method-assign]
 
@@ -142,7 +142,7 @@ class Record(metaclass=_RecordClass):
         Raises
         ------
         InputError
-            At a value that its field does not take: lists may have been changed since.
+            At a value that its field does not take: lists may have changed after they were set.
         """
         data: JsonObject = {}
         for key, name in self.keys().items():
@@ -163,7 +163,7 @@ class Record(metaclass=_RecordClass):
 
     @classmethod
     def field_of(cls, key: str, path: str = "") -> str:
-        """Return the field a JSON key stands for; unknown keys are refused by name."""
+        """Return the field that a JSON key stands for; an error names an unknown key."""
         keys = {**cls.keys(), **cls.aliases()}
         if key not in keys:
             allowed = ", ".join(cls.keys())
@@ -174,7 +174,7 @@ class Record(metaclass=_RecordClass):
         return keys[key]
 
     def record_type(self, key: str) -> Optional[type[Record]]:
-        """Return the record class held, singly or in a list, under `key`, if any."""
+        """Return the class of the record, or of the list of records, under `key`, if any."""
         return _record_type(_hints(type(self))[self.field_of(key)])
 
     def _keep(self, name: str, value: object, where: str) -> None:
@@ -194,7 +194,7 @@ class Record(metaclass=_RecordClass):
         has = near or f"; it has {', '.join(cls.keys())}"
         return UnknownFieldError(f"{cls.__name__}.{name}: {cls.__name__} has no such field{has}")
 
-    if not TYPE_CHECKING:  # or checkers would take any name for an attribute
+    if not TYPE_CHECKING:  # otherwise type checkers would accept any attribute
 
         def __getattr__(self, name: str) -> object:
             if name.startswith("_"):
@@ -238,7 +238,7 @@ def check_once(fields_of: Mapping[str, str], where: str) -> None:
 
 
 def check_instead(record: type[Record], given: Collection[str], where: str = "") -> None:
-    """Raise InputError if a field is given together with one in whose place it stands.
+    """Raise InputError if a field and the field whose place it takes are both given.
 
     Examples
     --------
@@ -261,7 +261,7 @@ def _hints(record: type[Record]) -> dict[str, object]:
 
 
 def _own(value: object) -> object:
-    """Return a value that holds no record of somebody else, who may change it later."""
+    """Return a copy if the value is a record or a list, because the caller may change it later."""
     if isinstance(value, Record) or (isinstance(value, list) and value):
         return copy.deepcopy(value)
     return value

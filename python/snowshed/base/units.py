@@ -25,7 +25,7 @@ UNITS = MappingProxyType(
 
 
 def unit_of_column(name: str) -> str:
-    """Return the unit that the name of a column ends with; empty where it names none.
+    """Return the unit at the end of a column's name; empty if the name has none.
 
     Examples
     --------

@@ -1,8 +1,8 @@
 """The option ``--accuracy``: grid and scheme for a wanted accuracy, from recorded measurements.
 
 Accuracy means the errors of the stack's height and length. They are recorded for runs of the
-laboratory experiment on several grids and with several schemes. The size of cells counts relative
-to the thickness of the slab.
+laboratory experiment on several grids and with several schemes. Cell sizes are compared
+relative to the thickness of the slab.
 """
 
 from __future__ import annotations
@@ -49,14 +49,14 @@ accuracy_option = click.option(
     "--accuracy",
     type=part,
     metavar="PERCENT",
-    help="Choose dx and scheme by how far the height and length of stacks may be off, such as 20%, "
+    help="Choose dx and scheme by the allowed error of a stack's height and length, such as 20%, "
     "from recorded runs.",
 )
 
 
 @dataclass(frozen=True)
 class AccuracyChoice:
-    """Settings chosen for a wanted accuracy.
+    """Settings chosen for a required accuracy.
 
     Attributes
     ----------
@@ -65,7 +65,7 @@ class AccuracyChoice:
     values
         Chosen values by their paths in a scene; None for a setting that keeps its default.
     reason
-        The choice and its reason, in sentences.
+        Sentences with the choice and its reason.
     """
 
     reached: bool
@@ -78,8 +78,8 @@ def choose(
 ) -> AccuracyChoice:
     """Choose the quickest settings whose stacks were as accurate as wanted in recorded runs.
 
-    They include the scheme. If none was accurate enough, the most accurate settings are chosen, and
-    the reason says so.
+    The settings include the scheme. If none were accurate enough, the most accurate settings are
+    chosen, and the reason says so.
 
     Parameters
     ----------
@@ -128,7 +128,7 @@ def choose(
     path = resolution_path(data)
     name = path.rpartition(".")[2]
     share = float(stack.settings[name]) / PRESET_THICKNESS
-    # A recorded run used the defaults of unnamed settings, so they must be defaults here, too.
+    # Recorded runs had default values of unnamed settings; therefore these are defaults here, too.
     values = {where: stack.settings.get(key) for key, where in ACCURACY.items()}
     size = float(f"{share * thickness:.3g}")
     values[path] = size
@@ -164,7 +164,7 @@ def check_alone(options: Mapping[str, Any]) -> None:
 
 
 def best_of(stacks: Sequence[RecordedStack], wanted: float) -> RecordedStack:
-    """Return the quickest of recorded stacks that is accurate enough, or the most accurate."""
+    """Return the quickest recorded stack that is accurate enough, or else the most accurate."""
     from snowshed.analysis.accuracy.solutions import quickest
 
     costs, errors = [stack.wall_s for stack in stacks], [stack.error for stack in stacks]
@@ -187,7 +187,7 @@ def _scheme(stack: RecordedStack) -> str:
 
 
 def _outcome(stack: RecordedStack, wanted: float, what: str) -> str:
-    """Return the chosen settings and their errors, in sentences."""
+    """Return sentences with the chosen settings and their errors."""
     from snowshed.analysis.accuracy.recorded_stacks import PRESET
 
     height, length = (percent(error, 2) for error in stack.errors)
@@ -222,7 +222,7 @@ def _other_schemes(
     wanted: float,
     name: str,
 ) -> list[str]:
-    """Return what each scheme that was not chosen reaches, or that it has no such runs."""
+    """Return a sentence for each other scheme: its accuracy, or that it has no such runs."""
     schemes = dict.fromkeys(map(_scheme, everything))
     return [
         _other_scheme(scheme, [s for s in stacks if _scheme(s) == scheme], chosen, wanted, name)
@@ -239,7 +239,7 @@ def _other_scheme(
     name: str,
 ) -> str:
     if not stacks:
-        return f"Nothing is recorded of scheme {scheme} for such a scene."
+        return f"No runs of scheme {scheme} are recorded for such a scene."
     best = best_of(stacks, wanted)
     if best.error > wanted:
         return f"Scheme {scheme} stays within {percent(best.error, 2)} at best."
@@ -251,7 +251,7 @@ def _other_scheme(
 
 
 def _differences(stack: RecordedStack, data: Mapping[str, Any], thickness: float) -> list[str]:
-    """Return how the scene differs from the recorded one, in sentences."""
+    """Return sentences on the differences of the scene from the recorded one."""
     from snowshed.analysis.accuracy.mechanisms import Mechanisms
     from snowshed.analysis.accuracy.recorded_stacks import PRESET_THICKNESS, circumstances
     from snowshed.analysis.accuracy.setting_labels import settings_label

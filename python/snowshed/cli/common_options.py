@@ -26,7 +26,7 @@ def _silence(context: click.Context, parameter: click.Parameter, quiet: bool) ->
 quiet_option = click.option(
     "-q", "--quiet", is_flag=True, callback=_silence, help="Print nothing but errors."
 )
-#: The same for a command that prints only what it is asked for.
+#: The same option for a command that prints only its result.
 quiet_notes_option = click.option(
     *("-q", "--quiet"),
     is_flag=True,
@@ -44,18 +44,18 @@ resume_option = click.option(
 
 
 def resume_flag(text: str) -> Callable[[Command], Command]:
-    """Return the decorator that adds ``--resume`` to a command that resumes only if asked."""
+    """Return the decorator that adds ``--resume`` to a command that resumes only on request."""
     return click.option("--resume", is_flag=True, help=text)
 
 
 def jobs_option(units: str) -> Callable[[Command], Command]:
-    """Return the decorator that adds ``--jobs``, the number of `units` at once."""
+    """Return the decorator that adds ``--jobs``, the number of `units` in parallel."""
     text = f"{units} at once.  [default: the number of cores]"
     return click.option("--jobs", type=int, help=text)
 
 
 class Renamed(click.Option):
-    """An option whose help shows its first spelling alone; the others are former ones."""
+    """An option whose help shows only its first spelling; the others are former spellings."""
 
     def get_help_record(self, ctx: click.Context) -> Optional[tuple[str, str]]:
         """Return the line of the help."""

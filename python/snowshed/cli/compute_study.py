@@ -16,7 +16,7 @@ from snowshed.study.definition import Study
 from snowshed.study.errors import StudyInterrupted
 from snowshed.study.store import Store, StoredRun
 
-MAX_NAMED_RUNS = 5  # failed runs that an error names; the output has them all
+MAX_NAMED_RUNS = 5  # failed runs that an error names; the output lists all
 
 
 def print_study_cost(study: Study, jobs: Optional[int]) -> None:
@@ -44,14 +44,14 @@ def outcome_as_exit_code() -> Iterator[None]:
 
 
 def study_progress(quiet: bool) -> AbstractContextManager[Optional[Reporter]]:
-    """Return the progress bar of a study, which first announces the number of runs."""
+    """Return the progress bar of a study, which begins with the number of runs."""
     from snowshed.cli.progress import LONG_PERIOD_S, progress_bar
 
     return progress_bar(quiet=quiet, announce=announcement, speed_period_s=LONG_PERIOD_S)
 
 
 def print_outcome(folder: Path, names: list[str], quiet: bool) -> None:
-    """Print where the results are.
+    """Print the number of finished runs, and commands for their results.
 
     Raises
     ------

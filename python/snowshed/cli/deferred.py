@@ -9,7 +9,7 @@ import click
 
 
 class Deferred(click.Command):
-    """A command, or group of commands, that is imported on first use, so that others start fast.
+    """A command, or group of commands, that is imported on first use, so that others start quickly.
 
     Parameters
     ----------

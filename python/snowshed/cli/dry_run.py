@@ -31,7 +31,7 @@ def issue_notes(scene: ResolvedScene) -> None:
 
 
 def cost_rows(plan: dict[str, Any]) -> dict[str, str]:
-    """Return the lines of a plan by their titles, with units."""
+    """Return the lines of a plan, with units, by their titles."""
     return {
         "used": ", ".join(plan["used"]),
         "left out": ", ".join(plan["left_out"]) or "nothing",

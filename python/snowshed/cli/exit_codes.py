@@ -7,11 +7,11 @@ import click
 BAD_INPUT = 2  # nothing was written
 COULD_NOT_FINISH = 3  # simulation failed, disk full, out of memory; the run can be resumed
 INTERRUPTED = 130
-PIPE_CLOSED = 141  # the reader of the output left; shells report SIGPIPE with this code
+PIPE_CLOSED = 141  # the reader of the output has left; shells report SIGPIPE with this code
 
 
 class Stopped(click.ClickException):
-    """An interruption, with a message how to resume; click drops the message of Ctrl-C."""
+    """An interruption, with a message on how to resume; click drops the message of Ctrl-C."""
 
     exit_code = INTERRUPTED
 

@@ -29,7 +29,7 @@ from snowshed.cli.exit_codes import BAD_INPUT, COULD_NOT_FINISH, INTERRUPTED, PI
 from snowshed.cli.memory_shortage import memory_message
 from snowshed.cli.output_pipe import drop_output, flush_output, output_is_closed
 
-#: Errors of file names that the user gave.
+#: Errors in file names that the user gave.
 NAME_ERRORS = (
     *(errno.ENOENT, errno.ENOTDIR, errno.EISDIR, errno.EEXIST, errno.ENOTEMPTY, errno.EACCES),
     *(errno.EPERM, errno.ENAMETOOLONG, errno.ELOOP, errno.EINVAL, errno.ENXIO, errno.EROFS),
@@ -108,7 +108,7 @@ def main(
         try:
             code = _run(command, arguments, name)
             flush_output()
-        except BrokenPipeError:  # stdout, or stderr with the message
+        except BrokenPipeError:  # the reader of stdout, or of stderr with the message, has left
             drop_output()
             code = PIPE_CLOSED
         return code
@@ -124,11 +124,11 @@ def _run(command: click.Command, arguments: Optional[Sequence[str]], name: str) 
         _refuse_bytes(sys.argv[1:] if arguments is None else arguments)
         return command.main(arguments, prog_name=name, standalone_mode=False, **settings) or 0
     except click.ClickException as error:
-        if isinstance(error, NO_ARGUMENTS):  # a group of commands alone: print its help
+        if isinstance(error, NO_ARGUMENTS):  # a group without a command: its help is printed
             click.echo(error.message)
             return 0
         return _fail(error.format_message(), max(error.exit_code, 2))
-    except SystemExit:  # from click after any broken pipe, not only that of the output
+    except SystemExit:  # click exits so after any broken pipe, not only after that of the output
         sys.stdout, sys.stderr = streams
         if output_is_closed():
             raise BrokenPipeError from None

@@ -15,7 +15,7 @@ NAMES = ("path", "file", "source", "where", "raster", "mesh")
 
 
 def memory_message(error: MemoryError) -> str:
-    """Return the message for an error, by the code that raised it.
+    """Return the message for an error, according to the code that raised it.
 
     Examples
     --------

@@ -8,7 +8,7 @@ MAX_STEPS = 1000
 
 
 def numbers(option: str, text: str, *, example: str, steps: bool = False) -> list[float]:
-    """Return the numbers in the text of an option, which separates them by commas.
+    """Return the numbers in the text of an option, where commas separate them.
 
     Parameters
     ----------
@@ -17,14 +17,14 @@ def numbers(option: str, text: str, *, example: str, steps: bool = False) -> lis
     text
         The text.
     example
-        A list, for the error.
+        An example of a list, for the error.
     steps
         Whether the text may also be FROM:TO:STEP.
 
     Raises
     ------
     InputError
-        If the text is no such list, or has more than `MAX_STEPS` steps.
+        If the text is not such a list, or has more than `MAX_STEPS` steps.
 
     Examples
     --------
@@ -63,7 +63,7 @@ def named_span(
     text
         The text.
     example
-        A span, for the error.
+        An example of a span, for the error.
     single
         Whether the text may also be NAME=VALUE, which gives equal ends.
 

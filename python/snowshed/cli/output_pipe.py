@@ -12,7 +12,7 @@ def output_is_closed() -> bool:
     """Return whether standard output or error is a pipe whose reader has left."""
     poll = select.poll()
     for stream in (sys.stdout, sys.stderr):
-        with contextlib.suppress(OSError, ValueError, AttributeError):  # of a test, no files
+        with contextlib.suppress(OSError, ValueError, AttributeError):  # a test's stream
             poll.register(stream.fileno(), select.POLLOUT)
     return any(state & select.POLLERR for _, state in poll.poll(0))
 

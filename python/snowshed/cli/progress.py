@@ -19,9 +19,9 @@ from snowshed.base.formatting import duration
 from snowshed.base.progress import Progress, Reporter
 from snowshed.cli.terminal import PlainConsole
 
-#: Time over which the speed is averaged, which gives the remaining time, s.
+#: Time over which the speed is averaged, from which the remaining time follows, s.
 SPEED_PERIOD_S = 30.0
-LONG_PERIOD_S = 3600.0  # where units take long, and the time left should not jump when one ends
+LONG_PERIOD_S = 3600.0  # for long units, so that the remaining time does not jump when a unit ends
 
 Announcement = Callable[[Progress], str]
 
@@ -45,7 +45,7 @@ def progress_bar(
     quiet
         Whether to show nothing; then None is yielded.
     announce
-        Function of the first report that returns a line to print before the bar.
+        Function that gets the first report and returns a line to print before the bar.
     speed_period_s
         Time over which this speed is averaged, s.
     width

@@ -37,7 +37,7 @@ def with_accuracy(scene: Scene, accuracy: float, *, quiet: bool = False) -> Scen
     Raises
     ------
     InputError
-        If no recorded run was that accurate; the message says what is recorded.
+        If no recorded run was that accurate; the message names the best recorded accuracy.
     """
     choice = choose(accuracy, scene)
     if not choice.reached:

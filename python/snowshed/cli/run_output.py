@@ -1,4 +1,4 @@
-"""The output of commands that run a scene, whatever its method is."""
+"""The output of commands that run a scene of any method."""
 
 from __future__ import annotations
 

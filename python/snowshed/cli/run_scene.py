@@ -1,4 +1,4 @@
-"""Running a scene on the command line, whatever its method is."""
+"""Running a scene of any method on the command line."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ def announcing_long_run(resolved: ResolvedScene, show: Reporter) -> Reporter:
     resolved
         The scene that runs.
     show
-        Reporter that receives each progress first.
+        Reporter that receives each progress.
     """
     unknown = "stack" in method_of(resolved.data).results
 
@@ -83,7 +83,7 @@ def announcing_long_run(resolved: ResolvedScene, show: Reporter) -> Reporter:
         show(progress)
         if unknown and progress.updates_per_s:
             unknown = False
-            with suppress(_core.InputError):  # a file that the run has read may be away by now
+            with suppress(_core.InputError):  # a file that the run has read may be gone
                 work = _core.expected_work(resolved.core, resolved.base_dir)
                 if (seconds := work / progress.updates_per_s) >= ANNOUNCED_FROM_S:
                     say(_long_run(resolved, seconds), err=True)

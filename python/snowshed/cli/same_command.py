@@ -1,4 +1,4 @@
-"""The command line of this process once more, so that a hint can name it."""
+"""The command line of this process, so that a hint can repeat it."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from click.core import ParameterSource
 
 
 def same_command(*more: str) -> str:
-    """Return the command that runs now as a shell takes it, with further options.
+    """Return the current command with further options, quoted for a shell.
 
-    Options that it has already are not repeated. Outside a command, only the program is returned.
+    Options are not repeated. Outside a command, the result has only the program and the options.
     """
     context = click.get_current_context(silent=True)
     if context is None:

@@ -40,7 +40,7 @@ SHORT_NAMES = {
     "obstacles": "obstacle",
     "bodies": "body",
 }
-#: Options in ``--help``; ``--help-all`` shows the others, too.
+#: Parameters whose options ``--help`` shows; ``--help-all`` shows all options.
 BASIC = (
     "dimension", "panel.height", "panel.length", "panel.width", "panel.tilt", "panel.friction",
     "panel.condition", "slab.thickness", "slab.layers", "ground.tilt", "snow.density",
@@ -131,7 +131,7 @@ def scene_from_options(
 
 
 def in_terms_of_options(error: InputError) -> InputError:
-    """Return the error with the option in front, if its parameter has one."""
+    """Return the error with the option in front, if the parameter has an option."""
     path = path_of(error)
     if current_path(path) in {parameter.path for parameter in scene_parameters()}:
         where, colon, rest = str(error).partition(":")

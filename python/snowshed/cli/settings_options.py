@@ -17,7 +17,7 @@ KINDS = {"number": float, "integer": int}
 def settings_options(
     method: str, section: str = "numerics", *, without: Collection[str] = ()
 ) -> Callable[[Command], Command]:
-    """Return a decorator that adds an option for every parameter of a section of a method's scenes.
+    """Return a decorator that adds options for the parameters of a section of a method's scenes.
 
     Parameters
     ----------
@@ -26,7 +26,7 @@ def settings_options(
     section
         Name of the section.
     without
-        Names of parameters that get none.
+        Names of parameters without an option.
     """
 
     def decorate(command: Command) -> Command:

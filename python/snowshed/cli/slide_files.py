@@ -17,8 +17,15 @@ from snowshed.scene.scene import ResolvedScene, Scene
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
-#: Options with the names of their fields.
-SAME_NAMES = ("terrain", "release", "thickness_raster", "thickness", "band", "thickness_band")
+#: Options that have the same names as the fields of `SlideFiles`.
+UNCHANGED_OPTIONS = (
+    "terrain",
+    "release",
+    "thickness_raster",
+    "thickness",
+    "band",
+    "thickness_band",
+)
 LIMITS = ("max_slope", "max_thickness", "max_cells")
 INPUTS = "give --terrain and --release, or --avaframe, or --example"
 
@@ -80,8 +87,8 @@ class SlideFiles:
     limits: Mapping[str, Any] = field(default_factory=dict)
 
     @classmethod
-    def taken_from(cls, options: dict[str, Any]) -> SlideFiles:
-        """Return the files among the options, and remove them there; see `file_options`."""
+    def pop_from(cls, options: dict[str, Any]) -> SlideFiles:
+        """Return the files in `options`, and remove them there; see `file_options`."""
         layers = {
             "release": options.pop("layer"),
             "entrainment": options.pop("entrainment_layer"),
@@ -92,20 +99,20 @@ class SlideFiles:
             resistance=options.pop("resistance_areas"),
             layers=given_values(layers),
             limits=given_values({name: options.pop(name) for name in LIMITS}),
-            **{name: options.pop(name) for name in SAME_NAMES},
+            **{name: options.pop(name) for name in UNCHANGED_OPTIONS},
         )
 
     def refuse_terrain_options(self) -> None:
-        """Refuse the options that only a terrain has: bands and limits."""
+        """Refuse options that need a terrain: bands and limits."""
         bands = {"band": self.band, "thickness_band": self.thickness_band}
         for name in (*given_values(bands), *self.limits):
             raise InputError(f"--{name.replace('_', '-')}: only with --terrain")
 
-    def any(self) -> bool:
+    def has_files(self) -> bool:
         """Return whether any file is given."""
-        return any(file is not None for file in (self.terrain, *self.of_areas().values()))
+        return any(file is not None for file in (self.terrain, *self.area_files().values()))
 
-    def of_areas(self) -> dict[str, Optional[Path]]:
+    def area_files(self) -> dict[str, Optional[Path]]:
         """Return the files of areas by their key in a scene's terrain."""
         return {
             "release": self.release or self.thickness_raster,
@@ -134,13 +141,13 @@ class SlideFiles:
         from snowshed.methods.slide.settings import SlideSettings
         from snowshed.scene.builders.slides import example_slide, slide_scene
 
-        if self.any() == example:
+        if self.has_files() == example:
             raise InputError(INPUTS)
         if example:
             beside = folder.with_name(f"{folder.name}-terrain")
             beside.mkdir(parents=True, exist_ok=True)
             return example_slide(beside).update({"numerics": dict(settings)})
-        if self.terrain is None or self.of_areas()["release"] is None:
+        if self.terrain is None or self.area_files()["release"] is None:
             raise InputError("give both --terrain and --release (or --thickness-raster)")
         return slide_scene(
             self.terrain,
@@ -187,7 +194,7 @@ def refuse_changed_areas(
     """Refuse to resume a run whose areas have changed, and name their file."""
     stored = folder / "scene.json"
     if not stored.is_file():
-        return  # resuming reports that there is nothing to resume
+        return  # the run itself reports that there is nothing to resume
     earlier = ResolvedScene.load(stored).data
     current = scene.data
     for key, file in files.items():

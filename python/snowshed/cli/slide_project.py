@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Optional
 import snowshed._core as _core
 from snowshed._core import InputError
 from snowshed.base.interrupt import deferred_interrupts
-from snowshed.base.notes import held_notes, issued_on_failure
+from snowshed.base.notes import held_notes, issue_notes_on_failure
 from snowshed.cli.dry_run import print_cost
 from snowshed.cli.exit_codes import Failed, Stopped
 from snowshed.cli.run_scene import run_scene
@@ -37,8 +37,9 @@ def run_project(
 ) -> None:
     """Run the simulations of an AvaFrame project.
 
-    The results of the first, with all areas, are in `folder`, those of the others in subfolders of
-    their names; ``Inputs`` and ``Outputs`` in `folder` are those of an AvaFrame project.
+    The results of the first simulation, with all areas, are in `folder`; those of the others are in
+    subfolders with their names. ``Inputs`` and ``Outputs`` in `folder` are those of an AvaFrame
+    project.
 
     Raises
     ------
@@ -56,7 +57,7 @@ def run_project(
         in_summary = notes_for_summary(notes, *(simulation.scene for simulation in simulations))
         if not resume:
             _check_others(simulations[1:], scenes[1:])
-        with _naming_this_command(folder), issued_on_failure(in_summary):
+        with _naming_this_command(folder), issue_notes_on_failure(in_summary):
             for number, simulation in enumerate(simulations):
                 results = folder if number == 0 else folder / simulation_name(simulation)
                 if len(simulations) > 1 and not quiet:
@@ -66,7 +67,7 @@ def run_project(
                     refuse_changed_areas(scenes[number], results, simulation.files)
                 with _locating_in_ini(simulation), deferred_interrupts() as interrupt:
                     run_scene(scenes[number], results, resumes, quiet)
-                if interrupt.requested:  # while its pictures were drawn
+                if interrupt.requested:  # an interrupt came while pictures were drawn
                     raise KeyboardInterrupt
                 _write_outputs(simulation, folder, results, scenes[number], steps)
 
@@ -130,7 +131,7 @@ def _locating_in_ini(simulation: AvaFrameSimulation) -> Iterator[None]:
 
 @contextmanager
 def _naming_this_command(folder: Path) -> Iterator[None]:
-    """Replace the hint after an interruption: it resumes all simulations, not only one."""
+    """Replace the hint after an interruption by a command that resumes all simulations."""
     try:
         yield
     except (Stopped, KeyboardInterrupt):
@@ -146,7 +147,7 @@ def _write_outputs(
     scene: ResolvedScene,
     steps: Sequence[int],
 ) -> None:
-    """Write the outputs of AvaFrame beside the results; errors are not the input's fault."""
+    """Write the outputs of AvaFrame beside the results; errors do not count as bad input."""
     from snowshed.results.avaframe import write_avaframe_outputs
     from snowshed.scene.builders.avaframe_files import copy_inputs
 

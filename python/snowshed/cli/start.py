@@ -1,4 +1,4 @@
-"""The command ``snowshed``: imports happen where an interrupt is handled."""
+"""The command ``snowshed``, whose imports can be interrupted, too."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def main() -> int:
 def is_interrupt(error: Optional[BaseException]) -> bool:
     """Return whether an interrupt caused an error: Python makes a RuntimeError of some.
 
-    An interrupt while a class is made, as imports do all the time, ends in such an error.
+    An interrupt while a class is created, which happens during imports, ends in such an error.
     """
     while error is not None and not isinstance(error, KeyboardInterrupt):
         error = error.__cause__

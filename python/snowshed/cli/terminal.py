@@ -1,4 +1,4 @@
-"""The output of commands: plain texts, and tables that are not cut without a terminal."""
+"""The output of commands: plain texts, and tables that are cut only on a terminal."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from snowshed.base.messages import printable
 
 
 class PlainConsole(Console):
-    """A console on which texts are neither markup nor commands to the terminal."""
+    """A console that takes texts neither as markup nor as commands to the terminal."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__(highlight=False, markup=False, **options)

@@ -1,4 +1,4 @@
-"""The table of winters that commands print: days with observed snow, sources, gaps."""
+"""The printed table of winters: days with observed snow, sources, gaps."""
 
 from __future__ import annotations
 

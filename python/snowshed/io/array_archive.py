@@ -29,7 +29,7 @@ def open_archive(content: bytes, largest: int = MAX_BYTES) -> Iterator[Any]:
     Raises
     ------
     snowshed.base.damage.DAMAGED
-        If it is not an archive, or too large, or, during reading, if its arrays are damaged.
+        If the content is not an archive or is too large; while arrays are read, if one is damaged.
 
     Examples
     --------

@@ -15,9 +15,9 @@ from typing import Union
 
 from snowshed._core import InputError
 
-#: Prefix of files that are being written, or that a killed process left.
+#: Prefix of files that are being written, and of leftovers of killed processes.
 LEFTOVER = re.compile(r"\.partial-[0-9a-f]{16}-")
-#: Errors of file systems without flushing.
+#: Errors of file systems that cannot flush.
 CANNOT_FLUSH = (errno.EINVAL, errno.ENOTSUP, errno.EROFS)
 #: Flags to open a file that may be a link (refused) or a pipe without a writer.
 WITHOUT_WAITING = os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK
@@ -52,13 +52,13 @@ def replacing(path: Union[str, os.PathLike[str]]) -> Iterator[Path]:
     _remove_abandoned(path)
     beside = path.with_name(_partial(path))
     try:
-        with _held(beside, _new_file):
+        with _hold_lock(beside, _new_file):
             yield beside
             _flush(beside)
             beside.replace(path)
         _flush(path.parent)
     except OSError as error:
-        if error.filename in (None, str(beside)):  # the user knows the file by its own name
+        if error.filename in (None, str(beside)):  # the user knows the target's name only
             error.filename = str(path)
         raise
     finally:
@@ -85,7 +85,7 @@ def replacing_folder(path: Union[str, os.PathLike[str]]) -> Iterator[Path]:
     _remove_abandoned(path)
     beside = path.with_name(_partial(path))
     try:
-        with _held(beside, Path.mkdir):
+        with _hold_lock(beside, Path.mkdir):
             yield beside
             beside.replace(path)
         _flush(path.parent)
@@ -95,7 +95,7 @@ def replacing_folder(path: Union[str, os.PathLike[str]]) -> Iterator[Path]:
 
 def _remove_abandoned(path: Path) -> None:
     """Remove leftovers of dead processes for `path`."""
-    with suppress(OSError):  # of a folder that cannot be read
+    with suppress(OSError):  # the folder cannot be read
         for other in path.parent.iterdir():
             leftover = LEFTOVER.match(other.name)
             if leftover and other.name[leftover.end() :] == _suffix(path.name):
@@ -113,19 +113,19 @@ def _remove_unless_held(path: Path) -> None:
 
 
 @contextmanager
-def _held(path: Path, make: Callable[[Path], None]) -> Iterator[None]:
+def _hold_lock(path: Path, make: Callable[[Path], None]) -> Iterator[None]:
     """Make a file or a folder and hold its lock; the system releases it when the process dies."""
-    with _closing(_made_and_locked(path, make)):
+    with _closing(_make_and_lock(path, make)):
         yield
 
 
-def _made_and_locked(path: Path, make: Callable[[Path], None]) -> int:
+def _make_and_lock(path: Path, make: Callable[[Path], None]) -> int:
     """Make a file or a folder; return a descriptor of it that holds its lock."""
     while True:
         make(path)
         with suppress(FileNotFoundError):
             descriptor = os.open(path, WITHOUT_WAITING)
-            with suppress(OSError):  # of file systems without locks
+            with suppress(OSError):  # the file system has no locks
                 fcntl.flock(descriptor, fcntl.LOCK_EX)
             if path.exists():
                 return descriptor
@@ -157,7 +157,7 @@ def remove_leftovers(folder: Path) -> None:
 
 
 def _partial(path: Path) -> str:
-    """Return a name for what becomes `path`.
+    """Return a temporary name for the file or folder that becomes `path`.
 
     The name is random, so that nobody can plant a link there. The core removes such files from
     results folders.
@@ -166,7 +166,7 @@ def _partial(path: Path) -> str:
 
 
 def _suffix(name: str) -> str:
-    """Return the suffix of a name, which tells its kind, shortened to fit into a name."""
+    """Return the end of a name, which shows the kind of file; at most 100 bytes."""
     return os.fsdecode(os.fsencode(name)[-100:].lstrip(bytes(range(0x80, 0xC0))))
 
 

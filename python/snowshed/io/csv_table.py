@@ -18,7 +18,15 @@ from typing import TYPE_CHECKING, Any
 
 from snowshed._core import InputError
 from snowshed.base.formatting import number_in
-from snowshed.base.limits import COLUMNS, LINE, MB, ROWS, TABLE, TEXT, WRITTEN_ROWS
+from snowshed.base.limits import (
+    MAX_COLUMNS,
+    MAX_LINE_BYTES,
+    MAX_ROWS,
+    MAX_TABLE_BYTES,
+    MAX_TEXT_BYTES,
+    MAX_WRITTEN_ROWS,
+    MB,
+)
 from snowshed.base.messages import csv_cell, quoted
 from snowshed.base.paths import PathLike
 from snowshed.io.atomic import write_text
@@ -29,7 +37,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 WHOLE = re.compile("[0-9]{1,9}")
-LINES = re.compile(r"[^\r\n]*(?:\r\n|\r|\n)|[^\r\n]+")  # with their ends, one after another
+LINES = re.compile(r"[^\r\n]*(?:\r\n|\r|\n)|[^\r\n]+")  # lines with their line ends
 
 
 class Table:
@@ -81,7 +89,7 @@ class Table:
             self._write()
 
     def fill_columns(self) -> None:
-        """Write the columns that the file lacks, as that of an earlier version may."""
+        """Write columns that are missing in the file, which an earlier version may have written."""
         if self._written and self._written != self.columns:
             self._write()
 
@@ -96,7 +104,7 @@ class Table:
         return total
 
     def _read(self) -> list[dict[str, str]]:
-        records = _records(self.path, _decoded(self.path, TABLE))
+        records = _records(self.path, _decoded(self.path, MAX_TABLE_BYTES))
         _, names = next(records, (0, []))
         self._written = names
         rows = [dict(zip(names, cells)) for _, cells in records]
@@ -178,7 +186,7 @@ class TextTable:
 def read_text_table(
     path: Path, hint: str, check_columns: Callable[[Sequence[str], str], None]
 ) -> TextTable:
-    """Return a hand-written CSV table: with comments (#) and empty lines, cells as texts.
+    """Return a hand-written CSV table of texts, without its comments (#) and empty lines.
 
     Parameters
     ----------
@@ -197,7 +205,7 @@ def read_text_table(
     OSError
         If it cannot be read.
     """
-    records = _records(path, _decoded(path, TEXT), comment="#", most=WRITTEN_ROWS)
+    records = _records(path, _decoded(path, MAX_TEXT_BYTES), comment="#", most=MAX_WRITTEN_ROWS)
     head = next(records, None)
     if head is None:
         raise InputError(f"{path}: empty; {hint}")
@@ -231,7 +239,7 @@ def csv_text(table: pd.DataFrame, **options: Any) -> str:
 
 
 def write_csv(table: pd.DataFrame, path: PathLike, **options: Any) -> None:
-    """Write a table as a CSV file, as `csv_text` has it, whole or not at all.
+    """Write a table as a CSV file, as `csv_text` returns it, atomically.
 
     Examples
     --------
@@ -284,7 +292,7 @@ def read_csv(path: Path, *, as_text: bool = False) -> pd.DataFrame:
     path
         The file.
     as_text
-        Whether every cell is the text that stands there, instead of a number where it is one.
+        Whether every cell is text; else cells with numbers become numbers.
 
     Raises
     ------
@@ -294,19 +302,19 @@ def read_csv(path: Path, *, as_text: bool = False) -> pd.DataFrame:
     OSError
         If it cannot be read.
     """
-    return parse_csv(_decoded(path, TABLE), path, as_text=as_text)
+    return parse_csv(_decoded(path, MAX_TABLE_BYTES), path, as_text=as_text)
 
 
 def parse_csv(text: str, where: Path | str, *, as_text: bool = False) -> pd.DataFrame:
-    """Return a table from the text of a CSV file; see `read_csv`. Errors name `where` it was."""
+    """Return a table from the text of a CSV file; see `read_csv`. Errors name `where`."""
     import pandas as pd
 
     for _ in _records(where, text):
         pass
     options: dict[str, Any] = {"dtype": str, "keep_default_na": False} if as_text else {}
-    try:  # bytes, because a StringIO has four of them for each character
+    try:  # bytes, because a StringIO takes four bytes for each character
         table: pd.DataFrame = pd.read_csv(io.BytesIO(text.encode()), **options)
-    except ValueError as error:  # of pandas all errors on content are ValueErrors
+    except ValueError as error:  # all errors of pandas on content are ValueErrors
         raise InputError(f"{where}: not a table: {error}") from None
     return table
 
@@ -325,7 +333,7 @@ def _decoded(path: Path, largest: int) -> str:
 
 
 def _records(
-    path: Path | str, text: str, comment: str = "", most: int = ROWS
+    path: Path | str, text: str, comment: str = "", most: int = MAX_ROWS
 ) -> Iterator[tuple[int, list[str]]]:
     """Yield the first line and the cells of each record, all of the same length."""
     pulled: list[int] = []
@@ -359,9 +367,9 @@ def _numbered(path: Path | str, text: str, comment: str, pulled: list[int]) -> I
     for number, match in enumerate(LINES.finditer(text), 1):
         start, end = match.span()
         length = end - start if not pulled else length + end - start
-        if length > LINE:  # before the reader makes cells of it
+        if length > MAX_LINE_BYTES:  # checked before cells are made
             raise InputError(
-                f"{path}, line {number}: not a table: a row longer than {LINE // MB} MB"
+                f"{path}, line {number}: not a table: a row longer than {MAX_LINE_BYTES // MB} MB"
             )
         line = match.group()
         if comment and (not line.strip() or line.lstrip().startswith(comment)):
@@ -371,10 +379,10 @@ def _numbered(path: Path | str, text: str, comment: str, pulled: list[int]) -> I
 
 
 def _check_names(names: Sequence[str], where: str) -> None:
-    if len(names) > COLUMNS:
+    if len(names) > MAX_COLUMNS:
         raise InputError(
-            f"{where}: not a table: {len(names)} columns; at most {COLUMNS} are allowed"
+            f"{where}: not a table: {len(names)} columns; at most {MAX_COLUMNS} are allowed"
         )
-    for number, name in enumerate(names):  # few, as was checked
+    for number, name in enumerate(names):  # at most MAX_COLUMNS names
         if name in names[:number]:
             raise InputError(f"{where}: not a table: the column {quoted(name)} occurs twice")

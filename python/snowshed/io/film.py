@@ -17,7 +17,7 @@ from snowshed.base.paths import PathLike
 
 #: Name of the film in a results folder.
 FILM = "film.bin"
-LINEAR_STEPS = 64.0  # up to about which codes are even steps
+LINEAR_STEPS = 64.0  # up to about this code, steps are even
 
 
 class FilmQuantity(NamedTuple):
@@ -43,7 +43,7 @@ class FilmQuantity(NamedTuple):
 
 
 def _shown(text: str) -> str:
-    """Return a text of the file as a page or a picture may show it."""
+    """Return a text of the file for a page or a picture, without harmful characters."""
     return shortened(printable(text).replace("$", "?")) or "?"  # $ begins a formula in a picture
 
 
@@ -98,8 +98,8 @@ class Film:
     Raises
     ------
     InputError
-        If it cannot be read, is not a film, or damaged. An incomplete last frame, as a killed run
-        leaves it, is dropped; `whole` is false then, and `notes` mention it.
+        If the file cannot be read, is not a film, or is damaged. An incomplete last frame, such as
+        a killed run leaves, is dropped; then `whole` is false, and `notes` mention it.
 
     Examples
     --------

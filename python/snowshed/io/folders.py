@@ -1,4 +1,4 @@
-"""Folders that results are written into: new, empty, or taken by the same work before."""
+"""Folders for results: new, empty, or already used by the same work."""
 
 from __future__ import annotations
 
@@ -31,12 +31,12 @@ def check_empty(
 def claim_folder(
     folder: PathLike, file: str, identity: Mapping[str, Any], what: str, others: str
 ) -> None:
-    """Take a folder for some work, or continue in the folder of the same work.
+    """Claim a folder for some work, or continue in the folder of the same work.
 
     Parameters
     ----------
     folder
-        The folder; new or empty, unless it has the file.
+        The folder; new or empty, unless it holds `file`.
     file
         Name of the file in it that holds the identity of the work.
     identity
@@ -47,7 +47,7 @@ def claim_folder(
     Raises
     ------
     InputError
-        If the folder has another identity, or holds something else.
+        If the folder holds the identity of other work, or other files.
 
     Examples
     --------

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from snowshed._core import InputError
-from snowshed.base.limits import MB, PIPE, PIPE_SILENCE, TEXT
+from snowshed.base.limits import MAX_PIPE_SILENCE_S, MAX_TEXT_BYTES, MB, PIPE_TIMEOUT_S
 
 
 def read_regular(path: Path) -> bytes:
@@ -39,7 +39,7 @@ def read_regular(path: Path) -> bytes:
 
 
 def first_bytes(path: Path, count: int) -> bytes:
-    """Return the first bytes of a regular file, fewer where it is shorter; errors are the same.
+    """Return the first bytes of a regular file, or all of a shorter one; errors as `read_regular`.
 
     Examples
     --------
@@ -79,7 +79,7 @@ def open_regular(path: Path) -> BinaryIO:
 def stored_bytes(file: BinaryIO, enough: int) -> int:
     """Return the number of bytes of a file outside holes, counted up to `enough`.
 
-    Holes read as zeros and take no room on the disk, so a file may claim any size.
+    Holes read as zeros and take no space on the disk, so a file may claim any size.
 
     Examples
     --------
@@ -96,7 +96,7 @@ def stored_bytes(file: BinaryIO, enough: int) -> int:
             data = os.lseek(file.fileno(), at, os.SEEK_DATA)
             at = os.lseek(file.fileno(), data, os.SEEK_HOLE)
             length += at - data
-    except OSError:  # no data behind this place
+    except OSError:  # no data after this offset
         pass
     finally:
         file.seek(place)
@@ -108,16 +108,16 @@ def _open_at_once(path: str, flags: int) -> int:
 
 
 def _memory() -> int:
-    """Return the bytes that the machine, or the limit of this process, has."""
+    """Return the memory of the machine, or the smaller limit of this process, bytes."""
     limit = resource.getrlimit(resource.RLIMIT_AS)[0]
     machine = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     return machine if limit == resource.RLIM_INFINITY else min(machine, limit)
 
 
-def read_input(path: Path, largest: int = TEXT) -> bytes:
+def read_input(path: Path, largest: int = MAX_TEXT_BYTES) -> bytes:
     """Return the content of a file; endless devices are read up to `largest` bytes.
 
-    A pipe is read until its writer closes it; a silent writer is not waited for.
+    A pipe is read until its writer closes it, unless the writer is silent for too long.
 
     Raises
     ------
@@ -147,9 +147,9 @@ def read_input(path: Path, largest: int = TEXT) -> bytes:
 
 def _awaited(descriptor: int, path: Path, largest: int) -> bytes:
     """Return the content of a pipe or a device, at most `largest` + 1 bytes."""
-    content, end = bytearray(), time.monotonic() + PIPE
+    content, end = bytearray(), time.monotonic() + PIPE_TIMEOUT_S
     while len(content) <= largest:
-        wait = min(end - time.monotonic(), PIPE_SILENCE)
+        wait = min(end - time.monotonic(), MAX_PIPE_SILENCE_S)
         if wait <= 0.0 or not select.select([descriptor], [], [], wait)[0]:
             raise InputError(
                 f"{path}: a pipe or a device without a writer, or with a slow one; write its "

@@ -28,7 +28,7 @@ def parse_object(text: str | bytes, where: str) -> dict[str, Any]:
     ------
     InputError
         If the text is not an object, a key occurs twice, or the checksum is wrong; the message
-        names `where` it is.
+        names `where`, the source of the text.
 
     Examples
     --------

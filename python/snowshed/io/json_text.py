@@ -12,7 +12,7 @@ _TOKEN = re.compile(r'"(?:[^"\\]|\\.)*"|[{}\[\]:,]|[^\s{}\[\]:,"]+')
 
 
 class _RepeatedKeyError(ValueError):
-    """An object has a key twice."""
+    """Error of an object in which a key occurs twice."""
 
 
 def loads(text: Union[str, bytes]) -> Any:
@@ -52,7 +52,7 @@ def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 def _repeated(text: str) -> Iterator[tuple[str, int]]:
     """Yield path and line of repeated keys in a valid text."""
-    names: list[Union[str, int]] = []  # from the root to where the text is
+    names: list[Union[str, int]] = []  # path from the root to the current position
     seen: list[set[str]] = []  # keys of the enclosing objects, and indices of the lists
     before = ""
     for token in _TOKEN.finditer(text):

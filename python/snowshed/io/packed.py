@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from snowshed._core import InputError
-from snowshed.base.limits import KB, MB, MEMBERS, TEXT, UNPACKING
+from snowshed.base.limits import KB, MAX_MEMBERS, MAX_TEXT_BYTES, MAX_UNPACKING_BYTES, MB
 
 GZIP, XZ = b"\x1f\x8b", b"\xfd7zXZ\x00"
 #: Refused packings, by their first bytes.
@@ -21,10 +21,10 @@ OTHERS = {
     b"\x28\xb5\x2f\xfd": "packed with zstd",
 }
 ZEROS = re.compile(rb"\0*")
-PART = 64 * KB  # chunk of input, so that the rest is not copied for every member
+PART = 64 * KB  # bytes of input at once, because the rest is copied for every member
 
 
-def unpacked(content: bytes, path: Path, largest: int = TEXT) -> bytes:
+def unpacked(content: bytes, path: Path, largest: int = MAX_TEXT_BYTES) -> bytes:
     """Return the content of a file, unpacked if it is packed with gzip or xz.
 
     Parameters
@@ -62,7 +62,7 @@ def _gzip() -> Any:
 
 
 def _xz() -> Any:
-    return lzma.LZMADecompressor(lzma.FORMAT_XZ, memlimit=UNPACKING)
+    return lzma.LZMADecompressor(lzma.FORMAT_XZ, memlimit=MAX_UNPACKING_BYTES)
 
 
 def _gzip_part(member: Any, part: bytes, most: int) -> Iterator[bytes]:
@@ -85,9 +85,9 @@ def _members(
     made_of: Callable[[Any, bytes, int], Iterator[bytes]],
     begin: Callable[[], Any],
 ) -> bytes:
-    """Return the joined contents of the members; zeros may stand between and after them."""
+    """Return the joined contents of the members; zeros may follow each of them."""
     joined, start = bytearray(), 0
-    for _ in range(MEMBERS):
+    for _ in range(MAX_MEMBERS):
         member = begin()
         while not member.eof:
             part = content[start : start + PART]
@@ -106,4 +106,4 @@ def _members(
         start = zeros.end() if zeros else start
         if start >= len(content):
             return bytes(joined)
-    raise InputError(f"{path}: more than {MEMBERS} {kind} members; unpack it first")
+    raise InputError(f"{path}: more than {MAX_MEMBERS} {kind} members; unpack it first")

@@ -1,8 +1,8 @@
 """Files of a results folder, checked against the checksums in its run.json.
 
 A table has a checksum of its rows through an event. For any other file, run.json holds the length
-and the checksum of the written part, because a growing file may be longer meanwhile. Folders of the
-version before have no such checksums.
+and the checksum of the written part, because a growing file may have become longer. Folders of the
+previous version have no such checksums.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ def file_mark(path: Path) -> tuple[int, str]:
 def check_run_file(path: Path) -> None:
     """Raise InputError unless a file matches the run.json beside it.
 
-    Nothing is checked without a run.json, or with one of the version before.
+    Nothing is checked without a run.json, or with a run.json of the previous version.
     """
     record = read_run_record(path.parent)
     tables, files = (record.get(name) for name in ("tables", "files"))
@@ -67,7 +67,7 @@ def _check_table(path: Path, sums: Any, *, finished: bool) -> None:
     through = max((int(event) for event in sums if str(event).isdecimal()), default=0)
     table = Table(path)
     if through and table.checksum(through) != sums[str(through)]:
-        raise _damaged(path, f"its rows through event {through} are not those that the run wrote")
+        raise _damaged(path, f"its rows through event {through} differ from those of the run")
     if finished and any(int(row["event"]) > through for row in table.rows):
         raise _damaged(path, f"the run wrote no rows after event {through}")
 
@@ -75,7 +75,7 @@ def _check_table(path: Path, sums: Any, *, finished: bool) -> None:
 def _check_file(path: Path, mark: Any, *, finished: bool) -> None:
     if not isinstance(mark, dict):
         raise InputError(
-            f"{path}: not kept up to the end of the run; {RECORD} does not know it. Write it again "
+            f"{path}: not complete: {RECORD} holds no checksum of it. Write it again "
             f"with: snowshed run {path.parent / 'scene.json'} -o {path.parent} --resume"
         )
     content = read_regular(path)
@@ -86,7 +86,7 @@ def _check_file(path: Path, mark: Any, *, finished: bool) -> None:
         or (finished and length < len(content))
         or _checksum(content[:length]) != mark.get("checksum")
     ):
-        raise _damaged(path, "it is not as the run wrote it")
+        raise _damaged(path, "it has changed since the run wrote it")
 
 
 def _checksum(content: bytes) -> str:

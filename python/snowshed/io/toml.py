@@ -44,7 +44,7 @@ def parse_toml(content: bytes) -> dict[str, Any]:
         if text.count("\n[") > MAX_TABLES:
             raise InputError(f"not TOML: more than {MAX_TABLES} tables")
         return tomllib.loads(text)
-    except (ValueError, RecursionError) as error:  # of tomllib all errors are ValueErrors
+    except (ValueError, RecursionError) as error:  # all errors of tomllib are ValueErrors
         if isinstance(error, InputError):
             raise
         raise InputError(f"not TOML: {shortened(str(error), 200)}") from None
@@ -68,14 +68,14 @@ def toml_value(value: object) -> str:
     >>> print(toml_value([1, 2.5, "a", {"thickness": 0.1, "at": [True]}]))
     [1, 2.5, "a", {thickness = 0.1, at = [true]}]
     """
-    if hasattr(value, "tolist"):  # NumPy's
+    if hasattr(value, "tolist"):  # a scalar or an array of NumPy
         value = value.tolist()
     if hasattr(value, "__fspath__"):
         value = value.__fspath__()
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):
-        # TOML's escapes are those of JSON, and one more.
+        # TOML has the escapes of JSON, and one more.
         return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
     if isinstance(value, (int, float)):
         return repr(value)
@@ -111,5 +111,5 @@ def toml_lines(values: Mapping[str, object], prefix: str = "") -> Iterator[str]:
 
 
 def _key(key: str) -> str:
-    """Return a dotted key, its parts quoted where TOML needs it."""
+    """Return a dotted key, with its parts quoted if TOML requires it."""
     return ".".join(part if BARE.fullmatch(part) else toml_value(part) for part in key.split("."))

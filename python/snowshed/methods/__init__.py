@@ -1,4 +1,4 @@
-"""Settings and Python faces of the methods."""
+"""Settings and Python functions of the methods."""
 
 import lazy_loader as _lazy
 

@@ -1,4 +1,4 @@
-"""The entry of a method: everything that the rest of the package needs."""
+"""The entry of a method: all that the rest of the package needs of the method."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from snowshed.methods.settings import MethodSettings
 class Method:
     """A method, as its folder declares it in ``METHOD``.
 
-    A scene needs the settings, but the code that runs a scene and reads its results stands above
-    scenes. Such code is therefore named, as ``package.module:name``, and imported when it is used.
+    Scenes need the settings. The code that runs a scene and reads its results belongs to a higher
+    layer than scenes; it is therefore named as ``package.module:name``, and imported when used.
 
     Attributes
     ----------
@@ -30,8 +30,8 @@ class Method:
     run
         Name of the subclass of `snowshed.running.method_run.MethodRun` that runs its scenes.
     results
-        Results that other methods do not have: the name of an attribute of `snowshed.Results`, and
-        that of the function that reads it from a results folder.
+        Results that other methods do not have: for each attribute of `snowshed.Results`, the name
+        of the function that reads it from a results folder.
     ages
         Whether its snow can settle and sinter between events.
     has_grid
@@ -56,7 +56,7 @@ class Method:
         Raises
         ------
         InputError
-            If the method has no such result, or the folder does not hold it.
+            If the method has no such result, or the folder does not contain it.
 
         Examples
         --------

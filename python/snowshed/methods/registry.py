@@ -1,4 +1,4 @@
-"""The methods that a scene may choose: each is a folder beside this module, and a name here."""
+"""The methods that a scene may choose: each has a folder beside this module, and a name here."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ SETTINGS_KEY = "numerics"
 
 
 def method_named(name: Optional[str]) -> Method:
-    """Return the method of a name; None stands for the default.
+    """Return the method with a name; None stands for the default.
 
     Raises
     ------

@@ -13,12 +13,12 @@ from snowshed.plot.labels import label
 if TYPE_CHECKING:
     import pandas as pd
 
-#: Parameters of the snow that are named.
+#: Parameters of the snow in the caption.
 ELASTIC = ("youngs_modulus", "poissons_ratio")
 PLASTIC = ("critical_state_slope", "preconsolidation_pressure", "cohesion", "hardening_factor")
 #: Treatment of the stack between events.
 BETWEEN = {"carry": "the stack stays", "reseed": "the stack is reseeded"}
-MAX_LAYERS = 4  # whose thicknesses are named one by one
+MAX_LAYERS = 4  # number of layers up to which each thickness is named
 
 
 def scene_caption(scene: Mapping[str, Any], damping_rate: Optional[float] = None) -> str:
@@ -29,7 +29,7 @@ def scene_caption(scene: Mapping[str, Any], damping_rate: Optional[float] = None
     scene
         Complete scene data, as in scene.json.
     damping_rate
-        Mean rate of the damping in a run of it, 1/s, as run.json has it.
+        Mean damping rate of a run of the scene, 1/s, as in run.json.
 
     Examples
     --------
@@ -42,24 +42,26 @@ def scene_caption(scene: Mapping[str, Any], damping_rate: Optional[float] = None
     parts = [f"{scene['dimension']}D"]
     if panel := scene.get("panel"):
         parts.append(
-            f"panel {_shown('panel.length', panel)}, tilt {_shown('panel.tilt', panel)}, "
-            f"{_shown('panel.height', panel)} above ground, {contact_text(panel)}"
+            f"panel {_quantity_text('panel.length', panel)}, "
+            f"tilt {_quantity_text('panel.tilt', panel)}, "
+            f"{_quantity_text('panel.height', panel)} above ground, {contact_text(panel)}"
         )
     if slab := scene.get("slab"):
-        parts.append(_slab(slab))
+        parts.append(_slab_text(slab))
     if (ground := scene.get("ground")) and ground.get("tilt"):
-        parts.append(f"ground tilt {_shown('ground.tilt', ground)}")
+        parts.append(f"ground tilt {_quantity_text('ground.tilt', ground)}")
     settings = settings_of(scene)
     method = [f"{settings.RESOLUTION} {settings.resolution:g} m"]
     if damping := settings.damping_text(damping_rate):
         method.append(damping)
-    snow = [_snow(scene)] if "snow" in scene else []  # some methods have theirs in their settings
+    # Some methods have the snow's parameters in their settings.
+    snow = [_snow_text(scene)] if "snow" in scene else []
     snow.append(BETWEEN[scene["events"]["between"]])
     return "\n".join(" · ".join(line) for line in (parts, snow, method))
 
 
 def mean_damping_rate(table: pd.DataFrame) -> Optional[float]:
-    """Return the mean rate of the damping over a table of events, 1/s; None where it has none."""
+    """Return the mean damping rate over a table of events, 1/s; None if it lacks a rate."""
     if "damping_rate_per_s" not in table or table["damping_rate_per_s"].isna().any():
         return None
     return float(np.average(table["damping_rate_per_s"], weights=table["sim_time_s"]))
@@ -77,15 +79,15 @@ def contact_text(part: dict[str, Any]) -> str:
     return condition if condition == "sticky" else f"{condition}, friction {part['friction']:g}"
 
 
-def _shown(path: str, section: dict[str, Any]) -> str:
-    """Return the value of a parameter, which the section it belongs to holds, with its unit."""
+def _quantity_text(path: str, section: dict[str, Any]) -> str:
+    """Return the value of a parameter with its unit; `section` is its section of the scene."""
     return label(path).quantity(section[path.rpartition(".")[2]])
 
 
-def _slab(slab: dict[str, Any]) -> str:
+def _slab_text(slab: dict[str, Any]) -> str:
     layers = slab["layers"]
     if not layers:
-        return f"slab {_shown('slab.thickness', slab)} thick"
+        return f"slab {_quantity_text('slab.thickness', slab)} thick"
     thicknesses = [f"{layer['thickness']:.3g}" for layer in layers]
     if len(layers) > MAX_LAYERS:
         low, high = min(thicknesses, key=float), max(thicknesses, key=float)
@@ -93,7 +95,7 @@ def _slab(slab: dict[str, Any]) -> str:
     return f"layers {', '.join(thicknesses)} m"
 
 
-def _span(scene: Mapping[str, Any], name: str) -> str:
+def _range_text(scene: Mapping[str, Any], name: str) -> str:
     """Return a parameter of the snow with its unit; its range over the layers if they differ."""
     layers = (scene.get("slab") or {}).get("layers") or [{}]
     values = [layer.get("snow", scene["snow"])[name] for layer in layers]
@@ -102,8 +104,8 @@ def _span(scene: Mapping[str, Any], name: str) -> str:
     return " to ".join([*map(parameter.value, ends[:-1]), parameter.quantity(ends[-1])])
 
 
-def _snow(scene: Mapping[str, Any]) -> str:
+def _snow_text(scene: Mapping[str, Any]) -> str:
     elastic = scene["snow"]["model"] == "elastic"
     shown = ELASTIC if elastic else (*ELASTIC, *PLASTIC)
-    values = [f"{label(f'snow.{name}').symbol} {_span(scene, name)}" for name in shown]
-    return ", ".join([f"snow {_span(scene, 'density')}", *values, *["elastic"] * elastic])
+    values = [f"{label(f'snow.{name}').symbol} {_range_text(scene, name)}" for name in shown]
+    return ", ".join([f"snow {_range_text(scene, 'density')}", *values, *["elastic"] * elastic])

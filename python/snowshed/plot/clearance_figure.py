@@ -15,7 +15,7 @@ Band = tuple[float, float]
 
 
 def burial_figure(required: Floats, levels: Sequence[tuple[float, float, float, float]]) -> Figure:
-    """Draw the probability that a winter's snow reaches the lower edge, over its height.
+    """Draw the probability that a winter's snow reaches the lower edge, over the edge's height.
 
     Parameters
     ----------

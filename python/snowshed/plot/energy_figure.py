@@ -1,4 +1,4 @@
-"""The energy of a run over time: the snow's own, and its losses."""
+"""The energies of a run over time: the energy of the snow, and its losses."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
 
-#: Energies that the snow holds, and those of height, whose zero is arbitrary.
+#: Energies stored in the snow, and energies of height, whose zero is arbitrary.
 STORED, POTENTIAL = ("kinetic_j", "elastic_j", "bonds_j"), ("gravitational_j", "potential_j")
 #: The other columns that are not losses.
 SUMS = ("added_j", "residual_j")
-SMALL = 1e-3  # smaller shares of the largest energy are not drawn
+MIN_DRAWN_SHARE = 1e-3  # smaller shares of the largest energy are not drawn
 SCALES = ((1e9, "GJ"), (1e6, "MJ"), (1e3, "kJ"), (1.0, "J"), (1e-3, "mJ"), (1e-6, "µJ"))
 WIDTH, HEIGHT = 9.0, 6.4  # inches
 MAX_MARKED_EVENTS = 40  # events whose ends are marked
@@ -62,7 +62,9 @@ def energy_figure(table: pd.DataFrame, scene: Mapping[str, Any]) -> Figure:
         above.set_title("In the snow")
         lines = {name: table[name] for name in taken}
         largest = max((np.abs(line).max() for line in (released, *lines.values())), default=0.0)
-        visible = {n: line for n, line in lines.items() if np.abs(line).max() > SMALL * largest}
+        visible = {
+            n: line for n, line in lines.items() if np.abs(line).max() > MIN_DRAWN_SHARE * largest
+        }
         shown = {"released from height and added": released, **visible}
         if "residual_j" in table:
             shown["gained (+) or lost by time integration"] = table["residual_j"]
@@ -92,7 +94,7 @@ def _draw(
             look = {"color": INK, "lw": 2.0}
         elif name.startswith("gained"):
             look = {"color": FAINT, "lw": 1.3, "ls": "--"}
-        axes.plot(times, line / scale, label=_named(name), **look)
+        axes.plot(times, line / scale, label=_energy_name(name), **look)
     for begun in _beginnings(table):
         axes.axvline(begun, color=FAINT, lw=0.6, ls=":", zorder=0)
     axes.set_ylabel(f"energy, {unit}{per_width}")
@@ -100,15 +102,15 @@ def _draw(
 
 
 def _beginnings(table: pd.DataFrame) -> Sequence[float]:
-    """Return when the events after the first began, if they are few."""
+    """Return the times at which events after the first began; empty if there are too many."""
     begun = table.groupby("event")["time_s"].min().tolist()[1:]
     return begun if len(begun) <= MAX_MARKED_EVENTS else []
 
 
-def _named(name: str) -> str:
+def _energy_name(name: str) -> str:
     return name[: -len("_j")].replace("_", " ") if name.endswith("_j") else name
 
 
 def _scale(largest: float) -> tuple[float, str]:
-    """Return the unit in which an energy is between 1 and 1000, if there is one."""
+    """Return the largest unit in which an energy is at least 1, else the smallest unit."""
     return next((scale for scale in SCALES if largest >= scale[0]), SCALES[-1])

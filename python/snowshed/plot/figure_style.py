@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 INK, FAINT, STACK, BODY = "#22303c", "#8a97a3", "#2b6a8f", "#c8553d"
 #: Part of the colour map of events that reads well on white.
-FIRST, LAST = 0.08, 0.86
+FIRST_SHADE, LAST_SHADE = 0.08, 0.86
 #: Colours that stay apart for colour-blind eyes and in print (Okabe and Ito).
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8c6d31")
 #: Colour of noise, beside the colours of effects.
@@ -73,7 +73,7 @@ def describe(figure: Figure, text: str) -> None:
     figure.suptitle(text, x=0.02, ha="left", color=INK, fontsize=9, linespacing=1.5)
 
 
-def quiet(axes: Axes) -> None:
+def mute_frame(axes: Axes) -> None:
     """Remove the parts of a frame that are not needed."""
     axes.spines[["top", "right"]].set_visible(False)
     axes.spines[["left", "bottom"]].set_color(FAINT)

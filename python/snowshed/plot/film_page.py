@@ -76,7 +76,7 @@ def write_view_page(file: Path, film: Film, content: ViewContent) -> None:
     film
         The film.
     content
-        The surroundings of the film.
+        The content of the page besides the film.
     """
     summary = summarise_film(film)
     page = template("snowshed.plot", "view.html.j2")
@@ -141,11 +141,11 @@ def _colouring(colouring: Colouring) -> dict[str, Any]:
 
 
 def _embedded(data: Mapping[str, Any]) -> Any:
-    """Return data as JSON that can stand inside of an element of a page."""
+    """Return data as JSON that is safe inside an element of a page."""
     import markupsafe
 
     text = json.dumps(data, separators=(",", ":"), allow_nan=False)
-    for sign in "<>&":  # so that no text in it can end the element
+    for sign in "<>&":  # no text of the data can end the element
         text = text.replace(sign, f"\\u{ord(sign):04x}")
     return markupsafe.Markup(text)
 
@@ -154,7 +154,7 @@ def _film_notes(film: Film) -> list[str]:
     notes = []
     if film.share < 1.0:
         notes.append(
-            f"The film holds one of {1 / film.share:.0f} particles, chosen by their numbers; "
+            f"The film holds one of {1 / film.share:.0f} particles, chosen by their ids; "
             "the others move between them."
         )
     return [*notes, *(note[0].upper() + note[1:] + "." for note in film.notes)]

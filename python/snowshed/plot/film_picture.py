@@ -18,13 +18,13 @@ from snowshed.plot.solids import Box, Solid
 
 PAINTS = {"ground": "#dfe5ea", "panel": "#33506b", "solid": "#9aa9b5"}
 SKY = "#f5f7f9"
-TURN, LIFT = -0.6, 0.28  # of the camera, as the page begins, radians
+TURN, LIFT = -0.6, 0.28  # initial angles of the camera, as on the page, radians
 TERRAIN_LIFT = 0.8  # steep ground is seen from higher up
 WIDTH = 8.0  # inches
 
 
 def view_lift(solids: Sequence[Solid]) -> float:
-    """Return how high above the horizon the camera begins, radians."""
+    """Return the initial elevation of the camera above the horizon, radians."""
     return TERRAIN_LIFT if any(solid.name == "terrain" for solid in solids) else LIFT
 
 

@@ -16,13 +16,13 @@ from snowshed.io.film import Film, FilmFrame
 from snowshed.plot.solids import Box
 
 COLOURS = "viridis"  # perceptually uniform, and safe for colour-blind eyes
-#: Parts of it that stand out from a light and from a dark ground.
+#: Parts of the colour map that stand out from a light and from a dark background.
 ON_LIGHT, ON_DARK = (0.0, 0.88), (0.25, 1.0)
-SHOWN_SHARES = (0.005, 0.995)  # share of all values within the scale of colours
-MAX_LABELS = 10  # of events; of more, a scale is shown
-SPACING_SAMPLE = 4000  # particles whose nearest neighbours are looked for
-BALL = 0.72  # radius over the distance of neighbours, so that snow looks closed
-SHIFT = 1 << 15  # codes lie between -711 and 711, and are counted with this shift
+SHOWN_SHARES = (0.005, 0.995)  # quantiles of all values at the ends of the colour scale
+MAX_LABELS = 10  # largest number of labelled events; more events get a colour scale
+SPACING_SAMPLE = 4000  # particles whose nearest neighbours are searched
+BALL_RATIO = 0.72  # radius over the distance of neighbours: snow is drawn without gaps
+CODE_SHIFT = 1 << 15  # codes lie between -711 and 711, and are counted with this shift
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ class Colouring:
         return self.title.partition(",")[0].lower()
 
     def colours(self, *, dark: bool = False) -> Floats:
-        """Return the colours for a light or a dark ground, (256, 3), from 0 to 1."""
+        """Return the colours for a light or a dark background, (256, 3), from 0 to 1."""
         shown = np.linspace(*(ON_DARK if dark else ON_LIGHT), 256)
         table: Floats = mpl.colormaps[COLOURS](shown)[:, :3]
         return table
@@ -83,7 +83,7 @@ class FilmSummary:
     radius
         Radius of a particle, m.
     colourings
-        Those that tell particles apart, the one to begin with first.
+        Colourings that distinguish particles; the page begins with the first.
     last
         The last frame.
     """
@@ -103,7 +103,7 @@ def summarise_film(film: Film) -> FilmSummary:
         If the film holds no particles, or is damaged.
     """
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
-    counts = np.zeros((len(film.quantities), 2 * SHIFT), dtype=np.int64)
+    counts = np.zeros((len(film.quantities), 2 * CODE_SHIFT), dtype=np.int64)
     spacing, last, materials = np.nan, None, 0
     for frame in film:
         if not len(frame.ids):
@@ -112,7 +112,8 @@ def summarise_film(film: Film) -> FilmSummary:
         high = np.maximum(high, frame.positions.max(axis=0))
         for which, codes in enumerate(frame.codes.T):
             counts[which] += np.bincount(
-                np.clip(codes, 1 - SHIFT, SHIFT - 1) + SHIFT, minlength=2 * SHIFT
+                np.clip(codes, 1 - CODE_SHIFT, CODE_SHIFT - 1) + CODE_SHIFT,
+                minlength=2 * CODE_SHIFT,
             )
         if np.isnan(spacing):
             spacing = _spacing(frame.positions)
@@ -123,7 +124,7 @@ def summarise_film(film: Film) -> FilmSummary:
     ranges = [_range(film, which, count) for which, count in enumerate(counts)]
     return FilmSummary(
         bounds=Box(low, high),
-        radius=BALL * spacing,
+        radius=BALL_RATIO * spacing,
         colourings=_colourings(film, ranges, materials),
         last=last,
     )
@@ -140,7 +141,7 @@ def _spacing(positions: Floats) -> float:
 
 def _range(film: Film, which: int, counts: np.ndarray) -> tuple[float, float]:
     share = np.cumsum(counts) / counts.sum()
-    codes = np.searchsorted(share, SHOWN_SHARES) - SHIFT
+    codes = np.searchsorted(share, SHOWN_SHARES) - CODE_SHIFT
     low, high = film.quantities[which].values(codes.astype(np.int32)).tolist()
     if film.quantities[which].name in ("speed", "thickness", "coordination"):
         low = 0.0

@@ -15,10 +15,10 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-SLICE = 0.25  # of the sample's depth, about its middle, whose grains are drawn
+SLICE_SHARE = 0.25  # thickness of the drawn slice in the middle, relative to the sample's depth
 TITLE_WIDTH = 80  # characters
 MAX_LINE_WIDTH = 7.0  # points, of a line
-MANY = 300  # grains, from which on only the forces in the slice are drawn
+SLICED_FROM_GRAINS = 300  # number of grains from which only the forces in the slice are drawn
 ICE = ("#e3ebf1", "#cfdce6", "#bccdda", "#d9e0ea", "#c5d6d9")
 
 
@@ -26,17 +26,18 @@ def force_figure(contacts: GrainContacts, voxel_size: float, title: str = "") ->
     """Return the picture of a sample from the side, with the forces between its grains.
 
     Lines connect the centres of touching grains through their contacts. In a small sample all
-    contacts are drawn, in others those within the slice that shows the ice. The width is
-    proportional to the force. Only bonds can pull: unbonded grains in oblique contact always push.
+    contacts are drawn, in a large one only those within the drawn slice of ice. The width of a
+    line is proportional to the force. Only bonds can pull: unbonded grains in oblique contact
+    always push.
 
     Parameters
     ----------
     contacts
-        Contacts at a time.
+        The contacts between grains at one time.
     voxel_size
         Diameter of the spheres, m.
     title
-        Written above, such as how a synthetic sample was made.
+        Text above the figure, such as the recipe of a synthetic sample.
     """
     from matplotlib import rc_context
 
@@ -75,9 +76,9 @@ def _draw_ice(axes: Axes, contacts: GrainContacts, voxel_size: float) -> None:
 
 
 def _in_slice(contacts: GrainContacts, depth: Floats, margin: float = 0.0) -> Booleans:
-    """Return which depths (y, m) are in the slice in the middle, whose ice is drawn."""
+    """Return whether each depth (y, m) is in the slice in the middle, whose ice is drawn."""
     low, high = contacts.spheres[:, 1].min(), contacts.spheres[:, 1].max()
-    near = np.abs(depth - 0.5 * (low + high)) <= 0.5 * SLICE * (high - low) + margin
+    near = np.abs(depth - 0.5 * (low + high)) <= 0.5 * SLICE_SHARE * (high - low) + margin
     return np.asarray(near)
 
 
@@ -86,7 +87,7 @@ def _draw_forces(axes: Axes, contacts: GrainContacts) -> None:
     from matplotlib.lines import Line2D
 
     pulling = contacts.bonded & (contacts.normal_forces < 0.0)
-    many = int(contacts.sphere_grains.max(initial=0)) >= MANY
+    many = int(contacts.sphere_grains.max(initial=0)) >= SLICED_FROM_GRAINS
     drawn_ones = _in_slice(contacts, contacts.points[:, 1]) if many else np.isfinite(pulling)
     size = np.linalg.norm(contacts.forces, axis=1) * drawn_ones
     largest = float(size.max(initial=0.0))

@@ -1,4 +1,4 @@
-"""Maps of how likely snow reaches a place, and how hard."""
+"""Maps of the probability that snow reaches a place, and of its intensity."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from snowshed.plot.terrain_map import (
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-ACROSS = 11.5  # inches, of maps side by side
+ROW_WIDTH = 11.5  # width of maps side by side, inches
 LEVELS = (0.05, 0.5, 0.95)  # probabilities whose lines are drawn
 VALUES = {"thickness": "YlGnBu", "speed": "YlOrRd", "pressure": "PuRd"}
 
@@ -92,7 +92,7 @@ def percentiles_figure(
     *,
     titles: Mapping[str, str],
 ) -> Figure:
-    """Return small maps side by side, one for each quantity, cells without snow left out.
+    """Return small maps side by side, one for each quantity; cells without snow stay empty.
 
     Parameters
     ----------
@@ -101,14 +101,14 @@ def percentiles_figure(
     values
         Maps by the names in `VALUES`.
     titles
-        Title of each, with its unit.
+        Title of each map, with its unit.
     """
     from matplotlib import rc_context
 
     ratio = (part[1] - part[0]) / (part[3] - part[2])
-    width = (ACROSS - len(values)) / len(values)  # an inch for each bar of colours
+    width = (ROW_WIDTH - len(values)) / len(values)  # an inch for each bar of colours
     with rc_context(STYLE):
-        figure = blank_figure(ACROSS, width / ratio + 0.5)
+        figure = blank_figure(ROW_WIDTH, width / ratio + 0.5)
         panels = figure.subplots(1, len(values), squeeze=False).ravel()
         for axes, (quantity, raster) in zip(panels, values.items()):
             draw_terrain(axes, ground, part, labels=False)

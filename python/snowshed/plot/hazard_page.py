@@ -42,7 +42,7 @@ class HazardPage:
     areas
         The area by probability.
     ranges, figures
-        Ranges of the varied parameters, and the 5th, 50th and 95th percentile of figures.
+        Ranges of the varied parameters, and percentiles (5, 50, 95) of the slides' results.
     runs, failed
         Number of slides in the maps, and number of failed ones.
     notes

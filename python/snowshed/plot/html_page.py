@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 FOLDED_FROM_ROWS = 12
 DPI = 130
 CSS_PIXELS = 96  # per inch
-PNG, HEADER = b"\x89PNG", 24  # how a PNG file begins; bytes up to the end of its size
-#: Cells with these words stand out, in the colour of a class of the page's style.
+PNG, HEADER = b"\x89PNG", 24  # first bytes of a PNG file; number of bytes to the end of its size
+#: Cells with these words stand out; the class of the page's style decides their colour.
 STATES: Mapping[str, str] = {
     "holds": "good",
     "does not hold": "bad-state",
@@ -55,7 +55,7 @@ class HtmlTable:
 
     @property
     def long(self) -> bool:
-        """True if it should be folded."""
+        """True if the table should be folded."""
         return len(self.rows) > FOLDED_FROM_ROWS
 
 
@@ -87,7 +87,7 @@ class Picture:
 
     @classmethod
     def read(cls, file: Path, title: str, caption: str, *, dpi: float) -> Picture:
-        """Return a PNG file as a picture, drawn with a resolution in dots per inch.
+        """Return a picture from a PNG file that was drawn with `dpi` dots per inch.
 
         Raises
         ------
@@ -102,7 +102,7 @@ class Picture:
 
     @property
     def base64(self) -> str:
-        """The PNG as a page can hold it."""
+        """The PNG file in base64, for a page."""
         return base64.b64encode(self.png).decode()
 
 
@@ -114,16 +114,16 @@ def write_pictures(pictures: Iterable[Picture], folder: Path) -> None:
             beside.write_bytes(picture.png)
 
 
-def _shown(value: object) -> object:
+def _page_text(value: object) -> object:
     """Return a value as text on a page; existing markup stays."""
     return printable(value) if isinstance(value, str) and not hasattr(value, "__html__") else value
 
 
 def template(package: str, name: str) -> jinja2.Template:
-    """Return a page's template out of a package's folder ``templates``.
+    """Return a page's template from the folder ``templates`` of a package.
 
-    Its texts pass `printable`. It may extend ``page.html.j2`` and import the macros of
-    ``parts.html.j2``.
+    Texts of the page pass `printable`. A template may extend ``page.html.j2`` and import the
+    macros of ``parts.html.j2``.
     """
     import jinja2
 
@@ -131,7 +131,7 @@ def template(package: str, name: str) -> jinja2.Template:
     environment = jinja2.Environment(
         loader=jinja2.ChoiceLoader(loaders),
         autoescape=True,
-        finalize=_shown,
+        finalize=_page_text,
         trim_blocks=True,
         lstrip_blocks=True,
         undefined=jinja2.StrictUndefined,

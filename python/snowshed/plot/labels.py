@@ -93,7 +93,7 @@ LABELS: Mapping[str, Label] = {
 
 @functools.cache
 def label(path: str) -> Label:
-    """Return how a parameter is written; one that is not in `LABELS` by its path.
+    """Return the label of a parameter; without an entry in `LABELS` its name is the path.
 
     Examples
     --------
@@ -110,7 +110,7 @@ def label(path: str) -> Label:
 
 
 def settings(values: Mapping[str, float]) -> str:
-    """Return values of some parameters as one text; those that are not finite are left out.
+    """Return parameters with their values as one text; values that are not finite are left out.
 
     Examples
     --------

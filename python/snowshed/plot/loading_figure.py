@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from snowshed.methods.grains.curve import LoadingCurve, stage_strain, stage_stress
-from snowshed.methods.grains.phases import LINEAR, Phases, find_phases
+from snowshed.methods.grains.phases import MIN_LINEARITY, Phases, find_phases
 from snowshed.plot.figure_style import (
     BODY,
     COLOURS,
@@ -31,11 +31,11 @@ STRESSES = {
     "side_stress_pa": "on the sides",
     "shear_stress_pa": "shear, top plate",
 }
-SMALL = 0.01  # smaller shares of the largest energy are not drawn
+MIN_DRAWN_SHARE = 0.01  # smaller shares of the largest energy are not drawn
 KEY: dict[str, Any] = {
     "loc": "best", "frameon": True, "framealpha": 0.8, "edgecolor": "none"
 }  # fmt: skip
-BEGINNING = 4.0  # times the elastic limit that the diagram of the beginning shows
+BEGINNING_OVER_LIMIT = 4.0  # largest strain in the diagram of the beginning, over the elastic limit
 #: Colours of the phases: elastic, brittle and frictional, hardening.
 PHASES = ("#d8e8f2", "#f6efe2", "#f3dfd8")
 
@@ -43,7 +43,7 @@ PHASES = ("#d8e8f2", "#f6efe2", "#f3dfd8")
 def loading_figure(curve: LoadingCurve, kinds: Sequence[str], title: str = "") -> Figure:
     """Return the figure of a loading test: stresses, broken bonds, coordination and energies.
 
-    The first stage is shaded by its phases if it compresses; where it hardens, stresses are on a
+    If the first stage compresses, its phases are shaded; if it hardens, stresses are on a
     logarithmic scale.
 
     Parameters
@@ -53,7 +53,7 @@ def loading_figure(curve: LoadingCurve, kinds: Sequence[str], title: str = "") -
     kinds
         Kinds of its stages, in order.
     title
-        Written above, such as how a synthetic sample was made.
+        Text above the figure, such as the recipe of a synthetic sample.
     """
     from matplotlib import rc_context
 
@@ -84,7 +84,7 @@ def loading_figure(curve: LoadingCurve, kinds: Sequence[str], title: str = "") -
 
 
 def _abscissa(curve: LoadingCurve, kinds: Sequence[str]) -> tuple[np.ndarray, str]:
-    """Return the abscissa of a test: a strain, if all stages have it, else the time."""
+    """Return the abscissa of a test and its label: a strain if all stages have it, else time."""
     if set(kinds) <= {"compress", "isotropic", "unload", "hold"}:
         return 100.0 * curve["axial_strain"], "axial strain, %"
     if set(kinds) <= {"stretch", "hold"}:
@@ -116,11 +116,11 @@ def _draw_stresses(
 def _draw_beginning(axes: Axes, stage: LoadingCurve, kind: str, phases: Phases) -> None:
     strain, stress = stage_strain(stage, kind), stage_stress(stage, kind)
     limit = phases.elastic_limit or 0.0
-    shown = strain <= max(BEGINNING * limit, 1e-3 * float(strain.max()))
+    shown = strain <= max(BEGINNING_OVER_LIMIT * limit, 1e-3 * float(strain.max()))
     unit = _unit_of_strain(float(strain[shown].max(initial=0.0)))
     axes.plot(unit[1] * strain[shown], stress[shown] / 1e3, ".-", color=INK, lw=1.0, ms=4)
     title = f"Beginning: {phases.unknown}" if phases.unknown else "Beginning"
-    waves = phases.linearity is not None and phases.linearity < LINEAR
+    waves = phases.linearity is not None and phases.linearity < MIN_LINEARITY
     if waves:
         title += f": not linear (R² {phases.linearity:.2f}), waves"
     elif phases.tangent_modulus is not None:
@@ -171,7 +171,9 @@ def _draw_bonds(axes: Axes, curve: LoadingCurve, along: np.ndarray) -> None:
 
 def _draw_energies(axes: Axes, curve: LoadingCurve, along: np.ndarray) -> None:
     largest = max(np.abs(curve[name]).max() for name in curve.energies)
-    drawn = [name for name in curve.energies if np.abs(curve[name]).max() > SMALL * largest]
+    drawn = [
+        name for name in curve.energies if np.abs(curve[name]).max() > MIN_DRAWN_SHARE * largest
+    ]
     for name, colour in zip(drawn, (*COLOURS, INK, FAINT, STACK, BODY)):
         text = name[: -len("_j")].replace("_", " ")
         axes.plot(along, 1e6 * curve[name], color=colour, lw=1.2, label=text)

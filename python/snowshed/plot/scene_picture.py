@@ -12,7 +12,7 @@ from snowshed._core import Simulation
 from snowshed.base.arrays import Floats
 from snowshed.methods.registry import resolution_of
 from snowshed.plot.caption import scene_caption
-from snowshed.plot.figure_style import FAINT, INK, STACK, blank_figure, describe, quiet
+from snowshed.plot.figure_style import FAINT, INK, STACK, blank_figure, describe, mute_frame
 from snowshed.scene.builders.slope import BOARD_CELLS
 from snowshed.scene.scene import SceneLike, resolve_scene
 
@@ -61,7 +61,7 @@ def scene_figure(scene: SceneLike) -> Figure:
     )
     _draw_panel(axes, simulation, data)
     axes.legend(frameon=False, fontsize=9, loc="upper right", markerscale=3)
-    quiet(axes)
+    mute_frame(axes)
     axes.set_xlabel("x, m", color=INK, fontsize=9)
     axes.set_ylabel("z, m", color=INK, fontsize=9)
     describe(figure, scene_caption(data))
@@ -69,7 +69,7 @@ def scene_figure(scene: SceneLike) -> Figure:
 
 
 def _limits(simulation: Simulation, scene: Mapping[str, Any]) -> Limits:
-    """Return a view of the snow, its supports, and as much ground to either side."""
+    """Return a view of the snow and its supports, with half their size as margin at the sides."""
     snow = simulation.positions()[:, [0, 2]]
     low, high = snow.min(axis=0), snow.max(axis=0)
     floor = min(float(low[1]), 0.0)
@@ -94,7 +94,7 @@ def _draw_obstacles(axes: Axes, simulation: Simulation) -> None:
 
 
 def _draw_panel(axes: Axes, simulation: Simulation, scene: Mapping[str, Any]) -> None:
-    """Draw the panel's face, and the board below it as thick as the core makes it."""
+    """Draw the panel's face, and the board below it in the core's thickness."""
     frame = simulation.panel_frame()
     if frame is None:
         return

@@ -16,14 +16,14 @@ from snowshed.plot.caption import scene_caption
 from snowshed.plot.figure_style import (
     BODY,
     FAINT,
-    FIRST,
+    FIRST_SHADE,
     GRID,
     INK,
-    LAST,
+    LAST_SHADE,
     STACK,
     blank_figure,
     describe,
-    quiet,
+    mute_frame,
 )
 from snowshed.plot.stack_figures import ROWS, named_events
 
@@ -61,7 +61,7 @@ def season_figure(
     Parameters
     ----------
     table
-        As in season.csv.
+        The table of the season, as in season.csv.
     outlines
         The profiles of the stack, as in outline.csv; without rows if nothing slid.
     scene
@@ -71,7 +71,7 @@ def season_figure(
     contact
         The first contact of the snow with the panel, if any.
     title
-        Above the figure, before the key numbers of the scene.
+        Text above the figure, before the key numbers of the scene.
     snow
         A line on the quality of the snow data.
     """
@@ -89,7 +89,7 @@ def season_figure(
         axes.xaxis.set_major_formatter(formatter)
     stack.sharex(load)
     for axes in (load, stack, side):
-        _plain(axes)
+        _style_axes(axes)
     first, last = (f"{moment:%Y-%m-%d}" for moment in (moments[0], moments[-1]))
     caption = scene_caption(dict(scene))
     snow_line = f"\n{snow}" if snow else ""
@@ -183,7 +183,7 @@ def _draw_outlines(
     axes.plot(*zip(*panel), color=INK, linewidth=3.5, solid_capstyle="round")
     axes.axhline(0.0, color=FAINT, linewidth=1.2)
     events = sorted(set(outlines["event"]))
-    shades = colormaps["viridis"](np.linspace(FIRST, LAST, max(len(events), 1)))
+    shades = colormaps["viridis"](np.linspace(FIRST_SHADE, LAST_SHADE, max(len(events), 1)))
     named = named_events(len(events))
     for number, (event, shade) in enumerate(zip(events, shades), 1):
         profile = outlines[outlines["event"] == event]
@@ -203,6 +203,6 @@ def _draw_outlines(
     axes.set_xlabel("along the ground from the panel's centre, m", color=INK, fontsize=9)
 
 
-def _plain(axes: Axes) -> None:
-    quiet(axes)
+def _style_axes(axes: Axes) -> None:
+    mute_frame(axes)
     axes.grid(color=GRID, linewidth=0.8)

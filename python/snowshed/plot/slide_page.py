@@ -187,7 +187,7 @@ def _mass_table(figures: Mapping[str, Any]) -> HtmlTable:
 def _settings_table(scene: Mapping[str, Any]) -> HtmlTable:
     settings = scene["numerics"]
     rows = [
-        (name, _shown(settings[name]), parameter.unit, parameter.description)
+        (name, _setting_text(settings[name]), parameter.unit, parameter.description)
         for parameter in scene_parameters("slide")
         for section, _, name in [parameter.path.partition(".")]
         if section == "numerics" and name in settings and name != "threads"
@@ -195,7 +195,7 @@ def _settings_table(scene: Mapping[str, Any]) -> HtmlTable:
     return HtmlTable(("setting", "value", "unit", "meaning"), rows, "lrll")
 
 
-def _shown(value: Any) -> str:
+def _setting_text(value: Any) -> str:
     return str(value).lower() if isinstance(value, (bool, str)) else f"{value:g}"
 
 
@@ -252,7 +252,7 @@ def _in_percent(outline: Outline, part: Extent) -> str:
 
 
 def _largest(frames: Sequence[Frame]) -> float:
-    """Return the thickness that hardly any snow exceeds, m."""
+    """Return the thickness that only 0.5 % of the snow's cells exceed, m."""
     values = np.concatenate(
         [frame.thickness[frame.thickness > MIN_SHOWN_THICKNESS] for frame in frames]
     )
@@ -282,18 +282,18 @@ def multiples_figure(
     frames: Sequence[Frame],
     count: int = SMALL_MULTIPLES,
 ) -> Figure:
-    """Return small maps of the thickness of the snow at even times.
+    """Return small maps of the thickness of the snow, more of them while it moves fast.
 
     Parameters
     ----------
     maps
-        Terrain of the maps, with its position.
+        The maps of the slide, from which the terrain is taken.
     outlines
         Corners of the release areas, in map coordinates, m.
     frames
-        The snow over time; `count` of them are shown.
+        The snow over time; at most `count` frames are shown.
     count
-        Number of colours.
+        Largest number of small maps.
     """
     chosen = _moving(frames, count)
     rows, columns, part = _window(maps, outlines)

@@ -20,10 +20,10 @@ from snowshed.plot.surface_nets import surface_of
 from snowshed.scene.builders.slope import BOARD_CELLS
 from snowshed.scene.resolved import ResolvedScene
 
-ROUND = 24  # number of sides of round shapes
-SAMPLES = 48  # of a solid that is sampled, along its longest side
+ROUND_SIDES = 24  # number of sides of round shapes
+SAMPLES = 48  # samples along the longest side of a solid
 TERRAIN_NODES = 220  # along a side, at most
-MAX_TRIANGLES = 200_000  # of one mesh; larger ones are sampled
+MAX_TRIANGLES = 200_000  # of a mesh; larger meshes are sampled
 
 
 @dataclass(frozen=True)
@@ -81,7 +81,7 @@ class Solid:
 
     @property
     def data(self) -> dict[str, Any]:
-        """The solid as a page can hold it."""
+        """The solid as JSON data for a page."""
         return {
             "name": self.name,
             "kind": self.kind,
@@ -107,7 +107,7 @@ def scene_solids(
     snow
         A box that holds the snow at all times.
     terrain
-        The ground of a slide; None without.
+        The ground of a slide; None for other methods.
     """
     flat = scene["dimension"] == 2
     solids = [
@@ -127,7 +127,7 @@ def scene_solids(
 
 
 def _flattened(solid: Solid) -> Solid:
-    """Return a solid of a plane: seen from the side, its depth does not matter."""
+    """Return a solid flattened into the plane y = 0, for 2D scenes seen from the side."""
     corners = solid.corners.copy()
     corners[:, 1] = 0.0
     return replace(solid, corners=corners)
@@ -146,7 +146,7 @@ def _panel(scene: Mapping[str, Any]) -> Solid:
     slope = np.array([np.cos(tilt), 0.0, -np.sin(tilt)])
     normal = np.array([np.sin(tilt), 0.0, np.cos(tilt)])
     rise = panel["height"] + 0.5 * panel["length"] * np.sin(tilt)
-    if ground := scene.get("ground"):  # the lower edge stands so high above the ground below it
+    if ground := scene.get("ground"):  # the panel's height counts from the ground below its edge
         rise -= 0.5 * panel["length"] * np.cos(tilt) * np.tan(np.radians(ground["tilt"]))
     thickness = max(panel["thickness"], BOARD_CELLS * resolution_of(scene))
     centre = np.array([0.0, 0.0, rise]) - 0.5 * thickness * normal
@@ -263,7 +263,7 @@ def _sampled(
     ]
     points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
     distance = alone.obstacle_distance(points.reshape(-1, 3)).reshape(points.shape[:3])
-    if flat:  # a slice, closed before and behind
+    if flat:  # a slice, closed in front and behind
         distance = np.concatenate([distance, distance], axis=1)
     distance = np.pad(distance, 1, constant_values=spacing)
     corners, triangles = surface_of(distance)
@@ -272,7 +272,7 @@ def _sampled(
 
 
 def _only(shape: Mapping[str, Any], scene: Mapping[str, Any]) -> ResolvedScene:
-    """Return a scene with a shape and hardly any snow."""
+    """Return a scene with a single shape and hardly any snow."""
     dimension = scene["dimension"]
     drop = {"type": "sphere", "center": [0.0] * dimension, "radius": 0.05}
     bare = {"snowshed": scene["snowshed"], "dimension": dimension, "numerics": {"dx": 0.05}}
@@ -307,14 +307,14 @@ def _frame_along(axis: Floats) -> tuple[Floats, Floats, Floats]:
 
 def _turned(rings: list[tuple[Floats, float]], side: Floats, other: Floats) -> Solid:
     """Return the solid of revolution through rings: centre and radius of each, end to end."""
-    angle = np.linspace(0.0, 2.0 * np.pi, ROUND, endpoint=False)
+    angle = np.linspace(0.0, 2.0 * np.pi, ROUND_SIDES, endpoint=False)
     circle = np.cos(angle)[:, None] * side + np.sin(angle)[:, None] * other
     corners = np.concatenate([centre + radius * circle for centre, radius in rings])
     triangles = []
     for ring in range(len(rings) - 1):
-        for k in range(ROUND):
-            a, b = ring * ROUND + k, ring * ROUND + (k + 1) % ROUND
-            triangles += [[a, b, a + ROUND], [b, b + ROUND, a + ROUND]]
+        for k in range(ROUND_SIDES):
+            a, b = ring * ROUND_SIDES + k, ring * ROUND_SIDES + (k + 1) % ROUND_SIDES
+            triangles += [[a, b, a + ROUND_SIDES], [b, b + ROUND_SIDES, a + ROUND_SIDES]]
     return Solid("round", "solid", corners, np.array(triangles))
 
 
@@ -325,7 +325,7 @@ def _cylinder(start: Floats, end: Floats, radius: float) -> Solid:
 
 def _capsule(start: Floats, end: Floats, radius: float) -> Solid:
     along, side, other = _frame_along(end - start)
-    quarter = np.linspace(0.0, 0.5 * np.pi, ROUND // 4 + 1)
+    quarter = np.linspace(0.0, 0.5 * np.pi, ROUND_SIDES // 4 + 1)
     first = [(start - radius * np.cos(a) * along, radius * float(np.sin(a))) for a in quarter]
     last = [(end + radius * np.sin(a) * along, radius * float(np.cos(a))) for a in quarter]
     return _turned(first + last, side, other)

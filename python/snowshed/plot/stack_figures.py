@@ -20,14 +20,14 @@ from snowshed.plot.caption import mean_damping_rate, scene_caption
 from snowshed.plot.figure_style import (
     BODY,
     FAINT,
-    FIRST,
+    FIRST_SHADE,
     GRID,
     INK,
-    LAST,
+    LAST_SHADE,
     STACK,
     blank_figure,
     describe,
-    quiet,
+    mute_frame,
 )
 from snowshed.snow.stack.measure import Extent, StackMeasure, levelled_positions
 from snowshed.snow.stack.quantities import QUANTITIES
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 HELD = "#b8c0c8"  # snow that the panel or a structure holds
 MAX_NAMED_EVENTS, ROWS = 15, 8  # events in a legend, and rows of it
-PICTURED_PARTICLES = 100_000  # at most; a regular choice of them beyond
+MAX_PICTURED_PARTICLES = 100_000  # of more, every second, third, ... is drawn
 WIDTH, VIEW_WIDTH = 9.0, 8.1  # inches, of the figure and of the views in it
 MIN_VIEW_HEIGHT, MAX_VIEW_HEIGHT = 1.6, 5.0  # inches, of a view
 
@@ -59,7 +59,7 @@ def stack_figure(
     simulation
         A `snowshed.Simulation`.
     stack
-        The measure of its particles.
+        The measure of the simulation's stack.
     scene
         The data of the complete scene.
     """
@@ -72,7 +72,7 @@ def stack_figure(
     overview, enlarged = figure.subplots(2, 1, height_ratios=heights)
     for axes, view in zip((overview, enlarged), views):
         axes.set(xlim=view[:2], ylim=view[2:], aspect="equal", ylabel="z, m")
-        quiet(axes)
+        mute_frame(axes)
         if level_ground:
             _draw_ground(axes, tilt)
         _draw_obstacles(axes, simulation)
@@ -93,7 +93,7 @@ def stack_figure(
 
 
 def named_events(count: int) -> list[int]:
-    """Return the events that a legend names: all if there are few, else some with both ends.
+    """Return the events that a legend names: all, or of many some with the first and the last.
 
     Examples
     --------
@@ -127,7 +127,7 @@ def growth_figure(table: pd.DataFrame, scene: Mapping[str, Any]) -> Figure:
         else:
             axes.set_xlabel("event")
         axes.grid(color=GRID, linewidth=0.8)
-        quiet(axes)
+        mute_frame(axes)
     figure.axes[0].legend(frameon=False, fontsize=9, loc="lower right")
     _caption(figure, scene, "Growth of the stack", mean_damping_rate(table))
     return figure
@@ -140,20 +140,20 @@ def _caption(
 
 
 def _shades(count: int) -> list[Any]:
-    return list(colormaps["viridis"](np.linspace(FIRST, LAST, count)))
+    return list(colormaps["viridis"](np.linspace(FIRST_SHADE, LAST_SHADE, count)))
 
 
 def _draw_particles(
     axes: Axes, simulation: _core.Simulation, stack: Booleans, spacing: float
 ) -> None:
-    """Draw particles in the size they have, those that lie nearest in front.
+    """Draw particles in their size, the nearest in front.
 
-    Particles outside the stack, because something holds them, are grey.
+    Particles that something holds do not belong to the stack and are grey.
     """
     positions, events = simulation.positions(), simulation.events()
     if len(positions) == 0:
         return
-    every = 1 + len(positions) // PICTURED_PARTICLES
+    every = 1 + len(positions) // MAX_PICTURED_PARTICLES
     shown = np.arange(0, len(positions), every)
     shown = shown[np.argsort(-positions[shown, 1], kind="stable")]
     count = int(events.max())
@@ -172,7 +172,7 @@ def _spacing(scene: Mapping[str, Any]) -> float:
 
 
 def _points_per_metre(axes: Axes) -> float:
-    """Return the scale of a view, about."""
+    """Return the approximate scale of a view, points per metre."""
     left, right = axes.get_xlim()
     return VIEW_WIDTH * 72 / (right - left)
 
@@ -256,19 +256,19 @@ def _pictured(stack: StackMeasure) -> Extent:
 
 
 def _length_ends(shown: Extent) -> Floats:
-    """Return where the dimension line of the length goes, on levelled ground."""
+    """Return the ends of the dimension line of the length, on levelled ground."""
     below = shown.ground.min(initial=0.0) - 0.03 * max(shown.length, 4 * shown.height)
     return np.array([[shown.head, below], [shown.tail, below]])
 
 
 def _frame(shown: Extent) -> Floats:
-    """Return the lower ends and the top of the plot, on levelled ground."""
+    """Return the points that the plot of the stack must show, on levelled ground."""
     top = _ground_at_crest(shown) + shown.height
     return np.vstack([_length_ends(shown), [[shown.crest, top]], _profile(shown)])
 
 
 def _profile(shown: Extent) -> Floats:
-    """Return the surface (k, 2) as it lies over its ground, on levelled ground."""
+    """Return the surface of the snow (k, 2), on levelled ground."""
     profile: Floats = shown.outline + np.column_stack([0.0 * shown.ground, shown.ground])
     return profile
 
@@ -300,7 +300,7 @@ def _draw_scale(axes: Axes) -> None:
     """Draw a bar of a round length, about an eighth of the width, at the lower left."""
     left, right = axes.get_xlim()
     length = _round_down((right - left) / 8)
-    across = axes.get_xaxis_transform()  # x in metres, z as a part of the height
+    across = axes.get_xaxis_transform()  # x in metres, z as a share of the height
     start, level = left + 0.02 * (right - left), 0.05
     bar: dict[str, Any] = {"color": INK, "linewidth": 3, "solid_capstyle": "butt", "zorder": 6}
     axes.plot([start, start + length], [level] * 2, transform=across, scalex=False, **bar)
@@ -324,7 +324,7 @@ def _round_down(value: float) -> float:
 
 
 def _tilted(points: Floats, tilt: float) -> Floats:
-    """Turn (x, z) from levelled ground back to where it is."""
+    """Turn points (x, z) from levelled ground back to the tilted ground."""
     x, z = points.T
     return levelled_positions(np.column_stack([x, 0 * x, z]), -tilt)[:, [0, 2]]
 
@@ -367,7 +367,7 @@ def _scene_limits(stack: StackMeasure, tilt: float, frame: dict[str, Any] | None
 
 
 def _around(points: Floats, margin: float) -> Limits:
-    """Return limits around points, with a part of their larger extent as margin."""
+    """Return limits around points, with a share of their larger extent as margin."""
     low, high = points.min(axis=0), points.max(axis=0)
     gap = margin * float(max(high - low)) or margin
     return low[0] - gap, high[0] + gap, low[1] - gap, high[1] + gap

@@ -27,7 +27,7 @@ MEASURES = {
     "tangent_modulus_pa": "tangent modulus, Pa",
 }
 MAX_PARAMETERS = 8
-COLUMN, ROW = 3.0, 2.6  # inches
+COLUMN_WIDTH, ROW_HEIGHT = 3.0, 2.6  # inches
 
 
 def study_figure(table: pd.DataFrame, axes: Sequence[str], title: str) -> Figure:
@@ -38,14 +38,14 @@ def study_figure(table: pd.DataFrame, axes: Sequence[str], title: str) -> Figure
     table
         From `read_table`.
     axes
-        Paths of the parameters that vary; of more than eight the first.
+        Paths of the parameters that vary; the first eight are drawn.
     title
         The study's name.
 
     Returns
     -------
     matplotlib.figure.Figure
-        Dots are runs. Lines join the medians of runs that share a value, where several do.
+        Dots are runs. If runs share values, a line joins the medians of equal values.
 
     Examples
     --------
@@ -60,7 +60,7 @@ def study_figure(table: pd.DataFrame, axes: Sequence[str], title: str) -> Figure
     shown = [path for path in axes if path in last][:MAX_PARAMETERS]
     with rc_context(STYLE):
         rows, columns = max(len(measures), 1), max(len(shown), 1)
-        figure = blank_figure(1.2 + COLUMN * columns, 0.9 + ROW * rows)
+        figure = blank_figure(1.2 + COLUMN_WIDTH * columns, 0.9 + ROW_HEIGHT * rows)
         count = plural(len(last), "run")
         headline(figure, f"{title}: {count}, each after its last event")
         grid = figure.subplots(rows, columns, squeeze=False, sharey="row")
@@ -79,7 +79,7 @@ def study_figure(table: pd.DataFrame, axes: Sequence[str], title: str) -> Figure
 
 
 def _draw(axes: Axes, runs: pd.DataFrame, path: str, measure: str) -> None:
-    """Draw a measure over a parameter: numbers along an axis, anything else one beside another."""
+    """Draw a measure over a parameter: numbers along an axis, other values side by side."""
     import pandas as pd
 
     values = pd.to_numeric(runs[path], errors="coerce")

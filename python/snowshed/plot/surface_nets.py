@@ -14,13 +14,13 @@ EDGES = [
 def surface_of(distance: Floats) -> tuple[Floats, Integers]:
     """Return the surface where samples change their sign.
 
-    A vertex stands in every cell that the surface crosses, at the mean of where it crosses the
-    cell's edges; four cells around a crossed edge make two triangles.
+    Every cell that the surface crosses has a vertex, at the mean of the crossed points of the
+    cell's edges. The four cells around a crossed edge make two triangles.
 
     Parameters
     ----------
     distance : (nx, ny, nz)
-        Negative inside; positive all around.
+        Distances at the samples: negative inside, positive on the whole border.
 
     Returns
     -------

@@ -95,7 +95,7 @@ def draw_terrain(axes: Axes, ground: Raster, part: Extent, *, labels: bool = Tru
 
 
 def draw_values(axes: Axes, ground: Raster, values: Floats, **look: Any) -> AxesImage:
-    """Draw values over the terrain, cells of NaN left out; `look` is passed on to imshow."""
+    """Draw values over the terrain except cells of NaN; `look` is passed on to imshow."""
     drawn: dict[str, Any] = {"alpha": 0.86, "zorder": 3, "interpolation": "nearest", **look}
     return axes.imshow(values, origin="lower", extent=extent(ground), **drawn)
 
@@ -115,7 +115,7 @@ def _column(outline: Outline, axis: int) -> Floats:
 
 
 def _cropped(ground: Raster, part: Extent) -> Raster:
-    """Return the part of a terrain, and a cell around it where there is one."""
+    """Return a part of a terrain with a border of one cell, where the terrain has it."""
     rows, columns = ground.heights.shape
     left = max(0, int((part[0] - ground.east) / ground.cell) - 1)
     bottom = max(0, int((part[2] - ground.north) / ground.cell) - 1)

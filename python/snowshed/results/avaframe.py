@@ -1,7 +1,7 @@
 """Results of a slide in the layout of AvaFrame 2.1, so that its tools and QGIS read them.
 
-com5SnowSlide runs com1DFA, and puts its results into ``Outputs/com1DFA``; the same files stand in
-``Outputs/com5SnowSlide``, the name of this module in AvaFrame's tools:
+AvaFrame's module com5SnowSlide runs com1DFA, whose results are in ``Outputs/com1DFA``. The same
+files are in ``Outputs/com5SnowSlide``, where AvaFrame's tools look for results of that module:
 
 ============================================= ================================================
 peakFiles/NAME_{ppr,pft,pfv}.asc or .tif      peak maps at the end, in the terrain's format
@@ -78,7 +78,7 @@ def write_avaframe_outputs(folder: Path, simulation: AvaFrameSimulation, results
     simulation
         The scene of the simulation, with AvaFrame's settings.
     results
-        Its results folder. For maps at earlier times, the steps are run again.
+        The simulation's results folder. For maps at earlier times, the steps are run again.
 
     Raises
     ------
@@ -144,7 +144,7 @@ def maps_at(resolved: ResolvedScene, steps: Sequence[int]) -> Iterator[tuple[int
     simulation.begin_event()
     done = 0
     for step in sorted(steps):
-        while done < step:  # an interrupt is heard between the parts
+        while done < step:  # Ctrl-C takes effect between the parts
             part = min(step - done, STEPS_AT_ONCE)
             simulation.step(part)
             done += part
@@ -181,7 +181,7 @@ def _fields(resolved: ResolvedScene, maps: SlideMaps) -> dict[str, Floats]:
 
 
 def _pressure(resolved: ResolvedScene, speed: Floats) -> Floats:
-    """Return the dynamic pressure, Pa; AvaFrame has its peak in kPa, but not this one."""
+    """Return the dynamic pressure, Pa; only its peak is in kPa, as in AvaFrame."""
     pressure: Floats = float(resolved.data["numerics"]["density"]) * speed**2
     return pressure
 

@@ -90,7 +90,7 @@ class EventParticles:
         axes = [0, 2] if self.dimension == 2 else [0, 1, 2]
         np.savez_compressed(
             stream,
-            places=np.ascontiguousarray(self.positions[:, axes].T),  # alike numbers side by side
+            places=np.ascontiguousarray(self.positions[:, axes].T),  # similar numbers side by side
             masses=self.masses,
             densities=self.densities,
             on_panel=np.packbits(self.on_panel),
@@ -106,7 +106,7 @@ class EventParticles:
         Raises
         ------
         InputError
-            If the bytes are damaged, or of another origin.
+            If the bytes are damaged, or do not come from `packed`.
         """
         try:
             with open_archive(data) as archive:

@@ -29,7 +29,7 @@ def run_film(path: Path, record: Mapping[str, Any]) -> Film:
     path
         The file.
     record
-        Content of run.json, if it exists; that of an older version does not know the film.
+        Content of run.json, empty if it is missing; older versions recorded no film in it.
 
     Raises
     ------
@@ -96,7 +96,7 @@ def film_dataset(film: Film, every: int = 1) -> xarray.Dataset:
         raise InputError(f"every: {every!r}; a whole number from 1 is needed")
     for note in film.notes:
         issue_note(f"{film.path}: {note}")
-    frames = _chosen(film, every)
+    frames = _selected_frames(film, every)
     ids, first = np.unique(np.concatenate([frame.ids for frame in frames]), return_index=True)
     kinds = {
         name: np.concatenate([getattr(frame, name) for frame in frames])[first]
@@ -145,17 +145,17 @@ def _facts(name: str) -> dict[str, str]:
     return {"units": unit, "long_name": meaning}
 
 
-def _chosen(film: Film, every: int) -> list[FilmFrame]:
+def _selected_frames(film: Film, every: int) -> list[FilmFrame]:
     if not film.frames:
         raise InputError(f"{film.path}: has no frame yet")
     facts = film.frames[::every]
-    # A decoded frame, and its row in the Dataset.
+    # Bytes per particle of a decoded frame, and of its row in the Dataset.
     each = 8 * (2 * len(AXES) + 4 + len(film.quantities))
     needed = each * (sum(frame.particles for frame in facts) + len(facts) * facts[-1].particles)
     available = _core.available_memory_bytes()
     if needed > available:
         raise InputError(
             f"{film.path}: {len(facts)} frames need {needed / 1e9:.1f} GB of memory, but "
-            f"{available / 1e9:.1f} GB can be had; take fewer with every=2 or more"
+            f"{available / 1e9:.1f} GB are available; take fewer with every=2 or more"
         )
     return [frame for number, frame in enumerate(film) if number % every == 0]

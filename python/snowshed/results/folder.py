@@ -20,9 +20,9 @@ growth.png         height, length, head and tail against the event
 ================== ==========================================================================
 
 ``snowshed-run`` writes the same folder without tables and pictures; ``snowshed run --resume`` adds
-them. Such measures come from the stored particles, in single precision: their last digits may
-differ from measures during a run. conversions.csv has no rows of events that ``snowshed-run``
-began.
+them. Measures in added tables come from the stored particles, in single precision: their last
+digits may differ from measures during a run. conversions.csv has no rows of events that
+``snowshed-run`` began.
 """
 
 from __future__ import annotations
@@ -99,7 +99,7 @@ EVENT_COLUMNS = (
     "centre_height_m",
     "spread_m",
 )
-#: Checksums of tables, by name: of the rows through an event, by its number.
+#: Checksums by table; each covers the rows up to an event, whose number is its key.
 Checksums = Mapping[str, Mapping[str, str]]
 EVENTS, ENERGY = "events.csv", "energy.csv"
 #: Columns that hold texts.
@@ -189,7 +189,7 @@ class RunFolder:
     def checksums(
         self, known: Checksums, event: int, *, running: bool
     ) -> dict[str, dict[str, str]]:
-        """Return `known` checksums with those of the rows that a checkpoint of `event` includes."""
+        """Return the `known` checksums and those of rows that a checkpoint of `event` includes."""
         done = event - 1 if running else event
         sums_by_table = {name: dict(sums) for name, sums in known.items()}
         for table in self._tables():
@@ -207,12 +207,12 @@ class RunFolder:
     def check_rows(self, known: Checksums, event: int) -> None:
         """Raise InputError if a table lacks rows of the run, or has other rows.
 
-        Rows of ended events that are in no checksum are dropped and measured again. A run of the
+        Rows of ended events that no checksum covers are dropped and measured again. A run of the
         previous version has no checksums.
         """
         if not known:
             return
-        self.missing_events(event)  # or they are not numbered one after another
+        self.missing_events(event)  # raises unless the events are numbered one after another
         ended = _last_known(known.get(self.events.path.name, {}), len(self.events.rows))
         for table in self._tables():
             sums = known.get(table.path.name, {})
@@ -242,7 +242,7 @@ class RunFolder:
         return self.folder / "particles" / f"event_{event:03d}.vtp"
 
     def read_run(self) -> dict[str, Any]:
-        """Read run.json; empty before its first writing."""
+        """Return the content of run.json; empty before the run has written it."""
         return read_object(self.run) if self.run.exists() else {}
 
 

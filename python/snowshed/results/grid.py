@@ -33,7 +33,8 @@ MEANINGS = {
     "density": ("kg/m3", "Mass at a node over the volume of a cell"),
 }
 Basis = Literal["quadratic", "cubic"]
-#: Nodes that a particle reaches along an axis, and where the lowest of them lies, in cells.
+#: Number of nodes that a particle reaches along an axis, and distance of the particle from the
+#: lowest of these nodes at least, in cells.
 SUPPORT = {"quadratic": 3, "cubic": 4}
 OFFSET = {"quadratic": 0.5, "cubic": 1.0}
 MAX_NODES = 400_000_000
@@ -78,7 +79,7 @@ def grid_dataset(grid: GridFields, event: int, time: float) -> xarray.Dataset:
     grid
         The fields.
     event, time
-        The event they belong to, and the time in it, s.
+        The event of the fields, and the time in the event, s.
 
     Returns
     -------

@@ -39,14 +39,14 @@ def particle_dataset(values: Mapping[str, Numbers], event: int, time: float) -> 
     values : (n,) or (n, 3) each
         Quantities by name, including ``id``.
     event
-        The event they belong to.
+        The event of the quantities.
     time
         Time in that event, s.
 
     Returns
     -------
     xarray.Dataset
-        Dimensions ``particle``, whose coordinate are the ids, and ``component``; each variable
+        Dimensions ``particle``, with the ids as coordinate, and ``component``; each variable
         has its ``units`` and ``long_name`` in `attrs`.
 
     Raises

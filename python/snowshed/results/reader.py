@@ -46,7 +46,7 @@ class Results:
 
     Files are read on access. Every table has a dict of units by column in ``attrs["units"]``, every
     variable of a Dataset its ``units`` and ``long_name`` in `attrs`. The methods raise InputError
-    where a file is missing or invalid.
+    if a file is missing or invalid.
 
     Parameters
     ----------
@@ -189,7 +189,7 @@ class Results:
         return float(self.events.set_index("event")["sim_time_s"][event])
 
     def snapshots(self) -> Iterator[xarray.Dataset]:
-        """Yield the particles of snapshot after snapshot, each in the form of `particles`.
+        """Yield the particles of each snapshot in order, in the form of `particles`.
 
         Their ``time`` counts through all events.
         """

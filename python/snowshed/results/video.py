@@ -29,7 +29,7 @@ def pillow() -> Any:
 
 RATE = {".mp4": 30.0, ".gif": 12.5}  # pictures per second
 MAX_DURATION = 12.0  # s, unless asked for
-HOLD = 0.6  # s that the end of an event is shown
+HOLD_S = 0.6  # s that the end of an event is shown
 DPI = 100
 COLOURS_OF_GIF = 128
 
@@ -109,10 +109,10 @@ def _times(film: Film, seconds: Optional[float], rate: float) -> Sequence[float]
         starts.append(starts[-1] + (0.0 if turn else max(0.0, after.time - before.time)))
     moving = starts[-1] or 1.0
     turns = np.cumsum([b.event != a.event for a, b in zip(film.frames, film.frames[1:])])
-    held = np.concatenate([[0.0], turns]) * HOLD
-    length = seconds if seconds is not None else min(MAX_DURATION, moving + held[-1] + HOLD)
-    slower = max(length - held[-1] - HOLD, 0.3 * length) / moving
-    shown = np.array(starts) * slower + held * min(1.0, length / (held[-1] + HOLD))
+    held = np.concatenate([[0.0], turns]) * HOLD_S
+    length = seconds if seconds is not None else min(MAX_DURATION, moving + held[-1] + HOLD_S)
+    slower = max(length - held[-1] - HOLD_S, 0.3 * length) / moving
+    shown = np.array(starts) * slower + held * min(1.0, length / (held[-1] + HOLD_S))
     wanted = np.arange(0.0, length, 1.0 / rate)
     numbers = np.interp(wanted, shown, np.arange(len(shown)))
     return list(numbers.tolist())
@@ -132,7 +132,7 @@ def _pictures(
         while number < int(place):
             now, after = after, next(frames, after)
             number += 1
-        yield _picture(painter, _between(now, after, place - number), colouring)
+        yield _picture(painter, _interpolated_frame(now, after, place - number), colouring)
         if progress is not None:
             progress(Progress((count + 1) / len(times), count + 1, len(times), "pictures"))
 
@@ -143,7 +143,7 @@ def _picture(painter: FilmPainter, frame: FilmFrame, colouring: Colouring) -> An
     return pillow().open(file).convert("RGB")
 
 
-def _between(now: FilmFrame, after: FilmFrame, part: float) -> FilmFrame:
+def _interpolated_frame(now: FilmFrame, after: FilmFrame, part: float) -> FilmFrame:
     if now.event != after.event or part <= 0 or not np.array_equal(now.ids, after.ids):
         return now
     return replace(now, positions=now.positions + part * (after.positions - now.positions))
@@ -167,7 +167,7 @@ def _write_gif(file: Path, pictures: Iterator[Any], palette: Any) -> None:
 
 def _write_mp4(encoder: Any, file: Path, pictures: Iterator[Any]) -> None:
     first = next(pictures)
-    width, height = (side - side % 2 for side in first.size)  # as the encoder needs it
+    width, height = (side - side % 2 for side in first.size)  # the encoder needs even numbers
     stream = encoder.write_frames(
         str(file), (width, height), fps=RATE[".mp4"], codec="libx264", quality=7,
         macro_block_size=2, output_params=["-f", "mp4"],

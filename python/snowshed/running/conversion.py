@@ -32,7 +32,7 @@ def conversion_row(event: int, conversion: dict[str, Any], measure: Measure) -> 
     Returns
     -------
     dict
-        `CONVERSION_COLUMNS`; masses with, heights and lengths without the snow on the panel.
+        `CONVERSION_COLUMNS`. Masses include the snow on the panel, heights and lengths do not.
     """
     row: dict[str, Any] = {"event": event}
     outlines = []
@@ -55,12 +55,12 @@ def conversion_row(event: int, conversion: dict[str, Any], measure: Measure) -> 
 def outline_difference(first: Floats, second: Floats) -> float:
     """Return the root mean square of the difference in height of two outlines, m.
 
-    It is taken in 30 columns over the range of x that both cover, and is NaN without such a range.
+    The mean is over 30 columns in the range of x that both cover; NaN without such a range.
 
     Parameters
     ----------
     first, second : (k, 2)
-        Outlines as of `Extent`.
+        Outlines, as in `Extent`.
 
     Examples
     --------

@@ -44,8 +44,8 @@ def extend_run(
 ) -> pd.DataFrame:
     """Add slide-offs to a finished run, in a new results folder.
 
-    The results of the finished run stay as they are. Where the slabs are the same, the new folder
-    holds what a run with so many events from the start would have written, bit for bit.
+    The results of the finished run stay as they are. If the slabs are the same, the new folder
+    holds, bit for bit, the results of a run that had all these events from the start.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ def extend_run(
     out_dir
         The new folder; new or empty.
     events
-        Number of events that follow.
+        Number of further events.
     snow
         Snow of the slabs of these events. [default: as before]
     thickness
@@ -188,7 +188,7 @@ def _change_slab(slab: dict[str, Any], done: int, last: int, changes: Mapping[st
         for layer in repeated
     ]
     slab["layers"] = before + after
-    slab["thickness"] = 0.0  # that of the layers
+    slab["thickness"] = 0.0  # the layers have the thickness
 
 
 def _prepare(earlier: RunFolder, scene: ResolvedScene, out_dir: Path) -> None:

@@ -76,7 +76,7 @@ class MethodRun:
         """Record that an event begins; `reseeding` holds the stack before and after reseeding."""
 
     def status_line(self, time_s: float) -> str:
-        """Return the line that tells people what is computed at a time of the event."""
+        """Return the status line for people at a time of the event, s."""
         return f"{time_s:.2f} s of event {self.simulation.event}"
 
     def progress(self) -> None:

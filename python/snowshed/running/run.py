@@ -195,7 +195,7 @@ class _Observer:
         return self.interrupt.requested
 
     def _report_progress(self, time_s: float, fraction: float, updates_per_s: float = 0.0) -> None:
-        """Report the progress of the run; `fraction` is the part of the event that is done."""
+        """Report the progress of the run; `fraction` is the finished share of the event."""
         if self.report is None:
             return
         event, count = self.method_run.simulation.event, self.method_run.simulation.event_count

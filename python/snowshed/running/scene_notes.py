@@ -13,9 +13,9 @@ if TYPE_CHECKING:
 
     from snowshed.scene.scene import ResolvedScene
 
-FEW_CELLS = 2.0  # across a slab; with fewer its stack is coarse
-ALL_STAYS = 0.98  # of the snow
-MAX_SEEDED_PARTICLES = 100_000  # particles; these take two seconds
+MIN_CELLS_ACROSS = 2.0  # with fewer cells across the slab its stack is coarse
+NEARLY_ALL = 0.98  # share of the snow
+MAX_SEEDED_PARTICLES = 100_000  # particles; seeding so many takes two seconds
 #: Parts of a scene, besides a panel, on which snow can land.
 FLOORS = ("ground", "obstacles", "domain")
 
@@ -46,17 +46,17 @@ def notes_before(scene: Mapping[str, Any]) -> list[str]:
         )
     size = resolution_of(scene)
     thickness = _slab_thickness(scene)
-    if thickness is not None and thickness < FEW_CELLS * size:
+    if thickness is not None and thickness < MIN_CELLS_ACROSS * size:
         notes.append(
             f"the slab is {1000 * thickness:.3g} mm thick, less than two "
             f"{method.settings.ELEMENTS} of {1000 * size:.3g} mm: its stack is coarse; try "
-            f"{method.settings.RESOLUTION} = {thickness / FEW_CELLS:.2g} m"
+            f"{method.settings.RESOLUTION} = {thickness / MIN_CELLS_ACROSS:.2g} m"
         )
     return notes
 
 
 def notes_of_beginning(scene: ResolvedScene) -> list[str]:
-    """Return the notes of a run up to its first step; the snow of its first event is laid for that.
+    """Lay the snow of the first event, and return the notes that a run makes up to its first step.
 
     Parameters
     ----------
@@ -122,8 +122,8 @@ def notes_after(table: pd.DataFrame, scene: Mapping[str, Any]) -> list[str]:
     part = held / (held + last["mass_kg"])
     if last["mass_kg"] == 0.0:
         return [f"nothing {slides}: the snow stays on {where}; there is no stack to measure"]
-    if part >= ALL_STAYS:
+    if part >= NEARLY_ALL:
         return [f"next to nothing {slides}: {100 * part:.1f} % of the snow stays on {where}"]
-    if part >= 1.0 - ALL_STAYS:
+    if part >= 1.0 - NEARLY_ALL:
         return [f"{100 * part:.0f} % of the snow stays on {where}"]
     return []

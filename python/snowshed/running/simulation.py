@@ -39,14 +39,14 @@ Order = Literal["id", "storage"]
 Ended = Literal["rest", "time_limit", "reached"]
 Until = Union[Literal["rest"], float, Callable[["Simulation"], bool]]
 
-MAX_STEPS = 64  # at a time: between them Python checks for Ctrl-C
-CHECK_INTERVAL = 0.1  # s of wall time; the same where the core itself runs to rest
+MAX_STEPS = 64  # steps between two checks for Ctrl-C
+CHECK_INTERVAL = 0.1  # s of wall time between checks while the core runs to rest
 
 
 class Simulation:
     """A scene being simulated, in memory.
 
-    It is driven event by event: `run` seeds the snow of the next event and moves it until it rests;
+    It advances event by event: `run` seeds the snow of the next event and moves it until it rests;
     `begin_event` and `step` do the same in parts. Methods such as `positions` return the particles
     ordered by id, which never changes; `fields` shows their memory in the order of storage.
 
@@ -279,13 +279,14 @@ class Simulation:
         Parameters
         ----------
         order
-            "id": by the particles' ids, in double and 64-bit integers, a copy. "storage": as
-            `Field.values` of `fields`. All methods that read particles have this parameter.
+            "id": a copy ordered by the particles' ids, in double precision and 64-bit integers.
+            "storage": as `Field.values` of `fields`. All methods that read particles have this
+            parameter.
         """
         return cast(Floats, self._read("position", order))
 
     def velocities(self, order: Order = "id") -> Floats:
-        """Return the velocities (n, 3), m/s; a copy. Views are the fields velocity_x and so on."""
+        """Return the velocities (n, 3), m/s; a copy. The fields velocity_x, ... are views."""
         return cast(Floats, self._read("velocity", order))
 
     def masses(self, order: Order = "id") -> Floats:
@@ -385,7 +386,7 @@ class Simulation:
         """
         if not self.scene.data["output"]["energy"]:
             raise InputError(
-                "/output/energy: false; the energy balance is computed only where it is true"
+                "/output/energy: false; the energy balance is computed only if it is true"
             )
         return {name[: -len("_j")]: value for name, value in self._core.energy().items()}
 

@@ -46,7 +46,7 @@ def slide_states(scene: SceneLike, times: Sequence[float]) -> list[SlideState]:
     scene
         A scene whose method is "slide".
     times
-        Times, s, in rising order; each state is that of the step that reaches its time.
+        Times, s, in rising order; each state is taken after the step that reaches its time.
 
     Raises
     ------

@@ -1,7 +1,8 @@
 """Runs whose snow makes a stack (thesis 3.1.1): slab after slab slides off onto what lies there.
 
-Each event runs until the snow rests: slower than ``events.rest_speed`` (root mean square, as the
-core defines it) for ``events.rest_time``, or until ``events.max_time``; the table has the reason.
+Each event runs until the snow rests, or until ``events.max_time``; the table has the reason. Snow
+rests once its speed (root mean square, as the core defines it) has been below
+``events.rest_speed`` for ``events.rest_time``.
 Between events the particles carry over with their state (``carry``), or the stack is converted to a
 solid and reseeded at rest (``reseed``, as in the thesis). Reseeding also restores the bonds in the
 stack, and gives it n times the slab's volume; conversions.csv has the changes of mass, height,
@@ -66,7 +67,7 @@ class StackRun(MethodRun):
     def _continue_tables(self, ageing: Optional[dict[str, Any]]) -> None:
         event, results = self.simulation.event, self.results
         if ageing is not None and event == 0 and not results.ageing.exists():
-            results.write_ageing(ageing)  # the run was killed before it was written
+            results.write_ageing(ageing)  # the run was killed before this
         results.check(ageing)
         results.keep_through(event, running=self.simulation.event_running)
         results.check_rows(self.sequence.tables, event)
@@ -184,7 +185,7 @@ class StackRun(MethodRun):
 
 
 def _warn_of_residual(facts: Mapping[str, Any]) -> None:
-    """Warn where the time integration gained or lost too much energy."""
+    """Warn if the time integration gained or lost too much energy."""
     share = facts["energy_residual"]
     if share is not None and share > MAX_RESIDUAL:
         warnings.warn(

@@ -22,11 +22,11 @@ _METHOD_SETTINGS: Mapping[str, Mapping[str, str]] = {
     for method in METHODS
 }
 
-#: Where in a scene of the default method each setting stands: those that the schema marks, the
-#: method's own first.
+#: Path in a scene of the default method of each setting that the schema marks; the method's own
+#: settings come first.
 ACCURACY: Mapping[str, str] = _METHOD_SETTINGS[DEFAULT]
 
-#: Those that are numbers, of any method; one that stands in another's place may be missing.
+#: Numeric settings of all methods. A scene may lack a setting whose place another one takes.
 NUMBERS: Sequence[str] = [
     p.path.rpartition(".")[2]
     for method in METHODS

@@ -34,7 +34,7 @@ class Edge:
 
 
 def panel_edge(scene: Mapping[str, Any]) -> Edge:
-    """Return where the panel of a scene's data is: x is 0 at its centre.
+    """Return the lower edge of the panel in a scene's data; x is 0 at the panel's centre.
 
     Examples
     --------

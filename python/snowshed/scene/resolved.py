@@ -20,16 +20,16 @@ from snowshed.io.atomic import write_text
 
 @dataclass(frozen=True)
 class ResolvedScene:
-    """A scene the core has validated and completed.
+    """A scene that the core has validated and completed.
 
-    It is text only where it enters or leaves the process: `data` and `core` are made once.
+    The scene is text only where it enters or leaves the process; `data` and `core` are made once.
 
     Attributes
     ----------
     json
         The complete scene as JSON text.
     base_dir
-        The folder from which the files it names are found.
+        The folder in which the files that the scene names are found.
     """
 
     json: str

@@ -46,7 +46,7 @@ from snowshed.scene.scene_repr import scene_repr
 
 __all__ = ["ResolvedScene", "Scene", "SceneLike", "resolve_scene"]
 
-#: Parts that every scene has: empty where nothing in them was given.
+#: Parts that every scene has; a part without values is empty.
 ALWAYS = ("snow", "seeding", SETTINGS_KEY, "events", "output")
 NOT_GIVEN: Any = None
 
@@ -153,13 +153,13 @@ class Scene(Record):
     events: Events = NOT_GIVEN
     output: Output = NOT_GIVEN
 
-    _base_dir = "."  # no field: where the files a scene names are found
+    _base_dir = "."  # not a field: the folder of the files that the scene names
 
     @classmethod
     def load(cls, path: PathLike) -> Scene:
         """Read a scene file; it may be incomplete until it is resolved.
 
-        Meshes and grids it names are found beside it.
+        The meshes and grids that the file names are found beside it.
 
         Raises
         ------
@@ -226,7 +226,7 @@ class Scene(Record):
         if name == SETTINGS_KEY:
             self._require_settings(value, self.method, where)
         if name == NAME_KEY and (value is None or isinstance(value, str)):
-            held = vars(self).get(SETTINGS_KEY)  # none while a scene is made
+            held = vars(self).get(SETTINGS_KEY)  # missing while a scene is made
             if isinstance(held, MethodSettings) and held.to_data():
                 self._require_settings(held, value, where)
             else:
@@ -338,7 +338,7 @@ class Scene(Record):
         InputError
             As for `set`, or if a value is given by two names. The scene is then unchanged.
         """
-        copy.deepcopy(self)._update(values, {})  # fails, if it must, before anything is changed
+        copy.deepcopy(self)._update(values, {})  # an error comes before any change
         self._update(values, {})
         return self
 
@@ -362,7 +362,7 @@ class Scene(Record):
                     record.assign(key, value, where)
 
     def _adopts(self, path: str) -> bool:
-        """Return whether a path names a choice of several others, which must come before them."""
+        """Return whether a path names a choice of several other values; it must be set first."""
         with locate(self, path) as (record, key, _):
             return record.adopts(key)
 
@@ -378,7 +378,7 @@ class Scene(Record):
         return ResolvedScene.parse(json.dumps(self.to_data()), self._base_dir)
 
     def _warn_of_slip(self) -> None:
-        """Note, for one version, that slip has another meaning; files state it by their version."""
+        """Note the new meaning of "slip", for one version; files have a version instead."""
         parts = [self.panel, self.ground, *(self.obstacles or ())]
         if self.snowshed != 1 and any(part and part.condition == "slip" for part in parts):
             warnings.warn(SLIP_CHANGED, FutureWarning, stacklevel=3)
@@ -391,7 +391,7 @@ class Scene(Record):
 
 
 def _refuse_null(data: JsonValue, where: str) -> None:
-    """Refuse null: in a file, as for the core, a key that is not given is left out."""
+    """Refuse null: a key without a value must be left out, as in the core."""
     if data is None:
         raise InputError(f"{where or '/'}: null is not a value; leave the key out")
     if where.count("/") > 2 * MAX_DEPTH:

@@ -19,7 +19,7 @@ def scene_html(data: Mapping[str, Any], text: str) -> str:
     """Return a drawing of a complete scene's data, and the scene as text.
 
     Panel, slab, ground, and obstacles that are boxes or spheres are drawn; the number of other
-    solids stands below.
+    solids is given below.
 
     Examples
     --------
@@ -56,7 +56,7 @@ def _drawing(data: Mapping[str, Any]) -> str:
 
 
 def _solids(data: Mapping[str, Any]) -> Iterator[tuple[str, list[Point]]]:
-    """Yield the color and the corners (x, z), m, of the solids that can be drawn."""
+    """Yield the colour and the corners (x, z), m, of the solids that can be drawn."""
     for obstacle in data.get("obstacles") or ():
         shape = obstacle["shape"]
         if shape["type"] == "box":

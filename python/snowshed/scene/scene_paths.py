@@ -14,9 +14,9 @@ Holder = Union[Record, List[Record]]
 
 @contextmanager
 def locate(scene: Record, path: str) -> Iterator[tuple[Record, str, str]]:
-    """Yield the record that holds the last part of `path`, that part, and where it is.
+    """Yield the record that holds the last part of `path`, that part, and the record's position.
 
-    A missing record along the path is created, and dropped again after an error.
+    A missing record along the path is created; after an error it is removed again.
     """
     *parents, key = path.split(".")
     holder: Holder = scene

@@ -18,8 +18,8 @@ def scene_repr(scene: Record, always: Collection[str]) -> str:
     scene
         The scene.
     always
-        Parts that every scene has, which are left out where nothing in them was given; others are
-        shown even then.
+        Parts that every scene has; they are left out if they are empty. Other parts are shown even
+        then.
     """
     schema = schema_of_method(getattr(scene, NAME_KEY) or DEFAULT)
     nodes = properties(schema, schema)

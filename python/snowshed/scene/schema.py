@@ -18,7 +18,7 @@ Node = Mapping[str, JsonValue]
 
 @dataclass(frozen=True)
 class Parameter:
-    """A value of a scene that can be set.
+    """A value that can be set in a scene.
 
     Attributes
     ----------
@@ -27,7 +27,7 @@ class Parameter:
     kind
         number, integer, boolean, string, vector (of numbers) or list (of objects).
     description, unit, default
-        As in the schema; without them, the unit is empty and the default None.
+        As in the schema; if missing there, the unit is empty and the default None.
     choices
         Allowed values of an enumeration; None for other parameters.
     aliases
@@ -101,7 +101,7 @@ def schema_of_method(method: str) -> JsonObject:
 
 
 def current_path(path: str) -> str:
-    """Return a parameter's dotted path; another of its names is replaced by its own.
+    """Return the current dotted path of a parameter; an alias is replaced.
 
     Examples
     --------
@@ -112,7 +112,7 @@ def current_path(path: str) -> str:
 
 
 def with_current_names(scene: Mapping[str, JsonValue]) -> JsonObject:
-    """Return a scene's data, in which earlier versions named parameters otherwise.
+    """Return a scene's data from an earlier version, with the current names of parameters.
 
     Examples
     --------
@@ -132,7 +132,7 @@ def with_current_names(scene: Mapping[str, JsonValue]) -> JsonObject:
 
 
 def properties(schema: Node, node: Node) -> dict[str, JsonObject]:
-    """Return the properties of an object, those of its alternatives included.
+    """Return the properties of an object, including those of its alternatives.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The terrain of a slide as its solver sees it."""
+"""The terrain of a slide at the nodes of the solver's grid."""
 
 from __future__ import annotations
 

@@ -34,10 +34,10 @@ class WinterDay:
     released
         Whether the snow was released.
     event
-        Number of the slide-off that follows, from 1; None if the snow stayed, or waits for that of
-        later releases (`SeasonSettings.pool_below`).
+        Number of the slide-off that follows, from 1; None if the snow stayed, or waits for later
+        releases (`SeasonSettings.pool_below`).
     slab_load, slab_thickness
-        Load and thickness of the slab that slides, as `load` and `thickness`.
+        Load and thickness of the slab that slides, in the units of `load` and `thickness`.
     """
 
     weather: Weather
@@ -103,9 +103,9 @@ def accumulate(
 
 
 def _slide_offs(days: Sequence[WinterDay], pool_below: float) -> list[WinterDay]:
-    """Return the days with the slide-offs that the releases make.
+    """Return the days with their slide-offs.
 
-    Snow of thin releases waits until it makes a slab; the rest slides last.
+    Thin releases wait until they make a slab together; the rest slides after the last row.
     """
     releases = [number for number, day in enumerate(days) if day.released]
     numbered = list(days)
@@ -140,7 +140,7 @@ def pauses(days: Sequence[WinterDay]) -> dict[int, list[Interval]]:
 
 
 def stack_ageing(days: Sequence[WinterDay], settings: SeasonSettings) -> Optional[Ageing]:
-    """Return how the stack ages between the events of a season; None if it does not."""
+    """Return the ageing of the stack between the events of a season; None without ageing."""
     return settings.ageing(pauses(days)) if settings.ages else None
 
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from datetime import date, datetime
 
 from snowshed._core import InputError
-from snowshed.base.limits import WEATHER_GAP
+from snowshed.base.limits import MAX_WEATHER_GAP_DAYS
 from snowshed.io.csv_table import TableRow
 from snowshed.season.extremes import RECORD_DAY, RECORD_WINTER, RECORD_WORDS
 from snowshed.season.source import SnowSource
@@ -16,9 +16,9 @@ MAX_ROWS = 100_000  # daily data of the longest records, and hourly seasons
 #: Median above which snowfalls cannot be in metres.
 TYPICAL_SNOWFALL = 0.7  # m
 DAY, YEAR = 86400.0, 366.0  # s, days
-YEARS = (1000, 9000)  # of weather, measured or made
-#: Number of rows, and of days of a gap: so few rows so far from all others have a mistyped year.
-FEW, LONE = 3, 3 * YEAR
+YEARS = (1000, 9000)  # of measured or synthetic weather
+#: Largest number of rows, and length of a gap around them in days, that show a mistyped year.
+MAX_LONE_ROWS, MIN_LONE_GAP_DAYS = 3, 3 * YEAR
 NO_SNOW = "it never snows"
 HINT = "is it in cm, mm or inches?"
 
@@ -37,7 +37,7 @@ def check_rows(
     name
         The file.
     snowless
-        Whether it need not snow in it: a station may have observed a winter without snow.
+        Whether the file may have no snow, because a station may observe a winter without snow.
     """
     if not rows:
         raise InputError(f"{name}: no rows below the header")
@@ -88,8 +88,10 @@ def _check_years(rows: Sequence[Weather], table_rows: Sequence[TableRow]) -> Non
         days = _days(earlier, later)
         if days <= YEAR:
             continue
-        few = min(number, len(rows) - number) <= FEW
-        if days > WEATHER_GAP or (few and days > LONE and later.source is SnowSource.GIVEN):
+        few = min(number, len(rows) - number) <= MAX_LONE_ROWS
+        if days > MAX_WEATHER_GAP_DAYS or (
+            few and days > MIN_LONE_GAP_DAYS and later.source is SnowSource.GIVEN
+        ):
             raise InputError(
                 f"{table_rows[number].where}, column date: {later.date.date()} is "
                 f"{days / 365.25:.0f} "
@@ -105,7 +107,7 @@ def _check_years(rows: Sequence[Weather], table_rows: Sequence[TableRow]) -> Non
 
 
 def _check_amounts(rows: Sequence[Weather], table_rows: Sequence[TableRow], name: str) -> None:
-    """Refuse record-breaking amounts of a day, or of a winter."""
+    """Refuse amounts of a day or of a winter beyond the records."""
     falls = _daily_sums(rows)
     for day, (total, first) in falls.items():
         daily = first > 0 and (rows[first].date - rows[first - 1].date).total_seconds() <= DAY
@@ -124,7 +126,7 @@ def _check_amounts(rows: Sequence[Weather], table_rows: Sequence[TableRow], name
     middle = totals[len(totals) // 2]
     if len(totals) >= 3 and middle > TYPICAL_SNOWFALL:
         raise InputError(
-            f"{name}, column snowfall_m: half of the snowfalls are of {middle:g} m and more; {HINT}"
+            f"{name}, column snowfall_m: half of the snowfalls are {middle:g} m and more; {HINT}"
         )
     for begin, total in _yearly_sums(falls).items():
         if total > RECORD_WINTER:

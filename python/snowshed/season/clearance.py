@@ -26,7 +26,7 @@ class Clearance:
         Distance between the edge and the snow directly below it. Without snow it is the height of
         the edge; it is 0 once the snow covers the edge.
     crest
-        Height of the edge minus that of the highest snow, wherever it lies.
+        Height of the edge minus the height of the highest snow, wherever this snow lies.
     """
 
     below: float
@@ -65,8 +65,8 @@ def clearance(
 def below_panel(scene: Mapping[str, Any], outline: Floats) -> Floats:
     """Return the points of an outline (k, 2) that do not lie over the panel's face.
 
-    Snow that rests against the panel's lower end may reach up its face without counting as snow on
-    the panel. It is not a part of the stack below the edge.
+    Snow that rests against the panel's lower end may reach up the face. Such snow counts neither as
+    snow on the panel nor as part of the stack below the edge.
     """
     if len(outline) == 0:
         return outline
@@ -115,7 +115,7 @@ class PanelContact:
     date
         As in the season's table.
     event
-        The last slide-off until then; None: there was none.
+        The last slide-off until then; None without one.
     cause
         A name in `CAUSES`.
     """
@@ -131,7 +131,7 @@ class PanelContact:
 
 
 def first_contact(table: pd.DataFrame, dx: float) -> Optional[PanelContact]:
-    """Return the first row of a season after a contact with the panel, if any.
+    """Return the first contact with the panel in a season, if any.
 
     Parameters
     ----------
@@ -162,7 +162,7 @@ def first_contact(table: pd.DataFrame, dx: float) -> Optional[PanelContact]:
 
 
 def first_reached(clearances: Sequence[float], dx: float) -> Optional[int]:
-    """Return the first event after which a clearance is gone, from 1, if any.
+    """Return the first event after which no clearance is left, counted from 1, if any.
 
     A clearance of `dx`, m, counts as none: the grid does not resolve a gap below one cell, and the
     particles' centres are half a spacing below the surface.

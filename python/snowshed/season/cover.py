@@ -1,11 +1,10 @@
 """The natural snow cover on the ground during a season, below the stack.
 
-It is as deep as the season file says, on a straight line between two readings. Before the first
-one, in gaps of more than two months, and when the readings end before the season does, it is a
-column of the season's snowfalls that settles as the snow on the panel does, and melts in proportion
-to the degrees above 0 degrees C. After readings it begins with the depth of the last one. Snow
-falls on the ground and on the stack alike, so that the cover's depth is added to the stack's
-height.
+Its depth comes from the season file, with straight lines between readings. Before the first
+reading, in gaps of more than two months, and after the last reading, the cover is a column of the
+season's snowfalls. This column settles by the law of settling, melts in proportion to the degrees
+above 0 degrees C, and after readings begins with the depth of the last one. Snow falls on the
+ground and on the stack alike; therefore the cover's depth is added to the stack's height.
 """
 
 from __future__ import annotations
@@ -19,12 +18,12 @@ from snowshed.season.weather_row import Weather
 from snowshed.snow.relations.new_snow import NEW_SNOW_DENSITY
 
 DAY = 86400.0  # s
-#: Melt, kg/m2 (mm of water) per day and degree above 0 degrees C: amid the values for snow that
-#: Hock 2003, J. Hydrol. 282, 104-115, lists, which differ by a factor of four.
+#: Melt, kg/m2 (mm of water) per day and degree above 0 degrees C, in the middle of the values for
+#: snow in Hock 2003, J. Hydrol. 282, 104-115, which differ by a factor of four.
 DEGREE_DAY_FACTOR = 4.0
-#: Days from one reading to the next, between which a straight line is drawn.
+#: Longest time between two readings that are joined by a straight line, days.
 MAX_INTERPOLATED_DAYS = 61
-#: Density, kg/m3, of a cover of which only the depth is known: amid the bulk densities of seasonal
+#: Density, kg/m3, of a cover of known depth only, in the middle of the bulk densities of seasonal
 #: snow of Sturm et al. 2010, J. Hydrometeorol. 11, 1380-1394 (217 to 373 kg/m3, by climate class).
 COVER_DENSITY = 300.0
 
@@ -96,7 +95,7 @@ def end_of_readings(season: Sequence[Weather]) -> Optional[Weather]:
 
 
 def _measured(season: Sequence[Weather]) -> list[Optional[float]]:
-    """Return the depth that readings tell at each row, m; None where they do not."""
+    """Return the depth at each row from readings, m; None in long gaps and outside the readings."""
     depths: list[Optional[float]] = [row.snow_depth for row in season]
     readings = [number for number, row in enumerate(season) if row.snow_depth is not None]
     for before, after in zip(readings, readings[1:]):

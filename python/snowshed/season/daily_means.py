@@ -12,16 +12,16 @@ import numpy as np
 from snowshed.base.arrays import Booleans, Floats, Integers
 from snowshed.io.weather.observation import Observation, Station
 
-#: Days without a row that are set in between two rows; in longer gaps there are no days at all.
+#: Longest gap between two rows that is filled with days, days; longer gaps have no days.
 MAX_GAP_DAYS = 60
-WHOLE_DAY = 18.0  # hours of a day that an amount must cover to be that of the day
+MIN_DAY_HOURS = 18.0  # hours of a day that an amount must cover to count as the day's amount
 #: The clock time at which new snow is read in most countries.
-MORNING = 7.0
-CLOCK_TOLERANCE = timedelta(hours=3)  # readings of sums of a day that stand for one at another time
-#: No snow falls faster; MeteoIO's filters cut the rate of the snow depth at 0.2 m/h.
+USUAL_READING_HOUR = 7.0
+CLOCK_TOLERANCE = timedelta(hours=3)  # of a reading that stands for one at the usual clock time
+#: Largest rate of snowfall; MeteoIO's filters cut the rate of the snow depth at 0.2 m/h.
 MAX_RATE = 0.3  # m/h
-SEVERAL = 3  # changes of the depth on a day, of a sensor that is read all day
-FOLLOWING = 2.0  # hours between readings that are held against that rate
+MIN_DAILY_CHANGES = 3  # changes of the depth on a day that show a sensor with readings all day
+MAX_RATE_SPAN_H = 2.0  # longest time between readings that are compared with that rate, h
 
 
 @dataclass(frozen=True)
@@ -35,17 +35,17 @@ class StationDays:
     lines : (n,)
         Position of each day in the file; a day without a row has that of the next row.
     there : (n,)
-        Whether the file has anything of the day.
+        Whether the file has any value of the day.
     temperature, new_snow, water, depth : (n,)
-        Mean, degrees C; sums, m and mm; depth of the snow cover, m: the median of its readings, so
-        that neither noise nor a single wrong reading is snow.
+        Mean, degrees C; sums, m and mm; depth of the snow cover, m, as median of its readings, so
+        that neither noise nor a single wrong reading counts as snow.
     level : (n,)
         The depth without jumps that are not weather (seams, and rises faster than snowfall). Only
         its differences are meaningful.
     part_snow, part_water : (n,)
-        Whether the sum is of a part of the day only.
+        Whether the sum covers a part of the day only.
     seams : (n,)
-        Whether the depth continues another series on that day.
+        Whether the depth begins another series on that day.
     jumps
         Date and size, m, of the jumps that were taken out of `level`.
     """
@@ -139,18 +139,18 @@ def _sums(rows: Sequence[Observation], name: str) -> tuple[dict[date, float], se
         for day, part in row.shares(span).items():
             total[day] = total.get(day, 0.0) + part * amount
             hours[day] = hours.get(day, 0.0) + part * (24.0 if span is None else span)
-    partly = {day for day, covered in hours.items() if covered < WHOLE_DAY}
+    partly = {day for day, covered in hours.items() if covered < MIN_DAY_HOURS}
     if rows:
         first = rows[0].time.date()
         for day in [day for day in partly if day < first]:
-            # what fell before midnight, and is told by a first row just after it
+            # the file's first row, just after midnight, holds an amount of the day before
             total[first] = total.get(first, 0.0) + total.pop(day)
             partly.discard(day)
     return total, partly
 
 
 def _disjoint(station: Station) -> Sequence[Observation]:
-    """Return rows whose new snow does not overlap: of rolling sums those of one clock time."""
+    """Return rows whose new snow does not overlap; of rolling sums, those at one clock time."""
     if "snowfall" not in station.rolling:
         return station.rows
     rows_with_snowfall = [row for row in station.rows if row.snowfall is not None]
@@ -158,7 +158,8 @@ def _disjoint(station: Station) -> Sequence[Observation]:
     if not clocks:
         return ()
     hour, minute = max(
-        clocks, key=lambda clock: (clocks[clock], -abs(clock[0] + clock[1] / 60 - MORNING))
+        clocks,
+        key=lambda clock: (clocks[clock], -abs(clock[0] + clock[1] / 60 - USUAL_READING_HOUR)),
     )
     return list(_read_at(rows_with_snowfall, hour, minute))
 
@@ -182,7 +183,7 @@ def _read_at(rows: Sequence[Observation], hour: int, minute: int) -> Iterator[Ob
 def _depths(
     station: Station,
 ) -> tuple[dict[date, list[float]], dict[date, list[float]], set[date], list[tuple[date, float]]]:
-    """Return the readings of the depth on each day, those without jumps, seams, and the jumps."""
+    """Return per day the readings of the depth, with and without jumps; the seams; the jumps."""
     depths: dict[date, list[float]] = {}
     levels: dict[date, list[float]] = {}
     seams: set[date] = set()
@@ -202,7 +203,7 @@ def _depths(
                 shift += rise
                 seams.add(day)
                 jumps.append((day, rise))
-            elif hours <= FOLLOWING and abs(rise) > fastest * max(hours, 1.0):
+            elif hours <= MAX_RATE_SPAN_H and abs(rise) > fastest * max(hours, 1.0):
                 shift += rise
                 jumps.append((day, rise))
         depths.setdefault(day, []).append(row.snow_depth)
@@ -212,7 +213,7 @@ def _depths(
 
 
 def _is_continuous(rows: Sequence[Observation]) -> bool:
-    """Return whether the depth changes several times a day, so that an hour's change is one.
+    """Return whether the depth changes several times a day, so that hourly changes are real.
 
     Hourly files may repeat a depth that is read once a day; then a change belongs to the whole day.
     """
@@ -223,4 +224,4 @@ def _is_continuous(rows: Sequence[Observation]) -> bool:
             if before is not None and abs(row.snow_depth - before) >= 0.001:
                 changes[row.time.date()] += 1
             before = row.snow_depth
-    return bool(changes) and float(np.median(list(changes.values()))) >= SEVERAL
+    return bool(changes) and float(np.median(list(changes.values()))) >= MIN_DAILY_CHANGES

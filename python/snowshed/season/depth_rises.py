@@ -1,8 +1,8 @@
 """New snow from the rises of the snow depth, without invalid readings.
 
 A rise from one day to the next is new snow; it is too small, because snow settles meanwhile. A rise
-over some days without a reading is divided among them. These are not snowfall: a rise beyond the
-record of 24 hours, a spike or a drop-out that the next readings revert, and the seam of two series.
+over days without a reading is divided among them. A rise beyond the record of 24 hours, a spike or
+a drop-out that the next readings revert, and the seam of two series are not snowfall.
 """
 
 from __future__ import annotations
@@ -19,10 +19,10 @@ from snowshed.season.daily_means import MAX_GAP_DAYS, StationDays
 from snowshed.season.extremes import RECORD_DAY, RECORD_WORDS
 
 MIN_RISE = 0.02  # m; smaller rises of the snow depth are noise of the sensor
-MAX_TOTAL_DAYS = 4  # days from reading to reading whose rise is still an observation
-SPIKE = 0.3  # m; from there on a change may be a spike
-TAKEN_BACK = 0.8  # of a spike, by the reading that ends it
-NO_MELT = 1.0  # degrees C; below, so much new snow does not vanish within days
+MAX_TOTAL_DAYS = 4  # longest time between readings whose rise still counts as observed, days
+MIN_SPIKE = 0.3  # m; smallest change that may be a spike
+MIN_REVERTED_SHARE = 0.8  # share of a spike that the reading after it reverts
+MELT_LIMIT = 1.0  # degrees C; below, new snow of a spike's size does not vanish within days
 #: Longest duration of a spike, a drop-out and an impossible change, days.
 SPIKE_DAYS, DROPOUT_DAYS, IMPOSSIBLE_DAYS = 2, 7, 60
 
@@ -45,14 +45,14 @@ class SharedRise:
 
 @dataclass
 class DepthSnow:
-    """The new snow that the depth tells.
+    """The new snow from the depth.
 
     Attributes
     ----------
     snow : (n,)
         New snow of each day, m; NaN: unknown.
     filled : (n,)
-        Whether a rise is spread over so many days that it counts as unobserved.
+        Whether the snow is part of a rise over so many days that it counts as unobserved.
     depth : (n,)
         The depth without wrong readings, m.
     totals
@@ -69,7 +69,7 @@ class DepthSnow:
 
 
 def snow_of_depth(days: StationDays, temperature: Floats) -> DepthSnow:
-    """Return the new snow that the depths of a station tell.
+    """Return the new snow from the depths of a station.
 
     Parameters
     ----------
@@ -79,8 +79,8 @@ def snow_of_depth(days: StationDays, temperature: Floats) -> DepthSnow:
         Temperature of every day, degrees C.
     """
     ordinals = days.ordinals
-    wrong = _wrong(ordinals, days.level, temperature, days.seams)
-    wrong |= _wrong(ordinals, days.depth, temperature, days.seams)
+    wrong = _invalid_readings(ordinals, days.level, temperature, days.seams)
+    wrong |= _invalid_readings(ordinals, days.depth, temperature, days.seams)
     level = np.where(wrong, np.nan, days.level)
     snow = DepthSnow(
         np.full(len(ordinals), np.nan),
@@ -92,19 +92,19 @@ def snow_of_depth(days: StationDays, temperature: Floats) -> DepthSnow:
         numbers = np.flatnonzero(wrong)
         snow.notes.append(
             f"{plural(len(numbers), 'reading')} of the snow depth "
-            f"({_some(days.dates, numbers)}) went up or down by {SPIKE:g} m or more and was taken "
-            "back: a spike or a drop-out of the sensor, not snow"
+            f"({_some(days.dates, numbers)}) went up or down by {MIN_SPIKE:g} m or more and was "
+            "taken back: a spike or a drop-out of the sensor, not snow"
         )
     readings = np.flatnonzero(~np.isnan(level))
     if len(readings):
         snow.snow[readings[0]] = 0.0
     for before, after in zip(readings, readings[1:]):
-        _take_rise(days, snow, int(before), int(after), float(level[after] - level[before]))
+        _enter_rise(days, snow, int(before), int(after), float(level[after] - level[before]))
     _note_gaps(days, snow)
     return snow
 
 
-def _take_rise(days: StationDays, snow: DepthSnow, before: int, after: int, rise: float) -> None:
+def _enter_rise(days: StationDays, snow: DepthSnow, before: int, after: int, rise: float) -> None:
     """Enter the rise from one reading to the next."""
     span = days.dates[after].toordinal() - days.dates[before].toordinal()
     own = slice(before + 1, after + 1)
@@ -146,7 +146,9 @@ def _note_gaps(days: StationDays, snow: DepthSnow) -> None:
     )
 
 
-def _wrong(ordinals: Integers, depth: Floats, temperature: Floats, seams: Booleans) -> Booleans:
+def _invalid_readings(
+    ordinals: Integers, depth: Floats, temperature: Floats, seams: Booleans
+) -> Booleans:
     """Return the days whose reading is a spike or a drop-out."""
     wrong = np.zeros(len(depth), dtype=bool)
     readings = np.flatnonzero(~np.isnan(depth)).tolist()
@@ -155,7 +157,7 @@ def _wrong(ordinals: Integers, depth: Floats, temperature: Floats, seams: Boolea
     while place < len(readings):
         good, first = readings[place - 1], readings[place]
         change = depth[first] - depth[good]
-        if abs(change) < SPIKE or joints[first] != joints[good]:
+        if abs(change) < MIN_SPIKE or joints[first] != joints[good]:
             place += 1
             continue
         limit, back = _longest(change, ordinals[first] - ordinals[good]), 0
@@ -163,13 +165,17 @@ def _wrong(ordinals: Integers, depth: Floats, temperature: Floats, seams: Boolea
             now = readings[later]
             if ordinals[now] - ordinals[first] > limit or joints[now] != joints[good]:
                 break
-            beyond = (depth[good] - depth[now]) / change  # below 0: not all is taken back
-            frozen = change < 0.0 and temperature[good : first + 1].max() <= NO_MELT
-            if TAKEN_BACK - 1.0 <= beyond <= (np.inf if frozen else 1.0 - TAKEN_BACK):
+            beyond = (depth[good] - depth[now]) / change  # below 0: not fully reverted
+            frozen = change < 0.0 and temperature[good : first + 1].max() <= MELT_LIMIT
+            if (
+                MIN_REVERTED_SHARE - 1.0
+                <= beyond
+                <= (np.inf if frozen else 1.0 - MIN_REVERTED_SHARE)
+            ):
                 back = later
                 break
         melted = 0.0 < change <= RECORD_DAY and back > 0
-        if melted and temperature[first : readings[back] + 1].max() > NO_MELT:
+        if melted and temperature[first : readings[back] + 1].max() > MELT_LIMIT:
             back = 0
         if back:
             wrong[readings[place:back]] = True

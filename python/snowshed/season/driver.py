@@ -103,11 +103,11 @@ def run_season(
     pictures
         Whether to draw the figure.
     coverage
-        Share of the days of the snow season on which snow should have been observed; a note tells
-        of winters with less.
+        Share of the days of the snow season on which snow should have been observed; a note names
+        winters with a smaller share.
     snow_from, temperature
-        As for `read_record`: the column of a station that observes snow, and another file of its
-        temperatures.
+        The column of a station that observes snow, and another file of its temperatures; see
+        `read_record`.
 
     Raises
     ------
@@ -175,7 +175,7 @@ class SeasonPlan:
 
     @property
     def scene(self) -> ResolvedScene:
-        """The scene of the slide-offs, or that of the panel without a release."""
+        """The scene of the slide-offs; without a release, the scene of the panel."""
         return self.slides or self.panel
 
 

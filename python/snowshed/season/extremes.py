@@ -1,4 +1,4 @@
-"""Record amounts of snow; larger values in a file are errors."""
+"""Record amounts of snow; larger amounts in a file are errors."""
 
 from __future__ import annotations
 

@@ -35,8 +35,8 @@ def snow_fraction(temperature: float) -> float:
 def snow_of_gauge(water: Floats, temperature: Floats) -> Floats:
     """Return the new snow of every day, m; NaN where the precipitation is not known.
 
-    No day has more than the record of 24 hours, since a depth beyond it is one of the assumed
-    density.
+    The snow of a day is at most the record of 24 hours; a larger depth would only show that the
+    assumed density is wrong.
 
     Parameters
     ----------

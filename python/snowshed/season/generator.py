@@ -3,8 +3,8 @@
 Snowfall days follow a Markov chain of two states, depths a gamma distribution, temperatures an
 autoregressive process of the first order about the mean of the month; all by month. This is the
 generator of Richardson 1981, Water Resour. Res. 17, 182-190, with gamma instead of exponential
-amounts (Katz 1977, J. Appl. Meteorol. 16, 671-676). Snow falls only at temperatures at which it did
-at the station. It has no trends, and no wet or dry winters beyond chance.
+amounts (Katz 1977, J. Appl. Meteorol. 16, 671-676). Snow falls only at temperatures at which snow
+fell at the station. There are no trends, and no wet or dry winters beyond chance.
 """
 
 from __future__ import annotations
@@ -20,8 +20,8 @@ from snowshed.base.arrays import Booleans
 from snowshed.season.source import SnowSource
 from snowshed.season.weather_row import MAX_SNOWFALL, Weather
 
-MIN_DAYS = 20  # of a month, to fit it
-MIN_SNOWFALL = 0.005  # m; less is no snowfall day
+MIN_DAYS = 20  # smallest number of days to fit a month
+MIN_SNOWFALL = 0.005  # m; smallest snow of a snowfall day
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class MonthClimate:
     Attributes
     ----------
     after_dry, after_snow
-        Probability of snow on a day after one without, and after one with snow.
+        Probability of snow on a day after a day without snow, and after a day with snow.
     shape, scale
         Shape and scale (m) of the gamma distribution of new snow on a day with snow.
     temperature, deviation
@@ -106,7 +106,7 @@ class Climate:
             )
         if not climates:
             raise InputError(
-                f"the weather: no month with snow has {MIN_DAYS} days, to fit a generator to"
+                f"the weather: no month with snow has {MIN_DAYS} days, which a generator needs"
             )
         pairs = anomalies[:-1] * anomalies[1:]
         spread = float((anomalies**2).mean())
@@ -155,7 +155,7 @@ def _days_of_winter(year: int) -> list[datetime]:
     return [first + timedelta(days=n) for n in range((datetime(year + 1, 8, 1) - first).days)]
 
 
-#: A made station in the mountains: about 4 m of new snow a winter.
+#: A synthetic station in the mountains, with about 4 m of new snow in a winter.
 EXAMPLE_CLIMATE = Climate(
     {
         11: MonthClimate(0.12, 0.40, 1.2, 0.07, 0.5, 4.0, 2.0),

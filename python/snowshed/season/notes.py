@@ -12,7 +12,7 @@ from snowshed.season.settings import SeasonSettings
 if TYPE_CHECKING:
     import pandas as pd
 
-#: Part of a slab that may stay on the panel; if more stays, the core lays the next slab on top.
+#: Share of a slab that may stay on the panel; if more stays, the core lays the next slab on top.
 STAYING = 0.02
 
 

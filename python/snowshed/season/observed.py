@@ -52,7 +52,7 @@ def record_of(station: Station, source: str, only: Optional[SnowSource] = None) 
     source
         The file, for messages.
     only
-        The one column that observes snow; None: the best of each winter.
+        The only column that observes snow; None: the best column of each winter.
 
     Raises
     ------
@@ -72,7 +72,7 @@ def record_of(station: Station, source: str, only: Optional[SnowSource] = None) 
     columns = _columns(days, warm, far, depth, notes)
     _check_columns(columns, only, station.format, source)
     calendar = _calendar(days, warm, station.latitude)
-    snow = _chosen(days, Chooser(columns, warm, only), columns, calendar, depth.totals)
+    snow = _daily_snow(days, Chooser(columns, warm, only), columns, calendar, depth.totals)
     notes += _notes(snow, days, calendar)
     modelled = station.typical_year
     rows = [
@@ -124,15 +124,16 @@ def _columns(
             f"{RECORD_DAY:g} m of snow: {RECORD_WORDS}"
         )
     return {
-        SnowSource.HAND: StationColumn(SnowSource.HAND, *_without_parts(hand, days.part_snow)),
+        SnowSource.HAND: StationColumn(SnowSource.HAND, *_mask_partial_days(hand, days.part_snow)),
         SnowSource.GAUGE: StationColumn(
-            SnowSource.GAUGE, *_without_parts(gauge, days.part_water | (far & (days.water > 0.0)))
+            SnowSource.GAUGE,
+            *_mask_partial_days(gauge, days.part_water | (far & (days.water > 0.0))),
         ),
         SnowSource.DEPTH: StationColumn(SnowSource.DEPTH, depth.snow, depth.filled),
     }
 
 
-def _without_parts(snow: Floats, part: Booleans) -> tuple[Floats, Booleans]:
+def _mask_partial_days(snow: Floats, part: Booleans) -> tuple[Floats, Booleans]:
     """Return snow, NaN where part of a day had none, and whether it fell in part of a day only."""
     return np.where(part & (snow == 0.0), np.nan, snow), part & (snow > 0.0)
 
@@ -157,7 +158,7 @@ def _calendar(days: StationDays, warm: Floats, latitude: Optional[float]) -> Cal
     return calendar_of(rows, latitude)
 
 
-def _chosen(
+def _daily_snow(
     days: StationDays,
     chooser: Chooser,
     columns: Mapping[SnowSource, StationColumn],
@@ -172,13 +173,13 @@ def _chosen(
         choice = chooser.of(years == year)
         snow.choices[year] = choice
         for n in np.flatnonzero(years == year).tolist():
-            _take(snow, n, choice, columns)
+            _assign_day(snow, n, choice, columns)
     for total in totals:
-        _share_out(snow, total)
+        _subtract_observed(snow, total)
     return snow
 
 
-def _take(
+def _assign_day(
     snow: _DailySnow, n: int, choice: StationChoice, columns: Mapping[SnowSource, StationColumn]
 ) -> None:
     for source in choice.observing:
@@ -194,8 +195,8 @@ def _take(
             return
 
 
-def _share_out(snow: _DailySnow, total: SharedRise) -> None:
-    """Take snow that other columns observed out of a rise over several days."""
+def _subtract_observed(snow: _DailySnow, total: SharedRise) -> None:
+    """Subtract the snow that other columns observed from a rise over several days."""
     own, observed = [], 0.0
     for n in total.days:
         if snow.source[n] is SnowSource.DEPTH or snow.reason[n].endswith(SnowSource.DEPTH.label):
@@ -233,13 +234,13 @@ def _notes(snow: _DailySnow, days: StationDays, calendar: Calendar) -> Iterator[
         yield RULE
     if SnowSource.DEPTH in snow.source:
         yield (
-            f"new snow is the daily rise of the snow depth, from {100 * MIN_RISE:g} cm; it is "
-            "too small, because snow settles meanwhile"
+            f"new snow is the daily rise of the snow depth, if at least {100 * MIN_RISE:g} cm; it "
+            "is too small, because snow settles meanwhile"
         )
     yield from _contradictions(snow, calendar)
     filled = [n for n, source in enumerate(snow.source) if source is SnowSource.FILLED]
     if filled:
-        kinds = sorted({_kind(snow.reason[n]) for n in filled})
+        kinds = sorted({_fill_kind(snow.reason[n]) for n in filled})
         yield (
             f"the snow of {some_days(days.dates, filled)} is filled, "
             f"{sum(snow.fall[n] for n in filled):.2f} m in all: {'; '.join(kinds)}"
@@ -252,15 +253,15 @@ def _notes(snow: _DailySnow, days: StationDays, calendar: Calendar) -> Iterator[
         )
 
 
-def _kind(reason: str) -> str:
+def _fill_kind(reason: str) -> str:
     return "the rise over a gap, shared out" if reason.startswith("part") else reason
 
 
 def _contradictions(snow: _DailySnow, calendar: Calendar) -> Iterator[str]:
-    """Yield how columns contradict each other, with their sums, for some winters by name."""
+    """Yield notes on columns that contradict each other, with their sums in some winters."""
     groups: dict[tuple[SnowSource, frozenset[SnowSource]], list[int]] = {}
     for year, choice in snow.choices.items():
-        wrong = choice.contradicted or _far_off(choice)
+        wrong = choice.contradicted or _contradicting_sources(choice)
         if wrong and choice.observing:
             groups.setdefault((choice.observing[0], wrong), []).append(year)
     for (used, wrong), years in groups.items():
@@ -279,11 +280,12 @@ def _contradictions(snow: _DailySnow, calendar: Calendar) -> Iterator[str]:
         yield (
             f"columns contradict each other by more than a factor of {CONTRADICTION:g} ({named}"
             f"{more}); the {used.label} is used, not the "
-            f"{' or the '.join(sorted(source.label for source in wrong))}{_why(used, wrong)}"
+            f"{' or the '.join(sorted(source.label for source in wrong))}"
+            f"{_preference_reason(used, wrong)}"
         )
 
 
-def _far_off(choice: StationChoice) -> frozenset[SnowSource]:
+def _contradicting_sources(choice: StationChoice) -> frozenset[SnowSource]:
     """Return the sources that contradict the one in use, which is kept."""
     if not choice.observing:
         return frozenset()
@@ -297,7 +299,7 @@ def _far_off(choice: StationChoice) -> frozenset[SnowSource]:
     )
 
 
-def _why(used: SnowSource, wrong: frozenset[SnowSource]) -> str:
+def _preference_reason(used: SnowSource, wrong: frozenset[SnowSource]) -> str:
     if used is SnowSource.DEPTH and SnowSource.GAUGE in wrong:
         return ": gauges catch too little snow in wind or stand still (WMO/TD-872, 1998)"
     if used is SnowSource.DEPTH:

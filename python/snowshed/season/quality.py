@@ -18,9 +18,9 @@ from snowshed.season.source import SnowSource
 from snowshed.season.weather_row import Weather
 from snowshed.season.winter_years import Calendar, SnowSeason, snow_season_of
 
-COVERAGE = 0.9  # of the days of the snow season, on which snow must have been observed
+COVERAGE = 0.9  # share of the days of the snow season on which snow must have been observed
 MAX_ROW_GAP_DAYS = 3  # days between two rows of a table, covered by the later row
-LIST_SPACING = timedelta(days=1.5)  # from row to row, half of them more, in a list of snowfalls
+LIST_SPACING = timedelta(days=1.5)  # smallest median time between rows of a list of snowfalls
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ class WinterQuality:
     counts
         Whether the snow was observed on enough days.
     listed
-        Whether the file lists snowfalls, and tells nothing of other days.
+        Whether the file lists snowfalls and omits other days.
     sums
         Totals of the file's columns on comparable days, m.
     """
@@ -66,7 +66,7 @@ class WinterQuality:
 
     @property
     def snowfall(self) -> float:
-        """Depth of all its new snow, m."""
+        """Depth of all new snow of the winter, m."""
         return sum(row.snowfall for row in self.rows)
 
     @property
@@ -81,7 +81,7 @@ class WinterQuality:
 
 
 def check_coverage(coverage: float) -> float:
-    """Return a share of days if it is one; raises InputError."""
+    """Return a share of days; raises InputError if it is not a share."""
     if not 0.0 <= coverage <= 1.0:
         raise InputError(f"coverage: {coverage:g}; allowed: a share from 0 to 1 (or 0 to 100 %)")
     return coverage

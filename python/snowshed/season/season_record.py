@@ -41,7 +41,7 @@ class SeasonRecord:
         return calendar_of(self.rows, self.latitude)
 
     def winters(self, coverage: float = COVERAGE) -> WinterList:
-        """Return the quality of each of its winters.
+        """Return the quality of each winter.
 
         Parameters
         ----------
@@ -51,7 +51,7 @@ class SeasonRecord:
         Raises
         ------
         InputError
-            If it is not a share.
+            If `coverage` is not a share.
 
         Examples
         --------

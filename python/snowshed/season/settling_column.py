@@ -11,8 +11,8 @@ import numpy as np
 from snowshed.base.arrays import Floats
 from snowshed.snow.relations.settling import SettlingLaw, settled_densities
 
-#: More layers than a winter of hours with snow has; the lower half of more is merged in pairs, so
-#: that years of snow that stays cost no more than one.
+#: Largest number of layers, more than a winter of hourly snowfalls has. If there are more, the
+#: lower half is merged in pairs, so that snow of many years costs no more than that of one.
 MAX_LAYERS = 1000
 
 

@@ -15,7 +15,7 @@ class SnowSource(Enum):
     """
 
     GIVEN = "season file"  # the column snowfall_m of the user's own table
-    HAND = "new snow"  # measured as such: on a board, or by the provider
+    HAND = "new snow"  # measured as new snow: on a board, or by the provider
     DEPTH = "snow depth"  # the rise of the depth sensor or the stake
     GAUGE = "precipitation"  # the water of a gauge, turned into snow by the temperature
     MODEL = "typical year"  # precipitation and temperature of a year assembled from several

@@ -1,6 +1,6 @@
 """An estimate of the settling of the stack since the last slide-off.
 
-The simulated stack ages just before the next event (`snowshed.running.ageing`). For the time until
+The simulated stack ages just before the next event (`snowshed.running.ageing`). Until
 then, the snow below its crest is treated as a column with the mean density of the stack, which
 settles under its own weight. The ratio of its thickness to the simulated height lowers the whole
 profile. The estimate is used in the table only.
@@ -27,7 +27,7 @@ class SettlingStack:
     Examples
     --------
     >>> stack = SettlingStack(None, 9.81)
-    >>> stack.take(0.5, 200.0)
+    >>> stack.set_stack(0.5, 200.0)
     >>> stack.ratio
     1.0
     """
@@ -42,12 +42,12 @@ class SettlingStack:
         """Ratio of settled to simulated height, at most 1."""
         return min(self._column.thickness / self._height, 1.0) if self._height else 1.0
 
-    def take(self, height: float, density: float) -> None:
+    def set_stack(self, height: float, density: float) -> None:
         """Set the stack to the height, m, and the density, kg/m3, that an event left."""
         self._column.clear()
         self._column.add(height * density, density)
         self._height = height
 
-    def wait(self, seconds: float, temperature: float) -> None:
-        """Let time pass at an air temperature, degrees C."""
+    def settle(self, seconds: float, temperature: float) -> None:
+        """Settle the stack for some time, s, at an air temperature, degrees C."""
         self._column.settle(self._law, seconds, temperature)

@@ -1,13 +1,13 @@
 """Choice of a winter's column of snow, if several of a station contradict each other.
 
-New snow measured by hand goes first, then the gauge, then the depth of the cover. Two columns
-contradict each other where, on the days of a winter that both know, one has more than twice the
-snow of the other and a decimetre more. Both of gauge and depth fail towards too little snow: wind
-carries it past gauges, which catch half of it and less (Goodison, Louie and Yang 1998, WMO/TD-872),
-unheated ones stand still, and a cover settles while it grows. The larger of the two is therefore
-used. New snow by hand gives way to the depth where the depth rises by more, because no cover rises
-by more than what falls; and to either where it has no snow all winter, which means that it was not
-entered.
+New snow measured by hand is preferred to the gauge, and the gauge to the depth of the cover. Two
+columns contradict each other in a winter if, on the days with a value in both, one has more than
+twice the snow of the other and a decimetre more. Errors of gauge and depth make the snow too
+small: wind carries snow past gauges, which catch half of it or less (Goodison, Louie and Yang 1998,
+WMO/TD-872), unheated gauges stand still, and a cover settles while it grows. Therefore the larger
+of the two is used. The depth replaces new snow by hand if it rises by more, because no cover rises
+by more than the snowfall. If new snow by hand is 0 all winter, it was not entered, and gauge or
+depth replace it.
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ import numpy as np
 from snowshed.base.arrays import Booleans, Floats
 from snowshed.season.source import SnowSource
 
-CONTRADICTION = 2.0  # one column over the other, over a winter
+CONTRADICTION = 2.0  # ratio of two columns over a winter
 MIN_DIFFERENCE = 0.1  # m over a winter
-COLD = -4.0  # degrees C; what falls on such days is snow for certain
+COLD = -4.0  # degrees C; on colder days all precipitation is snow
 
 
 @dataclass(frozen=True)
 class StationColumn:
-    """The new snow that one column of a station tells.
+    """The new snow in one column of a station.
 
     Attributes
     ----------
@@ -36,7 +36,7 @@ class StationColumn:
     snow : (n,)
         New snow of each day, m; NaN: unknown.
     filled : (n,)
-        Whether its value was not observed on that day.
+        Whether the value of a day was not observed on that day.
     """
 
     source: SnowSource
@@ -51,7 +51,7 @@ class StationColumn:
 
 @dataclass(frozen=True)
 class StationChoice:
-    """The columns that tell a winter's snow.
+    """The columns for a winter's snow.
 
     Attributes
     ----------
@@ -62,7 +62,7 @@ class StationChoice:
     sums
         Sum of each column over the days that all compared columns cover, m.
     contradicted
-        Sources that were left out or used last, because another contradicts them.
+        Sources that are left out or used last, because another source contradicts them.
     """
 
     observing: Sequence[SnowSource]
@@ -81,7 +81,7 @@ class Chooser:
     temperature : (n,)
         Temperature of every day, degrees C.
     only
-        The one source that observes; None: by the rules of this module.
+        The only source that observes; None: chosen by the rules of this module.
     """
 
     def __init__(
@@ -159,7 +159,7 @@ class Chooser:
         )
 
     def _against(self, source: SnowSource, days: Booleans) -> set[SnowSource]:
-        """Return the other columns that contradict one with more snow than it has."""
+        """Return the sources that contradict a column because they have more snow."""
         return {
             other
             for other in self.columns
@@ -184,7 +184,7 @@ class Chooser:
         return float(first.snow[both].sum()), float(second.snow[both].sum())
 
     def _cold_gauge(self, winter: Booleans) -> bool:
-        """Return whether the gauge has snow on days on which nothing else can fall."""
+        """Return whether the gauge has precipitation on days too cold for rain."""
         gauge = self.columns[SnowSource.GAUGE]
         return float(gauge.snow[winter & gauge.known & self._cold].sum()) > MIN_DIFFERENCE
 

@@ -49,9 +49,9 @@ def season_table(
     for day, earlier, depth in zip(days, [None, *days], cover):
         if earlier is not None:
             elapsed = day.weather.date - earlier.weather.date
-            stack.settling.wait(elapsed.total_seconds(), earlier.weather.temperature)
+            stack.settling.settle(elapsed.total_seconds(), earlier.weather.temperature)
         if day.event is not None:
-            stack.take(day.event)
+            stack.set_after_event(day.event)
         rows.append({**_panel_columns(day), **stack.columns(depth)})
     return pd.DataFrame(rows, columns=list(SEASON_COLUMNS)).astype({"event": "Int64"})
 
@@ -91,7 +91,7 @@ class _Stack:
         self.height, self.length, self.left, self.joined = 0.0, 0.0, 0.0, 0
         self.outline = np.zeros((0, 2))
 
-    def take(self, event: int) -> None:
+    def set_after_event(self, event: int) -> None:
         """Set the stack to its state after an event."""
         row = self.events[event]
         self.height, self.length = float(row["height_m"]), float(row["length_m"])
@@ -101,10 +101,10 @@ class _Stack:
         below = below_panel(self.scene, self.outline)
         if 0 < len(below) < len(self.outline):
             self.height = min(self.height, float(below[:, 1].max()))
-        self.settling.take(self.height, float(row["density_kg_m3"]))
+        self.settling.set_stack(self.height, float(row["density_kg_m3"]))
 
     def columns(self, cover: float) -> dict[str, float]:
-        """Return the columns of the table that the stack on a cover of some depth fills."""
+        """Return the table's columns on the stack, above a cover of the depth `cover`, m."""
         ratio = self.settling.ratio
         now = clearance(self.scene, self.outline, self.height, cover)
         settled = clearance(self.scene, self.outline * [1.0, ratio], ratio * self.height, cover)

@@ -10,9 +10,9 @@ import numpy as np
 
 from snowshed.base.arrays import Booleans, Floats, Integers
 
-MAX_INTERPOLATED_DAYS = 3  # days without temperature, between which a straight line is drawn
-AROUND = 7  # half width of the window of the mean, days of the year
-MIN_MEASURED_DAYS = 5  # measured days for such a mean
+MAX_INTERPOLATED_DAYS = 3  # longest gap that is interpolated linearly, days
+AROUND = 7  # half width of the window of a mean, days
+MIN_MEASURED_DAYS = 5  # smallest number of measured days in such a mean
 YEAR = 366
 
 
@@ -21,7 +21,7 @@ def filled_temperatures(
 ) -> tuple[Floats, Booleans, list[str]]:
     """Return the temperature of every day, the days far from a measurement, and notes.
 
-    Gaps of up to three days are interpolated linearly. In longer ones, a day gets the mean of the
+    Gaps of up to three days are interpolated linearly. In longer gaps, a day gets the mean of the
     file's temperatures within a week of the same day of the year, in all years; without such
     temperatures, it is interpolated, too.
 
@@ -55,8 +55,8 @@ def _notes(
     dates: Sequence[date], climate: Booleans, lined: Booleans, bridged: Booleans
 ) -> list[str]:
     rules = (
-        (climate, "they have the mean of the file's same days of the year"),
-        (lined, "nor has any year of the file then; they are interpolated"),
+        (climate, "they have the mean of the same days of the year in the file"),
+        (lined, "no other year has temperatures then; they are interpolated"),
         (bridged, "they are interpolated from the days before and after"),
     )
     return [

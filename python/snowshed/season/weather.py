@@ -41,8 +41,8 @@ class _Column:
     low: float
     high: float
     unit: str
-    required: bool = False  # the column
-    filled: bool = False  # every cell of it
+    required: bool = False  # whether the column must exist
+    filled: bool = False  # whether every cell must be filled
     hint: str = ""  # likely meaning of a number beyond the range
 
 
@@ -104,7 +104,7 @@ def read_season(season: Season) -> list[Weather]:
 def read_weather(
     season: Season, temperature: Optional[PathLike] = None
 ) -> tuple[list[Weather], list[str]]:
-    """Return the rows of a season, as `read_season`, and notes on assumptions made in reading.
+    """Return the rows of a season, as `read_season` does, and notes on assumptions made in reading.
 
     Parameters
     ----------

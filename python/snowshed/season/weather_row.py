@@ -8,7 +8,7 @@ from typing import Optional
 
 from snowshed.season.source import SnowSource
 
-#: In a row, which may hold the snow of several days.
+#: Largest snowfall of a row, which may hold the snow of several days.
 MAX_SNOWFALL = 3.0  # m
 
 

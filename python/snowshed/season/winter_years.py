@@ -19,9 +19,9 @@ from snowshed.season.weather_row import Weather
 
 NORTHERN_WINTER, SOUTHERN_WINTER = (11, 12, 1, 2, 3, 4), (5, 6, 7, 8, 9, 10)
 NORTHERN_START, SOUTHERN_START = 7, 1  # the month in which a winter's year begins
-#: First and last day of the season in any case.
+#: The season contains at least the days from the first to the last of these.
 NORTHERN_CORE, SOUTHERN_CORE = ((12, 1), (2, 28)), ((6, 1), (8, 31))
-BESIDE = 0.01  # of all snow, before and after the snow season
+SHARE_OUTSIDE_SEASON = 0.01  # share of all snow before the snow season, and after it
 
 
 @dataclass(frozen=True)
@@ -143,7 +143,8 @@ def snow_season_of(rows: Sequence[Weather], calendar: Calendar) -> SnowSeason:
     if days:
         sums = np.cumsum([falls[day] for day in days])
         snowy = [
-            days[int(np.searchsorted(sums, part * sums[-1]))] for part in (BESIDE, 1.0 - BESIDE)
+            days[int(np.searchsorted(sums, part * sums[-1]))]
+            for part in (SHARE_OUTSIDE_SEASON, 1.0 - SHARE_OUTSIDE_SEASON)
         ]
         first = min(first, snowy[0], key=lambda day: calendar.order(*day))
         last = max(last, snowy[1], key=lambda day: calendar.order(*day))

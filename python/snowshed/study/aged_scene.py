@@ -58,5 +58,5 @@ def split_ageing(text: str) -> tuple[dict[str, Any], Optional[Ageing]]:
 
 
 def without_ageing(text: str) -> str:
-    """Return the scene of a run alone, as JSON."""
+    """Return the scene of a run without its ageing, as JSON."""
     return json.dumps(split_ageing(text)[0]) if f'"{KEY}"' in text else text

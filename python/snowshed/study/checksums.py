@@ -21,38 +21,38 @@ TABLE = (
 RESULTS = ("event", "event_timing", "run_timing")
 
 
-def note(write: sqlite3.Connection, name: str, content: object) -> None:
+def store_checksum(write: sqlite3.Connection, name: str, content: object) -> None:
     """Store the checksum of content that the same transaction writes."""
     write.execute("INSERT OR REPLACE INTO checksum VALUES (?, ?)", (name, digest(content)))
 
 
-def note_run(write: sqlite3.Connection, hash_: str) -> None:
+def store_run_checksum(write: sqlite3.Connection, hash_: str) -> None:
     """Store the checksum of a run before it is computed."""
     columns = "SELECT hash, version, scene FROM run WHERE hash = ?"
-    note(write, f"run {hash_}", write.execute(columns, (hash_,)).fetchone())
+    store_checksum(write, f"run {hash_}", write.execute(columns, (hash_,)).fetchone())
 
 
-def note_study(write: sqlite3.Connection, study: str) -> None:
+def store_study_checksum(write: sqlite3.Connection, study: str) -> None:
     """Store the checksum of the axes and the runs of a study."""
-    note(write, f"study {study}", study_of(write, study))
+    store_checksum(write, f"study {study}", study_of(write, study))
 
 
-def note_results(write: sqlite3.Connection, hash_: str) -> None:
+def store_results_checksum(write: sqlite3.Connection, hash_: str) -> None:
     """Store the checksums of the results of a run, and of its particles if they are stored."""
-    note(write, f"results {hash_}", results_of(write, hash_))
+    store_checksum(write, f"results {hash_}", results_of(write, hash_))
     query = "SELECT event, data FROM event_particles WHERE hash = ? ORDER BY event"
     if particles := write.execute(query, (hash_,)).fetchall():
-        note(write, f"particles {hash_}", particles)
+        store_checksum(write, f"particles {hash_}", particles)
 
 
-def note_all(write: sqlite3.Connection) -> None:
+def store_all_checksums(write: sqlite3.Connection) -> None:
     """Store the checksums of the whole content of a store of an earlier version."""
     for hash_, status in write.execute("SELECT hash, status FROM run").fetchall():
-        note_run(write, hash_)
+        store_run_checksum(write, hash_)
         if status != "pending":
-            note_results(write, hash_)
+            store_results_checksum(write, hash_)
     for (study,) in write.execute("SELECT name FROM study").fetchall():
-        note_study(write, study)
+        store_study_checksum(write, study)
 
 
 def study_of(connection: sqlite3.Connection, study: str) -> Sequence[Any]:

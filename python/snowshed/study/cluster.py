@@ -16,7 +16,7 @@ from snowshed.study.errors import StudyError
 from snowshed.study.outcome import RunOutcome, RunTask
 
 CONNECT_S = 30  # s to wait for the scheduler
-AT_ONCE = 1000  # tasks handed over at once: enough for a cluster that grows with its work
+MAX_SUBMITTED = 1000  # tasks handed over at once: enough for a cluster that grows with its work
 
 
 class DaskWorkers:
@@ -37,7 +37,7 @@ class DaskWorkers:
         If Dask is not installed, or there is no scheduler.
     """
 
-    capacity = AT_ONCE
+    capacity = MAX_SUBMITTED
 
     def __init__(self, scheduler: object) -> None:
         self._dask = require("distributed", "cluster", "computing on a cluster")
@@ -56,7 +56,7 @@ class DaskWorkers:
 
     @property
     def fractions(self) -> Mapping[str, float]:
-        """Nothing, because only the end of runs in other processes is known."""
+        """Always empty, because only the end of runs in other processes is known."""
         return {}
 
     def submit(self, task: RunTask) -> None:

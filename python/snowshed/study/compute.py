@@ -61,20 +61,20 @@ def _compute(task: RunTask, folder: Path, report: Optional[FractionReporter]) ->
         )
         return RunOutcome(task.hash, "unable", error=reason)
     earlier = RunFolder(folder).read_run()
-    if earlier.get("status") == "failed":  # the one before was killed before it could say so
+    if earlier.get("status") == "failed":  # the earlier process was killed before its report
         return _outcome(task, folder, earlier["error"])
     try:
-        with warnings.catch_warnings():  # nobody hears a worker: the outcome has its notes
+        with warnings.catch_warnings():  # warnings of a worker are lost: the outcome has its notes
             warnings.simplefilter("ignore", SnowshedNote)
-            _run_or_resume(task, folder, _weighted(report))
+            _run_or_resume(task, folder, _work_reporter(report))
     except Interrupted:
         return RunOutcome(task.hash, "interrupted")
     except OSError:
         raise
-    except MemoryError:  # others may need less later; the folder would say that it failed
+    except MemoryError:  # with fewer runs at once it may fit; the folder has a failure
         shutil.rmtree(folder, ignore_errors=True)
         return RunOutcome(task.hash, "lost", error="out of memory")
-    except Exception as error:  # whatever it is, the other runs must go on
+    except Exception as error:  # no error of one run may stop the others
         return _outcome(task, folder, f"{_kind(error)}{error}")
     return _outcome(task, folder, None)
 
@@ -87,7 +87,7 @@ def _run_or_resume(task: RunTask, folder: Path, report: Optional[Reporter]) -> N
     }  # fmt: skip
     if (folder / "scene.json").is_file():
         try:
-            scene = ResolvedScene.load(folder / "scene.json")  # with the threads it had
+            scene = ResolvedScene.load(folder / "scene.json")  # with its number of threads
             run(scene, folder, resume=True, **options)
             return
         except InputError:
@@ -104,7 +104,7 @@ def _outcome(task: RunTask, folder: Path, error: Optional[str]) -> RunOutcome:
     runs = method_of(split_ageing(task.scene)[0]).run_class()
     events = runs.rows(folder)
     status = "done" if error is None else "failed"
-    begun = (folder / "scene.json").is_file()  # else it failed before there was anything
+    begun = (folder / "scene.json").is_file()  # else it failed before it wrote anything
     particles = dict(runs.stored_data(folder)) if task.keep_particles and begun else {}
     facts = results.read_run()
     notes = tuple(facts.get("notes", ()))
@@ -130,8 +130,8 @@ def _kind(error: Exception) -> str:
     return "" if expected else f"{type(error).__name__}: "
 
 
-def _weighted(report: Optional[FractionReporter]) -> Optional[Reporter]:
-    """Return a run's progress as a fraction of its work: event k moves the snow of k slabs."""
+def _work_reporter(report: Optional[FractionReporter]) -> Optional[Reporter]:
+    """Return a reporter of a run's progress as a share of its work; event k moves k slabs."""
     if report is None:
         return None
 

@@ -15,8 +15,8 @@ from snowshed._core import InputError, SimulationError
 from snowshed.study.aged_scene import split_ageing, without_ageing
 
 THIRDS = (1 / 6, 3 / 6, 5 / 6)  # the middle of each third
-ROUNDS = 9  # of measuring speeds
-MEASURED = 0.01  # share of the expected time after which there is no further round
+ROUNDS = 9  # largest number of measurements of each speed
+MAX_MEASURING_SHARE = 0.01  # no further round after this share of the expected time
 
 
 def work(scene: str) -> float:
@@ -99,6 +99,6 @@ def expected(scenes: Sequence[str], works: Sequence[float], workers: int, thread
         for scene, before in quickest.items():
             quickest[scene] = max(before, speed(scene, threads))
         seconds = updates * statistics.fmean(1 / quickest[scene] for scene in typical)
-        if time.monotonic() - start > MEASURED * seconds:
+        if time.monotonic() - start > MAX_MEASURING_SHARE * seconds:
             break
     return seconds

@@ -30,7 +30,7 @@ from snowshed.study.locks import owner_lives
 
 FILE = "store.sqlite"
 RUNNING = "running"
-APPLICATION = 0x534E4F57  # "SNOW": tells our databases from others
+APPLICATION = 0x534E4F57  # "SNOW": distinguishes our databases from others
 #: Version 1 is from before there were checksums, or from an older process in the same store.
 VERSIONS = (1, 2)
 BUSY_S = 60.0  # s to wait for another process that is writing
@@ -90,7 +90,7 @@ def connect(folder: Path) -> sqlite3.Connection:
     """Open the database and create missing tables; no other process may do so at the same time."""
     if not (folder / FILE).exists() and any(folder.iterdir()):
         raise InputError(f"{folder}: not empty, but holds no study; choose a new folder")
-    with translated(folder):
+    with translate_errors(folder):
         connection = sqlite3.connect(folder / FILE, timeout=BUSY_S, isolation_level=None)
         try:
             connection.execute("PRAGMA journal_mode = WAL")
@@ -118,7 +118,7 @@ def connect_read_only(folder: Path) -> sqlite3.Connection:
         raise InputError(
             f"{folder}: read-only, and left in the middle of a change; copy it to a writable folder"
         )
-    with translated(folder):
+    with translate_errors(folder):
         address = f"{(folder / FILE).as_uri()}?mode=ro&immutable=1"
         connection = sqlite3.connect(address, uri=True, isolation_level=None)
         try:
@@ -137,7 +137,7 @@ def _provide_tables(connection: sqlite3.Connection, folder: Path) -> None:
         connection.execute(f"PRAGMA application_id = {APPLICATION}")
         connection.execute(f"PRAGMA user_version = {VERSIONS[-1]}")
     _check_format(connection, folder)
-    _add_what_is_new(connection, folder)
+    _upgrade(connection, folder)
 
 
 def _check_format(connection: sqlite3.Connection, folder: Path) -> None:
@@ -153,7 +153,7 @@ def _has_checksums(connection: sqlite3.Connection) -> bool:
     return bool(connection.execute("PRAGMA table_info(checksum)").fetchone())
 
 
-def _add_what_is_new(connection: sqlite3.Connection, folder: Path) -> None:
+def _upgrade(connection: sqlite3.Connection, folder: Path) -> None:
     """Add the missing tables to a store of an earlier version; earlier versions then refuse it.
 
     An earlier version that still computes in it would add results without checksums.
@@ -177,7 +177,7 @@ def _add_what_is_new(connection: sqlite3.Connection, folder: Path) -> None:
         connection.execute(f"ALTER TABLE run ADD COLUMN {column}")
     if not has_checksums:
         connection.execute(checksums.TABLE)
-        checksums.note_all(connection)
+        checksums.store_all_checksums(connection)
 
 
 def _pragma(connection: sqlite3.Connection, name: str) -> int:
@@ -186,7 +186,7 @@ def _pragma(connection: sqlite3.Connection, name: str) -> int:
 
 @contextmanager
 def transaction(connection: sqlite3.Connection) -> Iterator[sqlite3.Connection]:
-    """Make changes all or none."""
+    """Make all changes of the block, or none."""
     connection.execute("BEGIN IMMEDIATE")
     try:
         yield connection
@@ -198,9 +198,9 @@ def transaction(connection: sqlite3.Connection) -> Iterator[sqlite3.Connection]:
 
 
 @contextmanager
-def translated(folder: Path) -> Iterator[None]:
+def translate_errors(folder: Path) -> Iterator[None]:
     """Turn errors of the database into errors that tell users their remedy."""
     try:
         yield
-    except (sqlite3.Error, UnicodeDecodeError) as error:  # the latter: SQLite quotes damaged text
+    except (sqlite3.Error, UnicodeDecodeError) as error:  # SQLite quotes damaged text
         raise StudyError(f"{folder / FILE}: {error}") from None

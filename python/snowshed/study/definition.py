@@ -177,7 +177,7 @@ class Study:
         Raises
         ------
         InputError
-            If the scene of a run is wrong, naming its values.
+            If the scene of a run is wrong; the message has its values.
         OSError
             If a file that the scene names cannot be read.
         """
@@ -294,7 +294,7 @@ class Study:
     def expected_duration(self, *, jobs: Optional[int] = None) -> tuple[float, int]:
         """Return the expected time of all runs on this machine, s, and the number of runs at once.
 
-        Measures the machine's speed for a fraction of a second.
+        The machine's speed is measured for a fraction of a second.
 
         Parameters
         ----------
@@ -343,5 +343,5 @@ def _try_to_set(scene: Scene, path: str, value: object) -> None:
         scene.set(path, None)
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
-    with contextlib.suppress(InputError):  # the run with this value says what is wrong with it
+    with contextlib.suppress(InputError):  # the run with this value raises the error
         scene.set(path, value)

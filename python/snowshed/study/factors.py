@@ -89,7 +89,7 @@ def linear(
     Parameters
     ----------
     start, stop
-        First value, and largest last value.
+        First value, and upper limit of the last value.
     step
         Distance of the values; `stop` is one of them if a whole number of steps reaches it.
     count
@@ -110,7 +110,7 @@ def linear(
         raise InputError("needs either a step or a count")
     if count is not None:
         _check_count(count)
-        return [_tidy(start + (stop - start) * i / (count - 1)) for i in range(count)]
+        return [_without_rounding(start + (stop - start) * i / (count - 1)) for i in range(count)]
     assert step is not None
     _check_finite(step)
     if step <= 0:
@@ -120,7 +120,7 @@ def linear(
     steps = (float(stop) - float(start)) / step * (1 + 1e-9)
     if not steps < MAX_COUNT:
         raise InputError(f"has too many values; at most {MAX_COUNT} are allowed")
-    return [_tidy(start + i * step) for i in range(math.floor(steps) + 1)]
+    return [_without_rounding(start + i * step) for i in range(math.floor(steps) + 1)]
 
 
 def logarithmic(start: float, stop: float, count: int) -> list[float]:
@@ -140,7 +140,7 @@ def logarithmic(start: float, stop: float, count: int) -> list[float]:
     _check_positive(start, stop)
     _check_count(count)
     ratio = math.log(stop / start)
-    return [_tidy(start * math.exp(ratio * i / (count - 1))) for i in range(count)]
+    return [_without_rounding(start * math.exp(ratio * i / (count - 1))) for i in range(count)]
 
 
 @dataclass(frozen=True)
@@ -163,8 +163,8 @@ class Span:
     def at(self, fraction: float) -> float:
         """Return the value at a fraction, 0 to 1, of the span."""
         if self.scale == "linear":
-            return _tidy(self.low + fraction * (self.high - self.low))
-        return _tidy(self.low * (self.high / self.low) ** fraction)
+            return _without_rounding(self.low + fraction * (self.high - self.low))
+        return _without_rounding(self.low * (self.high / self.low) ** fraction)
 
 
 def latin_hypercube(spans: Mapping[str, Span], count: int, *, seed: int = 1) -> Factor:
@@ -227,14 +227,14 @@ def _sample(method: str, spans: Mapping[str, Span], count: int, seed: int) -> Fa
     )
 
 
-def _tidy(value: float) -> float:
+def _without_rounding(value: float) -> float:
     """Return a value without rounding errors in its last digits, so that 0.1 + 2 * 0.1 is 0.3."""
     return value if isinstance(value, int) else float(f"{value:.12g}")
 
 
 def _check_finite(*values: float) -> None:
     for value in values:
-        if not abs(value) <= sys.float_info.max:  # nor is an integer that no float can hold
+        if not abs(value) <= sys.float_info.max:  # or an integer beyond all floats
             raise InputError(f"{shortened(str(value), 20)} is not a finite number")
 
 

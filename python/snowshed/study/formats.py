@@ -54,12 +54,12 @@ def export(
 def write_table(
     make: Callable[[], pd.DataFrame], file: PathLike, form: Optional[str] = None
 ) -> None:
-    """Write the table that `make` returns; an unknown format is refused before.
+    """Write the table that `make` returns; an unknown format is refused before it is called.
 
     Parameters
     ----------
     make
-        Returns a table as `read_table` does.
+        Function that returns a table, as `read_table` does.
     file, form
         As for `export`.
     """
@@ -103,7 +103,7 @@ def _writer(file: Path, form: Optional[str]) -> Callable[[pd.DataFrame, Path], N
     if form not in WRITERS:
         raise InputError(
             f"{file}: unknown format {form!r}; allowed: {', '.join(WRITERS)}, "
-            f"by default what {', '.join(SUFFIXES)} stand for"
+            f"by default the file's ending decides ({', '.join(SUFFIXES)})"
         )
     return WRITERS[form]
 

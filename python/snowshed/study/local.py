@@ -61,7 +61,7 @@ class LocalWorkers:
 def _outcome(ended: TaskEnd[RunTask, RunOutcome]) -> RunOutcome:
     if ended.result is not None:
         return ended.result
-    if ended.error is not None:  # `compute` foresees all errors but its own
+    if ended.error is not None:  # `compute` handles all errors of runs: this is a fault of ours
         kind = type(ended.error).__name__
         return RunOutcome(ended.task.hash, "unable", error=f"{kind}: {ended.error}")
     if ended.never_began:

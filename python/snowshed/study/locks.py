@@ -26,7 +26,7 @@ def holding(path: Path, make: Callable[[Path], None]) -> Iterator[None]:
     path
         The file or folder to lock.
     make
-        Creates it; called with `path`, which may exist already.
+        Function that creates `path`, its argument; the path may exist already.
 
     Raises
     ------

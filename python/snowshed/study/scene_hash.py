@@ -36,7 +36,8 @@ FILES = ("file", "thickness_file")
 HASHED_AS = {"courant_factor": "step_factor"}
 #: Settings that do not decide a result by themselves: a scheme is a name for others.
 SETTINGS_WITHOUT_EFFECT = ("threads", "scheme")
-#: Settings that came later, with the values for what was done before: these are left out.
+#: Settings of later versions, with the value that stands for the former behaviour. A setting
+#: with this value is left out of the hash.
 FORMER_BEHAVIOUR: Mapping[str, object] = {
     "damping_length": 0.0,
     "crack_band_length": 0.0,
@@ -118,9 +119,9 @@ def content_hash(scene: Mapping[str, Any]) -> str:
         If a file that the scene names cannot be read.
     """
     content = {key: value for key, value in scene.items() if key not in WITHOUT_EFFECT}
-    if content.get("misplaced_snow") == "refuse":  # the default, which was no key once
+    if content.get("misplaced_snow") == "refuse":  # the default; earlier versions had no such key
         del content["misplaced_snow"]
-    if not content.get("sample", {}).get("split_labels", True):  # as before there was this choice
+    if not content.get("sample", {}).get("split_labels", True):  # as before this choice existed
         content["sample"] = {k: v for k, v in content["sample"].items() if k != "split_labels"}
     if scene.get("snowshed") != 1:
         content = _as_version_1(content)

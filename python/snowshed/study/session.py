@@ -32,8 +32,8 @@ from snowshed.study.workers import Workers
 
 POLL_S = 0.25  # s between checks of interrupts and progress
 ELSEWHERE_S = 1.0  # s between checks of what other processes compute
-MAX_NOTES = 10  # that are said after a session, each once
-DEATHS = 3  # workers that may die of a run before it counts as failed
+MAX_NOTES = 10  # notes issued after a session, each once
+MAX_DEATHS = 3  # deaths of workers after which a run counts as failed
 
 
 @dataclass(frozen=True)
@@ -129,7 +129,7 @@ def resume(
 def expected_duration(scenes: Sequence[str], *, jobs: Optional[int] = None) -> tuple[float, int]:
     """Return the expected time of runs on this machine, s, and the number of runs at once.
 
-    Measures the machine's speed for a fraction of a second.
+    The machine's speed is measured for a fraction of a second.
 
     Parameters
     ----------
@@ -152,7 +152,7 @@ def _compute(
     progress: Optional[Reporter],
 ) -> None:
     runs = {run.hash: run for name in studies for run in store.runs(name)}
-    _tidy(store)  # before runs are reset, whose folders may hold the failure
+    _remove_leftovers(store)  # before failed runs are reset: their folders may hold the failure
     if retry_failed:
         store.reset(hash_ for hash_, run in runs.items() if run.status == "failed")
         runs = {run.hash: run for name in studies for run in store.runs(name)}
@@ -173,7 +173,7 @@ def _compute(
 
 
 def _issue_run_notes(notes: Counter[str]) -> None:
-    """Give the notes on runs, the most frequent first."""
+    """Issue the notes on runs, the most frequent first."""
     for note, runs in notes.most_common(MAX_NOTES):
         issue_note(f"{runs} {'run' if runs == 1 else 'runs'}: {note}")
     if len(notes) > MAX_NOTES:
@@ -190,8 +190,8 @@ def _check_version(store: Store, pending: Sequence[StoredRun]) -> None:
             )
 
 
-def _tidy(store: Store) -> None:
-    """Remove files of killed processes that no run needs to resume, and no foreign files."""
+def _remove_leftovers(store: Store) -> None:
+    """Remove files of killed processes that no run needs to resume; foreign files stay."""
     for path in store.running.iterdir():
         if path.is_symlink():
             continue
@@ -231,14 +231,14 @@ class _Session:
         self.elsewhere: list[StoredRun] = []
         self.looked = -math.inf
         self.deaths: Counter[str] = Counter()
-        self.notes: Counter[str] = Counter()  # on how many runs each was made
+        self.notes: Counter[str] = Counter()  # number of runs by note
 
     def run(self, report: Optional[Callable[[], None]]) -> None:
         """Compute until no run is missing."""
         try:
             self._compute(report)
         except StudyError:
-            with suppress(StudyError):  # it may be the store that takes nothing more
+            with suppress(StudyError):  # the store itself may have failed
                 self._stop()
             raise
 
@@ -253,7 +253,7 @@ class _Session:
                 report()
             ended = self._wait()
             self._hand_out()  # before anything is stored: no worker need wait for the disk
-            ended.sort(key=lambda pair: pair[1].status == "unable")  # which raises: store the rest
+            ended.sort(key=lambda pair: pair[1].status == "unable")  # raises: store the rest first
             for run, outcome in ended:
                 self._settle(run, outcome)
         if report:
@@ -312,9 +312,9 @@ class _Session:
     def _after_death(self, outcome: RunOutcome) -> RunOutcome:
         """Return the outcome of a run whose worker died; a run fails after several deaths."""
         self.deaths[outcome.hash] += 1
-        if self.deaths[outcome.hash] < DEATHS:
+        if self.deaths[outcome.hash] < MAX_DEATHS:
             return outcome
-        error = f"gave up after {DEATHS} attempts: {outcome.error}"
+        error = f"gave up after {MAX_DEATHS} attempts: {outcome.error}"
         return RunOutcome(outcome.hash, "failed", error=error)
 
     def _store(self, outcome: RunOutcome) -> None:

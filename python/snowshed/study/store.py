@@ -28,7 +28,7 @@ from snowshed.study.database import (
     connect,
     connect_read_only,
     transaction,
-    translated,
+    translate_errors,
 )
 from snowshed.study.locks import holding
 from snowshed.study.outcome import RunOutcome
@@ -161,8 +161,8 @@ class Store:
                 ((study, position, run.hash) for position, run in enumerate(runs)),
             )
             for run in runs:
-                checksums.note_run(write, run.hash)
-            checksums.note_study(write, study)
+                checksums.store_run_checksum(write, run.hash)
+            checksums.store_study_checksum(write, study)
 
     def studies(self) -> list[str]:
         """Return the names of the studies."""
@@ -249,7 +249,7 @@ class Store:
 
     def check_results(self, hash_: str) -> None:
         """Raise InputError if the results of a run have changed since they were stored."""
-        with translated(self.folder):
+        with translate_errors(self.folder):
             self._check(f"results {hash_}", lambda: checksums.results_of(self._connection, hash_))
 
     def _check(self, name: str, content: Callable[[], object]) -> None:
@@ -264,7 +264,7 @@ class Store:
     @property
     def _digests(self) -> Mapping[str, str]:
         """The checksums by name, read again when the store has changed."""
-        with translated(self.folder):
+        with translate_errors(self.folder):
             version = self._connection.execute("PRAGMA data_version").fetchone()[0]
         state = (version, self._connection.total_changes)
         if self._read_digests[0] != state:
@@ -316,7 +316,7 @@ class Store:
                 key = {"hash": outcome.hash, "event": event}
                 _insert(write, "event_particles", {**key, "data": data})
             _insert(write, "run_timing", {"hash": outcome.hash, **outcome.timing})
-            checksums.note_results(write, outcome.hash)
+            checksums.store_results_checksum(write, outcome.hash)
 
     def reset(self, hashes: Iterable[str]) -> None:
         """Set failed runs to pending."""
@@ -364,12 +364,12 @@ class Store:
 
     def read(self, query: str, values: Sequence[Any] = ()) -> list[tuple[Any, ...]]:
         """Return the rows of a query."""
-        with translated(self.folder):
+        with translate_errors(self.folder):
             return self._connection.execute(query, values).fetchall()
 
     @contextmanager
     def _transaction(self) -> Iterator[sqlite3.Connection]:
-        with translated(self.folder), transaction(self._connection) as write:
+        with translate_errors(self.folder), transaction(self._connection) as write:
             yield write
 
 

@@ -126,7 +126,7 @@ def name_in_errors(file: Path) -> Iterator[None]:
     try:
         yield
     except InputError as error:
-        if str(error).startswith(f"{file}: "):  # it could not even be read
+        if str(error).startswith(f"{file}: "):  # the message names the file already
             raise
         raise InputError(f"{file}: {error}") from None
     except RecursionError:
@@ -216,16 +216,16 @@ def _scene(data: Mapping[str, Any], folder: Path) -> Scene:
         _typed(value, str, f"scene.{key}", "a text")
     scene = Scene()
     if "preset" in sources:
-        scene = _named("scene", Scene.preset, sources["preset"])
+        scene = _with_place("scene", Scene.preset, sources["preset"])
     if "file" in sources:
         scene.update(_scene_file(Path(sources["file"])))
     if "snow_preset" in sources:
-        snow = _named("scene", Snow.preset, sources["snow_preset"])
+        snow = _with_place("scene", Snow.preset, sources["snow_preset"])
         scene.update({"snow": snow.to_data()})
-    _named("scene", scene.update, given)
+    _with_place("scene", scene.update, given)
     for key, value in given.items():
         if value == {} and getattr(scene, key, None) is None:  # a part with all its defaults
-            _named("scene", scene.set, key, value)
+            _with_place("scene", scene.set, key, value)
     for key, path in (("dimension", "dimension"), ("events", "events.count")):
         if key in data:
             scene.set(path, _typed(data[key], int, key, "a whole number"))
@@ -233,7 +233,7 @@ def _scene(data: Mapping[str, Any], folder: Path) -> Scene:
     names = {key: FORMER_NAMES.get(key, key) for key in accuracy}
     settings = accuracy_of(scene.to_data())
     _check_keys(names.values(), tuple(settings), "accuracy.")
-    _named("accuracy", check_once, names, "")
+    _with_place("accuracy", check_once, names, "")
     return scene.update({settings[names[key]]: value for key, value in accuracy.items()})
 
 
@@ -282,7 +282,7 @@ def _factors(data: Mapping[str, Any], where: str) -> list[Factor]:
     """Return the factors in a table with the keys axes, zip and sample."""
     axes = _flatten(_table(data.get("axes", {}), f"{where}axes"))
     return [
-        *(_named(f"{where}axes", axis, path, _values(value, f"{where}axes.{path}"))
+        *(_with_place(f"{where}axes", axis, path, _values(value, f"{where}axes.{path}"))
           for path, value in axes.items()),
         *(_zipped(table, inside) for table, inside in _tables(data, "zip", where)),
         *(_sample(table, inside) for table, inside in _tables(data, "sample", where)),
@@ -291,7 +291,7 @@ def _factors(data: Mapping[str, Any], where: str) -> list[Factor]:
 
 def _zipped(table: Mapping[str, Any], where: str) -> Factor:
     columns = {path: _values(value, f"{where}.{path}") for path, value in _flatten(table).items()}
-    return _named(where, Factor, columns)
+    return _with_place(where, Factor, columns)
 
 
 def _sample(table: Mapping[str, Any], where: str) -> Factor:
@@ -304,12 +304,12 @@ def _sample(table: Mapping[str, Any], where: str) -> Factor:
     seed = _typed(table.get("seed", 1), int, f"{where}.seed", "a whole number")
     axes = _flatten(_table(table.get("axes", {}), f"{where}.axes"))
     spans = {path: _span(value, f"{where}.axes.{path}") for path, value in axes.items()}
-    return _named(where, SAMPLE_METHODS[method], spans, count, seed=seed)
+    return _with_place(where, SAMPLE_METHODS[method], spans, count, seed=seed)
 
 
 def _span(value: Any, where: str) -> Span:
     numbers = _range_numbers(value, SPAN_KEYS, where)
-    return _named(where, Span, numbers["from"], numbers["to"], value.get("scale", "linear"))
+    return _with_place(where, Span, numbers["from"], numbers["to"], value.get("scale", "linear"))
 
 
 def _values(value: Any, where: str) -> list[Any]:
@@ -326,11 +326,11 @@ def _range(value: Mapping[str, Any], where: str) -> list[float]:
         _typed(value["count"], int, f"{where}.count", "a whole number")
     scale = value.get("scale", "linear")
     if scale == "linear":
-        return _named(where, linear, start, stop, **numbers)
+        return _with_place(where, linear, start, stop, **numbers)
     if scale == "log":
         if "step" in numbers or "count" not in numbers:
             raise InputError(f"{where}: a logarithmic range needs a count, and has no step")
-        return _named(where, logarithmic, start, stop, numbers["count"])
+        return _with_place(where, logarithmic, start, stop, numbers["count"])
     raise InputError(f"{where}.scale: {scale!r} is unknown; allowed: {', '.join(SCALES)}")
 
 
@@ -399,7 +399,7 @@ def _typed(value: Any, kind: type, where: str, expected: str) -> Any:
     return value
 
 
-def _named(where: str, make: Callable[..., Made], *arguments: Any, **options: Any) -> Made:
+def _with_place(where: str, make: Callable[..., Made], *arguments: Any, **options: Any) -> Made:
     """Call `make`, and name the place in the file in its errors."""
     try:
         return make(*arguments, **options)

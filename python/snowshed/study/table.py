@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 #: Trimming rule of A.4.2 in tables from before they named it.
 FORMER_TRIMMING = "equal_pace"
-FAILED = "failed"  # what the column `ended` says of the event at which a run failed
+FAILED = "failed"  # value of the column `ended` for the event at which a run failed
 RUN_TIMING = tuple(TIMING)
 
 
@@ -78,7 +78,7 @@ def read_table(
         **dict.fromkeys(NUMBERS, float),
     }
     for column in measured:
-        if column not in types and table[column].isna().all():  # the table of no stack at all
+        if column not in types and table[column].isna().all():  # a table without any stack
             types[column] = float
     return with_trimming(table.astype({k: v for k, v in types.items() if k in table}))
 
@@ -86,8 +86,9 @@ def read_table(
 def with_trimming(table: pd.DataFrame) -> pd.DataFrame:
     """Return a table whose rows all name their trimming rule of A.4.2.
 
-    Rows from before there were two rules do not; they follow `FORMER_TRIMMING`, and its columns get
-    their measures, too. A run that failed has no measures, and names no rule.
+    Rows from before there were two rules name none. They follow `FORMER_TRIMMING`, and their
+    measures are copied into the columns of that rule. A run that failed has no measures, and no
+    rule.
 
     Examples
     --------

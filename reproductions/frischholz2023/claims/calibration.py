@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     import pandas as pd
 
-#: Share of the sets, the best first, that should contain a known snow.
+#: Share of the best sets that should contain a known snow.
 BEST_PART = 0.25
 
 
@@ -61,7 +61,7 @@ def is_ranked_well(data: Recovery) -> Finding:
 def is_in_the_ranges(data: Recovery) -> Finding:
     """Test whether the 95 % ranges of the posterior hold the true snow.
 
-    One of three may miss it by chance, in one draw of the errors out of seven.
+    One of three ranges misses it by chance in about one of seven draws of the errors.
 
     p0 and beta of the true snow lie at the ends of the grid, which no range between quantiles
     reaches: a range that is open at an end extends to it.

@@ -1,7 +1,7 @@
 """Likely causes of contradictions to claims of the thesis, by the claim's text.
 
-Only ``docs/trust/thesis-claims.md`` shows them. A cause states how it was tested, or that it was
-not.
+Only ``docs/trust/thesis-claims.md`` shows them. Each cause states its test, or that it was not
+tested.
 """
 
 from __future__ import annotations

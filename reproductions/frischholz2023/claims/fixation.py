@@ -1,8 +1,8 @@
 """Claims of section 3.4: effects of a parameter, on average over all other parameters.
 
 The data are the table of `snowshed.analysis.sensitivity.fixation` with a column ``noise_m``: the
-standard deviation that the seeding gives ``mean_m``. Where the event is not named, it is the last.
-Values of the other parameters are a design, not a sample: only the seeding is random.
+standard deviation that the seeding gives ``mean_m``. A number without an event belongs to the last
+one. Values of the other parameters are a design, not a sample: only the seeding is random.
 """
 
 from __future__ import annotations
@@ -35,11 +35,11 @@ if TYPE_CHECKING:
     import pandas as pd
 
 #: Largest relative change of the stack over the range of a parameter that hardly matters.
-HARDLY = 0.1
+MAX_MINOR_CHANGE = 0.1
 #: Cohesion below which the other parameters should matter little (3.4.1, takeaways).
-DRIVES = 0.2
+MAX_WEAK_COHESION = 0.2
 #: Largest relative deviation of an "almost insensitive" height.
-INSENSITIVE = 0.1
+MAX_INSENSITIVE_DEVIATION = 0.1
 YIELD = (SLOPE, PRESSURE, COHESION)
 
 
@@ -76,7 +76,7 @@ def hardly_matter(table: pd.DataFrame, target: str) -> Finding:
     for parameter in (HARDENING, MODULUS):
         mean = _last(_target_rows(table, target), parameter)["mean_m"].mean()
         change = effect(table, parameter, target).scaled(1 / mean)
-        findings.append(small(change, HARDLY, _change(parameter, target), "%"))
+        findings.append(small(change, MAX_MINOR_CHANGE, _change(parameter, target), "%"))
     return all_of(findings)
 
 
@@ -138,10 +138,10 @@ def cohesion_drives(table: pd.DataFrame) -> Finding:
     """Test whether heights of all events hardly scatter over M and p0 where beta is small."""
     findings = []
     for event, rows in _by_event(_target_rows(table, "height"), COHESION):
-        for _, row in rows[rows["value"] < DRIVES * (1 - 1e-9)].iterrows():
+        for _, row in rows[rows["value"] < MAX_WEAK_COHESION * (1 - 1e-9)].iterrows():
             scatter = _deviation(row).scaled(1 / row["mean_m"])
             what = f"scatter at β {row['value']:g}, event {event:g}"
-            findings.append(small(scatter, INSENSITIVE, what, "%"))
+            findings.append(small(scatter, MAX_INSENSITIVE_DEVIATION, what, "%"))
     return all_of(findings)
 
 
@@ -154,7 +154,7 @@ def _last(rows: pd.DataFrame, parameter: str) -> pd.DataFrame:
 
 
 def _by_event(rows: pd.DataFrame, parameter: str) -> list[tuple[Any, pd.DataFrame]]:
-    """Return the rows of a parameter by event, each sorted by its values."""
+    """Return the rows of a parameter by event, each group sorted by the parameter's values."""
     rows = rows[rows["parameter"] == parameter]
     if rows["value"].nunique() < 2:
         raise LookupError(f"two values of {label(parameter).symbol}")
@@ -168,7 +168,7 @@ def _ends(rows: pd.DataFrame) -> tuple[Estimate, Estimate]:
 
 
 def _mean(rows: pd.DataFrame) -> Estimate:
-    """Return the mean over the values of the first parameter, and so over its group."""
+    """Return the mean over the values of the first parameter, which is the mean over its group."""
     rows = rows[rows["parameter"] == rows["parameter"].iloc[0]]
     return mean_of([Estimate(m, n) for m, n in zip(rows["mean_m"], rows["noise_m"])])
 
@@ -186,7 +186,7 @@ def _deviation(row: pd.Series[float]) -> Estimate:
     squared = max(float(row["deviation_m"]) ** 2 - seeding, 0.0)
     of_squared = math.sqrt((4 * squared * seeding + 2 * seeding**2) / (points - 1))
     deviation = math.sqrt(squared)
-    hidden = 4 * squared <= of_squared  # then the noise is what the seeding may hide
+    hidden = 4 * squared <= of_squared  # the noise is the deviation that seeding may hide
     return Estimate(deviation, math.sqrt(of_squared) if hidden else of_squared / (2 * deviation))
 
 
@@ -194,13 +194,13 @@ def _change(parameter: str, target: str) -> str:
     return f"{target}, highest minus lowest {label(parameter).symbol}"
 
 
-RAISE = "mean over the others higher at the highest value than at the lowest, last event"
+RAISES_CRITERION = "mean over the others higher at the highest value than at the lowest, last event"
 FIXATION: tuple[Claim[pd.DataFrame], ...] = (
     *(
         Claim(
             "3.4.1",
             f"{label(parameter).symbol} raises the stack.",
-            RAISE,
+            RAISES_CRITERION,
             partial(raises, parameter=parameter, target="height"),
         )
         for parameter in YIELD
@@ -209,7 +209,7 @@ FIXATION: tuple[Claim[pd.DataFrame], ...] = (
         Claim(
             "3.4.1",
             f"{label(parameter).symbol} shortens the stack.",
-            RAISE.replace("higher", "lower"),
+            RAISES_CRITERION.replace("higher", "lower"),
             partial(lowers, parameter=parameter, target="length"),
         )
         for parameter in (SLOPE, COHESION)
@@ -217,14 +217,15 @@ FIXATION: tuple[Claim[pd.DataFrame], ...] = (
     Claim(
         "3.4.1",
         "p₀ lengthens the stack.",
-        RAISE,
+        RAISES_CRITERION,
         partial(raises, parameter=PRESSURE, target="length"),
     ),
     *(
         Claim(
             source,
             f"ξ and E hardly matter for the {target}.",
-            f"over the whole range of each the mean changes by less than {percent(HARDLY)}",
+            "over the whole range of each the mean changes by "
+            f"less than {percent(MAX_MINOR_CHANGE)}",
             partial(hardly_matter, target=target),
         )
         for source, target in (("3.4.2", "height"), ("3.5", "length"))
@@ -232,7 +233,7 @@ FIXATION: tuple[Claim[pd.DataFrame], ...] = (
     Claim(
         "3.4.2",
         "ξ lowers the stack when there is much snow.",
-        RAISE.replace("higher", "lower"),
+        RAISES_CRITERION.replace("higher", "lower"),
         partial(lowers, parameter=HARDENING, target="height"),
     ),
     Claim(
@@ -272,8 +273,9 @@ FIXATION: tuple[Claim[pd.DataFrame], ...] = (
     ),
     Claim(
         "3.4.1",
-        f"Below β {DRIVES:g}, β drives the height: M and p₀ hardly matter.",
-        f"deviation over M and p₀ below {percent(INSENSITIVE)} of the height, every event",
+        f"Below β {MAX_WEAK_COHESION:g}, β drives the height: M and p₀ hardly matter.",
+        "deviation over M and p₀ "
+        f"below {percent(MAX_INSENSITIVE_DEVIATION)} of the height, every event",
         cohesion_drives,
     ),
 )

@@ -36,13 +36,13 @@ if TYPE_CHECKING:
 PANEL = ("panel_height", "panel_length", "panel_tilt")
 INPUTS = ("event", *PANEL)
 #: Ratio of remaining variances from which a shape fits better.
-FITS_BETTER = 1.5
+MIN_VARIANCE_RATIO = 1.5
 #: Largest departure of a parabola from a straight line, relative to the line's change.
-STRAIGHT = 0.25
+MAX_CURVATURE = 0.25
 #: Largest difference of equal slopes, relative to the mean slope.
-SAME = 0.25
+MAX_SLOPE_DIFFERENCE = 0.25
 #: Largest relative change of the ratio over all tilts if it hardly depends on them.
-HARDLY = 0.1
+MAX_TILT_EFFECT = 0.1
 
 #: Units of the inputs in slopes.
 UNITS = {
@@ -161,7 +161,7 @@ def slopes_are_the_same(table: pd.DataFrame) -> Finding:
     if not mean:
         raise LookupError("a slope")
     text = "largest difference between slopes of two events, of the mean slope"
-    return small((high - low).scaled(1 / mean), SAME, text, "%")
+    return small((high - low).scaled(1 / mean), MAX_SLOPE_DIFFERENCE, text, "%")
 
 
 def is_logarithmic(table: pd.DataFrame) -> Finding:
@@ -170,9 +170,9 @@ def is_logarithmic(table: pd.DataFrame) -> Finding:
     logarithm = fit(table, "panel_length", "ratio", np.log).variance
     better = line / logarithm
     verdict = UNDECIDED
-    if better > FITS_BETTER:
+    if better > MIN_VARIANCE_RATIO:
         verdict = CONFIRMED
-    elif better < 1 / FITS_BETTER:
+    elif better < 1 / MIN_VARIANCE_RATIO:
         verdict = CONTRADICTED
     text = "variance left by a straight line over that left by a logarithm"
     return Finding(verdict, f"{text}: {better:.2f}")
@@ -185,7 +185,7 @@ def is_linear_in_height(table: pd.DataFrame) -> Finding:
     slope, bend = parabola.slopes
     change = slope.value * parabola.span
     departure = bend.scaled((parabola.span / 2) ** 2 / change)
-    return small(departure, STRAIGHT, "departure from a line, of the line's change", "%")
+    return small(departure, MAX_CURVATURE, "departure from a line, of the line's change", "%")
 
 
 def hardly_depends_on_tilt(table: pd.DataFrame) -> Finding:
@@ -198,7 +198,7 @@ def hardly_depends_on_tilt(table: pd.DataFrame) -> Finding:
     low, high = min(means, key=_value), max(means, key=_value)
     tilts = [first, *others]
     text = f"{tilts[means.index(high)]:g} and {tilts[means.index(low)]:g} degrees"
-    return small(high - low, HARDLY, f"largest relative difference of H/L, of {text}", "%")
+    return small(high - low, MAX_TILT_EFFECT, f"largest relative difference of H/L, of {text}", "%")
 
 
 def _equal(x: Floats, value: float) -> Floats:
@@ -229,7 +229,8 @@ GEOMETRY: tuple[Claim[pd.DataFrame], ...] = (
     Claim(
         "5.1.2",
         "H/L grows with the logarithm of the panel's length.",
-        f"a logarithm leaves {FITS_BETTER} times less variance than a straight line (no noise)",
+        f"a logarithm leaves {MIN_VARIANCE_RATIO} "
+        "times less variance than a straight line (no noise)",
         is_logarithmic,
     ),
     _grows("The stack's height grows with the panel's length.", "panel_length", "height"),
@@ -239,19 +240,21 @@ GEOMETRY: tuple[Claim[pd.DataFrame], ...] = (
     Claim(
         "5.1.2",
         "H/L falls linearly with the panel's height.",
-        f"a parabola departs from the line by less than {percent(STRAIGHT)} of the line's change",
+        f"a parabola departs from the line by less than {percent(MAX_CURVATURE)} "
+        "of the line's change",
         is_linear_in_height,
     ),
     Claim(
         "5.1.2",
         "H/L falls with the same slope at every event.",
-        f"no two events' slopes differ by more than {percent(SAME)} of the mean slope",
+        f"no two events' slopes differ by more than {percent(MAX_SLOPE_DIFFERENCE)} "
+        "of the mean slope",
         slopes_are_the_same,
     ),
     Claim(
         "5.1.2",
         "H/L hardly depends on the tilt.",
-        f"between no two tilts it changes by more than {percent(HARDLY)} of itself",
+        f"between no two tilts it changes by more than {percent(MAX_TILT_EFFECT)} of itself",
         hardly_depends_on_tilt,
     ),
     _grows("The stack's length grows slightly with the tilt.", "panel_tilt", "length"),

@@ -30,12 +30,12 @@ if TYPE_CHECKING:
     import pandas as pd
 
 #: Ratio of thesis 5.1, and its largest deviation that counts as "about".
-RATIO_3D_2D, RATIO_ABOUT = 2 / 3, 0.1
+RATIO_3D_2D, RATIO_TOLERANCE = 2 / 3, 0.1
 #: Section 4.3: mean errors of 0.010 m, about 10 %, and 0.061 m, about 20 %, give the mean stack.
-MEAN_HEIGHT, HEIGHT_ABOUT = 0.10, 0.010
-MEAN_LENGTH, LENGTH_ABOUT = 0.30, 0.061
+MEAN_HEIGHT, HEIGHT_TOLERANCE = 0.10, 0.010
+MEAN_LENGTH, LENGTH_TOLERANCE = 0.30, 0.061
 #: Largest motion of a tail that hardly moves, relative to the stack's length.
-TAIL_STAYS = 0.1
+MAX_TAIL_MOTION = 0.1
 #: Share of all events' snow that separates a slab that stayed from a slab that slid.
 STAYS = 0.5
 
@@ -43,16 +43,16 @@ Metric = Callable[..., float]
 
 
 def mean_over_runs(rows: pd.DataFrame, metric: Metric) -> Estimate:
-    """Return the mean of a number of each run, over the tilts, with its seeding noise.
+    """Return the mean of a metric over runs and tilts, with its seeding noise.
 
-    The noise is pooled over the tilts, and widened where it is known from few seedings.
+    The noise is pooled over the tilts, and widened if there are few seedings.
 
     Parameters
     ----------
     rows
         See the module.
     metric
-        From the rows of a run, by event, to its number.
+        Function from the rows of a run, by event, to a number.
 
     Examples
     --------
@@ -90,7 +90,7 @@ def head_walks_back(rows: pd.DataFrame) -> Finding:
 def tail_stays(rows: pd.DataFrame) -> Finding:
     """Test whether the tail moves by less than a tenth of the length after the first event."""
     moved = mean_over_runs(rows, lambda run: _growth(run, "tail") / run["length"].iloc[-1])
-    return small(moved, TAIL_STAYS, "tail, last event minus first, of the last length", "%")
+    return small(moved, MAX_TAIL_MOTION, "tail, last event minus first, of the last length", "%")
 
 
 def head_makes_the_length(rows: pd.DataFrame) -> Finding:
@@ -165,13 +165,13 @@ def steeper_throws_further(rows: pd.DataFrame) -> Finding:
 def mean_height(rows: pd.DataFrame) -> Finding:
     """Test whether the mean height over the events is about that of the laboratory."""
     height = mean_over_runs(rows, lambda run: float(run["height"].mean()))
-    return near(height, MEAN_HEIGHT, HEIGHT_ABOUT, "mean height over the events", "m")
+    return near(height, MEAN_HEIGHT, HEIGHT_TOLERANCE, "mean height over the events", "m")
 
 
 def mean_length(rows: pd.DataFrame) -> Finding:
     """Test whether the mean length over the events is about that of the laboratory."""
     length = mean_over_runs(rows, lambda run: float(run["length"].mean()))
-    return near(length, MEAN_LENGTH, LENGTH_ABOUT, "mean length over the events", "m")
+    return near(length, MEAN_LENGTH, LENGTH_TOLERANCE, "mean length over the events", "m")
 
 
 def ratio_of_dimensions(both: tuple[pd.DataFrame, pd.DataFrame]) -> Finding:
@@ -188,7 +188,7 @@ def ratio_of_dimensions(both: tuple[pd.DataFrame, pd.DataFrame]) -> Finding:
     ratio = three.value / two.value
     parts = math.hypot(three.noise / three.value, two.noise / two.value)
     text = "3D over 2D height after the last event"
-    return near(Estimate(ratio, ratio * parts), RATIO_3D_2D, RATIO_ABOUT, text)
+    return near(Estimate(ratio, ratio * parts), RATIO_3D_2D, RATIO_TOLERANCE, text)
 
 
 def slabs_stop_at_30_degrees(rows: pd.DataFrame) -> Finding:
@@ -218,7 +218,7 @@ GROWTH: tuple[Claim[pd.DataFrame], ...] = (
     Claim(
         "2.4.1",
         "The tail hardly moves after the first event.",
-        f"it moves by less than {percent(TAIL_STAYS)} of the last length",
+        f"it moves by less than {percent(MAX_TAIL_MOTION)} of the last length",
         tail_stays,
     ),
     Claim(
@@ -254,14 +254,14 @@ GROWTH: tuple[Claim[pd.DataFrame], ...] = (
     Claim(
         "4.3",
         "The calibrated snow's stacks are about 0.1 m high.",
-        f"mean over events and tilts within {HEIGHT_ABOUT} m (the thesis's mean error) of "
+        f"mean over events and tilts within {HEIGHT_TOLERANCE} m (the thesis's mean error) of "
         f"{MEAN_HEIGHT} m (that error is about 10 %)",
         mean_height,
     ),
     Claim(
         "4.3",
         "The calibrated snow's stacks are about 0.3 m long.",
-        f"mean over events and tilts within {LENGTH_ABOUT} m (the thesis's mean error) of "
+        f"mean over events and tilts within {LENGTH_TOLERANCE} m (the thesis's mean error) of "
         f"{MEAN_LENGTH} m (that error is about 20 %)",
         mean_length,
     ),
@@ -270,7 +270,7 @@ DIMENSIONS: tuple[Claim[tuple[pd.DataFrame, pd.DataFrame]], ...] = (
     Claim(
         "5.1.1",
         "In 3D a stack is about 2/3 as high as in 2D when height and width are comparable.",
-        f"ratio after the last event within {RATIO_ABOUT} of 2/3; the panel is 0.33 m high and "
+        f"ratio after the last event within {RATIO_TOLERANCE} of 2/3; the panel is 0.33 m high and "
         "0.213 m wide",
         ratio_of_dimensions,
     ),

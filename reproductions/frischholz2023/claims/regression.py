@@ -21,19 +21,19 @@ from reproductions.common.hypothesis_tests import (
     widening,
 )
 from reproductions.frischholz2023.printed import THESIS_ERRORS, THESIS_QUARTILES, THESIS_ROWS
-from snowshed.analysis.regression.published import LINEAR_WORSE, QUARTILES_OFF
+from snowshed.analysis.regression.published import MAX_QUARTILE_DEVIATION, MIN_LINEAR_OVER_RBF
 from snowshed.base.arrays import Floats
 from snowshed.base.formatting import percent
 
 if TYPE_CHECKING:
     import pandas as pd
 
-#: "Sub-centimetre": H/L has no unit, so that its error is compared with the plain number.
+#: "Sub-centimetre": H/L has no unit, so its error is compared with the plain number.
 SUB_CENTIMETRE = 0.01
 #: Validation score of the RBF kernel in section 5.3.1.
 VALIDATION_SCORE = 0.005
 #: Two numbers are about equal up to this relative difference.
-ABOUT = 0.25
+RELATIVE_TOLERANCE = 0.25
 
 
 @dataclass(frozen=True)
@@ -109,13 +109,18 @@ def rbf_is_better_by_ratio(data: RegressionResults) -> Finding:
     ratio = linear.value / rbf.value
     noise = ratio * math.hypot(linear.noise / linear.value, rbf.noise / rbf.value)
     text = "validation score, linear over RBF"
-    return near(Estimate(ratio, noise), LINEAR_WORSE, ABOUT * LINEAR_WORSE, text)
+    return near(
+        Estimate(ratio, noise), MIN_LINEAR_OVER_RBF, RELATIVE_TOLERANCE * MIN_LINEAR_OVER_RBF, text
+    )
 
 
 def score_agrees(data: RegressionResults) -> Finding:
     """Test whether the RBF kernel's validation score is about 0.005."""
     finding = near(
-        validation(data, "rbf"), VALIDATION_SCORE, ABOUT * VALIDATION_SCORE, "validation score, RBF"
+        validation(data, "rbf"),
+        VALIDATION_SCORE,
+        RELATIVE_TOLERANCE * VALIDATION_SCORE,
+        "validation score, RBF",
     )
     return _undecided_unless_all_rows(finding, data)
 
@@ -146,7 +151,7 @@ def error_agrees(data: RegressionResults, model: str) -> Finding:
     """Test whether a model's mean absolute error is about that of Table 5.3.2."""
     aim = THESIS_ERRORS[model][0]
     text = f"mean absolute error (thesis {aim})"
-    finding = near(mean_error(data, model), aim, ABOUT * aim, text)
+    finding = near(mean_error(data, model), aim, RELATIVE_TOLERANCE * aim, text)
     return _undecided_unless_all_rows(finding, data)
 
 
@@ -162,7 +167,9 @@ def quartiles_agree(data: RegressionResults) -> Finding:
         # The largest prediction, Q4, belongs to a single panel, the other quartiles to many.
         noise = scatter / np.array([*[math.sqrt(data.panels)] * 3, 1.0]) / np.array(printed)
         worst = Estimate(float(off.max()), float(noise[off.argmax()]))
-        findings.append(near(worst, 0.0, QUARTILES_OFF, f"{model}, worst quartile off by", "%"))
+        findings.append(
+            near(worst, 0.0, MAX_QUARTILE_DEVIATION, f"{model}, worst quartile off by", "%")
+        )
     finding = all_of(findings)
     return _undecided_unless_all_rows(finding, data)
 
@@ -184,14 +191,14 @@ REGRESSION: tuple[Claim[RegressionResults], ...] = (
     ),
     Claim(
         "5.3.1",
-        f"The RBF kernel is about {LINEAR_WORSE} times better.",
-        f"ratio of validation scores within {percent(ABOUT)} of {LINEAR_WORSE}",
+        f"The RBF kernel is about {MIN_LINEAR_OVER_RBF} times better.",
+        f"ratio of validation scores within {percent(RELATIVE_TOLERANCE)} of {MIN_LINEAR_OVER_RBF}",
         rbf_is_better_by_ratio,
     ),
     Claim(
         "5.3.1",
         f"The RBF kernel's validation score is about {VALIDATION_SCORE}.",
-        f"within {percent(ABOUT)}, for a data set of {THESIS_ROWS} rows",
+        f"within {percent(RELATIVE_TOLERANCE)}, for a data set of {THESIS_ROWS} rows",
         score_agrees,
     ),
     Claim(
@@ -215,19 +222,19 @@ REGRESSION: tuple[Claim[RegressionResults], ...] = (
     Claim(
         "Table 5.3.2",
         f"The RBF kernel's mean absolute error is {THESIS_ERRORS['rbf'][0]}.",
-        f"within {percent(ABOUT)}, for a data set of {THESIS_ROWS} rows",
+        f"within {percent(RELATIVE_TOLERANCE)}, for a data set of {THESIS_ROWS} rows",
         lambda data: error_agrees(data, "rbf"),
     ),
     Claim(
         "Table 5.3.2",
         f"The linear kernel's mean absolute error is {THESIS_ERRORS['linear'][0]}.",
-        f"within {percent(ABOUT)}, for a data set of {THESIS_ROWS} rows",
+        f"within {percent(RELATIVE_TOLERANCE)}, for a data set of {THESIS_ROWS} rows",
         lambda data: error_agrees(data, "linear"),
     ),
     Claim(
         "Table 5.3.1",
         "The quartiles of the predicted H/L.",
-        f"all within {percent(QUARTILES_OFF)}, for a data set of {THESIS_ROWS} rows",
+        f"all within {percent(MAX_QUARTILE_DEVIATION)}, for a data set of {THESIS_ROWS} rows",
         quartiles_agree,
     ),
 )

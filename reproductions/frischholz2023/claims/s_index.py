@@ -1,6 +1,6 @@
 """Claims of section 3.3, about the single-parameter index S.
 
-The data are the table of `snowshed.analysis.sensitivity.local_index`. S is that after the last
+The data are the table of `snowshed.analysis.sensitivity.local_index`. S is taken after the last
 event.
 """
 
@@ -30,7 +30,7 @@ COHESION = "snow.cohesion"
 HARDENING = "snow.hardening_factor"
 MODULUS = "snow.youngs_modulus"
 #: Largest |S| of a negligible effect: doubling the parameter changes the stack by a tenth.
-HARDLY = 0.1
+MAX_MINOR_INDEX = 0.1
 
 
 def index(table: pd.DataFrame, parameter: str, target: str, *, last: bool = True) -> Estimate:
@@ -62,9 +62,9 @@ def lowers(table: pd.DataFrame, parameter: str, target: str) -> Finding:
 
 
 def hardly_matter(table: pd.DataFrame, target: str) -> Finding:
-    """Test whether |S| of both hardening parameters is below `HARDLY`."""
+    """Test whether |S| of both hardening parameters is below `MAX_MINOR_INDEX`."""
     return all_of(
-        [small(index(table, parameter, target), HARDLY, _named(parameter, target))
+        [small(index(table, parameter, target), MAX_MINOR_INDEX, _named(parameter, target))
          for parameter in (HARDENING, MODULUS)]
     )  # fmt: skip
 
@@ -99,11 +99,11 @@ def slope_needs_mass(table: pd.DataFrame) -> Finding:
     """Test whether M matters for the height after the last event, and hardly after those before."""
     *before, last = indices(table, SLOPE, "height")
     what = _named(SLOPE, "height")
-    beyond = _magnitude(last) - Estimate(HARDLY, 0.0)
+    beyond = _magnitude(last) - Estimate(MAX_MINOR_INDEX, 0.0)
     return all_of(
         [
             *(
-                small(estimate, HARDLY, f"{what}, event {event}")
+                small(estimate, MAX_MINOR_INDEX, f"{what}, event {event}")
                 for event, estimate in enumerate(before, 1)
             ),
             Finding(positive(beyond, "").verdict, f"after the last: {last.text()}"),
@@ -163,13 +163,13 @@ S_INDEX: tuple[Claim[pd.DataFrame], ...] = (
     Claim(
         "3.3",
         "M matters for the height only when there is much snow.",
-        f"|S| above {HARDLY} after the last event, below it after those before",
+        f"|S| above {MAX_MINOR_INDEX} after the last event, below it after those before",
         slope_needs_mass,
     ),
     Claim(
         "3.3",
         "ξ and E hardly matter for the height.",
-        f"|S| of both below {HARDLY}, last event",
+        f"|S| of both below {MAX_MINOR_INDEX}, last event",
         partial(hardly_matter, target="height"),
     ),
     Claim(
@@ -193,7 +193,7 @@ S_INDEX: tuple[Claim[pd.DataFrame], ...] = (
     Claim(
         "3.3",
         "ξ and E hardly matter for the length.",
-        f"|S| of both below {HARDLY}, last event",
+        f"|S| of both below {MAX_MINOR_INDEX}, last event",
         partial(hardly_matter, target="length"),
     ),
     Claim(

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 #: Standard deviation of the synthetic measurements, relative, and the seed of their errors.
 UNCERTAINTY, ERRORS_SEED = 0.05, 1
 TEXT = (
-    "The thesis prints the measured stacks as figures only, so that the snow of the laboratory "
+    "The thesis prints the measured stacks as figures only, so the snow of the laboratory "
     "cannot be calibrated again. This section tests the procedure. A known snow, the calibrated "
     "snow of Table 4.3.1 (M 0.5, p₀ 7 kPa, β 0.2), is simulated at both tilts with a placement of "
     f"particles of its own (seed {TRUTH_SEED}), \u201cmeasured\u201d with random errors of "

@@ -67,11 +67,11 @@ def sample_text(stacks: pd.DataFrame) -> list[str]:
     longest, events = ours["panel.length"].max(), ours["event"].max()
     return [
         f"The sample has {panels} of the 122 panels of chapter 5, up to {longest:g} m long, with "
-        f"{events:g} events and {seeds} seeding{'s' if seeds > 1 else ''} each. They were chosen "
-        "by their geometry alone, and simulated with our settings, with each deviation undone, "
-        "and with all undone.",
-        f"{_cells_sentence(stacks)} Stacks are measured by outermost_first, except for the "
-        "deviation in the trimming and for all together.",
+        f"{events:g} events and {seeds} seeding{'s' if seeds > 1 else ''} each. The panels were "
+        "chosen by their geometry alone. They were simulated with our settings, with each "
+        "deviation undone, and with all undone.",
+        f"{_cells_sentence(stacks)} Stacks are measured by outermost_first, except where "
+        "the trimming or all deviations are undone.",
         "A change is the change of the mean stack below a panel, relative to our settings with "
         "the same seed; its noise is the standard error over the panels. A change of up to "
         f"{SIGMAS:g} standard errors may be chance.",

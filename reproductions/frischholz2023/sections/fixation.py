@@ -38,7 +38,7 @@ TEXT = (
     PANEL_FRICTION,
 )
 BORROWED = (
-    "Every point has one seeding, so that the noise is that of the index S (the same scene), "
+    "Every point has one seeding, so the noise is that of the index S (the same scene), "
     "relative to the stack.",
 )
 TITLES = {"yield": ("3.4.1 and 3.4.2", "yield"), "hardening": ("3.4.3 and 3.4.4", "hardening")}

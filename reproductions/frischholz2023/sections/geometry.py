@@ -22,7 +22,7 @@ from snowshed.study.table import read_table
 
 TEXT = (
     "Panels in 2D with the calibrated snow, a slab 5 cm thick and as long as the panel, level "
-    "ground. The thesis prints the single variations as a figure only (5.1.1), so that its words "
+    "ground. The thesis prints the single variations as a figure only (5.1.1), so its words "
     "are judged: each over all rows that share the other inputs, not only at the reference panel.",
 )
 CAPTION = "As Figure 5.1.1: each input in turn, the others at the reference panel."

@@ -30,9 +30,9 @@ COLUMNS = {
 TEXT = (
     "Five slabs slide off the model panel one after another; particles carry over from event to "
     "event. The thesis does not print the friction between snow and panel (it measured a static "
-    "coefficient of 0.6 to 0.8 on Plexiglas), so that stacks are given for each friction that was "
+    "coefficient of 0.6 to 0.8 on Plexiglas), so stacks are given for each friction that was "
     "computed, and claims are judged at 0.6.",
-    "The thesis prints the measured stacks as figures only (2.4.1 to 2.4.4), so that our stacks "
+    "The thesis prints the measured stacks as figures only (2.4.1 to 2.4.4), so our stacks "
     "cannot be compared with numbers. Claims about them are judged on simulated stacks. Only the "
     "mean stack follows from numbers: mean errors of 0.010 m (about 10 %) and 0.061 m (about 20 %) "
     "in Table 4.3.1 give a height of about 0.10 m and a length of about 0.30 m.",

@@ -32,8 +32,9 @@ TEXT = (
     "ε-SVR of H/L with a linear and an RBF kernel, hyper-parameters in powers of ten, chosen and "
     "scored by nested cross-validation (5.2.3): {rounds} rounds of {folds} outer and {inner} inner "
     "folds over {rows} rows; the thesis has 10 rounds of 10 and 5 over {thesis_rows}.",
-    "The thesis gives the error of H/L in metres; it has no unit. Where stacks are flatter, the "
-    "same error is a larger part of H/L: its part of the median prediction stands beside it.",
+    "The thesis gives the error of H/L in metres; it has no unit. The same error is a "
+    "larger share of H/L if stacks are flatter, so its share of the median prediction is listed, "
+    "too.",
 )
 MEANS = (
     "Each row of the thesis is one stack. Rows here are means of up to {seeds} stacks that differ "

@@ -19,7 +19,7 @@ from reproductions.frischholz2023.tables import (
     widenings,
 )
 from snowshed.analysis.sensitivity.noise import seeding_noise
-from snowshed.analysis.sensitivity.parameter_ranges import PAIRS
+from snowshed.analysis.sensitivity.parameter_values import PAIRS
 from snowshed.analysis.sensitivity.report import evaluate_sensitivity
 from snowshed.analysis.sensitivity.stored import read_study_runs
 from snowshed.plot.html_page import HtmlTable, Picture
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 TEXT = (
     "S is the relative change of the stack over the relative change of one parameter, all others "
-    "at their reference (3.3.1). The thesis prints its scores as a figure only, so that its words "
+    "at their reference (3.3.1). The thesis prints its scores as a figure only, so its words "
     "are judged.",
     PANEL_FRICTION,
 )

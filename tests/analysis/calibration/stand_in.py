@@ -42,7 +42,7 @@ def thesis_triplets():
 
 
 def table_of(triplets, noise=0.02, seeds=(1, 2), random=0):
-    """A study's table of such stacks; every seed has its own noise (a part of the value)."""
+    """A study's table of such stacks; every seed has its own noise (a share of the value)."""
     generator = np.random.default_rng(random)
     rows = []
     for snow, tilt, seed in itertools.product(triplets, TILTS, seeds):
@@ -72,7 +72,7 @@ def measured(snow, uncertainty=0.05, noise=0.02, random=0, quantities=("height",
 
 
 def fill(folder, study, pending=0):
-    """Put such stacks into the store of a study, in place of its runs'; the last ones may lack."""
+    """Store such stacks as results of a study's runs; the last `pending` runs get none."""
     with Store.create(folder) as store:
         store.register(study.name, study.axes, study.runs())
         for number, run in enumerate(study.runs()[: len(study.runs()) - pending]):

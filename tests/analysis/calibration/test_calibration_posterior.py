@@ -37,7 +37,7 @@ def test_the_surrogate_knows_runs_it_has_not_seen(surrogate):
 
 
 def test_known_snow_comes_back_inside_the_ranges(surrogate):
-    """Of the 95 % ranges of three snows nearly all hold the truth, and most of the 68 %."""
+    """Nearly all 95 % ranges of three snows hold the true value, and most 68 % ranges do."""
     random = np.random.default_rng(3)
     within = {"68": 0, "95": 0}
     for number in range(3):
@@ -61,7 +61,7 @@ def test_better_measurements_give_narrower_ranges(surrogate):
 
 
 def test_rounds_share_the_error_of_the_model(surrogate):
-    """More rounds of an exact measurement narrow nothing but what one round leaves to chance."""
+    """More rounds of an exact measurement reduce the chance of a single round, and nothing else."""
     once = measured((0.55, 5.5e3, 0.12), uncertainty=1e-4, noise=0)
     widths = []
     for rounds in (1, 40):
@@ -85,7 +85,7 @@ def test_a_poor_round_beside_a_good_one_does_not_widen_the_ranges(surrogate):
 
 
 def test_a_model_that_cannot_be_right_says_so(surrogate):
-    """Stacks twice as high as any snow's: the discrepancy takes it up, beyond its prior."""
+    """The discrepancy explains stacks twice as high as any snow's, beyond its prior."""
     snow = (0.55, 5.5e3, 0.12)
     right = posterior_of(surrogate, snow)
     doubled = [
@@ -118,10 +118,10 @@ def posterior_with(surrogate, unit):
 
 
 def test_chains_that_have_not_converged_are_told(surrogate):
-    """Independent draws are worth their number; few, or chains that disagree, are too little."""
+    """Independent draws count fully; few draws, or chains that disagree, do not suffice."""
     unit = np.random.default_rng(1).uniform(0.4, 0.6, size=(8, 500, 3))
     good = posterior_with(surrogate, unit)
-    assert good.converged and 3000 < good.effective < 5000
+    assert good.converged and 3000 < good.effective_samples < 5000
     assert (good.diagnostics["r_hat"] - 1).abs().max() < 0.01
     assert not posterior_with(surrogate, unit[:, :20]).converged
     apart = posterior_with(surrogate, unit + 0.1 * np.arange(8)[:, None, None])

@@ -57,19 +57,19 @@ def answer(winters, tmp_path_factory):
 def test_stacks_age_between_slide_offs_as_in_a_season(answer, tmp_path):
     found, folder = answer
     case = max(found.cases, key=lambda one: sum(day.released for day in one.days))
-    run = case.run(HEIGHT)
+    run = case.run_key(HEIGHT)
     table = read_table(folder, STUDY)
     rows = table[table["hash"] == run.hash]
     assert len(rows) > 1
     season = run_season(
-        case.winter.days, case.panel(HEIGHT), tmp_path, settings=case.settings, pictures=False
+        case.winter.days, case.panel_scene(HEIGHT), tmp_path, settings=case.settings, pictures=False
     )
     assert read_events(SeasonFolder(tmp_path).run.folder)["height_m"].tolist() == pytest.approx(
         rows["height_m"].tolist(), rel=1e-12
     )
     assert season.simulated >= len(rows)
     still = replace(case, base_settings=SeasonSettings(settling=None))
-    assert still.run(HEIGHT).hash != run.hash
+    assert still.run_key(HEIGHT).hash != run.hash
 
 
 def test_it_counts_the_burials_that_seasons_have(answer, winters, tmp_path):
@@ -80,7 +80,11 @@ def test_it_counts_the_burials_that_seasons_have(answer, winters, tmp_path):
         for height in {one for name, one in table.index if name == case.winter.name}:
             out = tmp_path / f"{case.winter.name[:4]}-{height:g}"
             season = run_season(
-                case.winter.days, case.panel(height), out, settings=case.settings, pictures=False
+                case.winter.days,
+                case.panel_scene(height),
+                out,
+                settings=case.settings,
+                pictures=False,
             )
             touched = table.loc[(case.winter.name, height), "touched"]
             assert touched == (season.contact is not None), (case.winter.name, height)
@@ -148,7 +152,7 @@ def test_its_probability_is_that_of_counting(tmp_path):
     for number, case in enumerate(answer_cases(counted)):
         season = run_season(
             case.winter.days,
-            case.panel(HEIGHT),
+            case.panel_scene(HEIGHT),
             tmp_path / f"season-{number}",
             settings=case.settings,
             pictures=False,
@@ -164,11 +168,11 @@ def test_its_probability_is_that_of_counting(tmp_path):
 def answer_cases(winters):
     from snowshed.analysis.clearance.seasons import cases_of
 
-    return cases_of(DESIGN, winters, KNOWN.drawn(len(winters)), SeasonSettings(), {})
+    return cases_of(DESIGN, winters, KNOWN.draw(len(winters)), SeasonSettings(), {})
 
 
 def test_the_error_of_the_grid_is_that_of_the_scheme(answer, winters):
-    """Whatever scheme the seasons were simulated with; one that nobody recorded is named, too."""
+    """This holds for every scheme of the seasons; a scheme without records is named, too."""
     found, _ = answer
     for base, text in (
         ({}, "stacks of lab-50 in 2D, event 5, scheme thesis were"),
@@ -289,7 +293,7 @@ def test_too_short_weather_is_refused():
 
 
 def test_the_answer_says_from_how_many_winters_it_is(tmp_path, capsys):
-    """Of three winters of a station, snow was observed in one; the others held back no answer."""
+    """Snow was observed in one of three winters; the others do not prevent an answer."""
     rows = [
         (day, elements(day, snow=150.0 if day.year == 2000 or day < date(2001, 7, 1) else None))
         for day in days(date(2000, 10, 1), date(2003, 5, 31))

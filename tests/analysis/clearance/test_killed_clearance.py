@@ -27,7 +27,7 @@ def weather(tmp_path_factory):
 
 
 def finished(folder):
-    """Return how long each event of the finished seasons took, s, which no second time repeats."""
+    """Return the time of each event of the finished seasons, s; another run takes another time."""
     file = folder / STORE
     if not file.exists():
         return {}

@@ -77,7 +77,7 @@ def stretched():
 @pytest.fixture(scope="module")
 def curves():
     isotropic = path((-1.0, -1.0, -1.0), 0.127)
-    # The law hardens from its yield stress on, so that the peak below 5 % is made that.
+    # The law hardens beyond its yield stress, which is made the peak below 5 %.
     pressure = readings.invariants(isotropic, isotropic=True)[0]
     early = isotropic["axial_strain"] <= 0.05
     capped = np.where(early, np.minimum(1.0, P0 / np.maximum(pressure, 1.0)), 1.0)
@@ -169,7 +169,7 @@ def test_what_means_nothing_is_refused(curves):
 
 
 def test_a_yield_surface_is_near_what_it_cannot_have():
-    """Strengths that no surface has leave a residual, and never a surface without shear."""
+    """Strengths that no surface has leave a residual; the surface always has shear strength."""
     p, q = np.array([-0.3, 0.1, 0.3, 0.8]), np.array([0.9, 0.3, 0.35, 1.7])
     found = fit_yield_surface(p, q)
     assert found.slope > 0.1 and 0.1 < found.residual < 1.0

@@ -36,7 +36,7 @@ def smooth_length(inputs):
 
 
 def made_up_rows(inputs=None, noise=0.003, seed=1):
-    """Stacks whose ratio is off the formula by normal noise of a given deviation."""
+    """Stacks whose ratio deviates from the formula by normal noise of a given deviation."""
     inputs = thesis_inputs() if inputs is None else inputs
     off = np.random.default_rng(seed).normal(0, noise, len(inputs))
     ratio = np.maximum(smooth_ratio(inputs) + off, 0.005)

@@ -62,7 +62,7 @@ def test_snow_is_neither_lost_nor_left_on_the_panel(between):
 def test_a_row_is_what_its_scene_gives(tmp_path):
     """The first event below a panel whose stacks hardly scatter, computed again.
 
-    Other vector instructions round differently, and the stack then is one more of its kind.
+    Other vector instructions round differently, and the stack differs as with another seed.
     """
     panel = (2.0, 2.0, 70.0)
     table = pd.read_csv(geometry_table())

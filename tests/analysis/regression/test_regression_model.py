@@ -19,11 +19,11 @@ from snowshed.analysis.regression.model_file import Member, StackModel
 from snowshed.analysis.regression.rows import stack_rows
 from snowshed.analysis.regression.scaling import Scaling
 from snowshed.analysis.regression.spread import (
-    INTERVAL,
-    SPREAD,
+    INTERVAL_SHARE,
+    SPREAD_SHARE,
     Spread,
+    predict_unseen_panels,
     stack_spread,
-    unseen_panels,
 )
 from snowshed.base.pool.threads import one_thread
 from snowshed.cli.commands.predict import print_prediction
@@ -47,7 +47,7 @@ def ensemble_model(rows, target="ratio", rounds=2, folds=5):
         np.array([model.intercept for model in models]),
         np.full((folds, 4), PARAMETERS["gamma"]),
     )
-    found = unseen_panels(kind, [choices] * rounds, rows, target)
+    found = predict_unseen_panels(kind, [choices] * rounds, rows, target)
     deviation = ensemble.predict(inputs).std(axis=0) * values.std()
     spread = stack_spread(rows, target, found, deviation)
     return Member(ensemble, float(values.mean()), float(values.std()), spread)
@@ -146,7 +146,7 @@ def test_the_error_of_the_grid_is_that_of_the_scheme(model, tmp_path, capsys, se
 
 
 def test_no_answer_is_negative(model):
-    """Nor is its interval turned about, where a model falls below zero."""
+    """Nor are the ends of its interval swapped if a model falls below zero."""
     ((key, member),) = model.members.items()
     below = replace(model, members={key: replace(member, mean=-10.0)})
     table = predict(height=2, length=2, tilt=40, events=2, model=below).table
@@ -165,7 +165,7 @@ def test_spread_and_interval_hold_as_many_stacks_as_they_say(which, request):
     scaled = Scaling.of(model.inputs).scaled(questions)
     found = member.ensemble.predict(scaled) * member.deviation + member.mean
     mean, deviation = found.mean(axis=0), found.std(axis=0)
-    for part in (SPREAD, INTERVAL):
+    for part in (SPREAD_SHARE, INTERVAL_SHARE):
         width = member.spread.half_width(mean, deviation, part)
         held = np.mean(np.abs(stacks - mean) <= width)
         assert part - 0.07 < held < part + 0.09
@@ -187,7 +187,7 @@ def test_rows_of_a_panel_are_left_out_together():
     offset = rng.normal(0, 0.01, rows.panels.max() + 1)[rows.panels]
     length = rows.targets["length"]
     shifted = stack_rows(rows.inputs, (rows.targets["ratio"] + offset) * length, length)
-    found = unseen_panels(kinds()["rbf"], [[PARAMETERS] * 8] * 2, shifted, "ratio")
+    found = predict_unseen_panels(kinds()["rbf"], [[PARAMETERS] * 8] * 2, shifted, "ratio")
     assert np.abs(found - shifted.targets["ratio"]).mean() > 0.006
 
 
@@ -288,7 +288,7 @@ def test_tables_that_are_no_panels_are_refused(file, change, message):
     table = pd.DataFrame({"height": [2.0, 3.0], "length": 2.0, "tilt": 40.0, "events": 2})
     with pytest.raises(InputError, match=message):
         predict(change(table), model=file)
-    with pytest.raises(InputError, match="tilt: not beside a table of panels"):
+    with pytest.raises(InputError, match="tilt: not allowed beside a table of panels"):
         predict(table, tilt=40, model=file)
 
 

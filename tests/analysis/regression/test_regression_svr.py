@@ -66,7 +66,7 @@ def test_interior_point_fits_are_optimal(gamma, c):
 @pytest.mark.parametrize("gamma", [0, 1e-2, 1, 100])
 @pytest.mark.parametrize("epsilon", [1e-4, 0.1, 100])
 def test_a_path_gives_each_fit(gamma, epsilon):
-    """Reused, quick and exact fits are all the fits of their C."""
+    """Reused, quick and exact fits all equal the fit for their C."""
     for c, fit in zip(BOUNDS, fit_along_c(kernel(gamma), Y, epsilon, BOUNDS)):
         if epsilon == 100:
             middle = (Y.min() + Y.max()) / 2
@@ -83,7 +83,7 @@ def test_a_kernel_that_is_none_is_refused():
 
 
 def test_points_that_do_not_converge_are_not_elected(monkeypatch):
-    """Nothing beyond what libsvm solves quickly."""
+    """Only points that libsvm solves quickly are elected."""
 
     def diverge(*arguments):
         raise FloatingPointError("the fit did not converge")

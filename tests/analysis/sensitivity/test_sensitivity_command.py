@@ -26,7 +26,7 @@ def height(scene_snow, event):
 
 
 def fill(folder, study, compute=lambda run: True):
-    """Store what no simulation has computed: heights by a formula."""
+    """Store heights by a formula, in place of simulations."""
     import json
 
     with Store.create(folder) as store:
@@ -78,7 +78,7 @@ def test_any_stored_study_is_evaluated_without_running(tmp_path, capsys, method)
 
 
 def test_what_is_missing_is_said(tmp_path, capsys):
-    """Also that what is the same everywhere need not be a number."""
+    """A value that is the same in all runs need not be a number."""
     study = grid(seeds=[1, 2])
     axes = {"events.between": ["carry"], SLOPE: [0.3, 0.6], COHESION: [0.15, 0.3]}
     study = Study.product(study.scene, axes, name="grid", seeds=[1, 2])

@@ -20,7 +20,7 @@ def value(scene, path):
 
 
 def changed(scenes):
-    """What differs from the reference snow, scene by scene."""
+    """The values that differ from the reference snow, scene by scene."""
     return [
         {path: value(scene, path) for path in REFERENCE if value(scene, path) != REFERENCE[path]}
         for scene in scenes

@@ -114,7 +114,7 @@ def test_fixation_of_a_full_product_takes_all_its_points():
 
 
 def test_sobol_indices_of_a_function_with_an_interaction():
-    """Of f = a x1 + b x2 + c (x3 - 1/2)(x5 - 1/2): a²/12, b²/12 and c²/144 are its variances."""
+    """f = a x1 + b x2 + c (x3 - 1/2)(x5 - 1/2) has the variances a²/12, b²/12 and c²/144."""
     a, b, c = 2.0, 1.0, 4.0
 
     def height(snow, event):
@@ -176,7 +176,7 @@ def test_elementary_effects_of_a_linear_function():
 
 
 def test_noise_shows_in_the_strength_of_the_seed():
-    """What has no effect is as strong as the seed, on average over repetitions."""
+    """A parameter without effect is as strong as the seed, on average over repetitions."""
     base = designed("morris", lambda snow, event: 5 + unit(snow)[M], events=(1,), samples=20)
     generator = np.random.default_rng(1)
     found = []
@@ -187,7 +187,7 @@ def test_noise_shows_in_the_strength_of_the_seed():
         found.append({path: pick(table, path, column="strength") for path in (M, BETA, SEED)})
     mean = pd.DataFrame(found).mean()
     assert mean[BETA] == pytest.approx(mean[SEED], rel=0.15)
-    # Between two stacks: sqrt(2) sigma, of which the mean absolute value; per two thirds.
+    # The mean absolute difference of two stacks, of deviation sqrt(2) sigma, per two thirds.
     of_noise = np.sqrt(2) * np.sqrt(2 / np.pi) * 0.05 / (2 / 3) / 5.5
     assert mean[SEED] == pytest.approx(of_noise, rel=0.15)
     assert mean[M] == pytest.approx(1 / 5.5, rel=0.1)

@@ -52,7 +52,7 @@ def test_a_pack_knows_its_grains(tmp_path):
 
 
 def test_the_surface_is_that_of_the_ice(tmp_path):
-    """Read again by its own tags; triangles are of grains, and near the ice's voxels."""
+    """Triangles that are read back belong to grains, and lie near the ice's voxels."""
     make(tmp_path / "snow", "--spheres", 5e-4)
     assert grains("segment", tmp_path / "snow", "--surface", "-o", tmp_path / "s") == 0
     content = (tmp_path / "s/surface.vtp").read_bytes()
@@ -102,9 +102,9 @@ def test_a_folder_that_is_not_empty_is_kept(tmp_path, capsys):
     ("options", "message"),
     [
         (["--density", 300], "give one of the two"),
-        (["--density", 300, "--specific-surface", 15, "--neck", 0.4], "--neck: no option"),
-        (["--density", 300, "--spheres", 5e-4, "--anisotropy", 2], "--anisotropy: no option"),
-        (["--density", 300, "--spheres", 5e-4, "--specific-surface", 9], "no option of a pack"),
+        (["--density", 300, "--specific-surface", 15, "--neck", 0.4], "--neck: not an option"),
+        (["--density", 300, "--spheres", 5e-4, "--anisotropy", 2], "--anisotropy: not an option"),
+        (["--density", 300, "--spheres", 5e-4, "--specific-surface", 9], "not an option of a pack"),
     ],
 )
 def test_options_that_do_not_fit_are_refused(tmp_path, capsys, options, message):

@@ -12,7 +12,7 @@ from snowshed.analysis.tomography.ice_image import IceImage
 from snowshed.analysis.tomography.microstructure import mean_chords, measure_microstructure
 from snowshed.analysis.tomography.parts import largest_part
 from snowshed.analysis.tomography.threshold import ImageSettings, read_ice
-from snowshed.base.notes import recorded
+from snowshed.base.notes import record_notes
 from snowshed.io.voxels.open_voxels import open_voxels
 
 VOXEL = 5e-5
@@ -126,14 +126,14 @@ def test_labels_are_no_grey_values(tmp_path, kind):
 @pytest.mark.parametrize("stated", [5e-5, 1e-4])
 def test_another_voxel_size_than_the_file_says_is_told(tmp_path, stated):
     file = replace(opened(tmp_path, SNOW.ice), voxel_size=stated)
-    with recorded() as notes:
+    with record_notes() as notes:
         read = read_ice(file, settings())
     assert read.image.voxel_size == VOXEL
     assert notes == ([] if stated == VOXEL else [
         f"{file.name}: voxels of 5e-05 m, as given; the file says 0.0001 m"
     ])  # fmt: skip
     printed = replace(file, voxel_size=None, printed_size=1e-4)
-    with recorded() as notes:
+    with record_notes() as notes:
         read_ice(printed, settings())
     assert "its resolution says 0.0001 m" in notes[0]
     with pytest.raises(InputError, match=r"its tags of resolution would mean 0\.0001 m"):

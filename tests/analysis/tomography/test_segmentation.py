@@ -189,7 +189,7 @@ def test_the_sides_of_a_peg_add_nothing_to_the_area_of_its_contact():
 
 
 def chain(areas, air, saddles=None):
-    """Return labels in a row that touch the next one each."""
+    """Return labels in a row, each of which touches the next."""
     count = len(areas)
     pairs = np.array([[n, n + 1] for n in range(1, count + 1)])
     normals = np.outer(areas, [0.6, 0.0, 0.8])

@@ -46,7 +46,7 @@ def test_the_surface_is_that_of_a_level_of_a_gaussian_field():
         ).specific_surface_m2_kg
         for seed in range(3)
     ]  # fmt: skip
-    # The shell's wave numbers in units of 2 pi / length, which are as many as their square.
+    # The shell's wave numbers in units of 2 pi / length; their density grows with the square.
     number = np.linspace(0.1, 2.0, 2001)
     weight = number**2 * np.exp(-0.5 * ((number - 1) / SHELL_WIDTH) ** 2)
     mean_square = np.average(number**2, weights=weight) * (2 * np.pi / length) ** 2 / 3
@@ -56,7 +56,7 @@ def test_the_surface_is_that_of_a_level_of_a_gaussian_field():
 
 
 def test_the_two_point_correlation_is_that_of_the_field():
-    """Of a field cut at zero it is 1/4 + asin(rho) / 2 pi; rho of a thin shell is sin(kr) / kr."""
+    """For a field cut at zero it is 1/4 + asin(rho) / 2 pi; rho of a thin shell is sin(kr) / kr."""
     snow = gaussian_snow(
         (96, 96, 96), VOXEL, ice_fraction=0.5, correlation_length=8e-4, connected=False, seed=2
     )

@@ -13,7 +13,7 @@ from snowshed.base.pool.pool import Isolation, Pool
 
 
 def work(offset, task, report):
-    """What a process of the tests' pool does; `task` says."""
+    """Task of a process in the tests' pool; `task` selects it."""
     if task == "raise":
         raise ValueError("no such snow")
     if task == "raise strangely":
@@ -110,7 +110,7 @@ REMEMBERED = []
 
 
 def remember(task, report):
-    """Return what this process has seen so far; or crash, or hang with a process of its own."""
+    """Return the tasks that this process has received; or crash, or hang with a child."""
     if task == "crash":
         os.write(2, b"early\nout of snow\n")
         os.abort()

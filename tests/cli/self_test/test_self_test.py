@@ -1,4 +1,4 @@
-"""The self-test: it holds here, and each check fails where what it checks is broken."""
+"""The self-test passes here, and each check fails if the checked code is broken."""
 
 import json
 
@@ -21,7 +21,7 @@ BROKEN = Check("a broken core", 0.0, lambda: 0.5)
 
 
 def result_of(measure):
-    """Run the check that measures by this function."""
+    """Run the check with this measuring function."""
     (check,) = (check for check in CHECKS if check.measure is measure)
     (result,) = run_checks([check])
     return result
@@ -29,7 +29,7 @@ def result_of(measure):
 
 @pytest.fixture
 def core(monkeypatch):
-    """Put a simulation in the core's place, made from the scene's data by a function."""
+    """Replace the core's simulation by one that a function makes from the scene's data."""
     real = _core.Simulation
 
     def put(changed, **others):

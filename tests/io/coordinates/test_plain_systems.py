@@ -1,4 +1,4 @@
-"""Coordinate systems: descriptions only, nothing that is fetched or opened; compared on the map."""
+"""Coordinate systems: only descriptions are accepted, never fetched; comparisons on the map."""
 
 import numpy as np
 import pytest

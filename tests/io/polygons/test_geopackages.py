@@ -9,7 +9,7 @@ from helpers.polygon_files import SQUARE, polygon, pyogrio, shapely, write
 from helpers.slide_files import write_polygons
 
 from snowshed import InputError
-from snowshed.base.notes import recorded
+from snowshed.base.notes import record_notes
 from snowshed.io.raster.areas import read_areas
 
 pytestmark = pytest.mark.filterwarnings("ignore::UserWarning", "ignore::RuntimeWarning")
@@ -87,9 +87,9 @@ def test_a_layer_of_points_beside_is_told(package):
         *(package, point, [], np.array([])), crs="EPSG:25833", geometry_type="Point",
         layer="stations", append=True,
     )  # fmt: skip
-    with recorded() as notes:
+    with record_notes() as notes:
         assert len(read_areas(package)) == 1
-    assert "the one that may hold polygons is read, 'a'" in notes[0]
+    assert "the only one that may hold polygons is read, 'a'" in notes[0]
 
 
 def test_changes_that_wait_in_the_log_of_another_program_count(package):
@@ -107,7 +107,7 @@ def test_changes_that_wait_in_the_log_of_another_program_count(package):
 
 
 def test_a_name_that_is_no_text_is_refused(package):
-    """SQLite's message holds the name, and Python cannot read that."""
+    """SQLite's message contains the name, which Python cannot decode."""
     content = package.read_bytes()
     assert content.count(b"trigger_insert_feature")
     package.write_bytes(content.replace(b"trigger_insert_f", b"trigger_insert_\xe6", 1))

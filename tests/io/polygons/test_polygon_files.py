@@ -1,4 +1,4 @@
-"""Files of polygons: the formats that are read, as other readers read them, and none beside."""
+"""Files of polygons: accepted formats are read as by other readers, and others are refused."""
 
 import json
 import os
@@ -13,8 +13,8 @@ from helpers.polygon_files import HOLE, SQUARE, polygon, pyogrio, shapely, write
 from helpers.slide_files import WITH_HOLE, box, write_features, write_polygons
 
 from snowshed import InputError
-from snowshed.base.limits import CORNERS, POLYGONS
-from snowshed.base.notes import recorded
+from snowshed.base.limits import MAX_CORNERS, MAX_POLYGONS
+from snowshed.base.notes import record_notes
 from snowshed.io.raster.areas import read_areas
 
 pytestmark = pytest.mark.filterwarnings("ignore::UserWarning", "ignore::RuntimeWarning")
@@ -49,7 +49,7 @@ def test_repeated_corners_are_passed_over(tmp_path, ending):
 
 
 def described(address):
-    """Return files that name other files or addresses, which GDAL tells by their content."""
+    """Return files that name other files or addresses, which GDAL recognises by their content."""
     source = f"/vsicurl/{address}/a.gpkg"
     layer = f'<OGRVRTLayer name="a"><SrcDataSource>{source}</SrcDataSource></OGRVRTLayer>'
     vrt = f"<OGRVRTDataSource>{layer}</OGRVRTDataSource>"
@@ -73,7 +73,7 @@ def described(address):
 
 
 def written_by_gdal(folder):
-    """Return what every driver that writes polygons makes, by its name."""
+    """Return a file of every driver that writes polygons, by the driver's name."""
     found = {}
     for driver, mode in pyogrio.list_drivers().items():
         file = folder / driver.replace(" ", "_")
@@ -100,7 +100,7 @@ def written_by_gdal(folder):
 
 
 def test_no_format_is_read_but_the_named_ones(tmp_path):
-    """Every format that this GDAL knows, under every ending that is read."""
+    """Every format of this GDAL is tried under every accepted ending."""
     (tmp_path / "made").mkdir()
     with silence() as listener:
         contents = {
@@ -124,7 +124,7 @@ def test_no_format_is_read_but_the_named_ones(tmp_path):
 
 
 def test_without_the_fence_gdal_would_have_asked(tmp_path):
-    """The listener hears what it should hear: the test above is not deaf."""
+    """The listener notices connections, so the test above can fail."""
     with pytest.raises(AssertionError), silence() as listener:
         (tmp_path / "a.gpkg").write_text(described(listener.address)["OGR_VRT"])
         with pytest.raises(Exception, match=r"a\.gpkg"):
@@ -209,7 +209,7 @@ def test_a_shapefiles_prj_is_a_description(tmp_path, text):
 @pytest.mark.parametrize("ending", [".gpkg", ".shp"])
 def test_a_file_without_a_coordinate_system_is_told(tmp_path, ending):
     file = write(tmp_path / f"a{ending}", [SQUARE], crs=None, thickness=[0.5])
-    with recorded() as notes:
+    with record_notes() as notes:
         assert read_areas(file)[0].crs == ""
     assert notes == [f"{file}: has no coordinate system; that of the terrain is assumed"]
 
@@ -231,7 +231,7 @@ def test_a_file_without_a_coordinate_system_is_told(tmp_path, ending):
 )
 def test_the_field_of_the_thickness_is_told(tmp_path, ending, field, value, metres, note):
     file = write(tmp_path / f"a{ending}", [SQUARE], **{field: [float(value)]})
-    with recorded() as notes:
+    with record_notes() as notes:
         (area,) = read_areas(file)
     assert area.thickness == pytest.approx(metres)
     assert [note in one for one in notes] == [True] if note else not notes
@@ -256,12 +256,12 @@ def test_forest_needs_no_thickness(tmp_path):
 
 @pytest.mark.parametrize("ending", ENDINGS)
 def test_too_many_corners_and_polygons_are_refused(tmp_path, ending):
-    turn = np.linspace(0, 2 * np.pi, CORNERS + 1, endpoint=False)
+    turn = np.linspace(0, 2 * np.pi, MAX_CORNERS + 1, endpoint=False)
     many = polygon(*np.c_[100 * np.cos(turn), 100 * np.sin(turn)])
-    with pytest.raises(InputError, match=f"more than {CORNERS} corners"):
+    with pytest.raises(InputError, match=f"more than {MAX_CORNERS} corners"):
         read_areas(write(tmp_path / f"a{ending}", [many], d0=[0.5]))
-    few = [SQUARE] * (POLYGONS + 1)
-    with pytest.raises(InputError, match=f"more than {POLYGONS} polygons"):
+    few = [SQUARE] * (MAX_POLYGONS + 1)
+    with pytest.raises(InputError, match=f"more than {MAX_POLYGONS} polygons"):
         read_areas(write(tmp_path / f"b{ending}", few, d0=[0.5] * len(few)))
 
 
@@ -277,7 +277,7 @@ def test_an_index_that_repeats_a_record_is_counted(tmp_path):
     file = write(tmp_path / "a.shp", [polygon(*np.c_[np.cos(turn), np.sin(turn)])], d0=[0.5])
     index = file.with_suffix(".shx")
     index.write_bytes(index.read_bytes() + index.read_bytes()[100:] * 5000)
-    with pytest.raises(InputError, match=f"more than {CORNERS} corners"):
+    with pytest.raises(InputError, match=f"more than {MAX_CORNERS} corners"):
         read_areas(file)
 
 

@@ -1,12 +1,12 @@
-"""ESRI ASCII grids as people have them, against GDAL's own reading of the same text."""
+"""ESRI ASCII grids in common variants, against GDAL's reading of the same text."""
 
 import numpy as np
 import pytest
 from helpers.raster_files import CELL, SIDE, SLOPE, WEST, grid_text
 
 from snowshed import InputError
-from snowshed.base.limits import RASTER_CELLS
-from snowshed.base.notes import recorded
+from snowshed.base.limits import MAX_RASTER_CELLS
+from snowshed.base.notes import record_notes
 from snowshed.io.raster.raster import Raster, read_raster, write_ascii_grid
 
 rasterio = pytest.importorskip("rasterio")
@@ -71,7 +71,7 @@ def test_a_grid_is_read_as_gdal_reads_it(tmp_path, text, missing):
 )
 def test_what_was_assumed_is_told(tmp_path, text, note):
     (tmp_path / "a.asc").write_text(text)
-    with recorded() as notes:
+    with record_notes() as notes:
         read_raster(tmp_path / "a.asc")
     assert notes == ([note] if note else [])
 
@@ -87,7 +87,7 @@ def test_what_was_assumed_is_told(tmp_path, text, note):
         (grid_text().replace(" ", ", "), "neither an ESRI ASCII grid"),
         (grid_text().replace(" 8", ", 8"), "values are separated by blanks, not by commas"),
         ("north: 9\nsouth: 3\n", "neither an ESRI ASCII grid, which begins with ncols, nor a GeoT"),
-        (grid_text(ncols=40_000, nrows=40_000), f"1600000000 cells; at most {RASTER_CELLS}"),
+        (grid_text(ncols=40_000, nrows=40_000), f"1600000000 cells; at most {MAX_RASTER_CELLS}"),
         (grid_text(cellsize="nan"), "'nan' is not a valid number"),
     ],
 )
@@ -112,7 +112,7 @@ def test_feet_in_the_prj_become_metres(tmp_path):
     )
     (tmp_path / "a.asc").write_text(grid_text(SLOPE * 3937 / 1200))
     (tmp_path / "a.prj").write_text(f"{system},{feet}")
-    with recorded() as notes:
+    with record_notes() as notes:
         raster = read_raster(tmp_path / "a.asc")
     np.testing.assert_allclose(raster.heights, SLOPE[::-1], atol=1e-3)
     assert raster.crs == "EPSG:26913"
@@ -122,7 +122,7 @@ def test_feet_in_the_prj_become_metres(tmp_path):
 
 @pytest.mark.parametrize("values", [SLOPE.astype("float32").astype("float64"), SLOPE * np.pi])
 def test_an_exact_copy_holds_every_bit(tmp_path, values):
-    """Single values need more than nine digits, too, where the core keeps double precision."""
+    """Single values, too, need more than nine digits, because the core has double precision."""
     write_ascii_grid(tmp_path / "a.asc", Raster(values, WEST, 0.0, CELL), exact=True)
     np.testing.assert_array_equal(read_raster(tmp_path / "a.asc").heights, values)
 

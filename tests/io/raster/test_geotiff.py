@@ -1,4 +1,4 @@
-"""GeoTIFF as GDAL means it: scale, unit, bands, missing values, place, and what is refused."""
+"""GeoTIFF by GDAL's rules: scale, unit, bands, missing values, position, and refused files."""
 
 import os
 import re
@@ -9,8 +9,8 @@ import pytest
 from helpers.raster_files import CELL, NORTH, SIDE, SLOPE, WEST, in_unit, scaled, write_geotiff
 
 from snowshed import InputError, SnowshedNote
-from snowshed.base.limits import RASTER_CELLS
-from snowshed.base.notes import recorded
+from snowshed.base.limits import MAX_RASTER_CELLS
+from snowshed.base.notes import record_notes
 from snowshed.io.raster.raster import read_raster
 
 rasterio = pytest.importorskip("rasterio")
@@ -20,7 +20,7 @@ PAM = '<PAMDataset><PAMRasterBand band="1">{}</PAMRasterBand></PAMDataset>'
 
 
 def read_with_notes(path, **how):
-    with recorded() as notes, warnings.catch_warnings():
+    with record_notes() as notes, warnings.catch_warnings():
         raster = read_raster(path, **how)
     return raster, notes
 
@@ -175,7 +175,7 @@ def test_a_sidecar_may_not_be_large_or_a_pipe(tmp_path):
 
 
 def test_files_beside_a_raster_that_are_not_named_are_not_opened(tmp_path):
-    """A VRT as its overviews would lead GDAL elsewhere."""
+    """A VRT as the overviews of a file would lead GDAL to another file."""
     write_geotiff(tmp_path / "a.tif")
     (tmp_path / "a.tif.ovr").write_text("<VRTDataset rasterXSize='6' rasterYSize='6'/>")
     assert_slope(read_raster(tmp_path / "a.tif"))
@@ -246,7 +246,7 @@ def test_a_palette_and_several_images_are_refused(tmp_path):
 @pytest.mark.parametrize(
     ("width", "height", "form"),
     [
-        (10_000, 10_000, {}), (100_000_000, 1, {}), (1, RASTER_CELLS + 1, {}),
+        (10_000, 10_000, {}), (100_000_000, 1, {}), (1, MAX_RASTER_CELLS + 1, {}),
         (100_000, 100_000, {"tiled": True}),
     ],
 )  # fmt: skip
@@ -258,7 +258,7 @@ def test_a_small_file_of_many_cells_is_refused_before_it_is_read(tmp_path, width
     ):  # fmt: skip
         pass
     assert (tmp_path / "a.tif").stat().st_size < 2 << 20
-    with pytest.raises(InputError, match=f"columns and {height} rows; at most {RASTER_CELLS}"):
+    with pytest.raises(InputError, match=f"columns and {height} rows; at most {MAX_RASTER_CELLS}"):
         read_raster(tmp_path / "a.tif")
 
 

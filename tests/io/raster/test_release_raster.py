@@ -1,10 +1,10 @@
-"""Release areas from rasters of thickness: outlines of cells, holes, gaps, and how many."""
+"""Release areas from rasters of thickness: outlines of cells, holes, gaps, and limits."""
 
 import numpy as np
 import pytest
 
 from snowshed import InputError
-from snowshed.base.limits import SNOW_CELLS
+from snowshed.base.limits import MAX_SNOW_CELLS
 from snowshed.io.raster.raster import Raster
 from snowshed.io.raster.release import areas_of_depth, snow_part
 
@@ -22,7 +22,7 @@ def shapes(areas):
 
 @pytest.mark.parametrize("seed", range(5))
 def test_the_areas_are_the_cells_with_snow(seed):
-    """The same as the union of a square for every cell, whatever the pattern."""
+    """For any pattern, the outlines are those of the union of all cells."""
     depth = raster(np.random.default_rng(seed).integers(0, 2, (9, 11)))
     rows, columns = np.nonzero(depth.heights)
     x, y = depth.east + columns * depth.cell, depth.north + rows * depth.cell
@@ -57,7 +57,7 @@ def test_a_gap_that_opens_at_a_corner_is_not_amid_snow():
 
 
 def test_many_holes_and_gaps_take_no_longer_than_their_cells():
-    """A gap was looked for in each of the holes: 22500 times 22500 comparisons."""
+    """A search for gaps in every hole would take 22500 times 22500 comparisons."""
     values = np.full((300, 300), 0.5)
     values[1:-1:2, 1:-1:2] = np.nan
     with pytest.raises(InputError, match="no thickness amid snow"):
@@ -84,7 +84,7 @@ def test_a_large_raster_of_little_snow_is_cut_to_it():
         (np.zeros((3, 3)), "holds no thickness above 0"),
         (np.full((3, 3), -0.5), r"a negative thickness at \(100, 200\)"),
         (np.full((3, 3), 9999.0), r"a thickness above 100 m at \(100, 200\)"),
-        (np.full((2001, 2000), 0.5), f"holds snow in 4002000 cells; at most {SNOW_CELLS}"),
+        (np.full((2001, 2000), 0.5), f"holds snow in 4002000 cells; at most {MAX_SNOW_CELLS}"),
     ],
 )
 def test_what_is_no_thickness_is_refused(values, message):

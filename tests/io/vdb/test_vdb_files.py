@@ -1,4 +1,4 @@
-"""Results as OpenVDB files, and scenes made of them."""
+"""Results as OpenVDB files, and scenes from these files."""
 
 import time
 
@@ -51,7 +51,7 @@ def test_the_stack_comes_back_from_its_level_set(finished, exported):
     for event, written in enumerate(exported, start=1):
         particles = read_particles(finished / "particles" / f"event_{event:03d}.vtp")
         before = measured(particles["position"].astype(float), particles["mass"].astype(float))
-        # Laid down as the guide says: with the bulk density of the stack.
+        # Laid as in the guide, with the bulk density of the stack.
         density = {"snow.density": written.content.density}
         shape = Shape.vdb(str(written.file), grid="surface").to_data()
         simulation = seeded(shape, **density)
@@ -65,7 +65,7 @@ def test_the_stack_comes_back_from_its_level_set(finished, exported):
 
 
 def test_a_level_set_is_an_obstacle_as_its_shape_would_be(tmp_path):
-    """A box of particles; distances within a voxel of the box's, far beyond the band too."""
+    """Distances from a box of particles are exact to a voxel, also beyond the band."""
     size, center = np.array([0.4, 0.2]), np.array([0.3, 0.1])
     rng = np.random.default_rng(1)
     x = center + (rng.random((6000, 2)) - 0.5) * size

@@ -1,4 +1,4 @@
-"""What is said where snowshed was built without OpenVDB; true of any build, without its program."""
+"""Messages of a build without OpenVDB, or of any build without its program."""
 
 import shutil
 import subprocess

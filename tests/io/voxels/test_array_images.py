@@ -1,4 +1,4 @@
-"""NPY and raw files, and folders of slices: what they may claim, and what is told of them."""
+"""NPY and raw files, and folders of slices: accepted claims, and notes on them."""
 
 import os
 import re
@@ -10,7 +10,7 @@ from helpers.voxel_files import VOXELS, of_type, save_metaimage, save_slices
 from PIL import Image
 
 from snowshed import InputError
-from snowshed.base.notes import recorded
+from snowshed.base.notes import record_notes
 from snowshed.io.voxels.open_voxels import open_voxels
 
 
@@ -28,7 +28,7 @@ def test_what_follows_an_image_is_told(tmp_path):
     with (tmp_path / "a.npy").open("wb") as file:
         np.save(file, VOXELS)
         np.save(file, VOXELS)
-    with recorded() as notes:
+    with record_notes() as notes:
         open_voxels(tmp_path / "a.npy")
     assert re.search(r"338 bytes after the image are left out", notes[0])
 
@@ -68,7 +68,7 @@ def test_orientation_of_png_is_applied(tmp_path):
         exif = image.getexif()
         exif[274] = 6
         image.save(path, exif=exif)
-    with recorded() as notes:
+    with record_notes() as notes:
         found = open_voxels(folder).layers(0, 5)
     assert (found == np.stack([np.rot90(page, -1) for page in VOXELS])).all()
     assert "Orientation (6)" in notes[0]
@@ -81,7 +81,7 @@ def test_inverted_palettes_are_told(tmp_path):
         page.putdata(np.asarray(Image.open(path)).ravel().tolist())
         page.putpalette([255 - shade for shade in range(256) for _ in range(3)])
         page.save(path)
-    with recorded() as notes:
+    with record_notes() as notes:
         assert (open_voxels(folder).layers(0, 5) == 255 - VOXELS).all()
     assert "the shades of its palette" in notes[0]
 
@@ -106,7 +106,7 @@ def test_a_slice_with_several_frames_is_refused(tmp_path):
 def test_slices_of_two_names_are_told(tmp_path):
     folder = save_slices(tmp_path / "s", VOXELS)
     (folder / "slice3.png").rename(folder / "other3.png")
-    with recorded() as notes:
+    with record_notes() as notes:
         open_voxels(folder)
     assert "several names, other3.png and slice1.png" in notes[0]
 

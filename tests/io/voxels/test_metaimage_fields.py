@@ -1,4 +1,4 @@
-"""MetaImage: every field that bears on the numbers is honoured or refused, by ITK's rules."""
+"""MetaImage: every field that affects the numbers is applied or refused, by ITK's rules."""
 
 import gzip
 import itertools
@@ -8,13 +8,13 @@ import pytest
 from helpers.voxel_files import TYPES, VOXELS, of_type, save_metaimage
 
 from snowshed import InputError
-from snowshed.base.notes import recorded
+from snowshed.base.notes import record_notes
 from snowshed.io.voxels.open_voxels import open_voxels
 
 
 def read(file):
     """Return the numbers of an image, and its notes."""
-    with recorded() as notes:
+    with record_notes() as notes:
         opened = open_voxels(file)
     found = opened.layers(0, opened.shape[0])
     single = [opened.layers(number, number + 1) for number in range(opened.shape[0])]
@@ -47,7 +47,7 @@ def test_numbers_as_text(tmp_path, kind):
         ("uint8", "1 " * 211, "211 numbers as text; its header says 210"),
         ("uint8", "1 " * 209 + "256", "numbers that are no uint8"),
         ("int16", "1 " * 209 + "1.5", "numbers that are no int16"),
-        ("uint8", "1 " * 209 + "x", "not all"),
+        ("uint8", "1 " * 209 + "x", "is not only numbers"),
         ("uint8", "1", "1 characters for 210 numbers"),
         ("int64", "1 " * 210, "whole numbers of 8 bytes as text"),
     ],
@@ -73,7 +73,7 @@ def test_the_byte_order_has_two_names(tmp_path, field, word):
 @pytest.mark.parametrize("signs", [(1, 1, 1), (-1, 1, 1), (1, -1, 1), (1, 1, -1), (-1, -1, -1)])
 @pytest.mark.parametrize("compress", [False, True])
 def test_axes_point_where_the_matrix_says(tmp_path, order, signs, compress):
-    """By the definition: a step along axis a of the file is one along row a of the matrix."""
+    """By definition, a step along axis a of the file is a step along row a of the matrix."""
     matrix = np.zeros((3, 3), dtype=int)
     for axis in range(3):
         matrix[axis, order[axis]] = signs[axis]

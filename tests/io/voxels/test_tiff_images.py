@@ -1,4 +1,4 @@
-"""TIFF files: tags that bear on the numbers are honoured or refused; tifffile is the witness."""
+"""TIFF files: tags that affect the numbers are applied or refused; compared with tifffile."""
 
 import io
 import re
@@ -10,7 +10,7 @@ from helpers.voxel_files import VOXELS, of_type, save_pages
 from PIL import Image, ImageOps
 
 from snowshed import InputError
-from snowshed.base.notes import recorded
+from snowshed.base.notes import record_notes
 from snowshed.io.voxels.open_voxels import open_voxels
 
 tifffile = pytest.importorskip("tifffile")
@@ -28,7 +28,7 @@ def written(folder, voxels, **options):
 
 def read(file):
     """Return the numbers of an image, all layers at once and one by one, and its notes."""
-    with recorded() as notes:
+    with record_notes() as notes:
         opened = open_voxels(file)
     found = opened.layers(0, opened.shape[0])
     single = [opened.layers(number, number + 1) for number in range(opened.shape[0])]
@@ -63,7 +63,7 @@ def test_white_is_zero_means_the_same_for_every_type(tmp_path, kind):
 @pytest.mark.parametrize("order", "<>")
 @pytest.mark.parametrize(("name", "code"), [("LZW", 5), ("Deflate", 8)])
 def test_packed_numbers_with_differences(tmp_path, kind, order, name, code):
-    """tifffile packs LZW only with a further library, so that Pillow packs it here."""
+    """tifffile packs LZW only with a further library, so Pillow packs it here."""
     voxels = of_type(kind)
     file = tmp_path / "a.tif"
     predictor = 3 if voxels.dtype.kind == "f" else 2
@@ -124,7 +124,7 @@ def test_fax_of_one_bit(tmp_path, compression):
     ice = np.random.default_rng(2).random((3, 40, 50)) < 0.5
     found, _ = read(save_pages(tmp_path / "a.tif", ice, compression=compression))
     assert set(np.unique(found)) == {0, 1}
-    # Fax has white first; whether that is 0 is in the tag, and told.
+    # Fax codes white first; a tag and a note say whether white is 0.
     assert (found == ice).all() or (found == ~ice).all()
 
 
@@ -151,7 +151,7 @@ def test_orientation_is_applied_and_told(tmp_path, orientation, every_page):
     voxels = of_type("uint16")
     tag = [(274, 3, 1, orientation, not every_page)]
     found, notes = read(written(tmp_path, voxels, extratags=tag))
-    seen = Image.fromarray(np.arange(42, dtype=np.uint8).reshape(6, 7))  # Pillow is the witness
+    seen = Image.fromarray(np.arange(42, dtype=np.uint8).reshape(6, 7))  # compared with Pillow
     seen.getexif()[274] = orientation
     order = np.asarray(ImageOps.exif_transpose(seen))
     same(found, np.stack([page.ravel()[order] for page in voxels]))
@@ -212,7 +212,7 @@ def test_frames_alone_are_slices_and_several_stacks_are_refused(tmp_path, option
 
 
 def test_slices_of_one_page_lie_one_after_another(tmp_path):
-    """ImageJ writes stacks beyond 4 GB so, and tifffile if it is asked to."""
+    """ImageJ writes stacks beyond 4 GB in this form, and tifffile on request."""
     voxels = of_type("uint16")
     options = {"truncate": True, "metadata": {"axes": "ZYX"}}
     file = written(tmp_path, voxels, imagej=True, **options)
@@ -266,7 +266,7 @@ def test_a_slice_has_one_page(tmp_path):
 
 
 def test_more_pages_than_the_limit_are_refused_before_they_are_read(tmp_path, monkeypatch):
-    monkeypatch.setattr("snowshed.io.voxels.tiff_tags.PAGES", 50)
+    monkeypatch.setattr("snowshed.io.voxels.tiff_tags.MAX_PAGES", 50)
     good = written(tmp_path, np.zeros((1, 2, 2), np.uint8), metadata=None).read_bytes()
     start = struct.unpack("<I", good[4:8])[0]
     (count,) = struct.unpack("<H", good[start : start + 2])

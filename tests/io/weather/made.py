@@ -1,4 +1,4 @@
-"""Weather files of a few rows, for one quirk each."""
+"""Synthetic weather files of a few rows, for one special case each."""
 
 from datetime import datetime, timedelta
 
@@ -65,7 +65,7 @@ def hourly(begin, end):
 
 
 def ghcn(*rows):
-    """Return a by_station file of (day of January 2024, element, value, and maybe both flags)."""
+    """Return a by_station file of (day of January 2024, element, value, optionally both flags)."""
     lines = []
     for day, element, value, *flags in rows:
         measurement, quality = flags or ("", "")

@@ -1,4 +1,4 @@
-"""Amounts of several hours and days: nothing counts twice, and nothing is lost."""
+"""Amounts of several hours and days are neither counted twice nor lost."""
 
 import gzip
 from datetime import datetime, timedelta
@@ -22,7 +22,7 @@ def snow(station):
 
 
 def hours_with(totals, days=4, missing=("-9900", "-9900")):
-    """Yield the hours of some days, of which some end a total: hours from the start to (mm, h)."""
+    """Yield the hours of some days; `totals` has (mm, h) by their end in hours from the start."""
     for n, end in enumerate(hourly(DAY, DAY + timedelta(days=days)), 1):
         yield (end, -5.0, *totals.get(n, missing))
 
@@ -197,7 +197,7 @@ def test_rolling_sums_of_precipitation_are_thinned_out(title, hours, station):
 
 def test_of_two_sums_one_is_used_and_told(station):
     read = station(meteoswiss("tre200h0;rre150h0;rre024i0", ["-5;1.0;24.0"] * 48))
-    assert water(read) == 47.0  # the first fell on the day before
+    assert water(read) == 47.0  # the first amount fell on the day before
     assert "the first rre150h0 (1) fell on the day before the file begins, and is left out" in [
         *read.notes
     ]
@@ -301,7 +301,7 @@ def test_a_day_that_is_there_twice_must_agree(layout, station):
     rows = ghcn((1, "SNOW", 10), (2, "SNOW", 20), (2, "SNOW", 30))
     text = LAYOUTS[layout](rows.rsplit("\n", 2)[0] + "\n")
     again = LAYOUTS[layout](rows).splitlines()[-1]
-    assert len(station(text + text.splitlines()[-1] + "\n").rows) == 2  # the same again
+    assert len(station(text + text.splitlines()[-1] + "\n").rows) == 2  # the same values again
     with pytest.raises(InputError, match="SNOW of 2024-01-02 occurs twice with different"):
         station(text + again + "\n")
 

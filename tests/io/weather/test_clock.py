@@ -19,7 +19,7 @@ def local(begin, count, step=0.5):
 
 
 BEFORE = datetime(2023, 10, 28, 12, tzinfo=timezone.utc)
-#: How an offset may be written.
+#: Spellings of an offset.
 WRITINGS = {
     "+02:00": lambda time: time.isoformat(" "),
     "+0200": lambda time: time.strftime("%Y-%m-%d %H:%M%z"),
@@ -67,7 +67,7 @@ def test_offsets_of_some_rows_only_are_refused(station):
 
 
 def twice(form):
-    """Return a file whose local time has the hour from 2 to 3 twice."""
+    """Return a file in local time, where the hour from 2 to 3 occurs twice."""
     begin = datetime(2024, 10, 26)
     times = [begin + timedelta(hours=n) for n in range(27)]
     times += [times[-1] + timedelta(hours=n) for n in range(0, 20)]

@@ -1,4 +1,4 @@
-"""Units that a file hides: told by its header, refused where its numbers cannot be in them."""
+"""Units of files: read from the header, and refused if the numbers cannot be in them."""
 
 import re
 
@@ -81,13 +81,13 @@ def test_spikes_of_a_sensor_are_no_other_unit(step, warm, station):
     ("text", "message"),
     [
         (smet("TA HN", [f"268.15 {n % 2}" for n in range(20)], step=24.0),
-         "column HN: half of the snowfalls are of 1 m and more; is it in cm, mm or inches?"),
+         "column HN: half of the snowfalls are 1 m and more; is it in cm, mm or inches?"),
         (smet("TA PSUM", [f"268.15 {n % 2 * 240}" for n in range(20)], step=24.0),
-         "column PSUM: half of the amounts are of 240 mm and more; is it in tenths"),
+         "column PSUM: half of the amounts are 240 mm and more; is it in tenths"),
         (smet("TA PSUM", ["268.15 0"] * 5 + ["268.15 600"]),
          "line 16, column PSUM: 600 mm in 1 hours; no more than 491 mm was ever measured"),
         (meteoswiss("tre200d0;rre150d0;hns000d0", ["-5;240;30", "-6;0;0"] * 6, step=24.0),
-         "column rre150d0: half of the amounts are of 240 mm"),
+         "column rre150d0: half of the amounts are 240 mm"),
         (meteoswiss("tre200d0;rre150d0;hns000d0", ["-5;90;11", "-6;0;0"] * 6, step=24.0),
          "column rre150d0: 540 mm of water fell as 0.66 m of new snow below -2 °C, of 818 kg/m3"),
         (meteoswiss("tre200d0;hns000d0", ["23;30", "20;0"] * 6, step=24.0),
@@ -100,7 +100,7 @@ def test_spikes_of_a_sensor_are_no_other_unit(step, warm, station):
         ("Date,maxt,mint,pcpn,snow\n" + "".join(
             f"2024-01-{day:02d},-2.1,-8.0,{24 * (day % 2)}.0,{30 * (day % 2)}.0\n"
             for day in range(1, 13)),  # in degrees C, mm and cm
-         "column snow: half of the snowfalls are of 0.762 m and more"),
+         "column snow: half of the snowfalls are 0.762 m and more"),
     ],
 )  # fmt: skip
 def test_numbers_that_cannot_be_in_their_unit_are_refused(text, message, written):

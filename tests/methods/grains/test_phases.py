@@ -1,4 +1,4 @@
-"""Phases of curves that are made of formulas."""
+"""Phases of curves given by formulas."""
 
 import numpy as np
 import pytest
@@ -73,7 +73,7 @@ def test_a_peak_in_the_stage_before_is_none_of_the_next():
     curve = LoadingCurve(columns)
     assert curve.of_stage(1).peaks["top_stress_pa"].tolist() == [0.0, 9.0]
     assert curve.of_stage(2).peaks["top_stress_pa"].tolist() == [0.0, 1.0, 2.0]
-    assert curve["peak_top_stress_pa"][1] == 9.0  # the whole curve is as it was
+    assert curve["peak_top_stress_pa"][1] == 9.0  # the whole curve is unchanged
 
 
 IDLE = np.zeros_like(STRAIN)
@@ -157,7 +157,7 @@ def scene_of(kind="compress", speed=0.02, **numerics):
 
 def test_the_summary_says_what_makes_its_figures_doubtful():
     columns = dict(brittle().columns)
-    columns["bottom_stress_pa"] = np.zeros_like(STRAIN)  # this plate feels nothing
+    columns["bottom_stress_pa"] = np.zeros_like(STRAIN)  # no stress on this plate
     uneven = LoadingCurve(columns)
     few = summarise(uneven, scene_of(density_scaling=1000.0), ended="rest", grains=87, spheres=9)
     said = " ".join(few.notes)

@@ -31,7 +31,7 @@ def slide(tmp_path_factory) -> tuple[Scene, Film]:
 
 
 def test_the_last_frame_is_the_snow_at_the_end(slide):
-    """Where particles hand on snow, and there alone, nodes have a thickness, of about as much."""
+    """Nodes have a thickness only near particles, of about the particles' thickness."""
     scene, film = slide
     frames = slide_frames(film, slide_terrain(scene))
     import snowshed._core as core

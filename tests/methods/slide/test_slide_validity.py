@@ -1,4 +1,4 @@
-"""Where a slide leaves what the method was made for."""
+"""Warnings of slides outside the range of the method."""
 
 import math
 

@@ -18,7 +18,7 @@ from snowshed.study.database import MEASURED_TYPES
 from snowshed.study.outcome import RunOutcome
 from snowshed.study.store import Store
 
-#: Fewer values and folds than the quick reproduction has, with two seedings where it has one.
+#: Fewer values and folds than in the quick reproduction, and two seedings instead of one.
 TINY = replace(
     QUICK,
     fixation_seeds=2,
@@ -36,7 +36,7 @@ TINY_WITH_PANELS = replace(TINY, simulates_panels=True)
 
 @contextmanager
 def few_fits(*, figures=False):
-    """Within, regressions choose among few hyper-parameters, and may draw no figures."""
+    """Let regressions choose among few hyper-parameters and draw no figures."""
     from snowshed.analysis.regression import grid_kinds, pipeline
 
     with pytest.MonkeyPatch.context() as patch:
@@ -49,12 +49,12 @@ def few_fits(*, figures=False):
 
 
 def report(found):
-    """Write the report of a computation, as of the quick size."""
+    """Write the report of a computation of the quick size."""
     return write_report(REPRODUCTION, REPRODUCTION.size("quick"), found.folder.path, found)
 
 
 def stack(scene, event):
-    """Height, length and head of a stack, m, as the thesis describes them; by complete scene."""
+    """Height, length and head of a scene's stack, m, as the thesis describes them."""
     snow, panel = scene["snow"], scene["panel"]
     noise = 1 + 0.002 * np.sin(97.0 * scene["seeding"]["seed"] + 13.0 * event)
     height = 0.05 * event**0.75 * (1 + 2 * (snow["cohesion"] - 0.1))
@@ -69,7 +69,7 @@ def stack(scene, event):
 
 
 def fill(found, stages=None, *, fail_one=False):
-    """Put such stacks into the store, for some stages or all; the last run may have failed."""
+    """Put made-up stacks into the store, for some stages or all; the last run may have failed."""
     chosen = [found.study_stages[name] for name in stages or found.study_stages]
     studies = [study for stage in chosen for study in stage._registered()]
     with Store.open(found.folder.runs) as store:

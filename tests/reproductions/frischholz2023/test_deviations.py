@@ -1,4 +1,4 @@
-"""The preset ``thesis``: each deviation sets what its sentences say, and nothing else."""
+"""The preset ``thesis``: each deviation sets the values of its sentences, and nothing else."""
 
 import json
 

@@ -1,4 +1,5 @@
-"""The page on the gap to the thesis: written from results, and what it may conclude from them."""
+"""The page on the gap to the thesis: it follows from results, and concludes no more than they
+say."""
 
 import shutil
 

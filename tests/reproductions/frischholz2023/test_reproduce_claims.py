@@ -130,7 +130,7 @@ def test_ratio_of_dimensions():
 
 
 def test_noise_of_few_seedings_is_widened():
-    """Two means of two numbers that differ by chance: five in a hundred are decided."""
+    """Of pairs of means that differ by chance alone, five in a hundred are decided."""
     generator = np.random.default_rng(3)
     rows = pd.DataFrame(itertools.product((40, 50), (1, 2)), columns=["tilt", "seed"])
     rows = rows.assign(event=1)
@@ -297,7 +297,7 @@ def test_geometry(claim):
 
 
 def test_a_fit_recovers_slope_and_error():
-    """Against the closed form of a straight line with one offset."""
+    """The fit agrees with the closed form of a straight line with one offset."""
     table = panels(noise=0.05)
     table = table[
         (table["event"] == 1) & (table["panel_tilt"] == 40) & (table["panel_length"] == 2)
@@ -312,7 +312,7 @@ def test_a_fit_recovers_slope_and_error():
 
 
 def test_events_of_one_panel_are_no_independent_witnesses():
-    """Panels that scatter, with events that repeat each, tell no more than one event."""
+    """Events that repeat the scatter of their panels add no information to one event."""
     once = panels(noise=0.0)
     once = once[(once["event"] == 1) & (once["panel_length"] == 2) & (once["panel_tilt"] == 40)]
     once = pd.concat([once.assign(panel_height=height) for height in (1.0, 2.0)] * 3)

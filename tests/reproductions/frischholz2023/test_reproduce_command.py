@@ -93,7 +93,7 @@ def small_studies(size):
 
 
 def test_a_stage_of_real_snow(tmp_path, capsys, monkeypatch):
-    """Tiny runs, stopped in the air; the second call has nothing left to compute."""
+    """Tiny runs end while snow is in the air; the second call has nothing left to compute."""
     from reproductions.frischholz2023 import stages
 
     monkeypatch.setitem(stages.MAKERS, "s-index", small_studies)

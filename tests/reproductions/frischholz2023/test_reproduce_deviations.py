@@ -1,4 +1,4 @@
-"""Deviations undone one by one: which panels, which runs, and what is said of the change."""
+"""Deviations undone one by one: their panels, their runs, and the texts on the change."""
 
 import json
 import math

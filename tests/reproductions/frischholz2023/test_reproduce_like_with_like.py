@@ -13,7 +13,7 @@ from snowshed.analysis.regression.published import published
 
 
 def several_seeds(file):
-    """The made-up table with three stacks for each row, of which the first is the odd one."""
+    """The made-up table with three stacks for each row; the first one differs from the others."""
     table = pd.read_csv(geometry_table(file))
     seeds = [
         table.assign(seed=seed, height_m=table["height_m"] * (1 + off))

@@ -1,4 +1,4 @@
-"""The report: what it holds with everything, and what it says is missing."""
+"""The report: its full content, and its list of missing parts."""
 
 import base64
 import re

@@ -1,4 +1,4 @@
-"""Stages, their order and names, resuming, and what a folder accepts."""
+"""Stages, their order and names, resuming, and the options that a folder accepts."""
 
 import json
 import re
@@ -115,7 +115,7 @@ def test_a_folder_is_for_one_size_and_one_condition(tmp_path):
 
 
 def test_a_folder_of_former_days_is_gone_on_with(tmp_path):
-    """Folders named neither the publication nor the condition at first."""
+    """Folders of early versions name neither the publication nor the condition."""
     (tmp_path / "reproduction.json").write_text('{"size": "quick"}')
     prepare(tmp_path)
     with pytest.raises(InputError, match="take a new folder for --condition slip"):

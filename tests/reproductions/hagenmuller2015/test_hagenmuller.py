@@ -18,15 +18,15 @@ from snowshed.analysis.grains.ratios import STRESSES, compare_variants
 from snowshed.analysis.grains.variants import BASE
 from snowshed.cli.main import main
 
-#: Stresses of the base in kPa, and what each variant makes of them, as the paper and Yade say.
+#: Stresses in kPa of the base and of each variant, as the paper and Yade say.
 AS_PRINTED = {BASE: (69.0, 26.0, 47.0, 2516.0)}
 AS_PRINTED.update({name: line for name, line in printed.YADE.items() if name != BASE})
 AS_CLAIMED = {
     studies.THIN_NECKS: (40.0, 20.0, 40.0, 2000.0),
     studies.WIDE_NECKS: (80.0, 30.0, 50.0, 2050.0),
-    studies.FEWER: (70.0, 27.0, 45.0, 2500.0),
-    studies.TRAP: (400.0, 100.0, 90.0, 2600.0),
-    claims.SCALED: (72.0, 30.0, 50.0, 2500.0),
+    studies.FEWER_GRAINS: (70.0, 27.0, 45.0, 2500.0),
+    studies.EXCESSIVE_INERTIA: (400.0, 100.0, 90.0, 2600.0),
+    claims.SCALED_DENSITY: (72.0, 30.0, 50.0, 2500.0),
     claims.HALF_EDGE: (66.0, 20.0, 40.0, 2400.0),
     "spheres 50 um": (72.0, 25.0, 47.0, 2500.0),
     "spheres 150 um": (65.0, 25.0, 47.0, 2500.0),
@@ -34,7 +34,7 @@ AS_CLAIMED = {
 
 
 def made_up(noise=0.02, **changed):
-    """Tests of three samples that scatter a little; a variant's stresses may be others."""
+    """Tests of three samples that scatter a little; the stresses of a variant may be replaced."""
     random = np.random.default_rng(1)
     lines = {**AS_PRINTED, **AS_CLAIMED, **changed}
     rows = []
@@ -71,16 +71,16 @@ def test_noise_leaves_claims_open():
 
 
 def test_the_opposite_contradicts():
-    """Each of these turns a claim of the paper round."""
+    """Each of these stresses contradicts a claim of the paper."""
     for changed, text in (
-        ({studies.SOFT: (20.0, 54.0, 57.0, 439.0)}, "insensitive to Young"),
-        ({studies.SOFT: (63.0, 54.0, 57.0, 2500.0)}, "very sensitive to Young"),
+        ({studies.SOFT_ICE: (20.0, 54.0, 57.0, 439.0)}, "insensitive to Young"),
+        ({studies.SOFT_ICE: (63.0, 54.0, 57.0, 2500.0)}, "very sensitive to Young"),
         ({studies.THIN_NECKS: (100.0, 20.0, 40.0, 2000.0)}, "Faceted"),
         ({studies.THIN_NECKS: (40.0, 20.0, 40.0, 500.0)}, "do not differ"),
         ({studies.HEAVY_SNOW: (60.0, 20.0, 40.0, 2000.0)}, "Density controls the stress."),
         ({"spheres 50 um": (490.0, 25.0, 47.0, 2500.0)}, "size of the spheres"),
-        ({claims.SCALED: (200.0, 25.0, 47.0, 2500.0)}, "Denser ice"),
-        ({studies.ROUGH: (60.0, 46.0, 38.0, 2000.0)}, "Friction"),
+        ({claims.SCALED_DENSITY: (200.0, 25.0, 47.0, 2500.0)}, "Denser ice"),
+        ({studies.HIGH_FRICTION: (60.0, 46.0, 38.0, 2000.0)}, "Friction"),
         ({BASE: (30.0, 60.0, 70.0, 80.0)}, "At last the stress"),
     ):
         judged = {one.text: one.finding.verdict for one in judge(PAPER, made_up(**changed))}
@@ -108,7 +108,7 @@ def test_broken_bonds_are_not_elastic():
 
 def test_the_table_has_yade_beside_us():
     grid = stress_grid(compare_variants(made_up().tables[0].query("variant != 'elastic'")))
-    (row,) = [row for row in grid.rows if row[0] == studies.ROUGH]
+    (row,) = [row for row in grid.rows if row[0] == studies.HIGH_FRICTION]
     assert row[1].endswith("[106]")
 
 

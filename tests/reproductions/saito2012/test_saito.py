@@ -39,7 +39,7 @@ def test_a_frame_stands_on_its_path():
 
 
 def at_rest_at(case, ways, across=0.0, speed=0.0):
-    """Snow whose particles stand at some ways along the path."""
+    """Snow whose particles have some distances along the path."""
     points = np.array([case.path.frame(way)[0] if way < 0 else [way, 0, 0] for way in ways])
     points[:, 1] = across
     velocities = np.zeros_like(points)
@@ -48,7 +48,7 @@ def at_rest_at(case, ways, across=0.0, speed=0.0):
 
 
 def course(case, ends, *, speed=0.0, width=1.0):
-    """A course whose particles start above, and lie at `ends(fraction)` in the end."""
+    """A course whose particles start above and end at `ends(fraction)`."""
     snow = []
     spread = width * np.linspace(-0.5, 0.5, 100)
     for time in case.times:
@@ -61,7 +61,8 @@ def as_claimed(**changed):
     """Courses of all cases in which the snow does what the paper says."""
 
     def falls(kept):
-        """So many of a hundred end above the obstacle; from 3 s to 4 s the outermost two pass."""
+        """A number of a hundred particles end above the obstacle; from 3 s to 4 s the outermost two
+        pass."""
 
         def ends(fraction):
             ways = np.full(100, -5.0 + 6.0 * min(1, fraction / 0.6))
@@ -75,13 +76,15 @@ def as_claimed(**changed):
 
     wooden = dict(zip(made.OBSTACLES, (falls(0), falls(40), falls(0), falls(30))))
     wooden.update(changed.get("wooden", {}))
-    known = [course(made.wooden(name, QUICK), ends, width=0.22) for name, ends in wooden.items()]
+    known = [
+        course(made.wooden_case(name, QUICK), ends, width=0.22) for name, ends in wooden.items()
+    ]
     for number in (1, 2):
         for model in (made.BINGHAM, made.COMBINED):
             bingham = model == made.BINGHAM
             known.append(
                 course(
-                    made.slope(number, model, QUICK),
+                    made.slope_case(number, model, QUICK),
                     lambda fraction: np.full(100, -20.0 + 20 * fraction),
                     speed=0.5 if bingham else 0.0,
                     width=12.0 if bingham else 10.0,
@@ -100,7 +103,7 @@ def test_what_the_paper_says_is_confirmed_where_the_snow_does_it():
 
 
 def test_stakes_that_let_all_through_contradict():
-    free = as_claimed(wooden={made.NARROW: lambda fraction: np.full(100, -5 + 6 * fraction)})
+    free = as_claimed(wooden={made.NARROW_STAKES: lambda fraction: np.full(100, -5 + 6 * fraction)})
     assert verdicts(free)[1] == CONTRADICTED
 
 
@@ -109,8 +112,8 @@ def test_cases_that_are_not_there_leave_claims_open():
 
 
 def test_a_case_goes_on_after_an_interruption(tmp_path):
-    whole = made.slope(1, made.BINGHAM, QUICK)
-    case = replace(whole, end=0.4, every=0.2)
+    whole = made.slope_case(1, made.BINGHAM, QUICK)
+    case = replace(whole, end=0.4, interval=0.2)
     stage = CaseStage(case, tmp_path / "one")
     stage.compute(None, lambda *_: None)
     assert stage.state().finished

@@ -1,4 +1,4 @@
-"""What presses on snow and how far it sinks, against closed forms."""
+"""The stress on snow and its settling, against closed forms."""
 
 import numpy as np
 import pytest

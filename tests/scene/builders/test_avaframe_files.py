@@ -1,4 +1,4 @@
-"""An AvaFrame project of a stranger: its own files are read and copied, no others."""
+"""An untrusted AvaFrame project: only its own files are read and copied."""
 
 import os
 
@@ -7,7 +7,7 @@ from helpers.slide_files import write_polygons, write_project
 
 from snowshed import InputError
 from snowshed.base import limits
-from snowshed.base.notes import recorded
+from snowshed.base.notes import record_notes
 from snowshed.scene.builders.avaframe import avaframe_simulations
 from snowshed.scene.builders.avaframe_files import copy_inputs, project_inputs
 
@@ -72,7 +72,7 @@ def test_known_files_are_copied_and_others_told(project, tmp_path):
     (project / "Inputs/remeshedRasters").mkdir()
     (project / "Inputs/remeshedRasters/dem.asc").write_text("1")
     (project / "Inputs/photo.bin").write_bytes(bytes(10))
-    with recorded() as notes:
+    with record_notes() as notes:
         inputs = project_inputs(project)
     assert notes == [f"{project}/Inputs: not copied to the results: photo.bin"]
     (tmp_path / "out/Inputs").mkdir(parents=True)
@@ -91,9 +91,9 @@ def test_known_files_are_copied_and_others_told(project, tmp_path):
 @pytest.mark.parametrize(
     ("limit", "value", "message"),
     [
-        ("PROJECT_FILES", 1, "more than 1 files"),
-        ("PROJECT_BYTES", 100, "GB of files; at most"),
-        ("PROJECT_DEPTH", 0, "nested more than 0 deep"),
+        ("MAX_PROJECT_FILES", 1, "more than 1 files"),
+        ("MAX_PROJECT_BYTES", 100, "GB of files; at most"),
+        ("MAX_PROJECT_DEPTH", 0, "nested more than 0 deep"),
     ],
 )
 def test_what_is_copied_has_limits(project, monkeypatch, limit, value, message):

@@ -1,4 +1,4 @@
-"""Scenes of AvaFrame's projects: what an ini and a folder ask for is done or refused."""
+"""Scenes of AvaFrame's projects: settings of an ini and files are applied or refused."""
 
 import re
 
@@ -106,7 +106,7 @@ def test_a_setting_that_the_scene_refuses_is_located(tmp_path):
 
 
 def test_maps_that_would_fill_the_disk_are_refused(tmp_path, monkeypatch):
-    monkeypatch.setattr("snowshed.scene.builders.avaframe.SAVED_CELLS", 10_000)
+    monkeypatch.setattr("snowshed.scene.builders.avaframe.MAX_SAVED_CELLS", 10_000)
     project = write_project(tmp_path, "tSteps = 0|1\n")
     assert avaframe_simulations(project)
     write_project(tmp_path, "tSteps = 0|1|2\n")
@@ -138,7 +138,7 @@ def test_each_release_file_and_type_is_a_simulation(tmp_path):
         ("north", "entres"), ("north", "null"), ("south", "entres"), ("south", "null"),
     ]  # fmt: skip
     full, none = (s.scene.resolve().data["terrain"] for s in found[:2])
-    assert full["entrainment"][0]["thickness"] == 0.3  # com1DFA's, where the file says nothing
+    assert full["entrainment"][0]["thickness"] == 0.3  # com1DFA's default
     assert full["resistance"]
     assert not none.get("entrainment")
     assert not none.get("resistance")
@@ -192,7 +192,7 @@ def test_terrain_of_other_cells_is_resampled_by_cubic_convolution(tmp_path):
     copy = read_raster(scene.terrain.file)
     assert copy.heights.shape == (31, 41)  # no further than the raster
     assert (copy.cell, copy.east, copy.north) == (2.0, 0.0, 0.0)
-    # A plane stays one, but for single precision, away from the border.
+    # Away from the border, a plane stays a plane within single precision.
     slope = (raster.heights[0, 1] - raster.heights[0, 0]) / 5.0
     expected = 1500.0 + slope * 2.0 * np.arange(41)
     assert copy.heights[15, 4:-4] == pytest.approx(expected[4:-4], abs=2e-4)

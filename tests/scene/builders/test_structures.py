@@ -1,4 +1,4 @@
-"""Structures: where their parts are, what is refused, and that they can be run."""
+"""Structures: positions of their parts, refused arguments, and runs."""
 
 import math
 
@@ -21,7 +21,7 @@ def laid(scene):
 
 
 def distance(simulation, *places):
-    """Distances to obstacles (not the panel, not the ground) at places (x, z)."""
+    """Distances to obstacles (without panel and ground) at points (x, z)."""
     return simulation.obstacle_distance(np.array([[x, 0.0, z] for x, z in places]))
 
 
@@ -119,7 +119,7 @@ def test_snow_on_a_mesh_lies_on_top_of_it(tmp_path, dimension):
 
 
 def test_a_tracker_turns_to_its_tilt_and_dumps_its_snow():
-    """Friction 0.2 holds the snow at first; it lets go near atan(0.2) = 11 degrees."""
+    """Friction 0.2 holds the snow at first; the snow slides from about atan(0.2) = 11 degrees."""
     scene = tracker(
         axis_height=0.5, length=0.5, snow=0.1, tilt_to=60.0, seconds=0.6, friction=0.2, dx=0.05,
         settle=0.3,

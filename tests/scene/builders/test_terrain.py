@@ -116,7 +116,7 @@ def test_distances_from_a_slope_are_those_of_its_plane():
     distances, bottom = signed_distances(-math.tan(slope) * xs[:, None], xs, np.zeros(1), 0.1)
     x, z = np.meshgrid(xs, bottom + 0.1 * np.arange(distances.shape[2]), indexing="ij")
     exact = z * math.cos(slope) + x * math.sin(slope)
-    middle = (np.abs(x - 1.0) < 0.5) & (np.abs(exact) < 0.3)  # the terrain goes on level beyond
+    middle = (np.abs(x - 1.0) < 0.5) & (np.abs(exact) < 0.3)  # beyond, the terrain continues level
     np.testing.assert_allclose(distances[:, 0][middle], exact[middle], atol=1e-5)
 
 
@@ -149,7 +149,7 @@ def test_snow_on_a_terrain_of_one_slope_acts_as_on_tilted_ground(tmp_path):
         z = above - (x - edge) * math.tan(psi)
         found = simulation.obstacle_distance(np.array([[x, 0.0, z]]))[0]
         assert found == pytest.approx(above * math.cos(psi), abs=0.01)
-    assert panel.ground is not None and panel.obstacles is None  # the scene given stays as it was
+    assert panel.ground is not None and panel.obstacles is None  # the given scene is unchanged
 
 
 def test_terrain_that_cannot_be_made(tmp_path):

@@ -1,4 +1,4 @@
-"""The one reader of terrain: elevations that cannot be are refused, whoever asks for them."""
+"""The only reader of terrain refuses impossible elevations for every caller."""
 
 import numpy as np
 import pytest
@@ -109,12 +109,10 @@ def test_elevations_given_in_memory_are_checked_too(tmp_path):
 
 
 def test_a_packed_plane_of_many_cells_is_refused(tmp_path):
-    """A kilobyte of one elevation, as a slide's maps of a gigabyte begin with."""
+    """A kilobyte holds a single elevation for so many cells that a slide would take a gigabyte."""
     flat = np.full((2100, 2100), 500.0)
     file = write_geotiff(tmp_path / "dem.tif", flat, "float32", compress="deflate")
-    with pytest.raises(
-        InputError, match="hold 4410000 cells, closer than elevations can be packed"
-    ):
+    with pytest.raises(InputError, match="hold 4410000 cells, more than can be packed into them"):
         read_terrain(file)
 
 

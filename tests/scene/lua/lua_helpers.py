@@ -1,4 +1,4 @@
-"""Scripts in files, and what their run costs."""
+"""Scripts in files, and the processor time of their runs."""
 
 import resource
 
@@ -26,7 +26,7 @@ def error_of(folder, init, update=None, **options):
 
 
 def error_within(seconds, folder, init, update=None, **options):
-    """Return the message of a load that takes less processor time, s; slow moments are forgiven."""
+    """Return the message of a load that takes less processor time, s, in one of three attempts."""
     for _ in range(3):
         before = children_seconds()
         error = error_of(folder, init, update, **options)

@@ -1,4 +1,4 @@
-"""The command ``snowshed lua``, and what happens where Lua is missing."""
+"""The command ``snowshed lua``, also without Lua."""
 
 import json
 

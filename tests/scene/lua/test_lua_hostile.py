@@ -1,4 +1,4 @@
-"""Hostile scripts are stopped: in less than a second, saying where and why."""
+"""Hostile scripts are stopped in less than a second, with line and reason."""
 
 import errno
 import os
@@ -15,13 +15,13 @@ MEMORY = "stopped: more than 8 MB of memory"
 SOFT = "stopped after 0.25 s"
 HARD = "stopped in one operation that takes more than the 0.4 s"
 PATIENCE = 1.0  # s of processor time
-# Where what a script does stops it, a slow moment of the machine shall not come first.
+# Large enough that a slow moment of the machine does not stop a script before its own action.
 UNHURRIED = LuaLimits(soft_seconds=3, hard_seconds=3)
 
 # A table with gaps that claims 2^40 items; all of its keys are in the hash part.
 GAPS = "{" + ",".join(f"[{2**k}]=1" for k in range(41)) + "}"
 
-# Script, the line that the error names (0: none), and what it says.
+# Script, the line that the error names (0: none), and the message.
 SCRIPTS = {
     "endless loop": ("\nwhile true do end", 2, STOPPED),
     "endless jump": ("::again::\ngoto again", 2, STOPPED),

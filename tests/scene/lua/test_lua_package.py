@@ -1,4 +1,4 @@
-"""The guide knows every word."""
+"""The guide describes every function of the vocabulary."""
 
 import pytest
 from helpers.paths import ROOT

@@ -1,4 +1,4 @@
-"""What scripts say becomes the scene they mean."""
+"""Scenes from scripts."""
 
 import json
 import re

@@ -32,7 +32,7 @@ def test_neighbours_across_a_diagonal_are_linked():
 
 
 def test_rows_of_voxels_do_not_touch_end_to_start():
-    """The last voxel of a row is no neighbour of the first one in the next."""
+    """The last voxel of a row is not a neighbour of the first voxel in the next row."""
     corners = np.array([[x, y, z] for x in (0.0, 1.0) for y in (0.0, 1.0) for z in (0.0, 1.0)])
     assert len(np.unique(connected_bodies(corners * [0.1, 0.5, 0.5], 0.1))) == 4
 

@@ -23,7 +23,7 @@ def tilt(positions, degrees):
 
 
 def test_ridge():
-    """1.5 % of a triangle at either end: sqrt(0.03) of half the base; the surface loses a cell."""
+    """A triangle loses 1.5 % at either end, sqrt(0.03) of half its base, and a surface cell."""
     base, height = 1.0, 0.3
     stack = measure(triangle(base, height))
     length = base * (1 - np.sqrt(0.03))
@@ -46,7 +46,7 @@ def test_cone():
 
 @pytest.mark.parametrize("psi", [0.0, 12.0])
 def test_centre_of_mass_and_spread_of_a_triangle(psi):
-    """A third of the height, and the base over the root of 24."""
+    """A triangle's centre is at a third of its height; its spread is base / sqrt(24)."""
     stack = measure(tilt(triangle(1.0, 0.3, count=40_000), psi), ground_tilt_deg=psi)
     assert stack.centre_height == pytest.approx(0.1, rel=0.01)
     assert stack.spread == pytest.approx(1 / np.sqrt(24), rel=0.01)

@@ -1,4 +1,4 @@
-"""Which snow of a scene has come down: grains at an edge, a roof, terrain."""
+"""The snow of a scene that has come down: grains at an edge, a roof, terrain."""
 
 import numpy as np
 import pytest
@@ -11,7 +11,7 @@ from snowshed.scene.builders.terrain import on_terrain
 
 
 def test_snow_that_stays_on_a_roof_is_no_stack():
-    """All of it was one: 3.29 m on a house whose pile is 0.5 m high."""
+    """The pile is 0.5 m high; with the snow on the house, the stack would be 3.29 m high."""
     roof = gable_roof(eaves=1.0, length=1.0, tilt=30.0, snow=0.2, dx=0.05, friction=2.0)
     simulation = Simulation(roof)
     simulation.begin_event()

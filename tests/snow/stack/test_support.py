@@ -1,4 +1,4 @@
-"""What counts as the stack: snow that has come down, on the ground that is below."""
+"""The stack is the snow that has come down to the ground below."""
 
 import numpy as np
 import pytest

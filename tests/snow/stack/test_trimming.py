@@ -55,12 +55,12 @@ def test_2d_takes_from_both_ends_of_a_symmetric_stack_alike(trimming):
 
 
 def test_the_readings_differ_where_a_chunk_has_rolled_far_off():
-    """Outermost first, the far chunk goes at once; at equal pace the stack pays for its way."""
+    """`outermost_first` drops the far chunk at once, `equal_pace` also snow of the stack."""
     stack, chunk = np.linspace(0, 1, 980), np.linspace(8.9, 9.0, 20)
     outermost, equal = (kept_of([*stack, *chunk], name) for name in TRIMMINGS)
-    # The chunk, and ten of the end that lies farther from the centre of mass, at x = 0.67.
+    # Dropped: the chunk, and ten particles at the end farther from the centre of mass, x = 0.67.
     assert np.flatnonzero(~outermost).tolist() == [*range(10), *range(980, 1000)]
-    # Both ends have come 2.5 cm inward when 30 particles are gone: 25 of the stack, 5 of the chunk.
+    # Both ends are 2.5 cm inward when 30 particles are dropped: 25 of the stack, 5 of the chunk.
     assert np.flatnonzero(~equal).tolist() == [*range(25), *range(995, 1000)]
 
 
@@ -78,12 +78,12 @@ def test_a_reading_must_be_one():
 
 
 def test_mass_counts_not_number():
-    """Three percent of the mass: ten light grains weigh no more than one heavy one."""
+    """Three percent of the mass are dropped; ten light grains have the mass of a heavy one."""
     x = np.arange(109.0)
     masses = np.where(x < 10, 0.1, 1.0)
     kept = inliers(np.column_stack([x, 0 * x, 0 * x]), masses, 2)
     assert masses[~kept].sum() <= 3.0
-    assert (~kept).sum() > 3  # which is three percent of their number
+    assert (~kept).sum() > 3  # three percent of the number
 
 
 def test_particles_all_in_one_place():

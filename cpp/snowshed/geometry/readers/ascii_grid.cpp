@@ -14,12 +14,12 @@
 namespace snowshed {
 namespace {
 
-// Equal to LARGEST_TERRAIN in python/snowshed/base/limits.py, which gives the reason.
+// Equal to MAX_RASTER_CELLS in python/snowshed/base/limits.py, which gives the reason.
 constexpr double max_raster_nodes = 25e6;
 constexpr double max_side = 50'000;     // nodes
 constexpr double max_coordinate = 1e8;  // m
 constexpr double max_elevation = 1e5;   // m
-constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
+constexpr double unknown_height = std::numeric_limits<double>::quiet_NaN();
 
 struct Header {
   std::map<std::string, double> values;
@@ -34,16 +34,16 @@ std::string lower(std::string_view word) {
   return text;
 }
 
-/// The spellings of "not a number" in texts of C libraries old and new.
+/// Returns whether a word is one of the spellings of "not a number" in old and new C libraries.
 bool is_nan(std::string_view word) {
   if (!word.empty() && (word[0] == '-' || word[0] == '+')) word.remove_prefix(1);
   const std::string text = lower(word);
   return text.compare(0, 3, "nan") == 0 || text.compare(0, 3, "1.#") == 0;
 }
 
-/// A number, whose decimals may follow a comma, as GDAL reads it; `commas` counts those.
+/// Reads a number as GDAL does: its decimals may follow a comma. `commas` counts such numbers.
 double number_of(std::string_view word, const TextScanner& scanner, std::size_t& commas) {
-  if (is_nan(word)) return not_known;
+  if (is_nan(word)) return unknown_height;
   const std::size_t comma = word.find(',');
   if (comma == std::string_view::npos) return scanner.parse<double>(word);
   if (comma + 1 == word.size()) scanner.fail("values are separated by blanks, not by commas");
@@ -53,7 +53,7 @@ double number_of(std::string_view word, const TextScanner& scanner, std::size_t&
   return scanner.parse<double>(text);
 }
 
-/// Returns the name that this reader has for a word of the header; empty if it is none.
+/// Returns the key of the header that a word stands for; an empty text if there is none.
 std::string header_key(std::string_view word) {
   static const char* const keys[] = {"ncols",     "nrows",       "xllcenter", "yllcenter",
                                      "xllcorner", "yllcorner",   "cellsize",  "dx",
@@ -95,8 +95,8 @@ double cell_of(const Header& header, const TextScanner& scanner) {
   return cell;
 }
 
-/// Whether a value marks a missing one. GDAL holds both in single precision; some programs write
-/// the largest single number with fewer digits than it needs.
+/// Returns whether a value marks a missing height. GDAL compares in single precision; some programs
+/// write the largest single-precision number with fewer digits than it needs.
 bool is_missing(double value, double nodata) {
   if (std::isnan(value) || value == nodata) return true;
   if (std::abs(nodata) > max_elevation) return std::abs(value - nodata) <= 1e-6 * std::abs(nodata);
@@ -160,7 +160,7 @@ HeightField read_ascii_grid(const std::filesystem::path& file, GridAssumptions* 
       if (missing && !declared && !std::isnan(value)) ++assumed.undeclared_missing;
       const int row = field.rows - 1 - int(read / std::size_t(field.columns));
       const int column = int(read++ % std::size_t(field.columns));
-      field.heights[field.index(column, row)] = missing ? not_known : value;
+      field.heights[field.index(column, row)] = missing ? unknown_height : value;
     }
   if (read != nodes)
     scanner.fail(std::to_string(read) + " values; the header announces " + std::to_string(nodes));

@@ -16,10 +16,10 @@ struct GridAssumptions {
 
 /// Reads a grid from an untrusted file: ncols, nrows, xllcenter or xllcorner, yllcenter or
 /// yllcorner, cellsize (or dx and dy, which must be equal) and, if present, nodata_value (-9999
-/// without it), in any order, then the values, from the north-west, row by row. Values that are not
-/// a number are missing, as are those that are nodata_value in single precision. Nodes are the
-/// centres of the raster's cells. `assumptions`, if given, gets the assumptions. Throws InputError
-/// with the file and the line.
+/// without it), in any order, then the values, from the north-west, row by row. Values that are
+/// NaN, or equal to nodata_value in single precision, are missing. Nodes are the centres of the
+/// raster's cells. `assumptions`, if given, receives the assumptions. Throws InputError with the
+/// file and the line.
 HeightField read_ascii_grid(const std::filesystem::path& file,
                             GridAssumptions* assumptions = nullptr);
 

@@ -37,7 +37,7 @@ ShellSolid read_solid(const std::filesystem::path& path, double scale) {
 }
 
 TriangleMesh read_mesh(const std::filesystem::path& path, double scale) {
-  return joined(read_solid(path, scale));
+  return merged_layers(read_solid(path, scale));
 }
 
 }  // namespace snowshed

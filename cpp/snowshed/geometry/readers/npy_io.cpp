@@ -96,7 +96,7 @@ std::size_t checked_count(const std::filesystem::path& path, const ArrayHeader& 
   return bytes_left / value_size;
 }
 
-/// The next of the reader's integers. One beyond 63 bits, which is not allowed, is negative.
+/// Reads the next integer; an integer beyond 63 bits, which is not allowed, becomes negative.
 std::int64_t next_integer(ByteReader& reader, const ArrayHeader& header) {
   const auto read = [&](auto with_sign, auto without) -> std::int64_t {
     if (header.is_signed()) return reader.read<decltype(with_sign)>();
@@ -132,8 +132,8 @@ NpyArray read_npy(const std::filesystem::path& path) {
 
 namespace {
 
-/// Throws InputError if labels are more than a sample may have, before all are read: a
-/// file of holes takes no room on the disk. 512 voxels along each edge are more than can be loaded.
+/// Throws InputError if a file has more labels than a sample may have, before all are read, because
+/// a sparse file takes no room on the disk. An image of 512^3 voxels is too large to be loaded.
 void check_label_count(const std::filesystem::path& path) {
   constexpr std::uintmax_t max_bytes = std::uintmax_t(640) << 20;
   constexpr double max_labels = 512.0 * 512.0 * 512.0;

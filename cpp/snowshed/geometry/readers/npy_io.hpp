@@ -25,8 +25,8 @@ struct NpyLabels {
   std::vector<std::int32_t> values;
 };
 
-/// Reads the same of an array of labels: little-endian integers of one to eight bytes, none of them
-/// negative or above 2^31 - 1. Memory is checked before it is allocated.
+/// Reads such a file of labels: little-endian integers of one to eight bytes, none of them negative
+/// or above 2^31 - 1. Memory is checked before it is allocated.
 NpyLabels read_npy_labels(const std::filesystem::path& path);
 
 }  // namespace snowshed

@@ -69,7 +69,7 @@ GridSamples read_vdb(const VdbSource& source) {
     rebuild_distance(samples, 0, where(source));
   } else {
     for (float& value : samples.values) value = static_cast<float>(source.scale * value);
-    // The factor makes values that were cut off at the band count as outside it despite rounding.
+    // Because of the factor, values that were cut off at the band lie outside it despite rounding.
     rebuild_distance(samples, 0.999 * source.scale * header.background, where(source));
   }
   return samples;

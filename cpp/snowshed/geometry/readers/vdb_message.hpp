@@ -1,5 +1,5 @@
-// The output of the program snowshed-vdb when it reads a grid. It is built together with the
-// library that starts it, so the two can exchange structs as they are in memory.
+// The output of the program snowshed-vdb when it reads a grid. The program is built together with
+// the library that starts it, so the two can exchange structs as they are in memory.
 #pragma once
 
 #include <cstdint>

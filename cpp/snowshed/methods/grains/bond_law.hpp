@@ -19,19 +19,19 @@ struct ContactMotion {
 /// Effect of a contact in a step.
 template <class V, class Mask>
 struct ContactForce {
-  V push;           // N, negative in tension
-  SimdVec<V> drag;  // N, on the first sphere, normal to the normal
-  V heat;           // J, lost to friction
-  V broken_energy;  // J, lost with the bond
+  V normal_force;          // N, negative in tension
+  SimdVec<V> shear_force;  // N, on the first sphere, normal to the normal
+  V heat;                  // J, lost to friction
+  V broken_energy;         // J, lost when the bond breaks
   Mask touching, tension_break, shear_break;
 };
 
 /// Linear springs along and across the normal. A bond bears tension up to a limit, and shear up to
-/// a limit plus friction, and is lost for good beyond. Without a bond there is no tension, and
+/// a limit plus friction. Beyond these it breaks for good. Without a bond there is no tension, and
 /// shear is at most friction (Cundall and Strack 1979 for the springs; Hagenmuller, Chambon and
-/// Naaim 2015 for bonds between grains of snow. We have not seen the tables of the latter. Two
-/// rules are therefore inferred: friction raises the shear strength of a bond, and a broken bond
-/// leaves its pair no cohesion).
+/// Naaim 2015 for bonds between grains of snow. We have not seen the tables of the latter paper, so
+/// two rules are inferred: friction raises the shear strength of a bond, and after a bond has
+/// broken its pair has no cohesion).
 struct BondLaw {
   double normal_stiffness = 0, shear_stiffness = 0;  // N/m
   double tension_limit = 0, shear_limit = 0;         // N
@@ -39,8 +39,8 @@ struct BondLaw {
 
   /// Updates the shear displacement `u` (m) and whether there is a bond. The displacement turns
   /// with the contact. The lost energy is the work of the mean of the forces before and after the
-  /// step, less the energy that the springs store. With a trapezoidal integration of the motion the
-  /// energy balance then closes.
+  /// step, minus the energy that the springs store. The energy balance therefore closes with a
+  /// trapezoidal integration of the motion.
   template <class V, class Mask>
   SNOWSHED_INLINE ContactForce<V, Mask> operator()(const ContactMotion<V>& m, SimdVec<V>& u,
                                                    Mask& bonded) const {
@@ -56,17 +56,17 @@ struct BondLaw {
     const Mask breaks = f.tension_break | f.shear_break;
     const Mask holds = bonded & (breaks == 0);
     f.touching = holds | (m.gap < zero);
-    f.push = select(f.touching, spring, zero);
+    f.normal_force = select(f.touching, spring, zero);
 
     const Mask slips = (holds == 0) & (V(ks * length) > cap);
     const V least = broadcast<V>(1e-300);
     const V share = select(slips, V(cap / max(V(ks * length), least)), broadcast<V>(1.0));
     u = V(select(f.touching, share, zero)) * trial;
-    f.drag = ks * u;
+    f.shear_force = ks * u;
 
     const V lost = V(0.5 * ks) * dot(before + u, trial - u);
     const V gap_before = m.gap - m.parting;
-    const V work = 0.5 * (kn * gap_before - f.push) * m.parting;
+    const V work = 0.5 * (kn * gap_before - f.normal_force) * m.parting;
     const V stored = 0.5 * kn * (gap_before * gap_before) -
                      select(f.touching, V(0.5 * kn * (m.gap * m.gap)), zero);
     f.heat = select(breaks, zero, lost);

@@ -16,7 +16,7 @@ void Boundary::move(double dt) {
 double Boundary::travel_since(const Boundary& earlier) const {
   double farthest = (tip - earlier.tip).norm();
   for (int p = 0; p < 2; ++p) farthest = std::max(farthest, (plate[p] - earlier.plate[p]).norm());
-  // Two sides together move an image.
+  // Two sides move a periodic image together.
   for (int s = 0; s < 4; ++s)
     farthest = std::max(farthest, 2 * std::abs(side[s] - earlier.side[s]));
   return farthest;
@@ -30,8 +30,8 @@ double Boundary::top_speed() const {
 }
 
 SurfaceContact meet_cone(const Cone& cone, const Vec3& centre, double radius) {
-  // In the plane of the axis and the centre: rho outward, h up from the tip. The profile goes from
-  // the tip to the shoulder and from there upward.
+  // Coordinates in the plane of the axis and the centre: rho outward, h up from the tip. The cone's
+  // profile goes from the tip to the shoulder and from there upward.
   const double rho = std::hypot(centre.x(), centre.y()), h = centre.z();
   const double half = radians(cone.half_angle);
   const double slant = cone.radius / std::sin(half), shoulder = slant * std::cos(half);
@@ -45,7 +45,7 @@ SurfaceContact meet_cone(const Cone& cone, const Vec3& centre, double radius) {
   const double depth = on_shaft ? to_shaft : to_face;
   Eigen::Vector2d in = on_shaft ? Eigen::Vector2d(shaft - here) : Eigen::Vector2d(face - here);
   if (inside) in = -in;
-  // At a distance of zero the direction is that of the surface.
+  // At a distance of zero the direction is the normal of the surface.
   in = depth > 0 ? Eigen::Vector2d(in / depth)
                  : (on_shaft ? Eigen::Vector2d(-1, 0) : Eigen::Vector2d(-cosine, sine));
   const Vec3 outward = rho > 0 ? Vec3(centre.x() / rho, centre.y() / rho, 0) : Vec3::UnitX();

@@ -9,12 +9,12 @@
 
 namespace snowshed::grains {
 
-/// Partners of a grain in contacts other than grains, numbered after the last grain.
+/// Bodies, other than grains, that a grain can touch. They are numbered after the last grain.
 enum class Partner : std::uint32_t { bottom_plate, top_plate, west, east, south, north, cone };
-inline constexpr std::uint32_t partners = 7;
+inline constexpr std::uint32_t partner_count = 7;
 
 /// Positions and velocities, and the forces of the grains on each part. A plate is an endless
-/// square grid of spheres, of which one lies half a spacing from the plate's origin along x and y.
+/// square grid of spheres. One of them lies half a spacing from the plate's origin along x and y.
 struct Boundary {
   Vec3 plate[2] = {Vec3::Zero(), Vec3::Zero()};  // m, origins: bottom, top
   Vec3 plate_velocity[2] = {Vec3::Zero(), Vec3::Zero()};
@@ -25,7 +25,7 @@ struct Boundary {
   bool has_top = true, has_cone = false;
 
   Vec3 plate_force[2] = {Vec3::Zero(), Vec3::Zero()};  // N, of the grains on them
-  double side_force[4] = {0, 0, 0, 0};  // N, outward; of periodic sides the pull of the images
+  double side_force[4] = {0, 0, 0, 0};  // N, outward; on periodic sides the pull of the images
   Vec3 cone_force = Vec3::Zero();
   std::int64_t top_contacts = 0;  // pairs of spheres that touch
 
@@ -38,7 +38,7 @@ struct Boundary {
   double travel_since(const Boundary& earlier) const;
   double top_speed() const;  // m/s, of the fastest part
 
-  /// Calls visit(number) for each of the numbers.
+  /// Calls visit(number) for each number in an archive.
   template <class Self, class Visit>
   static void for_each_number(Self& b, const Visit& visit) {
     const auto all = [&](auto& v) {
@@ -60,7 +60,8 @@ struct Boundary {
   }
 };
 
-/// A sphere's contact with a surface: as if with a sphere of its own radius behind the surface.
+/// A sphere's contact with a surface. It is treated as a contact with a sphere of the same radius
+/// behind the surface.
 struct SurfaceContact {
   double gap;   // m, between the surface and the sphere
   Vec3 normal;  // into the surface

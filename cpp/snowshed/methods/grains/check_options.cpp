@@ -47,7 +47,7 @@ void check_clump(const Sample& sample, std::size_t c, std::size_t spheres) {
   const Clump& clump = sample.clumps[c];
   const std::string where = "grain " + std::to_string(c);
   if (clump.first_sphere != spheres)
-    throw InputError(where, "its spheres do not follow the others");
+    throw InputError(where, "its spheres do not follow those of the grain before");
   if (clump.spheres == 0) throw InputError(where, "it has no spheres");
   if (!(clump.volume > 0) || !std::isfinite(clump.volume) || !clump.centre.allFinite())
     throw InputError(where, "its volume or centre is not sound");
@@ -89,7 +89,7 @@ void check_bonds(const Sample& sample) {
   const double diameter = 2 * sample.radius;
   for (const BondedPair& bond : sample.bonds) {
     if (bond.first >= grain.size() || bond.second >= grain.size())
-      throw InputError("sample", "a bond is with a sphere that is not there");
+      throw InputError("sample", "a bond names a sphere that does not exist");
     if (grain[bond.first] == grain[bond.second])
       throw InputError("sample", "a bond lies within one grain");
     const double distance = (sample.spheres[bond.first] - sample.spheres[bond.second]).norm();
@@ -152,7 +152,7 @@ void check_stages(const std::vector<LoadingStage>& stages, const Settings& setti
       throw InputError(path + "/kind", "there is nothing to unload; compress the sample before");
     if (open && stage.kind != LoadingKind::penetrate && stage.kind != LoadingKind::hold)
       throw InputError(path + "/kind",
-                       "the top plate is away since the stage \"penetrate\"; allowed: penetrate, "
+                       "the stage \"penetrate\" has removed the top plate; allowed: penetrate, "
                        "hold");
     check_stage(stage, path, settings);
     loaded = loaded || compresses;

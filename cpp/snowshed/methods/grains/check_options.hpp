@@ -7,7 +7,7 @@
 
 namespace snowshed::grains {
 
-/// Throws InputError if they do not.
+/// Throws InputError if settings, sample and loading do not fit each other.
 void check_grains(const Options&);
 
 /// Throws InputError if a stage cannot follow those before it, such as an unloading without a load.

@@ -1,5 +1,5 @@
-// Saving and restoring grains. The list of pairs is found again from the poses at which it was
-// made, so that any time is a safe point.
+// Saving and restoring grains. The list of pairs is made again from the poses of the last search,
+// so that any time is a safe point.
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -20,11 +20,11 @@ struct StoredPair {
   std::uint8_t bonded;
 };
 
-/// Contents of an archive besides the state: the flags of the boundaries.
+/// Contents of an archive that the state holds in another form.
 struct Stored {
   std::vector<StoredPair> pairs;
-  std::vector<Boundary> now, listed;  // one each
-  std::int64_t grains = 0, flags = 0, listed_flags = 0;
+  std::vector<Boundary> now, searched;  // one each
+  std::int64_t grains = 0, flags = 0, searched_flags = 0;
 };
 
 template <class Archive, class State, class StoredParts>
@@ -43,7 +43,7 @@ void visit_state(Archive& archive, State& s, StoredParts& stored) {
     each(body.damping, number);
     each(body.spin_damping, number);
   });
-  archive.packed("grains/listed", s.listed, grains, [&](auto& pose, const auto& number) {
+  archive.packed("grains/listed", s.searched_poses, grains, [&](auto& pose, const auto& number) {
     each(pose.position, number);
     each(pose.orientation.coeffs(), number);
   });
@@ -54,7 +54,7 @@ void visit_state(Archive& archive, State& s, StoredParts& stored) {
                   column("pairs/bonded", &StoredPair::bonded));
   const auto numbers = [](auto& b, const auto& number) { Boundary::for_each_number(b, number); };
   archive.packed("boundary/now", stored.now, 1, numbers);
-  archive.packed("boundary/listed", stored.listed, 1, numbers);
+  archive.packed("boundary/listed", stored.searched, 1, numbers);
   auto& l = s.loading;
   auto& e = s.energy;
   archive.numbers("clock", s.time, s.dt, s.counters.smallest_dt, l.displacement, l.duration,
@@ -62,7 +62,7 @@ void visit_state(Archive& archive, State& s, StoredParts& stored) {
   auto& c = s.counters;
   archive.counts("counters", stored.grains, c.steps, c.sorts, c.particle_updates, s.bonds,
                  s.broken_in_tension, s.broken_in_shear, s.first_id, s.next_id, l.stage,
-                 stored.flags, stored.listed_flags, s.boundary.top_contacts);
+                 stored.flags, stored.searched_flags, s.boundary.top_contacts);
 }
 
 std::int64_t flags_of(const Boundary& b) { return std::int64_t(b.has_top) + 2 * b.has_cone; }
@@ -112,7 +112,7 @@ std::vector<PairHistory> checked_pairs(const StateReader& archive,
     const bool of_grain = h.key.second < grains;
     const bool sound =
         pair.bonded <= 1 && h.shear.allFinite() && h.key.a < spheres && h.key.first < grains &&
-        model.spheres.grain[h.key.a] == h.key.first && h.key.second < grains + partners &&
+        model.spheres.grain[h.key.a] == h.key.first && h.key.second < grains + partner_count &&
         (!of_grain || (h.key.b < spheres && model.spheres.grain[h.key.b] == h.key.second)) &&
         (of_grain ? model.periodic() || (h.key.shift[0] == 0 && h.key.shift[1] == 0)
                   : h.key.shift[0] == 0 && h.key.shift[1] == 0) &&
@@ -145,27 +145,28 @@ void SolverImpl::save(BinaryWriter& out) const {
   Stored parts;
   for (const PairHistory& h : state_.pairs.all()) parts.pairs.push_back(stored(h));
   parts.now = {state_.boundary};
-  parts.listed = {state_.listed_boundary};
+  parts.searched = {state_.searched_boundary};
   parts.grains = std::int64_t(size());
   parts.flags = flags_of(state_.boundary);
-  parts.listed_flags = flags_of(state_.listed_boundary);
+  parts.searched_flags = flags_of(state_.searched_boundary);
   StateWriter archive(out);
   visit_state(archive, state_, parts);
 }
 
-SolverImpl::Restored SolverImpl::restored(const BinaryReader& in) const {
+SolverImpl::LoadedState SolverImpl::read_state(const BinaryReader& in) const {
   const StateReader archive(in);
-  Restored result;
+  LoadedState result;
   State& next = result.state;
   Stored parts;
   visit_state(archive, next, parts);
   check_counts(archive, next, parts, model_);
   check_poses(archive, next.bodies, model_);
-  check_poses(archive, next.listed, model_);
+  check_poses(archive, next.searched_poses, model_);
   const std::int64_t top_contacts = next.boundary.top_contacts;
   next.boundary = checked_boundary(archive, parts.now[0], parts.flags, model_);
   next.boundary.top_contacts = top_contacts;
-  next.listed_boundary = checked_boundary(archive, parts.listed[0], parts.listed_flags, model_);
+  next.searched_boundary =
+      checked_boundary(archive, parts.searched[0], parts.searched_flags, model_);
   const std::vector<PairHistory> past = checked_pairs(archive, parts.pairs, model_);
 
   Workspace& work = result.work;
@@ -173,12 +174,12 @@ SolverImpl::Restored SolverImpl::restored(const BinaryReader& in) const {
   if (grains > 0) {
     Listing listing;
     try {
-      listing = listing_of(model_, std::move(next.listed), next.listed_boundary, past);
+      listing = listing_of(model_, std::move(next.searched_poses), next.searched_boundary, past);
     } catch (const SimulationError& error) {
       archive.refuse(error.what());
     }
     next.pairs = std::move(listing.pairs);
-    next.listed = std::move(listing.poses);
+    next.searched_poses = std::move(listing.poses);
     work.groups_of = std::move(listing.groups_of);
     work.results = std::move(listing.results);
     work.max_step = listing.max_step;
@@ -186,12 +187,12 @@ SolverImpl::Restored SolverImpl::restored(const BinaryReader& in) const {
   }
   work.next = next.bodies;
   work.frames.resize(grains + 2);
-  work.damped.resize(grains);
+  work.damped_energy.resize(grains);
   return result;
 }
 
 void SolverImpl::load(const BinaryReader& in) {
-  Restored next = restored(in);
+  LoadedState next = read_state(in);
   std::vector<std::uint32_t> order(next.state.bodies.size());
   std::iota(order.begin(), order.end(), 0u);
   state_ = std::move(next.state);
@@ -200,6 +201,6 @@ void SolverImpl::load(const BinaryReader& in) {
   soundness_ = {};
 }
 
-void SolverImpl::check(const BinaryReader& in) const { restored(in); }
+void SolverImpl::check(const BinaryReader& in) const { read_state(in); }
 
 }  // namespace snowshed::grains

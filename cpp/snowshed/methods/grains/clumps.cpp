@@ -43,8 +43,8 @@ void for_each_ice(const LabelImage& image, const Visit& visit) {
         if (image.labels[voxel] != 0) visit(voxel, i, j, k);
 }
 
-/// Whether a voxel shares a face with air or another grain. Outside of the image there is air: the
-/// plates and walls touch the grains there.
+/// Whether a voxel shares a face with air or another grain. The outside of the image counts as air,
+/// because plates and walls touch the grains there.
 bool is_interface(const LabelImage& image, std::size_t i, std::size_t j, std::size_t k) {
   const std::int32_t own = image.at(i, j, k);
   const auto [nx, ny, nz] = image.size;
@@ -71,7 +71,7 @@ void for_each_bond(const LabelImage& image, const Visit& visit) {
       });
 }
 
-/// Index of the clump of each label; labels are in rising order.
+/// Index of the clump of each label. Clumps are in the order of their labels.
 class ClumpOfLabel {
  public:
   explicit ClumpOfLabel(const LabelImage& image) {
@@ -90,7 +90,7 @@ class ClumpOfLabel {
   std::uint32_t operator()(std::int32_t label) { return find(label, false); }
 
  private:
-  /// Voxels in a row have the same label most of the time.
+  /// Remembers the last label, because consecutive voxels mostly have the same.
   std::uint32_t find(std::int32_t label, bool insert) {
     if (label == last_label_) return last_clump_;
     last_label_ = label;
@@ -99,7 +99,7 @@ class ClumpOfLabel {
   }
 
   std::unordered_map<std::int32_t, std::uint32_t> clumps_;
-  std::int32_t last_label_ = 0;  // air, which is not asked for
+  std::int32_t last_label_ = 0;  // air, which is not looked up
   std::uint32_t last_clump_ = 0;
 };
 
@@ -107,7 +107,7 @@ Vec3 voxel_centre(const LabelImage& image, std::size_t i, std::size_t j, std::si
   return image.voxel_size * Vec3(double(i) + 0.5, double(j) + 0.5, double(k) + 0.5);
 }
 
-/// Volume, centre and inertia of all voxels, each a cube with its own inertia.
+/// Finds volume, centre and inertia of each clump from its voxels, which are cubes.
 void weigh(const LabelImage& image, ClumpOfLabel& clump_of, std::vector<Clump>& clumps) {
   const double side = image.voxel_size, volume = side * side * side;
   for_each_ice(image, [&](std::size_t voxel, std::size_t i, std::size_t j, std::size_t k) {
@@ -134,7 +134,7 @@ SampleSize measure_sample(const LabelImage& image) {
     size.spheres += is_interface(image, i, j, k);
   });
   for_each_bond(image, [&](std::size_t, std::size_t) { ++size.bonds; });
-  // Memory of the solver, and as much again for pairs during their search, as measured.
+  // Measured memory of the solver, with the second list of pairs that exists during a search.
   size.bytes = 160 * size.spheres + 450 * size.bonds + 1500 * size.grains;
   return size;
 }

@@ -1,4 +1,4 @@
-// From a segmented image to rigid clumps of spheres.
+// Makes rigid clumps of spheres from a segmented image.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace snowshed::grains {
 
-/// A grain: a rigid body with spheres on its surface. Spheres are those of Sample from
+/// A grain: a rigid body with spheres on its surface. The clump has the spheres of Sample from
 /// `first_sphere` on.
 struct Clump {
   Vec3 centre = Vec3::Zero();   // m, of mass
@@ -34,7 +34,7 @@ struct Sample {
   LabelPieces pieces;  // pieces in the image, if they were counted
 };
 
-/// Size of the sample of an image, known before it is made.
+/// Size of the sample that an image would become.
 struct SampleSize {
   std::size_t grains = 0, spheres = 0, bonds = 0, bytes = 0;
 };
@@ -43,16 +43,16 @@ SampleSize measure_sample(const LabelImage&);
 /// Diameters of grains of snow, m: no grain of real snow is smaller or larger.
 inline constexpr double min_grain_diameter = 2e-5, max_grain_diameter = 1e-2;
 
-/// Throws InputError unless the median diameter of grains, m, is that of snow. It is not if the
-/// voxel size is in another unit than metres.
+/// Throws InputError unless the median diameter of grains, m, is possible for snow. It is not if
+/// the voxel size is given in a unit other than metres.
 void check_grain_diameter(double median);
 
-/// The median over the grains of the diameter of spheres with their volumes, m.
+/// The median of the grains' equivalent diameters, m: diameters of spheres with the same volumes.
 double median_diameter(const Sample&);
 
-/// Every voxel at an interface, with air or another grain, becomes a sphere of the voxel's size
-/// with the voxel's centre; bonds join voxels of two grains that share a face. Mass and inertia are
-/// those of all voxels of a grain. Throws InputError without a grain.
+/// Makes the sample of an image. Every voxel that shares a face with air or another grain becomes a
+/// sphere of the voxel's size and centre. Bonds join voxels of two grains that share a face. Mass
+/// and inertia are those of all voxels of a grain. Throws InputError if there is no grain.
 Sample make_sample(const LabelImage&);
 
 }  // namespace snowshed::grains

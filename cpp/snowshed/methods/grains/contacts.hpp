@@ -5,7 +5,7 @@
 
 namespace snowshed::grains {
 
-/// Where a pair meets.
+/// The place and direction of a pair's contact.
 struct PairGeometry {
   double gap;         // m
   Vec3 normal;        // from the first to the second
@@ -13,12 +13,13 @@ struct PairGeometry {
 };
 
 /// Contact of a sphere with its group's partner. `position_a` and `rotation_a` are the pose of the
-/// sphere's grain. `second` is the pose of the second grain, if the partner is one.
+/// sphere's grain. `second` is the pose of the partner if it is a grain, otherwise null.
 PairGeometry pair_geometry(const Model&, const Boundary&, const PairList&, const PairGroup&,
                            std::size_t pair, const Vec3& position_a, const Mat3& rotation_a,
                            const GrainPose* second);
 
-/// Calls visit(group, pair, geometry) for all pairs of a list without those that only fill it up.
+/// Calls visit(group, pair, geometry) for all pairs of a list, without the entries that fill up
+/// groups.
 template <class PoseOf, class Visit>
 void for_each_listed_pair(const Model& model, const Boundary& boundary, const PairList& list,
                           const PoseOf& pose_of, const Visit& visit) {

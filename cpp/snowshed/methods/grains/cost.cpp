@@ -10,7 +10,7 @@
 namespace snowshed::grains {
 namespace {
 
-/// The time of a stage over the sample's height, s/m.
+/// The time of a stage per height of the sample, s/m.
 double slowness(const LoadingStage& stage) {
   return stage.kind == LoadingKind::hold ? 0.0 : stage.strain / stage.speed;
 }

@@ -39,11 +39,11 @@ void SolverImpl::visit_fields(Visit visit) const {
 }
 
 std::vector<FieldInfo> SolverImpl::fields() const {
-  return listed_fields([this](const auto& visit) { visit_fields(visit); });
+  return list_fields([this](const auto& visit) { visit_fields(visit); });
 }
 
 FieldView SolverImpl::field(const std::string& name) const {
-  return found_field(name, [this](const auto& visit) { visit_fields(visit); });
+  return find_field(name, [this](const auto& visit) { visit_fields(visit); });
 }
 
 ParticleState SolverImpl::state() const {
@@ -77,9 +77,9 @@ NamedEnergies SolverImpl::energies() const {
 std::size_t SolverImpl::bytes() const {
   return state_.pairs.bytes() +
          bytes_of(model_.grains, model_.spheres.offsets, model_.spheres.grain, model_.bonds,
-                  state_.bodies, state_.events, state_.listed, workspace_.next, workspace_.frames,
-                  workspace_.results, workspace_.groups_of.begin, workspace_.groups_of.entry,
-                  workspace_.damped, order_);
+                  state_.bodies, state_.events, state_.searched_poses, workspace_.next,
+                  workspace_.frames, workspace_.results, workspace_.groups_of.begin,
+                  workspace_.groups_of.entry, workspace_.damped_energy, order_);
 }
 
 }  // namespace snowshed::grains

@@ -74,7 +74,7 @@ Vec3 surface_velocity(const Boundary& b, Partner partner) {
   return b.side_velocity[side] * Vec3::Unit(side / 2);
 }
 
-/// The forces of a wall, without friction, or of the cone on the spheres of a grain.
+/// Finds the forces of a wall, without friction, or of the cone on the spheres of a grain.
 void surface_forces(const Model& model, State& state, Workspace& work, std::size_t group,
                     double dt) {
   const PairGroup& g = state.pairs.groups[group];
@@ -103,7 +103,7 @@ void surface_forces(const Model& model, State& state, Workspace& work, std::size
     list.ux[p] = u.x;
     list.uy[p] = u.y;
     list.uz[p] = u.z;
-    const Vec3 on_grain = vec(f.drag) - f.push * pair.normal;
+    const Vec3 on_grain = vec(f.shear_force) - f.normal_force * pair.normal;
     force += on_grain;
     torque += pair.arm_a.cross(on_grain);
     r.heat += f.heat;
@@ -116,8 +116,9 @@ void surface_forces(const Model& model, State& state, Workspace& work, std::size
   work.results[group] = r;
 }
 
-/// Local damping (Cundall 1987): each component of force and torque is lessened by a share of
-/// itself where it speeds the grain up, and raised where it slows it down.
+/// Local damping (Cundall 1987): each component of force and torque is reduced by a share of itself
+/// if it accelerates the grain, and increased by the share if it slows the grain down. Returns the
+/// damping force.
 Vec3 damping_of(double share, const Vec3& force, const Vec3& velocity) {
   Vec3 damping;
   for (int i = 0; i < 3; ++i) {

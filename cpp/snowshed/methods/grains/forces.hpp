@@ -5,8 +5,8 @@
 
 namespace snowshed::grains {
 
-/// Finds the forces on all grains and on their surroundings, moves the contacts by a time step of
-/// length dt (s), breaks bonds and counts their energy as lost. The velocities are those of the
+/// Finds the forces on all grains and on their surroundings, advances the contacts by a time step
+/// of length dt (s), breaks bonds and counts their energy as lost. The velocities belong to the
 /// middle of the step. Throws nothing.
 void evaluate_forces(const Model&, State&, Workspace&, double dt);
 

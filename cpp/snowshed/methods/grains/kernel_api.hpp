@@ -8,7 +8,8 @@
 
 namespace snowshed::grains {
 
-/// Number of sphere pairs that kernels take at a time; each group of them fills a multiple of it.
+/// Number of sphere pairs that kernels process at a time. The number of entries of each group is a
+/// multiple of it.
 inline constexpr std::uint32_t pairs_at_once = 4;
 
 /// Pose and motion of a body: a grain, or a plate, which does not turn.
@@ -21,7 +22,7 @@ struct BodyFrame {
 /// a plate, a wall, the cone.
 struct PairGroup {
   std::uint32_t first, second;  // bodies
-  std::int32_t shift[2];        // periods in x and y by which the second's image is away
+  std::int32_t shift[2];        // distance of the second's image in x and y, periods
   std::uint32_t begin, end;     // pairs
 };
 
@@ -51,11 +52,11 @@ struct View {
 };
 
 struct Kernels {
-  /// Finds the forces of the sphere pairs of a group, and moves their contacts by a time step.
+  /// Finds the forces of the sphere pairs of a group, and advances their contacts by a time step.
   void (*pair_forces)(const View&, std::size_t group);
 };
 
-/// Returns those of the instruction set in use.
+/// Returns the kernels of the instruction set in use.
 const Kernels& chosen_kernels();
 
 }  // namespace snowshed::grains

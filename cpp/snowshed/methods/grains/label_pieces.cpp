@@ -9,7 +9,7 @@
 namespace snowshed::grains {
 namespace {
 
-/// Sets of voxels, each known by its first in the order of storage.
+/// Disjoint sets of voxels. The first voxel in the order of storage identifies a set.
 class VoxelSets {
  public:
   explicit VoxelSets(std::size_t voxels) : first_(voxels) {

@@ -1,4 +1,4 @@
-// Labels whose voxels lie in several places: numbers that were wrapped, or given twice.
+// Labels whose voxels lie in several places, because numbers were wrapped or given twice.
 #pragma once
 
 #include <cstddef>
@@ -8,8 +8,8 @@
 
 namespace snowshed::grains {
 
-/// Number of labels in an image, and of the pieces that they consist of. Voxels of one label are
-/// one piece where they share a face, an edge or a corner.
+/// Number of labels in an image, and of their pieces. Voxels of one label belong to one piece if
+/// they share a face, an edge or a corner.
 struct LabelPieces {
   std::size_t labels = 0;
   std::size_t pieces = 0;

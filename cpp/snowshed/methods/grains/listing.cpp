@@ -16,7 +16,7 @@ PairSearch search_of(const Model& model) {
           64 * spheres + 256, model.threads};
 }
 
-/// Whether a pair that touches at the beginning is continuous ice, which the image cuts apart.
+/// Whether a pair that touches at the beginning is continuous ice that the image's border cuts.
 bool is_frozen(const Model& model, const PairKey& key) {
   const std::uint32_t grains = std::uint32_t(model.grains.size());
   if (key.second < grains) return key.shift[0] != 0 || key.shift[1] != 0;

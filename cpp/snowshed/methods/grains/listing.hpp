@@ -5,7 +5,7 @@
 
 namespace snowshed::grains {
 
-/// A list and all that has its sizes.
+/// A list of pairs and the arrays whose sizes depend on it.
 struct Listing {
   PairList pairs;
   std::vector<GrainPose> poses;
@@ -14,12 +14,12 @@ struct Listing {
   double max_step;  // s
 };
 
-/// Looks for the near pairs of these poses. Contacts keep their past.
+/// Searches for the near pairs of these poses. Contacts in the history keep their state.
 Listing listing_of(const Model&, std::vector<GrainPose>, const Boundary&,
                    const std::vector<PairHistory>&);
 
-/// The pairs that are bonded at the beginning: those of the sample, those across the sides of a
-/// periodic sample, and with bonded plates those that touch a plate.
+/// The pairs that are bonded at the beginning: the bonds of the sample, pairs across the sides of a
+/// periodic sample, and with bonded plates pairs that touch a plate.
 std::vector<PairHistory> initial_bonds(const Model&, const std::vector<GrainPose>&,
                                        const Boundary&);
 

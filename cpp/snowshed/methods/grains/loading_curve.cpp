@@ -10,7 +10,7 @@
 namespace snowshed::grains {
 namespace {
 
-/// Peaks are added behind these, then energies.
+/// Columns before those of peaks and energies.
 const std::vector<std::string> measured_columns = {"time_s",
                                                    "stage",
                                                    "axial_strain",
@@ -40,8 +40,8 @@ void for_each_stress(Stresses& s, const Visit& visit) {
 }
 constexpr std::size_t peak_columns = 7;
 
-/// Rows of a checkpoint from a version without peaks, in the present form: each row is its own
-/// peak.
+/// Returns the rows of a checkpoint from a version without peaks in the present form. The peak of a
+/// row is the row itself.
 std::vector<double> with_peaks(const ArrayView<double>& values, std::size_t columns,
                                const std::vector<std::string>& names) {
   std::vector<double> filled;
@@ -71,12 +71,12 @@ LoadingCurve::LoadingCurve(std::vector<LoadingStage> stages, double height,
   for_each_stress(
       none, [this](const char* name, double) { columns_.push_back(std::string("peak_") + name); });
   for (const auto& energy : energies) columns_.push_back(energy.first);
-  // No row is then lost if memory runs out.
+  // No row is lost later if memory runs out.
   values_.reserve((stages_.size() * (points + 1) + 1) * columns_.size());
 }
 
-/// Time at which the present stage reaches its next point; `hold` uses the times of its strain,
-/// too.
+/// Time at which the present stage reaches its next point. `hold` uses the times at which its speed
+/// would reach the strains.
 double LoadingCurve::next_time() const {
   const LoadingStage& stage = stages_[std::size_t(stage_)];
   const double part = double(points_done_ + 1) / points;
@@ -85,7 +85,7 @@ double LoadingCurve::next_time() const {
 
 /// Load on the sample in the stage whose rows are being added. The step that ends a stage belongs
 /// to it.
-double LoadingCurve::carried(const LoadingStresses& s) const {
+double LoadingCurve::load_on_sample(const LoadingStresses& s) const {
   const std::size_t stage = std::min(std::size_t(stage_), stages_.size() - 1);
   switch (stages_[stage].kind) {
     case LoadingKind::shear:
@@ -99,16 +99,17 @@ double LoadingCurve::carried(const LoadingStresses& s) const {
   }
 }
 
-/// Keeps the strains and stresses of a step if it carries more than those since the last row.
-void LoadingCurve::watch(const LoadingStresses& s) {
-  if (!peak_ || carried(s) > carried(*peak_)) peak_ = s;
+/// Keeps the strains and stresses of a step if the load is larger than in all steps since the last
+/// row.
+void LoadingCurve::keep_peak(const LoadingStresses& s) {
+  if (!peak_ || load_on_sample(s) > load_on_sample(*peak_)) peak_ = s;
 }
 
 void LoadingCurve::record(const Method& method) {
   const auto& grains = dynamic_cast<const Solver&>(method);
   const int stage = grains.stage();
   const double time = grains.time();
-  watch(grains.stresses());
+  keep_peak(grains.stresses());
   if (points_done_ < 0) {
     add_row(grains);
     points_done_ = 0;
@@ -151,7 +152,7 @@ void LoadingCurve::save(BinaryWriter& out) const {
   out.add("curve/values", values_);
   out.add("curve/stage", std::vector<std::int64_t>{stage_, points_done_});
   out.add("curve/begun", std::vector<double>{begun_});
-  std::vector<double> peak;  // none just after a row
+  std::vector<double> peak;  // empty directly after a row
   if (peak_) for_each_stress(*peak_, [&](const char*, double value) { peak.push_back(value); });
   out.add("curve/peak", std::move(peak));
 }
@@ -160,7 +161,7 @@ void LoadingCurve::load(const BinaryReader& in) {
   const auto values = in.view<double>("curve/values");
   const auto stage = in.get<std::int64_t>("curve/stage", 2);
   const auto stages = std::int64_t(stages_.size());
-  const bool has_peaks = in.has("curve/peak");  // an earlier version knew none
+  const bool has_peaks = in.has("curve/peak");  // earlier versions did not save peaks
   const std::size_t columns = columns_.size() - (has_peaks ? 0 : peak_columns);
   const std::vector<double> peak = has_peaks ? in.get<double>("curve/peak") : std::vector<double>{};
   if (values.size / columns > values_.capacity() / columns_.size() || values.size % columns != 0 ||

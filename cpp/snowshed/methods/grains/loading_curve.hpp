@@ -11,13 +11,13 @@ namespace snowshed::grains {
 
 /// Rows of instantaneous values at the beginning of the test, at `points` strains of each stage,
 /// and at the end of each stage. The strains are (k / points)^2 of the stage's final strain,
-/// because a brittle sample is elastic for a thousandth of it only. The rows depend on the steps
-/// alone: neither on the number of threads nor on whether the run was resumed.
+/// because a brittle sample is elastic only up to a thousandth of it. The rows depend on the steps
+/// alone, not on the number of threads or on a resumption of the run.
 ///
-/// Each row also has the strains and stresses of the step, since the row before, in which the
-/// sample carried most: the strength is the largest stress of all steps, not that of the rows.
-/// The load depends on the stage: the smaller stress of the two plates (`compress`, `isotropic`,
-/// `unload`, `hold`; in `stretch` the smaller tension), the shear stress, the force on the cone.
+/// Each row also has peaks: the strains and stresses of the step with the largest load since the
+/// last row. The strength is the largest stress of all steps, not only of those with rows. The load
+/// depends on the stage: the smaller stress of the two plates (`compress`, `isotropic`, `unload`,
+/// `hold`; in `stretch` the smaller tension), the shear stress, the force on the cone.
 class LoadingCurve final : public Curve {
  public:
   static constexpr int points = 300;
@@ -35,8 +35,8 @@ class LoadingCurve final : public Curve {
 
  private:
   double next_time() const;
-  double carried(const LoadingStresses&) const;
-  void watch(const LoadingStresses&);
+  double load_on_sample(const LoadingStresses&) const;
+  void keep_peak(const LoadingStresses&);
   void add_row(const Solver&);
 
   std::vector<LoadingStage> stages_;
@@ -47,7 +47,7 @@ class LoadingCurve final : public Curve {
   int stage_ = 0;                        // stage that is being loaded
   double begun_ = 0;                     // s, when it began
   int points_done_ = -1;                 // points of the stage; -1 before the beginning of the test
-  std::optional<LoadingStresses> peak_;  // peak of the steps since the last row, if there was one
+  std::optional<LoadingStresses> peak_;  // peak of the steps since the last row, if there were any
 };
 
 }  // namespace snowshed::grains

@@ -5,8 +5,9 @@
 namespace snowshed::grains {
 namespace {
 
-/// The plate then acts as a dashpot, which takes energy and cannot excite vibrations; explicit
-/// steps are stable for values from one on.
+/// Number of steps in which the top plate corrects an error of its force. The plate thus acts as a
+/// dashpot, which takes energy and cannot excite vibrations. Explicit steps are stable from one
+/// step on.
 constexpr double servo_steps = 5;
 
 /// Upward velocity with which the force on the top plate approaches that of the stage.

@@ -80,8 +80,8 @@ std::unique_ptr<Curve> SolverImpl::empty_curve() const {
                                         model_.keeps_energy ? energies() : NamedEnergies{});
 }
 
-/// The spheres, with fields of the grain that each belongs to: its number, its velocity, how many
-/// grains it touches and is bonded to, and half the sum of its contact forces.
+/// The spheres, with fields of their grains: number, velocity, numbers of touching and of bonded
+/// grains, and half the sum of the contact forces.
 PointCloud SolverImpl::snapshot() const {
   const std::vector<std::uint32_t>& of = model_.spheres.grain;
   std::vector<std::int32_t> touching(size(), 0), bonded(size(), 0);

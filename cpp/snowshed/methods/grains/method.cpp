@@ -61,8 +61,8 @@ class Descriptor final : public DescriptorBase<Descriptor, Settings> {
     check_loading_time(scene, sample.box.z());
     const auto grains = empty_solver(scene, surroundings);
     try {
-      grains->add(grains->seed());            // the first step is not known before
-    } catch (const SimulationError& error) {  // it is too short
+      grains->add(grains->seed());            // only then the first step is known
+    } catch (const SimulationError& error) {  // the step is too short
       throw InputError("/numerics/courant_factor", error.what());
     }
     return estimate_cost(scene, sample, *grains);

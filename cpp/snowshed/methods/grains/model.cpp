@@ -8,8 +8,8 @@
 namespace snowshed::grains {
 namespace {
 
-/// k_n = 2 E r1 r2 / (r1 + r2) and k_s = ratio k_n, with spheres of one radius; limits are
-/// strengths times the face of a voxel, (2 r)^2. The area is inferred, see docs/methods/grains.md.
+/// k_n = 2 E r1 r2 / (r1 + r2) with equal radii, and k_s = ratio k_n. The limits are the strengths
+/// times the face of a voxel, (2 r)^2. This area is inferred, see docs/methods/grains.md.
 BondLaw bond_law(const Settings& s, double radius) {
   const double stiffness = s.elastic_modulus * radius, area = 4 * radius * radius;
   return {stiffness, s.stiffness_ratio * stiffness, s.tensile_strength * area,

@@ -60,7 +60,7 @@ class ListWriter {
   PairList& list_;
 };
 
-/// Calls visit(key, history or null) for all that is listed, in order.
+/// Calls visit(key, history or null) for each listed pair, in order.
 template <class Visit>
 void for_each_listed(const std::vector<PairKey>& pairs, const std::vector<PairHistory>& past,
                      const Visit& visit) {

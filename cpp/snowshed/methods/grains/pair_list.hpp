@@ -28,7 +28,7 @@ struct GrainPose {
 inline constexpr std::uint32_t no_sphere_index = 0xffffffff;
 
 /// Key of a pair: bodies (grains, then `Partner`s), shift of the second body's periodic image (in
-/// periods), spheres. Spheres of plates are numbered by their places in the grid.
+/// periods), spheres. Spheres of plates are numbered by their positions in the grid.
 struct PairKey {
   std::uint32_t first, second;
   std::int32_t shift[2];
@@ -37,12 +37,12 @@ struct PairKey {
 bool operator<(const PairKey&, const PairKey&);
 bool operator==(const PairKey&, const PairKey&);
 
-/// A pair whose past matters.
+/// The state of a pair that a new list takes over.
 struct PairHistory {
   PairKey key;
   Vec3 shear = Vec3::Zero();  // m
   bool bonded = false;
-  bool always_listed = false;  // in the list however far apart the spheres are
+  bool always_listed = false;  // listed at any distance of the spheres
 };
 
 /// Groups ordered by bodies, pairs within them by spheres: the order is independent of the search.
@@ -58,9 +58,9 @@ struct PairList {
     return {g.first, g.second, {g.shift[0], g.shift[1]}, a[p], b[p]};
   }
   Vec3 shear(std::size_t p) const { return {ux[p], uy[p], uz[p]}; }
-  /// The bonded pairs, which stay listed, and the sheared ones; in order.
+  /// The bonded pairs, which are always listed, and the sheared pairs, in order.
   std::vector<PairHistory> histories() const;
-  /// All pairs, each to be listed again.
+  /// All pairs, marked as always listed.
   std::vector<PairHistory> all() const;
   std::size_t bytes() const;
 };
@@ -72,12 +72,12 @@ struct PairSearch {
   double radius, skin;  // m
   bool periodic;
   Cone cone;
-  std::size_t max_pairs;  // number that memory is reserved for
+  std::size_t max_pairs;  // largest number of pairs; more are an error
   int threads;
 };
 
-/// The gap below which pairs are listed, as a share of the spheres' radius: twice as far as a
-/// sphere may move before a new list is made.
+/// The gap below which pairs are listed, over the spheres' radius. A new list is made before a
+/// sphere has moved by half of this gap.
 inline constexpr double skin_per_radius = 0.4;
 
 /// Centre of a plate's sphere relative to the plate's origin, m.
@@ -87,7 +87,7 @@ Vec3 plate_sphere(std::uint32_t number, double radius);
 /// `max_pairs`, or if the period is too short.
 std::vector<PairKey> find_pairs(const PairSearch&, const std::vector<GrainPose>&, const Boundary&);
 
-/// A list of these pairs, and of the pairs in the history, at any distance.
+/// A list of these pairs, and of the pairs in the history that are always listed.
 PairList make_list(const PairSearch&, const std::vector<PairKey>&, const std::vector<PairHistory>&);
 
 /// Groups of each grain in list order, coded as 2 · group + (1 if the grain is second).

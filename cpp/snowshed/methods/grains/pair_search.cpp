@@ -1,4 +1,5 @@
-// Finds near spheres: cells of spheres for those of two grains, the grid for those of plates.
+// Finds pairs of near spheres. Spheres of two grains are found by cells, spheres of plates by their
+// grid.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -17,7 +18,8 @@ std::uint32_t plate_number(int i, int j) {
 }
 
 /// Cells at least as wide as the distance within which pairs are listed. Spheres outside of the box
-/// belong to the cells of its border, or to those of their images where the box is periodic.
+/// belong to the cells of its border; if the box is periodic, they belong to the cells of their
+/// images inside.
 class SphereCells {
  public:
   SphereCells(const PairSearch& s, const std::vector<Vec3>& centres, const Boundary& b,
@@ -27,7 +29,7 @@ class SphereCells {
     low_ = Vec3(b.side[0], b.side[2], bottom);
     Vec3 extent(b.period(0), b.period(1), std::abs(b.plate[1].z() - b.plate[0].z()));
     extent = extent.cwiseMax(reach);
-    // No more cells than a few for each sphere.
+    // At most a few cells for each sphere.
     const double volume = extent.prod() / (4.0 * double(centres.size()) + 64);
     const double width = std::max(reach, std::cbrt(volume));
     for (int k = 0; k < 3; ++k) {
@@ -52,7 +54,8 @@ class SphereCells {
   }
 
  private:
-  /// Three cells along a period are enough if they are that wide.
+  /// Sets the least number of cells along a period, three. Throws SimulationError if they would be
+  /// narrower than `reach`.
   void shorten(const Vec3& extent, double reach) {
     for (int axis = 0; axis < 2; ++axis) {
       if (extent[axis] < 3 * reach)
@@ -62,7 +65,7 @@ class SphereCells {
       per_width_[axis] = count_[axis] / extent[axis];
     }
   }
-  int place(const Vec3& x, int axis) const {
+  int cell_index(const Vec3& x, int axis) const {
     const double from_low =
         x[axis] - low_[axis] - (axis < 2 ? wrap(x, axis) * boundary_.period(axis) : 0.0);
     return int(std::clamp(from_low * per_width_[axis], 0.0, count_[axis] - 0.5));
@@ -71,8 +74,8 @@ class SphereCells {
     begin_.assign(number(0, 0, count_[2]) + 1, 0);
     std::vector<std::uint32_t> cell(centres.size());
     for (std::size_t s = 0; s < centres.size(); ++s) {
-      cell[s] =
-          std::uint32_t(number(place(centres[s], 0), place(centres[s], 1), place(centres[s], 2)));
+      cell[s] = std::uint32_t(
+          number(cell_index(centres[s], 0), cell_index(centres[s], 1), cell_index(centres[s], 2)));
       ++begin_[cell[s] + 1];
     }
     for (std::size_t c = 1; c < begin_.size(); ++c) begin_[c] += begin_[c - 1];
@@ -90,7 +93,7 @@ class SphereCells {
   std::vector<std::uint32_t> begin_, spheres_;
 };
 
-std::vector<Vec3> places_of(const PairSearch& s, const std::vector<GrainPose>& poses) {
+std::vector<Vec3> sphere_centres(const PairSearch& s, const std::vector<GrainPose>& poses) {
   std::vector<Mat3> rotations;
   rotations.reserve(poses.size());
   for (const GrainPose& pose : poses) rotations.push_back(pose.orientation.toRotationMatrix());
@@ -102,27 +105,27 @@ std::vector<Vec3> places_of(const PairSearch& s, const std::vector<GrainPose>& p
   return centres;
 }
 
-/// Sees the spheres in the order of their cells.
+/// Searches for pairs; spheres are in the order of their cells.
 class Finder {
  public:
   Finder(const PairSearch& s, const std::vector<GrainPose>& poses, const Boundary& b)
       : s_(s),
         b_(b),
         reach_(2 * s.radius + s.skin),
-        places_(places_of(s, poses)),
-        cells_(s, places_, b, reach_),
-        grain_(places_.size()) {
-    std::vector<Vec3> sorted(places_.size());
+        centres_(sphere_centres(s, poses)),
+        cells_(s, centres_, b, reach_),
+        grain_(centres_.size()) {
+    std::vector<Vec3> sorted(centres_.size());
     for (std::uint32_t e = 0; e < sorted.size(); ++e) {
-      sorted[e] = places_[cells_.sphere(e)];
+      sorted[e] = centres_[cells_.sphere(e)];
       grain_[e] = s.spheres.grain[cells_.sphere(e)];
     }
-    places_ = std::move(sorted);
+    centres_ = std::move(sorted);
   }
 
   std::vector<PairKey> find() {
     find_grains();
-    for (std::uint32_t e = 0; e < places_.size(); ++e) {
+    for (std::uint32_t e = 0; e < centres_.size(); ++e) {
       find_plate(e, 0);
       if (b_.has_top) find_plate(e, 1);
       if (!s_.periodic) find_sides(e);
@@ -133,7 +136,8 @@ class Finder {
   }
 
  private:
-  /// The search runs layer by layer. Pairs are sorted afterwards, so that threads do not matter.
+  /// The search runs layer by layer. Pairs are sorted afterwards, so that the result does not
+  /// depend on threads.
   void find_grains() {
     std::vector<std::vector<PairKey>> layers(std::size_t(cells_.count(2)));
     parallel_for_dynamic(cells_.count(2), s_.threads, 1, [&](std::ptrdiff_t k) {
@@ -163,7 +167,7 @@ class Finder {
     }
   }
 
-  /// Row (j, k) with row (to_j, to_k), `periods` away along y.
+  /// Compares row (j, k) with row (to_j, to_k), which is `periods` away along y.
   void find_between(int j, int k, int to_j, int periods, bool same, std::vector<PairKey>& pairs,
                     int to_k = -1) const {
     const int n = cells_.count(0), l = same ? k : to_k;
@@ -192,10 +196,10 @@ class Finder {
     const std::uint32_t of_e = grain_[e], of_f = grain_[f];
     if (of_e == of_f && !s_.periodic) return;
     int shift[2] = {0, 0};
-    Vec3 separation = places_[f] - places_[e];
+    Vec3 separation = centres_[f] - centres_[e];
     if (s_.periodic) {
-      shift[0] = px + cells_.wrap(places_[e], 0) - cells_.wrap(places_[f], 0);
-      shift[1] = py + cells_.wrap(places_[e], 1) - cells_.wrap(places_[f], 1);
+      shift[0] = px + cells_.wrap(centres_[e], 0) - cells_.wrap(centres_[f], 0);
+      shift[1] = py + cells_.wrap(centres_[e], 1) - cells_.wrap(centres_[f], 1);
       if (of_e == of_f && shift[0] == 0 && shift[1] == 0) return;
       separation += Vec3(shift[0] * b_.period(0), shift[1] * b_.period(1), 0);
     }
@@ -212,7 +216,7 @@ class Finder {
   std::uint32_t partner(Partner p) const { return s_.grains + std::uint32_t(p); }
 
   void find_plate(std::uint32_t e, int plate) {
-    const Vec3 from = places_[e] - b_.plate[plate];
+    const Vec3 from = centres_[e] - b_.plate[plate];
     if (std::abs(from.z()) >= reach_) return;
     const double spacing = 2 * s_.radius, x = from.x() / spacing, y = from.y() / spacing;
     if (!(std::abs(x) < half_grid - 4 && std::abs(y) < half_grid - 4)) return;
@@ -230,13 +234,13 @@ class Finder {
 
   void find_sides(std::uint32_t e) {
     for (int side = 0; side < 4; ++side)
-      if (meet_side(b_, side, places_[e], s_.radius).gap < s_.skin)
+      if (meet_side(b_, side, centres_[e], s_.radius).gap < s_.skin)
         push(
             {grain_[e], partner(Partner::west) + std::uint32_t(side), {0, 0}, cells_.sphere(e), 0});
   }
 
   void find_cone(std::uint32_t e) {
-    if (meet_cone(s_.cone, places_[e] - b_.tip, s_.radius).gap < s_.skin)
+    if (meet_cone(s_.cone, centres_[e] - b_.tip, s_.radius).gap < s_.skin)
       push({grain_[e], partner(Partner::cone), {0, 0}, cells_.sphere(e), 0});
   }
 
@@ -254,7 +258,7 @@ class Finder {
   const PairSearch& s_;
   const Boundary& b_;
   double reach_;
-  std::vector<Vec3> places_;
+  std::vector<Vec3> centres_;
   SphereCells cells_;
   std::vector<std::uint32_t> grain_;
   std::vector<PairKey> pairs_;

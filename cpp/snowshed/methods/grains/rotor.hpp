@@ -7,13 +7,13 @@
 
 namespace snowshed::grains {
 
-/// From the body's principal frame to space.
+/// The rotation from a body's principal frame to space.
 using Orientation = Eigen::Quaternion<double, Eigen::DontAlign>;
 
 namespace detail {
 
-/// Turns a body about one of its principal axes, by the angular velocity about it; its angular
-/// momentum (in its frame) turns the other way.
+/// Turns a body about one of its principal axes by an angle, rad. The angular momentum in the
+/// body's frame turns the other way.
 inline void turn_about(int axis, double angle, Orientation& q, Vec3& momentum) {
   const int b = (axis + 1) % 3, c = (axis + 2) % 3;
   const double cosine = std::cos(angle), sine = std::sin(angle);
@@ -27,12 +27,12 @@ inline void turn_about(int axis, double angle, Orientation& q, Vec3& momentum) {
 
 }  // namespace detail
 
-/// Turns a body that no torque acts on for a time dt (s). `momentum` is its angular momentum in
-/// space, which stays; `inertia` are its principal moments.
+/// Turns a body without a torque for a time dt (s). `momentum` is its angular momentum in space,
+/// which is constant; `inertia` holds its principal moments.
 ///
 /// The kinetic energy is split by principal axes, and each part is solved exactly (Dullweber,
-/// Leimkuhler and McLachlan 1997, doi:10.1063/1.474310): symplectic, reversible in time, of second
-/// order. The energy oscillates by O(dt^2) and does not drift.
+/// Leimkuhler and McLachlan 1997, doi:10.1063/1.474310). The scheme is symplectic, reversible in
+/// time, and of second order. The energy oscillates by O(dt^2) and does not drift.
 inline void rotate_freely(Orientation& q, const Vec3& momentum, const Vec3& inertia, double dt) {
   Vec3 l = q.conjugate() * momentum;
   const auto turn = [&](int axis, double share) {

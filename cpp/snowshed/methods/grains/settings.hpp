@@ -7,8 +7,8 @@ namespace snowshed::grains {
 enum class Sides { walls, periodic };
 
 /// Settings of the grains: rigid clumps of spheres with bonds that break (Hagenmuller, Chambon and
-/// Naaim 2015, doi:10.5194/tc-9-1969-2015). We have not seen its table of parameters; the defaults
-/// come from other publications, see docs/methods/grains.md.
+/// Naaim 2015, doi:10.5194/tc-9-1969-2015). We have not seen their table of parameters; the
+/// defaults come from other publications, see docs/methods/grains.md.
 struct Settings {
   double elastic_modulus = 1e9;   // Pa, E of the contact law
   double stiffness_ratio = 0.3;   // shear over normal stiffness of a contact

@@ -25,13 +25,13 @@ namespace {
 /// The state without grains.
 State empty_state(const Model& model) {
   State state;
-  state.boundary = initial_boundary(model.loaded());
-  begin_stage(model.loading, model.loaded(), state.loading, state.boundary);
-  state.listed_boundary = state.boundary;
+  state.boundary = initial_boundary(model.loaded_sample());
+  begin_stage(model.loading, model.loaded_sample(), state.loading, state.boundary);
+  state.searched_boundary = state.boundary;
   return state;
 }
 
-/// Work of a force at a velocity that it changes, for half a step.
+/// Work of a force in half a step, J, in which the velocity changes.
 double work_of(const Vec3& force, const Vec3& before, const Vec3& after, double half_step) {
   return 0.5 * half_step * force.dot(before + after);
 }
@@ -74,7 +74,8 @@ std::vector<ParticleBatch> SolverImpl::seed(const StopRequest&) const {
   return {std::move(batch)};
 }
 
-/// A fresh sample with velocities and events of the batches, which must be those of `seed`.
+/// A new sample with the velocities and events of the batches, whose particles must be those of
+/// `seed`.
 State SolverImpl::with_batches(const std::vector<ParticleBatch>& batches) const {
   State next = empty_state(model_);
   std::size_t i = 0;
@@ -98,21 +99,21 @@ State SolverImpl::with_batches(const std::vector<ParticleBatch>& batches) const 
   return next;
 }
 
-/// Takes over a fresh sample: lists, forces, energies.
+/// Takes over a new sample, with its lists, forces and energies.
 void SolverImpl::accept(State next, Workspace work) {
   std::vector<GrainPose> poses = poses_of(next.bodies);
   const std::vector<PairHistory> bonds = initial_bonds(model_, poses, next.boundary);
   Listing listing = listing_of(model_, std::move(poses), next.boundary, bonds);
   next.bonds = std::int64_t(bonds.size());
   next.pairs = std::move(listing.pairs);
-  next.listed = std::move(listing.poses);
-  next.listed_boundary = next.boundary;
+  next.searched_poses = std::move(listing.poses);
+  next.searched_boundary = next.boundary;
   work.groups_of = std::move(listing.groups_of);
   work.results = std::move(listing.results);
   work.max_step = listing.max_step;
   work.next = next.bodies;
   work.frames.resize(next.bodies.size() + 2);
-  work.damped.resize(next.bodies.size());
+  work.damped_energy.resize(next.bodies.size());
   evaluate_forces(model_, next, work, 0.0);
   next.dt = choose_step(model_, next, work.max_step);
   double& smallest = next.counters.smallest_dt;
@@ -166,13 +167,14 @@ void SolverImpl::add_velocity(const std::vector<Vec3>& changes) {
   state_.energy.added += added;
 }
 
-/// Half a step's forces, then a step's motion, into the workspace.
+/// Applies the forces for half a step and then the motion of a step; the result is in the
+/// workspace.
 void SolverImpl::drift(double dt) {
   parallel_pieces(std::ptrdiff_t(size()), model_.threads_for(state_.pairs.size()), bodies_in_push,
                   [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
                     for (std::size_t i = std::size_t(begin); i < std::size_t(end); ++i) {
                       GrainBody& body = workspace_.next[i] = state_.bodies[i];
-                      workspace_.damped[i] = push(model_.grains[i], body, 0.5 * dt);
+                      workspace_.damped_energy[i] = push(model_.grains[i], body, 0.5 * dt);
                       body.position += dt * body.velocity;
                       rotate_freely(body.orientation, body.spin_momentum, model_.grains[i].inertia,
                                     dt);
@@ -191,16 +193,16 @@ void SolverImpl::check_places() const {
   }
 }
 
-/// Whether a sphere may have moved more than half the skin since pairs were looked for.
+/// Whether a sphere may have moved more than half the skin since the last search for pairs.
 bool SolverImpl::must_relist(const Boundary& moved) const {
-  const Boundary& then = state_.listed_boundary;
+  const Boundary& then = state_.searched_boundary;
   if (moved.has_top != then.has_top || moved.has_cone != then.has_cone) return true;
   const double max_travel = 0.5 * skin_per_radius * model_.radius;
   if (!(moved.travel_since(then) < max_travel)) return true;
   for (std::size_t i = 0; i < workspace_.next.size(); ++i) {
-    const GrainPose& pose = state_.listed[i];
+    const GrainPose& pose = state_.searched_poses[i];
     const GrainBody& body = workspace_.next[i];
-    // The chord of the rotation between the two: 2 sin(angle / 2).
+    // The chord of the rotation between both poses: 2 sin(angle / 2).
     const double chord = 2 * (pose.orientation.conjugate() * body.orientation).vec().norm();
     if (!((body.position - pose.position).norm() + chord * model_.grains[i].reach < max_travel))
       return true;
@@ -208,11 +210,11 @@ bool SolverImpl::must_relist(const Boundary& moved) const {
   return false;
 }
 
-/// All or nothing: the list for the poses in the workspace.
+/// Makes the list for the poses in the workspace. Changes nothing if it throws.
 void SolverImpl::relist(const Boundary& moved) {
   Listing listing = listing_of(model_, poses_of(workspace_.next), moved, state_.pairs.histories());
-  double removed = 0;  // J, with a plate that is taken away
-  if (model_.keeps_energy && moved.has_top != state_.listed_boundary.has_top) {
+  double removed = 0;  // J, with the top plate
+  if (model_.keeps_energy && moved.has_top != state_.searched_boundary.has_top) {
     EnergyBalance e;
     store_energy(model_, state_, e);
     removed = e.normal + e.shear;
@@ -223,8 +225,8 @@ void SolverImpl::relist(const Boundary& moved) {
   }
   state_.energy.added -= removed;
   state_.pairs = std::move(listing.pairs);
-  state_.listed = std::move(listing.poses);
-  state_.listed_boundary = moved;
+  state_.searched_poses = std::move(listing.poses);
+  state_.searched_boundary = moved;
   workspace_.groups_of = std::move(listing.groups_of);
   workspace_.results = std::move(listing.results);
   workspace_.max_step = listing.max_step;
@@ -236,7 +238,7 @@ void SolverImpl::step() {
   require_grains();
   const double dt = choose_step(model_, state_, workspace_.max_step);
   Boundary moved = state_.boundary;
-  set_velocities(model_.loading, model_.loaded(), state_.loading, dt, moved);
+  set_velocities(model_.loading, model_.loaded_sample(), state_.loading, dt, moved);
   moved.move(dt);
   drift(dt);
   check_places();
@@ -246,19 +248,20 @@ void SolverImpl::step() {
 
 /// Throws only if forces are not finite.
 void SolverImpl::end_step(const Boundary& moved, double dt) {
-  state_.energy.boundary += boundary_work(moved, 0.5 * dt);  // with the forces of before
+  state_.energy.boundary += boundary_work(moved, 0.5 * dt);  // with the forces before the step
   std::swap(state_.bodies, workspace_.next);
   state_.boundary = moved;
   evaluate_forces(model_, state_, workspace_, dt);
   parallel_pieces(std::ptrdiff_t(size()), model_.threads_for(state_.pairs.size()), bodies_in_push,
                   [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
                     for (std::size_t i = std::size_t(begin); i < std::size_t(end); ++i)
-                      workspace_.damped[i] += push(model_.grains[i], state_.bodies[i], 0.5 * dt);
+                      workspace_.damped_energy[i] +=
+                          push(model_.grains[i], state_.bodies[i], 0.5 * dt);
                   });
   state_.energy.boundary += boundary_work(state_.boundary, 0.5 * dt);
   bool sound = true;
   for (std::size_t i = 0; i < size(); ++i) {
-    state_.energy.damping += workspace_.damped[i];
+    state_.energy.damping += workspace_.damped_energy[i];
     const GrainBody& body = state_.bodies[i];
     sound = sound && std::isfinite(body.velocity.squaredNorm() + body.spin_momentum.squaredNorm());
   }
@@ -271,7 +274,7 @@ void SolverImpl::end_step(const Boundary& moved, double dt) {
   const std::size_t stage = std::size_t(state_.loading.stage);
   if (stage < model_.loading.size() && model_.loading[stage].kind == LoadingKind::hold)
     gauge.kinetic = kinetic_energy(model_, state_);
-  count_step(model_.loading, model_.loaded(), gauge, dt, state_.loading, state_.boundary);
+  count_step(model_.loading, model_.loaded_sample(), gauge, dt, state_.loading, state_.boundary);
   state_.time += dt;
   state_.dt = dt;
   StepCounters& c = state_.counters;

@@ -18,14 +18,14 @@ namespace snowshed::grains {
 struct Options {
   Settings settings;
   double gravity = 0;  // m/s2, along -z
-  Sample sample;       // clumps, bonds between them, the box they lie in
+  Sample sample;       // clumps, bonds between them, and their box
   std::vector<LoadingStage> loading;
   Cone cone;
   bool energy = false;  // whether to keep the energy balance
 };
 
-/// Strains and stresses, now. Stresses are positive in compression, over the initial area; they are
-/// instantaneous, not means over time.
+/// Instantaneous strains and stresses. Stresses are forces over the initial area, positive in
+/// compression.
 struct LoadingStresses {
   double axial_strain = 0;  // shortening over the initial height, since the beginning
   double shear_strain = 0;
@@ -39,7 +39,7 @@ struct LoadingStresses {
 struct LoadingMeasures : LoadingStresses {
   int stage = 0;           // stage being loaded; the number of stages when all are done
   double strain = 0;       // strain of this stage: displacement over the initial height
-  std::int64_t bonds = 0;  // pairs of spheres still bonded
+  std::int64_t bonds = 0;  // bonded pairs of spheres
   std::int64_t broken_in_tension = 0, broken_in_shear = 0;
   std::int64_t contacts = 0;  // pairs of spheres that touch
   double coordination = 0;    // mean number of grains that a grain touches
@@ -53,14 +53,14 @@ struct GrainContact {
   bool bonded;
 };
 
-/// Grains as a method, with their own additions. Its particles are the grains; `seed` gives those
-/// of the sample, at rest, and `add` takes these and no other.
+/// Grains as a method, with their own additions. The particles are the grains. `seed` returns the
+/// grains of the sample, at rest, and `add` takes only these.
 class Solver : public Method, public SeedsItself, public KeepsEnergy, public HasCurve {
  public:
   virtual std::size_t count_spheres() const = 0;
   virtual LoadingMeasures measures() const = 0;
-  virtual LoadingStresses stresses() const = 0;  ///< the stresses of measures(), without the rest
-  virtual int stage() const = 0;                 ///< measures().stage, without the rest
+  virtual LoadingStresses stresses() const = 0;                  ///< a cheap part of measures()
+  virtual int stage() const = 0;                                 ///< measures().stage, cheaply
   virtual std::vector<GrainContact> grain_contacts() const = 0;  ///< ordered by grains
   virtual std::vector<Vec3> sphere_positions() const = 0;        ///< m, in the order of the sample
   virtual std::vector<std::uint32_t> sphere_grains() const = 0;

@@ -53,11 +53,11 @@ class SolverImpl final : public Solver {
 
  private:
   /// Contents of an archive.
-  struct Restored {
+  struct LoadedState {
     State state;
     Workspace work;
   };
-  Restored restored(const BinaryReader&) const;
+  LoadedState read_state(const BinaryReader&) const;
 
   State with_batches(const std::vector<ParticleBatch>&) const;
   void accept(State, Workspace);

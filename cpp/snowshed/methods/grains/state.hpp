@@ -30,7 +30,7 @@ struct GrainBody {
 struct GrainConstants {
   double volume, inertial_mass, weight;  // m3; kg, scaled; N, downward
   Vec3 inertia;                          // kg m2, principal, scaled
-  double reach;                          // m, of the farthest centre of a sphere
+  double reach;                          // m, distance of the farthest sphere's centre
   Vec3 initial_position;
   Orientation initial_orientation;
   std::uint32_t first_sphere, spheres;
@@ -62,7 +62,7 @@ struct Model {
     return snowshed::threads_for(pairs, pairs_per_thread, threads);
   }
   double area() const { return box.x() * box.y(); }
-  LoadedSample loaded() const { return {box, radius, law.normal_stiffness}; }
+  LoadedSample loaded_sample() const { return {box, radius, law.normal_stiffness}; }
   bool periodic() const { return settings.sides == Sides::periodic; }
 };
 
@@ -73,8 +73,8 @@ struct State {
   Boundary boundary;
   LoadingProgress loading;
   PairList pairs;
-  std::vector<GrainPose> listed;  // poses of the grains at the last search for pairs
-  Boundary listed_boundary;
+  std::vector<GrainPose> searched_poses;  // poses of the grains at the last search for pairs
+  Boundary searched_boundary;
   double time = 0, dt = 0;  // s
   std::int64_t bonds = 0, broken_in_tension = 0, broken_in_shear = 0;
   StepCounters counters;
@@ -82,12 +82,12 @@ struct State {
 };
 
 struct Workspace {
-  std::vector<GrainBody> next;      // where grains will be at the end of a step
-  std::vector<BodyFrame> frames;    // one per grain and plate
-  std::vector<GroupForce> results;  // one per group of pairs
-  BodyGroups groups_of;             // groups of each grain
-  double max_step = 0;              // s, the largest that all listed pairs allow
-  std::vector<double> damped;       // J, of each grain in a step
+  std::vector<GrainBody> next;        // grains at the end of a step
+  std::vector<BodyFrame> frames;      // one per grain and plate
+  std::vector<GroupForce> results;    // one per group of pairs
+  BodyGroups groups_of;               // groups of each grain
+  double max_step = 0;                // s, largest that all listed pairs allow
+  std::vector<double> damped_energy;  // J, lost by each grain in a step
 };
 
 }  // namespace snowshed::grains

@@ -11,7 +11,7 @@
 namespace snowshed::grains {
 namespace {
 
-/// Against displacement and against turning, in the frame of the grain.
+/// Stiffness of a grain's pairs against its displacement and its rotation, in the grain's frame.
 struct GrainStiffness {
   double against_moving = 0;
   Mat3 against_turning = Mat3::Zero();

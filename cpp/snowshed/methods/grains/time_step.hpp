@@ -5,16 +5,16 @@
 
 namespace snowshed::grains {
 
-/// The Courant factor times the least, over grains, of sqrt(m / K) and of the same for rotation.
-/// K is the stiffness of all pairs that are listed, whether they touch yet or not: no others can
-/// touch before the list is made again. For rotation it is the largest eigenvalue of the stiffness
-/// against turning, sum k (c^2 - c c^T) with the arms c of the contacts, relative to the inertia.
-/// The pairs' springs can move at most four times as fast as sqrt(K / m) squared (two bodies, each
-/// with displacement and rotation), so that factors up to 1 are stable for small displacements.
+/// The Courant factor times the least, over grains, of sqrt(m / K) and of the same for rotation. K
+/// is the stiffness of all listed pairs, touching or not, because no other pairs can touch before
+/// the next list is made. For rotation it is the largest eigenvalue of the stiffness against
+/// turning, sum k (c^2 - c c^T) with the arms c of the contacts, relative to the inertia. The
+/// squared frequency of a mode is at most four times the largest K / m (two bodies, each with
+/// displacement and rotation), so that factors up to 1 are stable for small displacements.
 double max_step(const Model&, const Boundary&, const PairList&, const std::vector<GrainPose>&);
 
-/// A step no longer than that, in which nothing moves farther than a tenth of a sphere's diameter.
-/// Throws SimulationError if it would be zero.
+/// A step of at most `max_step` in which nothing moves farther than a tenth of a sphere's diameter.
+/// Throws SimulationError if the step would be zero.
 double choose_step(const Model&, const State&, double max_step);
 
 }  // namespace snowshed::grains

@@ -8,7 +8,7 @@
 namespace snowshed::mpm {
 namespace {
 
-/// Calls f(neighbour index, key) for the 3^D blocks around one, itself included.
+/// Calls f(neighbour index, key) for the 3^D blocks around a block, including itself.
 template <int D, class F>
 void for_each_neighbour(BlockKey key, F f) {
   const BlockCoord<D> c = block_coord<D>(key);
@@ -73,18 +73,18 @@ void BlockLayout<D>::connect(int threads) {
 template <int D>
 void BlockLayout<D>::find_meetings() {
   if (grid_blocks.empty() || field_of(grid_blocks.back()) == 0) return;  // one field
-  std::vector<std::pair<BlockCoord<D>, std::int32_t>> by_place;
+  std::vector<std::pair<BlockCoord<D>, std::int32_t>> by_coord;
   for (std::size_t g = 0; g < grid_blocks.size(); ++g)
-    by_place.push_back({block_coord<D>(grid_blocks[g]), std::int32_t(g)});
-  std::sort(by_place.begin(), by_place.end());
+    by_coord.push_back({block_coord<D>(grid_blocks[g]), std::int32_t(g)});
+  std::sort(by_coord.begin(), by_coord.end());
   meets.assign(grid_blocks.size(), 0);
-  for (std::size_t i = 0, end; i < by_place.size(); i = end) {
+  for (std::size_t i = 0, end; i < by_coord.size(); i = end) {
     end = i + 1;
-    while (end < by_place.size() && by_place[end].first == by_place[i].first) ++end;
+    while (end < by_coord.size() && by_coord[end].first == by_coord[i].first) ++end;
     if (end - i < 2) continue;
     for (std::size_t k = i; k < end; ++k) {
-      meeting_blocks.push_back(by_place[k].second);
-      meets[by_place[k].second] = 1;
+      meeting_blocks.push_back(by_coord[k].second);
+      meets[by_coord[k].second] = 1;
     }
     meeting_first.push_back(std::int32_t(meeting_blocks.size()));
   }

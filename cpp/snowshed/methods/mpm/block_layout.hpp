@@ -14,10 +14,10 @@ namespace snowshed::mpm {
 template <int D>
 using BlockCoord = std::array<std::int32_t, D>;
 
-/// A block's coordinates and its velocity field in one sortable number: 21 bits for each coordinate
-/// in the field 0, the only one of most runs; otherwise the highest bit, 6 bits for the field, and
-/// 19 bits for each coordinate. Blocks at one place with different fields are different blocks, and
-/// neighbours have the same field.
+/// A block's coordinates and its velocity field in one sortable number. A key of the field 0, the
+/// only field of most runs, has 21 bits for each coordinate. A key of another field has the highest
+/// bit set, 6 bits for the field, and 19 bits for each coordinate. Blocks with the same coordinates
+/// and different fields are different blocks. Neighbours have the same field.
 using BlockKey = std::uint64_t;
 
 inline constexpr int max_fields = 64;
@@ -25,7 +25,7 @@ inline constexpr int max_fields = 64;
 /// Bits of a coordinate.
 constexpr int coord_bits(int field) { return field == 0 ? 21 : 19; }
 
-/// Coordinates are no larger than this.
+/// The largest magnitude of a coordinate.
 constexpr std::int32_t block_coord_limit(int field) { return (1 << (coord_bits(field) - 1)) - 2; }
 
 constexpr int field_of(BlockKey key) { return key >> 63 ? int(key >> 57 & (max_fields - 1)) : 0; }
@@ -47,7 +47,7 @@ BlockCoord<D> block_coord(BlockKey key) {
   return c;
 }
 
-/// The place of a block in a sorted list, or -1.
+/// Returns the index of a block in a sorted list, or -1.
 std::int32_t find_block(const std::vector<BlockKey>& sorted, BlockKey key);
 
 template <int D>
@@ -64,22 +64,23 @@ struct BlockLayout {
   /// ascending.
   std::vector<BlockKey> grid_blocks;
 
-  /// For each particle block, the grid blocks around it (always present), lexicographic.
+  /// For each particle block, the grid blocks around it in lexicographic order. All of them exist.
   std::vector<Neighbours> around_particles;
-  /// For each grid block, the particle blocks around it, or -1.
+  /// For each grid block, the particle blocks around it in the same order, or -1 if there is none.
   std::vector<Neighbours> around_nodes;
 
-  /// Places where several fields have blocks of nodes: the place i has the grid blocks
-  /// meeting_blocks[k], meeting_first[i] <= k < meeting_first[i + 1]. `meets` has a flag for each
-  /// grid block that is one of these; it is empty if there is no such place.
+  /// Meetings are positions at which several fields have blocks of nodes. Meeting i has the grid
+  /// blocks meeting_blocks[k], meeting_first[i] <= k < meeting_first[i + 1]. `meets` has a flag for
+  /// each grid block: whether it belongs to a meeting. It is empty if there are no meetings.
   std::vector<std::int32_t> meeting_first{0}, meeting_blocks;
   std::vector<std::uint8_t> meets;
 
-  /// The layout of other particle blocks.
+  /// Returns the layout of the given particle blocks.
   static BlockLayout of(std::vector<BlockKey> blocks, std::vector<std::int32_t> starts,
                         int threads);
 
-  /// The same; cheaper where the blocks are those of this layout and only particles have moved.
+  /// Returns the same layout as `of`. This is cheaper if only particles have moved and the blocks
+  /// are those of this layout.
   BlockLayout rearranged(std::vector<BlockKey> blocks, std::vector<std::int32_t> starts,
                          int threads) const;
 

@@ -9,12 +9,12 @@
 
 namespace snowshed::mpm {
 
-ThickSolid as_grid_sees(Shape shape, double dx, int dimension) {
+ThickSolid thickened_for_grid(Shape shape, double dx, int dimension) {
   return thickened(std::move(shape), dx, dimension);
 }
 
-Obstacle thick_enough(Obstacle obstacle, double dx, int dimension) {
-  obstacle.shape = as_grid_sees(std::move(obstacle.shape), dx, dimension).shape;
+Obstacle thickened_obstacle(Obstacle obstacle, double dx, int dimension) {
+  obstacle.shape = thickened_for_grid(std::move(obstacle.shape), dx, dimension).shape;
   return obstacle;
 }
 
@@ -27,7 +27,7 @@ Boundary<T, D>::Boundary(std::vector<Obstacle> obstacles, double dx, std::vector
   for (Obstacle& o : obstacles) {
     laws_.push_back(o.law);
     any_motion_ = any_motion_ || o.motion.has_value();
-    obstacles_.push_back(thick_enough(std::move(o), dx, D));
+    obstacles_.push_back(thickened_obstacle(std::move(o), dx, D));
   }
 }
 

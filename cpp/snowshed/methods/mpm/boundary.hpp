@@ -3,9 +3,9 @@
 // The conditions are the thesis's (1.2.3). Two things are ours:
 // - Friction acts on the running mean of the net normal impulse (see NodeKernels::apply), so the
 //   contacts have a memory that outlives a step.
-// - `separate` holds snow down where gravity presses it on, against a pull that is shorter-lived
-//   than the push before it, so that a slab that vibrates stays on its panel. Elsewhere it releases
-//   snow at once, so that snow never hangs from a panel's back.
+// - Where gravity presses snow onto an obstacle, `separate` releases the snow only after pull has
+//   used up the push before it. A vibrating slab thus stays on its panel. Elsewhere `separate`
+//   releases snow at once, so that snow never hangs from a panel's back.
 #pragma once
 
 #include <algorithm>
@@ -18,31 +18,34 @@
 
 namespace snowshed::mpm {
 
-/// A solid as the grid must see it. Parts thinner than two cells would slip between the nodes, so
-/// their surface is moved out until they are two cells thick.
-ThickSolid as_grid_sees(Shape shape, double dx, int dimension);
-Obstacle thick_enough(Obstacle obstacle, double dx, int dimension);
+/// Returns a solid as the grid must see it. Parts thinner than two cells would slip between the
+/// nodes. Their surface is moved out until they are two cells thick.
+ThickSolid thickened_for_grid(Shape shape, double dx, int dimension);
+Obstacle thickened_obstacle(Obstacle obstacle, double dx, int dimension);
 
-/// The unit normal in the section; upwards if the normal is perpendicular to it.
+/// Returns the unit vector along the projection of a normal onto the section, or the upward
+/// direction if the projection is zero. In 2D the section is the x-z plane; in 3D it is the whole
+/// space.
 template <int D>
 VecD<D> normal_in_section(const Vec3& normal) {
   const VecD<D> n = section<D>(normal);
   return n.norm() > 1e-9 ? VecD<D>(n.normalized()) : VecD<D>(VecD<D>::Unit(D - 1));
 }
 
-/// Rule by which an obstacle releases snow where its outward normal rises by `upward`.
+/// Returns the rule by which an obstacle releases snow. `upward` is the vertical component of its
+/// outward normal.
 inline Release release(Condition condition, double upward) {
   if (condition == Condition::slip) return Release::never;
   return upward > 0 ? Release::after_push : Release::at_once;
 }
 
-/// The obstacles as the grid sees them. It never changes.
+/// The obstacles as the grid sees them. An object of this class never changes.
 template <class T, int D>
 class Boundary {
  public:
-  /// `surfaces` are the obstacles as they are given, before thin parts were made thicker; without
-  /// them the obstacles themselves are used. Nodes within a `margin` (m) outside these have
-  /// contacts, too.
+  /// `surfaces` are the shapes of the obstacles before thin parts were made thicker. If the list is
+  /// empty, the shapes of `obstacles` are used. Nodes outside a surface have contacts, too, if they
+  /// are within `margin` (m) of it.
   Boundary(std::vector<Obstacle> obstacles, double dx, std::vector<Shape> surfaces = {},
            double margin = 0);
 
@@ -55,16 +58,16 @@ class Boundary {
   }
   bool is_moving(const Contact<T>& c) const { return obstacles_[c.obstacle].motion.has_value(); }
 
-  /// An obstacle as it is given, at a time.
+  /// The surface of an obstacle, not thickened, at a time.
   class Surface {
    public:
     Surface(const LevelSet& shape, const std::optional<RigidMotion>& motion, double time)
         : shape_(shape) {
       if (motion) pose_ = motion->at(time);
     }
-    /// Signed, m.
+    /// Returns the signed distance, m.
     double distance(const Vec3& x) const { return shape_.distance(pose_ ? pose_->to_body(x) : x); }
-    /// Outward, of length 1 in the section.
+    /// Returns the outward unit normal in the section.
     VecD<D> normal(const Vec3& x) const {
       return normal_in_section<D>(pose_ ? pose_->normal_to_world(shape_.normal(pose_->to_body(x)))
                                         : shape_.normal(x));
@@ -78,12 +81,13 @@ class Boundary {
     return {*surfaces_[obstacle], obstacles_[obstacle].motion, time};
   }
 
-  /// Appends a block's contacts at a time: with the obstacles that move, or with those at rest.
+  /// Appends the contacts of a block at a time, either with the moving obstacles or with those at
+  /// rest.
   void find(BlockKey block, double time, bool moving, std::vector<Contact<T>>& contacts) const;
 
  private:
   std::vector<Obstacle> obstacles_;
-  std::vector<Shape> surfaces_;  // the obstacles as they are given
+  std::vector<Shape> surfaces_;  // shapes of the obstacles, not thickened
   std::vector<ContactLaw> laws_;
   double dx_, margin_;
   bool any_motion_ = false;
@@ -101,11 +105,12 @@ struct PushingShares {
 template <class T, int D>
 class Contacts {
  public:
-  /// The contacts of other grid blocks at a time; blocks that stay keep theirs.
+  /// Returns the contacts of another list of grid blocks at a time. Blocks in both lists keep their
+  /// contacts.
   Contacts relocated(const Boundary<T, D>& boundary, const std::vector<BlockKey>& grid_blocks,
                      double time, int threads = 1) const;
 
-  /// Follows moving obstacles to `time`. Nothing to do where none moves. All or nothing.
+  /// Updates the contacts with moving obstacles to `time`. If this throws, nothing has changed.
   void follow(const Boundary<T, D>& boundary, double time, int threads = 1);
 
   Contact<T>* of_block(std::size_t block) { return contacts_.data() + first_[block]; }
@@ -113,25 +118,25 @@ class Contacts {
 
   std::size_t size() const { return contacts_.size(); }
 
-  /// Whether a contact of a block is with an obstacle in motion.
+  /// Returns whether a block has a contact with an obstacle that moves at present.
   bool moves(std::size_t block) const;
 
-  /// Makes the stored impulses of the step just taken the present ones.
+  /// Accepts the stored impulses of the step that was just taken.
   void commit(std::size_t block) {
     for (std::size_t i = first_[block]; i < first_[block + 1]; ++i)
       contacts_[i].normal_impulse = contacts_[i].next_normal_impulse;
   }
 
-  /// Takes back the stored impulses of a step that failed.
+  /// Restores the stored impulses from before a step that failed.
   void reject(std::size_t block) {
     for (std::size_t i = first_[block]; i < first_[block + 1]; ++i)
       contacts_[i].next_normal_impulse = contacts_[i].normal_impulse;
   }
 
-  /// Finds for each obstacle the sum of its stored impulses over the sum of those that are
-  /// positive; 1 for obstacles that let snow leave. Slip holds some nodes of a body against pull,
-  /// while internal forces press it more strongly on others. Friction on the pushed nodes alone
-  /// would be too large.
+  /// Finds the share of each obstacle: the sum of its stored impulses over the sum of the positive
+  /// ones. The share is 1 for obstacles that release snow. Slip holds some nodes of a body against
+  /// pull, while internal forces press other nodes more strongly onto the obstacle. Friction on the
+  /// pushed nodes alone would be too large.
   void find_pushing_shares(PushingShares<T>& result) const;
 
   /// A contact with stored impulse (N s), for checkpoints.
@@ -144,8 +149,8 @@ class Contacts {
   void restore(const std::vector<StoredImpulse>& stored_impulses);
 
  private:
-  /// The contacts of some blocks, where `find(index of a block, contacts)` appends those of a
-  /// block.
+  /// Collects the contacts of `blocks`. `find(index, contacts)` appends the contacts of the block
+  /// with that index.
   template <class Find>
   static Contacts gathered(const std::vector<BlockKey>& blocks, int threads, Find find);
 

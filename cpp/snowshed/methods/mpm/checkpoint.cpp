@@ -1,5 +1,5 @@
-// Saving and restoring a solver. Called at safe points, where the grid holds nothing that the
-// particles and the contacts' stored impulses do not determine.
+// Saving and loading the state of a solver. At safe points the particles and the stored impulses of
+// the contacts determine everything on the grid, which is therefore not saved.
 #include <string>
 
 #include "snowshed/core/memory.hpp"
@@ -17,7 +17,8 @@ struct Stored {
   std::vector<FieldContact<T>> meetings;
 };
 
-/// Arrays that a solver with one snow may do without, and one with several has.
+/// Returns whether a solver with a single snow may lack this array. Solvers with several snows have
+/// it.
 bool is_of_several_snows(const std::string& name) { return name == "kind" || name == "plastic"; }
 
 template <class Archive, class Particles>
@@ -70,7 +71,8 @@ void visit_rest(Archive& archive, Layout& layout, Stored<T, D>& stored, Totals& 
   }
 }
 
-/// Blocks without particles would take memory out of all proportion to the file.
+/// Returns whether the blocks are in order and none is empty. A small file with many empty blocks
+/// would take a lot of memory.
 template <int D>
 bool are_sound(const std::vector<BlockKey>& keys, const std::vector<std::int32_t>& first,
                std::size_t particles) {
@@ -87,7 +89,8 @@ double bytes_of_grid(const BlockLayout<D>& layout, int tile_size) {
   return sizeof(T) * (tiles + 2.0 * double(layout.grid_blocks.size()) * Grid<T, D>::block_size);
 }
 
-/// The blocks with all that follows from them.
+/// Returns the layout of the blocks that were read. Refuses blocks that are empty, not in order or
+/// too many for the memory.
 template <class T, int D>
 BlockLayout<D> whole_layout(const StateReader& archive, BlockLayout<D> read, std::size_t particles,
                             int tile_size) {
@@ -104,8 +107,8 @@ void check_materials(const StateReader& archive, const AlignedVector<std::uint8_
                      std::size_t materials) {
   for (const std::uint8_t id : ids)
     if (id >= materials)
-      archive.refuse("a particle of snow " + std::to_string(id) + " of " +
-                     std::to_string(materials));
+      archive.refuse("a particle has the material_id " + std::to_string(id) +
+                     ", but there are only " + std::to_string(materials) + " snows");
 }
 
 }  // namespace
@@ -134,7 +137,7 @@ State<T, D> SolverImpl<T, D>::read_state(const BinaryReader& in) const {
   next.contacts =
       next.contacts.relocated(model_.boundary, next.layout.grid_blocks, next.progress.time);
   next.contacts.restore(stored.impulses);
-  next.sleep = next.sleep.restored(next.layout, std::move(stored.sleep));
+  next.sleep = next.sleep.with_states(next.layout, std::move(stored.sleep));
   next.field_contacts = std::move(stored.meetings);
   next.find_event_fields();
   return next;

@@ -36,45 +36,48 @@ constexpr ObstacleStorage obstacle_storage(Precision precision) {
                                          : ObstacleStorage{200.0, 1000.0};
 }
 
-/// Grid voxels in use for each voxel of snow: the splines reach beyond it, and it spreads.
+/// Number of grid voxels for each voxel of snow. The splines reach beyond the snow, and snow
+/// spreads.
 constexpr double grid_spread = 4.0;
 
-/// Share of the older snow that new snow keeps awake from its first landing to rest: about a half
-/// in the laboratory scene and on the wide stacks of chapter 5.
+/// Share of the older snow that is awake from the first landing of new snow until the new snow
+/// rests. It is about a half in the laboratory scene and on the wide stacks of the thesis's chapter
+/// 5.
 constexpr double woken_share = 0.5;
 
-/// Work of an update of scattered clumps, each with grid blocks of its own, over that in a slab: 13
-/// to 16 in 3D after 125 m. A particle all alone takes 40.
+/// Work of a particle update in scattered clumps, each with its own grid blocks, over that in a
+/// slab. It is 13 to 16 times as much in 3D after 125 m, and 40 times for a lone particle.
 constexpr double scattered_snow(int dimension) { return dimension == 2 ? 4.0 : 15.0; }
 
 /// Number of nodes of the grid blocks around an event's snow, for compact bodies. Many small bodies
 /// far apart use more nodes than their volume suggests.
 double count_nodes(const Settings& n, const std::vector<double>& volumes, int dimension) {
-  constexpr double reached = 1.5;  // blocks beyond its own that the splines of a body reach
+  constexpr double reached_blocks = 1.5;  // blocks that a body's splines reach beyond its own
   const double edge = (dimension == 2 ? block_edge<2> : block_edge<3>)*n.dx;
   double blocks = 0;
   for (const double volume : volumes) {
     const double size = std::pow(volume, 1.0 / dimension) / edge;
-    blocks += std::pow(size + reached, dimension);
+    blocks += std::pow(size + reached_blocks, dimension);
   }
   return blocks * (dimension == 2 ? block_nodes<2> : block_nodes<3>);
 }
 
-/// Memory of the grid where snow is scattered, and of the obstacles and the contacts with them.
+/// Memory of the obstacles and of the contacts with them, in bytes.
 double surroundings_bytes(const Settings& n, const SceneOutline& outline, double nodes) {
   const auto [per_contact, per_obstacle] = obstacle_storage(n.precision);
-  return nodes * outline.most_overlapping * per_contact + per_obstacle * outline.obstacles;
+  return nodes * outline.max_overlap * per_contact + per_obstacle * outline.obstacles;
 }
 
-/// New snow is awake from its release to rest, older snow in part, once something lands on it.
+/// Number of particle updates. New snow is awake from its release until it rests. A part of the
+/// older snow is awake after new snow has landed on it.
 double count_updates(const Settings& n, int events, const SnowMotion& motion,
                      const CostEstimate& estimate) {
-  double old_awake = 1.0;
+  double old_awake_share = 1.0;
   if (n.sleep_speed > 0.0)
-    old_awake = woken_share * std::max(0.0, 1.0 - motion.first_landing / motion.event_time);
+    old_awake_share = woken_share * std::max(0.0, 1.0 - motion.first_landing / motion.event_time);
   double particles = 0.0, old = 0.0;
   for (double fresh : estimate.particles) {
-    particles += fresh + old_awake * old;
+    particles += fresh + old_awake_share * old;
     old += fresh;
   }
   return particles * estimate.steps / events;

@@ -8,7 +8,7 @@
 
 namespace snowshed::mpm {
 
-/// The first time step of snow at rest, of the stiffest, s.
+/// Returns the first time step (s) of snow at rest. The stiffest snow limits it.
 double stable_time_step(const Settings&, const std::vector<Snow>&, int dimension);
 
 CostEstimate estimate_cost(const Settings&, const SceneView&, const SceneOutline&,

@@ -16,7 +16,8 @@ void describe(SettingsVisitor& v, Settings& n) {
            "Mechanisms that belong together: objective sets transfer affine_flip, damping_rate 380 "
            "1/s, damping_length and crack_band_length 0.01 m, contact touch and fields of events, "
            "unless they are given; thesis keeps the defaults of these settings");
-  if (n.scheme != before) n.adopt(n.scheme);  // fields that are read next may differ from it
+  // Settings that are read next may differ from the scheme.
+  if (n.scheme != before) n.adopt(n.scheme);
   v.choice("precision", n.precision, "Floating-point type of the particles and the grid");
   v.choice("transfer", n.transfer, "Transfer of velocities between particles and grid");
   v.number(

@@ -1,5 +1,6 @@
-// Changes of the snow from outside between steps: adding, replacing, pushing and settling it. The
-// new state is built beside the old one, which stays where anything fails.
+// Changes of the snow from outside between steps: adding, replacing, pushing and settling it. A new
+// state is built beside the old one, which remains if this fails. Only `add_velocity` changes the
+// state in place, after all checks.
 #include <cmath>
 
 #include "snowshed/core/errors.hpp"
@@ -56,7 +57,7 @@ void SolverImpl<T, D>::add_velocity(const std::vector<Vec3>& velocity_changes) {
   soundness_.require();
   const std::vector<std::uint32_t>& at = order_by_id();
   check_velocity_changes(velocity_changes, at.size());
-  // Nothing from here on fails.
+  // Nothing can fail from here on.
   const double before = model_.options.energy ? state_.kinetic_energy(model_) : 0.0;
   double fastest = 0;
   for (std::size_t k = 0; k < at.size(); ++k) {

@@ -11,7 +11,7 @@ template <class T, int D>
 void SolverImpl<T, D>::update_energy_balance() noexcept {
   StepTotals& p = state_.progress;
   double kinetic = 0, elastic = 0, plastic = 0, damping = 0;
-  // Energies of sleeping blocks as they fell asleep.
+  // Sleeping blocks have the energies with which they fell asleep.
   for (const BlockStats& s : work_.grid.block_stats) {
     kinetic += s.kinetic;
     elastic += s.elastic;
@@ -28,11 +28,12 @@ void SolverImpl<T, D>::update_energy_balance() noexcept {
     p.energy.sticking += s.sticking;
     p.energy.impact += s.impact;
   }
-  // Energy lost by particles to grid and grid to particles.
+  // Energy that is lost in the transfers from particles to grid and from grid to particles.
   p.energy.transfer += (p.energy.kinetic - before) + (after - kinetic) - damping;
   p.energy.damping += damping;
-  // Velocities are those of half a step ago; taken at the time of the positions, the transfer
-  // between two steps acts on velocities that have half of the coming step's force in them.
+  // The velocities belong to half a step before the positions. At the time of the positions they
+  // contain half of the coming step's force, and the transfer between two steps acts on these
+  // velocities.
   p.energy.transfer -= 0.5 * (work - p.stress_power * p.dt);
   p.stress_power = power;
   p.energy.plastic += plastic;

@@ -1,4 +1,4 @@
-// A node at which the snow of two events touches, or has just come off.
+// A node at which the snow of two events touches or has just separated.
 #pragma once
 
 #include <cstdint>
@@ -12,13 +12,13 @@ template <class T>
 struct FieldContact {
   BlockKey first_key, second_key;  // keys of the two blocks of nodes, in ascending order
   std::int32_t node;
-  std::int32_t first, second;  // the blocks' places in the layout
-  bool touches;                // otherwise it has come off since, and only friction is due
+  std::int32_t first, second;  // indices of the two blocks in the layout
+  bool touches;                // if false, the snow has separated and only friction is due
   T normal[3];                 // from the first field to the second
-  T impulse;       // stored normal impulse, N s, that friction has yet to be charged for
-  T next_impulse;  // the same after the step being tried
+  T impulse;                   // stored normal impulse, N s, for which friction is still due
+  T next_impulse;              // the same after the step that is being tried
 
-  auto name() const { return std::tie(first_key, second_key, node); }
+  auto key() const { return std::tie(first_key, second_key, node); }
 };
 
 }  // namespace snowshed::mpm

@@ -1,4 +1,4 @@
-// The fields of a solver's particles: those it stores as views, the others computed.
+// The fields of a solver's particles. Stored quantities are views; the others are computed.
 #include <array>
 #include <cmath>
 
@@ -37,7 +37,7 @@ Sym<double, D> SolverImpl<T, D>::elastic_strain(std::size_t i) const {
 }
 
 template <class T, int D>
-double SolverImpl<T, D>::elastic_volume(std::size_t i) const {
+double SolverImpl<T, D>::elastic_volumetric_strain(std::size_t i) const {
   return trace(elastic_strain(i));
 }
 
@@ -53,7 +53,7 @@ double SolverImpl<T, D>::volume_ratio(std::size_t i) const {
 
 template <class T, int D>
 double SolverImpl<T, D>::pressure(std::size_t i) const {
-  return -state_.material_of(model_, i).elastic.bulk * elastic_volume(i);
+  return -state_.material_of(model_, i).elastic.bulk * elastic_volumetric_strain(i);
 }
 
 template <class T, int D>
@@ -144,12 +144,12 @@ void SolverImpl<T, D>::visit_fields(Visit visit) const {
 
 template <class T, int D>
 std::vector<FieldInfo> SolverImpl<T, D>::fields() const {
-  return listed_fields([this](const auto& visit) { visit_fields(visit); });
+  return list_fields([this](const auto& visit) { visit_fields(visit); });
 }
 
 template <class T, int D>
 FieldView SolverImpl<T, D>::field(const std::string& name) const {
-  return found_field(name, [this](const auto& visit) { visit_fields(visit); });
+  return find_field(name, [this](const auto& visit) { visit_fields(visit); });
 }
 
 template <class T, int D>

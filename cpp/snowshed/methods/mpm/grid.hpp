@@ -29,23 +29,25 @@ struct Grid {
     touched.resize(nodes);
   }
 
-  /// The arrays' contents are not kept: all of it is computed again after a change of layout.
+  /// Resizes an array without keeping its values, all of which are computed again after a change of
+  /// layout.
   static void make_room(AlignedVector<T>& values, std::size_t n) {
     if (n > values.capacity()) {
       AlignedVector<T>().swap(values);
-      values.reserve(n + n / 8);  // doubling would hold as much again
+      values.reserve(n + n / 8);  // doubling would waste memory
     }
     values.resize(n);
   }
 
-  /// Finds the tiles of the particle blocks around a grid block that reach it; null for the others.
-  /// Returns whether any does.
+  /// Finds the tiles that reach a grid block, among those of the particle blocks around it. The
+  /// other entries become null. Returns whether any tile reaches the block.
   bool tiles_reaching(const BlockLayout<D>& layout, std::size_t grid_block,
                       const T* (&reaching)[neighbour_count<D>]) {
     bool any = false;
     for (int k = 0; k < neighbour_count<D>; ++k) {
       const std::int32_t block = layout.around_nodes[grid_block][k];
-      constexpr int last = neighbour_count<D> - 1;  // seen from there, the neighbour opposite
+      // Seen from the particle block, the grid block is the opposite neighbour.
+      constexpr int last = neighbour_count<D> - 1;
       const bool reached = block >= 0 && reaches<D>(block_stats[block].reach, last - k);
       reaching[k] = reached ? tile(std::size_t(block)) : nullptr;
       any = any || reached;

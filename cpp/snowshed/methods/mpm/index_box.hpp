@@ -6,8 +6,8 @@
 
 namespace snowshed::mpm {
 
-/// Calls f(index) for all indices from `begin` to before `end` along each direction, the last
-/// direction fastest. An index is an array of whole numbers.
+/// Calls f(index) for all indices in [begin, end) along each direction. The last direction changes
+/// fastest. An index is an array of integers.
 template <class Index, class F>
 void for_each_index(const Index& begin, const Index& end, F f) {
   constexpr int dimension = int(std::tuple_size<Index>::value);

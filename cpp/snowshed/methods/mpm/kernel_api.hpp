@@ -1,6 +1,6 @@
 // Interface between the solver and the kernels: raw views, and one table of functions per
 // combination of features. The kernels are compiled once for each instruction set
-// (cmake/KernelVariants.cmake), so nothing here depends on one.
+// (cmake/KernelVariants.cmake), so nothing here may depend on an instruction set.
 #pragma once
 
 #include <cstdint>
@@ -22,21 +22,23 @@ inline constexpr int block_nodes = block_edge<D> * block_edge<D> * (D == 3 ? blo
 
 /// Values per node, one 256-bit load in single precision.
 /// Sums:       mass, momentum (3), force (3), unused.
-/// Velocities: new velocity (3), unused, then its change over the step (FLIP,
-///             affine FLIP) or itself (APIC).
+/// Velocities: new velocity (3), unused, then the change of velocity over the step
+///             (FLIP, affine FLIP) or the new velocity again (APIC).
 inline constexpr int node_values = 8;
 
 /// Nodes that a particle touches along one direction.
 constexpr int support(Basis basis) { return basis == Basis::quadratic ? 3 : 4; }
 
-/// Distance, in cells, from a particle's lowest node to the particle, less its fraction.
+/// The smallest distance (in cells) from a particle's lowest node to the particle. The fraction of
+/// the particle's `cell` is added to it.
 constexpr double base_offset(Basis basis) { return basis == Basis::quadratic ? 0.5 : 1.0; }
 
 /// Inverse of APIC's inertia D = sum_i w_i (x_i - x)^2, per cell squared.
 constexpr double apic_inverse_inertia(Basis basis) { return basis == Basis::quadratic ? 4.0 : 3.0; }
 
-/// Edge of a block's tile: its own nodes, those its particles reach beyond, and one more on
-/// either side so that particles may stray by a cell before they must be sorted again.
+/// Nodes along one edge of a block's tile: the block's own nodes, the nodes beyond that its
+/// particles reach, and one more on either side. Particles may thus stray by a cell before they
+/// must be sorted again.
 template <int D>
 constexpr int tile_edge(Basis basis) {
   return block_edge<D> + support(basis) + 1;
@@ -56,7 +58,7 @@ template <class T>
 struct ParticleView {
   T* cell[3];
   T* velocity[3];
-  T* affine[9];             // C, row by row, 1/s; not of FLIP
+  T* affine[9];             // C, row by row, 1/s; not with FLIP
   T* be_minus_identity[6];  // b_e the elastic left Cauchy-Green tensor
   T* plastic;               // volumetric plastic strain; plastic laws only
   T* mass;
@@ -67,13 +69,13 @@ struct ParticleView {
 /// an unused value and the mean velocity (3).
 inline constexpr int average_values = 4;
 
-/// The part of that grid that the particles of a block reach. Its nodes are `edge` along each
+/// The part of the coarse grid that the particles of a block reach. It has `edge` nodes along each
 /// direction.
 template <class T>
 struct AverageTile {
   T* values;
   int edge;
-  T cell;       // dx over its spacing
+  T cell;       // dx over the spacing of the coarse grid
   T origin[3];  // origin of the block, in spacings from its first node
   T share;      // share of the difference from the average that a particle loses
 };
@@ -92,24 +94,24 @@ template <class T>
 struct StepParameters {
   T dt, dx, gravity, flip_ratio;
   T friction_rate;            // dt over the friction memory, see NodeKernels::apply
-  T friction_rate_per_speed;  // s/m, the same for each m/s at which snow slides
+  T friction_rate_per_speed;  // s/m, the same per m/s of sliding speed
   T overstress;  // share of the stress beyond the yield surface that a step leaves, see CamClayLaw
   const MaterialConstants<T>* snows;  // indexed by material_id
   const T* pushing;  // indexed by obstacle: part of the friction of pushed nodes that remains, see
                      // Contacts::find_pushing_shares
 };
 
-/// The part of its stored normal impulse that a contact is charged for in a step, where snow slides
-/// at `speed` (m/s); see NodeKernels::apply.
+/// Returns the share of its stored normal impulse for which a contact exerts friction in a step.
+/// `speed` is the sliding speed (m/s); see NodeKernels::apply.
 template <class T>
 SNOWSHED_INLINE T drain_rate(const StepParameters<T>& step, T speed) {
   const T rate = step.friction_rate_per_speed * speed;
   return rate < step.friction_rate ? step.friction_rate : rate < T(1) ? rate : T(1);
 }
 
-/// Largest norm of the elastic Hencky strain that single precision still resolves: compression to
-/// a twentieth or stretching by twenty. Snow yields long before; only bodies much too soft for
-/// their speed get there.
+/// Largest norm of the elastic Hencky strain that single precision still resolves: compression to a
+/// twentieth of the length, or stretching to twenty times the length. Snow yields long before. Only
+/// bodies that are much too soft for their speed reach this strain.
 inline constexpr double elastic_strain_limit = 3.0;
 
 /// Bits of `BlockStats::reach`: nodes below a block, or above it, along a direction.
@@ -118,7 +120,8 @@ constexpr int above(int direction) { return 2 << (2 * direction); }
 template <int D>
 inline constexpr int everywhere = (1 << (2 * D)) - 1;
 
-/// Whether particles with these bits touch nodes of a block's neighbour.
+/// Returns whether particles with these bits of `BlockStats::reach` touch nodes of a neighbour of
+/// their block.
 template <int D>
 constexpr bool reaches(int reach, int neighbour) {
   for (int d = D - 1; d >= 0; --d, neighbour /= 3) {
@@ -130,15 +133,15 @@ constexpr bool reaches(int reach, int neighbour) {
 
 /// A kernel's report on one block of particles.
 struct BlockStats {
-  double speed_squared = 0;   // largest, of velocity and of motion, m2/s2
-  double strain = 0;          // largest |dt grad v| component; of `probe` only
+  double speed_squared = 0;   // largest square of a velocity or of the velocity of motion, m2/s2
+  double strain = 0;          // largest |dt grad v| component; only from `probe`
   int reach = 0;              // blocks around it whose nodes its particles touch
   bool escaped = false;       // a particle left the tile: the sums are not valid, sort first
   std::int32_t unsound = -1;  // a particle strained beyond `elastic_strain_limit`, or not finite
   double elastic_strain = 0;  // elastic strain of that particle
   double kinetic = 0, elastic = 0, plastic = 0;  // J; with the energy balance only
   double damping = 0;       // J, kinetic energy that damping towards the average took
-  double stress_power = 0;  // W, of the new stresses along the motion just made
+  double stress_power = 0;  // W, power of the new stresses in the motion of this step
 
   /// Statistics of particles of which only the reach is known.
   static BlockStats reaching(int reach) {
@@ -153,8 +156,8 @@ struct NodeStats {
   double low[3], high[3];  // bounds of the new velocities; low > high: no snow here
   // Energy of the grid, J: before forces, after contact.
   double kinetic_before = 0, kinetic_after = 0;
-  double friction = 0, sticking = 0, impact = 0;  // taken by contact, J
-  double stress_work = 0;  // J, of the stresses at the velocities before the step
+  double friction = 0, sticking = 0, impact = 0;  // energy that contact took, J
+  double stress_work = 0;  // J, by the stresses at the velocities before the step
 };
 
 /// Motion that the nodes of a step would have given to a block of sleeping particles: means over
@@ -167,7 +170,7 @@ struct CarriedMotion {
 /// Rule by which a contact releases snow that is pulled off the obstacle.
 enum class Release : std::uint8_t {
   never,       // slip
-  after_push,  // separate, where gravity presses snow on: once pull has used up the push before it
+  after_push,  // separate, where gravity presses snow on: after pull has used up the push before it
   at_once      // separate elsewhere
 };
 
@@ -179,39 +182,42 @@ struct Contact {
   T normal[3];            // normal of the face that snow touches; `outward` if it touches none
   T outward[3];           // normal of the obstacle at the node
   T velocity[3];          // velocity of the obstacle at the node
-  T normal_impulse;       // stored normal impulse, N s, that friction has yet to be charged for;
+  T normal_impulse;       // stored normal impulse, N s, for which friction is still due;
                           // with slip, which holds against any pull, it may be negative
-  T next_normal_impulse;  // the same after the step being tried
+  T next_normal_impulse;  // the same after the step that is being tried
   Release release;
   bool acts = true;  // whether snow has come close enough
 };
 
 template <class T>
 struct Kernels {
-  /// Sums of a block's particles onto its tile, from their present state.
+  /// Writes the sums of a block's particles, in their present state, to the block's tile.
   void (*scatter)(const StepParameters<T>&, const ParticleView<T>&, int first, int count, T* tile,
                   BlockStats&);
-  /// One step of a block's particles from the velocities of the 3^D blocks around, and their sums
-  /// for the next step. `BlockStats::reach` says where the particles are, before and after it; the
-  /// tile holds nothing beyond. With an `average` (null: none) velocities are damped towards it.
+  /// Takes one step of a block's particles with the velocities of the 3^D blocks around it, and
+  /// writes their sums for the next step to the tile. `BlockStats::reach` tells where the particles
+  /// are, before the step and after it. Beyond, the values of the tile are undefined. Velocities
+  /// are damped towards `average` unless this is null.
   void (*g2p2g)(const StepParameters<T>&, const ParticleView<T>&, int first, int count,
                 const T* const* velocities, const AverageTile<T>* average, T* tile, BlockStats&);
   /// Adds mass and momentum of a block's particles to the coarse grid. Null without affine FLIP.
   void (*scatter_average)(const ParticleView<T>&, int first, int count, const AverageTile<T>&);
-  /// Only the largest |dt grad v| that `g2p2g` would impose, of particles in `BlockStats::reach`.
+  /// Finds only the largest |dt grad v| that `g2p2g` would impose. `BlockStats::reach` must tell
+  /// where the particles are.
   void (*probe)(const StepParameters<T>&, const ParticleView<T>&, int first, int count,
                 const T* const* velocities, BlockStats&);
   /// Adds the tiles of the 3^D particle blocks around (null: none) to a block's node sums.
   void (*gather)(const T* const* tiles, T* sums);
-  /// Node velocities from the sums: forces, gravity, contact.
+  /// Computes the velocities of nodes from their sums, with forces, gravity and contact.
   void (*update)(const StepParameters<T>&, const T* sums, T* velocities, Contact<T>* contacts,
                  int contact_count, const ContactLaw*, NodeStats&);
-  /// The same in two parts, between which other snow may act: forces and gravity; contact.
+  /// The same in two parts, between which other snow may act. `update_free` applies forces and
+  /// gravity, `finish` contact.
   void (*update_free)(const StepParameters<T>&, const T* sums, T* velocities);
   void (*finish)(const StepParameters<T>&, const T* sums, T* velocities, Contact<T>* contacts,
                  int contact_count, const ContactLaw*, NodeStats&);
-  /// Motion that the 3^D blocks of nodes around (null: at rest) would give to the snow on a tile,
-  /// as far as its particles reach.
+  /// Computes the motion that the 3^D blocks of nodes around (null: at rest) would give to the snow
+  /// on a tile. `reach` tells where its particles are.
   void (*carried_motion)(const T* tile, int reach, const T* const* sums, const T* const* velocities,
                          CarriedMotion&);
 };
@@ -225,15 +231,16 @@ struct KernelChoice {
   bool energy = false;
   bool regularised = false;  // Cam-Clay with a crack band or a relaxation time
 
-  /// Whether the kernels are those for checks, which have all features. Without affine FLIP only
-  /// they have the regularised law.
+  /// Returns whether the kernels for checks are used, which have all features. With FLIP and APIC,
+  /// only these kernels have the regularised law.
   bool checks() const { return energy || (regularised && transfer != Transfer::affine_flip); }
-  /// Whether the kernels look up each particle's material, whose model may be any. Those for checks
-  /// always do, which saves kernels of each model.
+  /// Returns whether the kernels look up each particle's material, which may have any model. The
+  /// kernels for checks always do, so that they need not be compiled for each model.
   bool material_per_particle() const { return several_materials || checks(); }
 };
 
-/// The best build of the chosen kernels for this machine, or the one that SNOWSHED_KERNELS names.
+/// Returns the best build of the chosen kernels for this machine, or the one that SNOWSHED_KERNELS
+/// names.
 template <class T>
 Kernels<T> select_kernels(const KernelChoice&);
 

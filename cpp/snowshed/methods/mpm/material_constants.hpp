@@ -19,9 +19,9 @@ struct Material {
   Material(const Snow&, int dimension, const Settings&);
 };
 
-/// The constants the kernels take. Those of elastic snow are Cam-Clay's with a yield function that
-/// is zero everywhere (M = 0, beta = -1/2), so that it may stand beside snow that yields.
-/// `softening` is that of the crack band (Settings::softening).
+/// Returns the constants for the kernels. Elastic snow has Cam-Clay constants whose yield function
+/// is zero everywhere (M = 0, beta = -1/2), so that it can stand beside snow that yields.
+/// `softening` is the factor of the crack band (Settings::softening).
 template <class T>
 MaterialConstants<T> material_constants(const Snow&, int dimension, double softening = 1);
 

@@ -10,20 +10,22 @@
 namespace snowshed::mpm {
 namespace {
 
-/// kg. Nodes that a field barely reaches say nothing about its surface.
+/// Smallest mass (kg) of a field at a node that counts. Nodes that a field barely reaches do not
+/// show where its surface is.
 constexpr double min_shared_mass = 1e-12;
 
-/// Place of an index in an array of `edge` elements along each direction, the first at `low`.
+/// Returns the flat index in an array of `edge` elements along each direction, the first of which
+/// has the index `low` along each direction.
 template <int D>
-int place_in(const std::array<int, D>& index, int edge, int low = 0) {
-  int place = 0;
-  for (int d = 0; d < D; ++d) place = place * edge + index[d] - low;
-  return place;
+int flat_index(const std::array<int, D>& index, int edge, int low = 0) {
+  int flat = 0;
+  for (int d = 0; d < D; ++d) flat = flat * edge + index[d] - low;
+  return flat;
 }
 
 template <class T>
-bool by_name(const FieldContact<T>* a, const FieldContact<T>* b) {
-  return a->name() < b->name();
+bool by_key(const FieldContact<T>* a, const FieldContact<T>* b) {
+  return a->key() < b->key();
 }
 
 }  // namespace
@@ -32,7 +34,7 @@ template <class T, int D>
 void Meetings<T, D>::forget(const Model<T, D>& model, const State<T, D>& state, int threads) {
   measured_ = false;
   radius_.clear();
-  if (places(state.layout) == 0) return;
+  if (meeting_count(state.layout) == 0) return;
   radius_.resize(state.particles.size());
   const double dx = model.options.settings.dx;
   parallel_for_static(std::ptrdiff_t(radius_.size()), threads, [&](std::ptrdiff_t i) {
@@ -46,20 +48,21 @@ void Meetings<T, D>::update(const Model<T, D>& model, State<T, D>& state, Grid<T
   since_measured_ += moved;
   if (measured_ && since_measured_ < contact_tolerance * model.options.settings.dx) return;
   const std::vector<FieldContact<T>>& before = state.field_contacts;
-  Stores stores;
-  for (const FieldContact<T>& c : before) stores.push_back(&c);
-  std::sort(stores.begin(), stores.end(), by_name<T>);
-  std::vector<std::vector<FieldContact<T>>> by_place(places(state.layout));
-  parallel_for_dynamic(places(state.layout), threads, 1, [&](std::ptrdiff_t place) {
-    const std::int32_t block = state.layout.meeting_blocks[state.layout.meeting_first[place]];
+  SortedContacts contacts_by_key;
+  for (const FieldContact<T>& c : before) contacts_by_key.push_back(&c);
+  std::sort(contacts_by_key.begin(), contacts_by_key.end(), by_key<T>);
+  std::vector<std::vector<FieldContact<T>>> by_meeting(meeting_count(state.layout));
+  parallel_for_dynamic(meeting_count(state.layout), threads, 1, [&](std::ptrdiff_t meeting) {
+    const std::int32_t block = state.layout.meeting_blocks[state.layout.meeting_first[meeting]];
     if (measured_ && !state.sleep.is_active(block))  // nothing has moved there
-      by_place[place].assign(before.begin() + first_[place], before.begin() + first_[place + 1]);
+      by_meeting[meeting].assign(before.begin() + first_[meeting],
+                                 before.begin() + first_[meeting + 1]);
     else
-      measure(model, state, grid, stores, place, by_place[place]);
+      measure(model, state, grid, contacts_by_key, meeting, by_meeting[meeting]);
   });
   std::vector<FieldContact<T>> next;
   std::vector<std::int32_t> first{0};
-  for (const auto& contacts : by_place) {
+  for (const auto& contacts : by_meeting) {
     next.insert(next.end(), contacts.begin(), contacts.end());
     first.push_back(std::int32_t(next.size()));
   }
@@ -69,18 +72,18 @@ void Meetings<T, D>::update(const Model<T, D>& model, State<T, D>& state, Grid<T
   measured_ = true;
 }
 
-/// The sums of a block of nodes, or null if no snow reaches it. `room` holds them if the block
+/// The sums of a block of nodes, or null if no snow reaches it. `buffer` holds them if the block
 /// takes no part in the step.
 template <class T, int D>
 const T* Meetings<T, D>::sums_of(const State<T, D>& state, Grid<T, D>& grid,
                                  const Kernels<T>& kernels, std::int32_t g,
-                                 std::vector<T>& room) const {
+                                 std::vector<T>& buffer) const {
   if (state.sleep.is_active(g)) return grid.touched[g] ? grid.sum(g) : nullptr;
   const T* tiles[neighbour_count<D>];
   if (!grid.tiles_reaching(state.layout, g, tiles)) return nullptr;
-  room.resize(Grid<T, D>::block_size);
-  kernels.gather(tiles, room.data());
-  return room.data();
+  buffer.resize(Grid<T, D>::block_size);
+  kernels.gather(tiles, buffer.data());
+  return buffer.data();
 }
 
 template <class T, int D>
@@ -89,7 +92,7 @@ typename Meetings<T, D>::Masses Meetings<T, D>::masses_of(const State<T, D>& sta
                                                           const Kernels<T>& kernels,
                                                           std::int32_t g) const {
   Masses masses(padded_nodes, T(0));
-  std::vector<T> room;
+  std::vector<T> buffer;
   const BlockKey key = state.layout.grid_blocks[g];
   for_each_index(filled(-1), filled(2), [&](const std::array<int, D>& offset) {
     BlockCoord<D> coord = block_coord<D>(key);
@@ -102,12 +105,13 @@ typename Meetings<T, D>::Masses Meetings<T, D>::masses_of(const State<T, D>& sta
     const std::int32_t block =
         find_block(state.layout.grid_blocks, block_key<D>(coord, field_of(key)));
     if (block < 0) return;
-    const T* sums = sums_of(state, grid, kernels, block, room);
+    const T* sums = sums_of(state, grid, kernels, block, buffer);
     if (!sums) return;
     for_each_index(begin, end, [&](const std::array<int, D>& node) {
       std::array<int, D> padded;
       for (int d = 0; d < D; ++d) padded[d] = node[d] + offset[d] * B;
-      masses[place_in<D>(padded, padded_edge, -margin)] = sums[place_in<D>(node, B) * node_values];
+      masses[flat_index<D>(padded, padded_edge, -margin)] =
+          sums[flat_index<D>(node, B) * node_values];
     });
   });
   return masses;
@@ -118,37 +122,36 @@ typename Meetings<T, D>::Masses Meetings<T, D>::masses_of(const State<T, D>& sta
 /// body, and would push the body forward.
 template <class T, int D>
 void Meetings<T, D>::find_normals(const Masses& a, const Masses& b, Nodes& nodes) {
-  struct Raw {
+  struct WeightedNormal {
     std::array<int, D> node;
-    VecD<D> normal;  // times the masses, kg2
+    VecD<D> normal;  // unit normal times the product of the masses, kg2
   };
-  std::vector<Raw> around;
-  const auto shared = [&](int place) {
-    return double(a[place]) > min_shared_mass && double(b[place]) > min_shared_mass;
+  std::vector<WeightedNormal> around;
+  const auto shared = [&](int node_index) {
+    return double(a[node_index]) > min_shared_mass && double(b[node_index]) > min_shared_mass;
   };
   for_each_index(filled(-smoothing), filled(B + smoothing), [&](const std::array<int, D>& node) {
-    const int place = place_in<D>(node, padded_edge, -margin);
-    if (!shared(place)) return;
+    const int k = flat_index<D>(node, padded_edge, -margin);
+    if (!shared(k)) return;
     VecD<D> gradient;
     for (int d = D - 1, stride = 1; d >= 0; --d, stride *= padded_edge)
-      gradient[d] = (double(b[place + stride]) - double(b[place - stride])) -
-                    (double(a[place + stride]) - double(a[place - stride]));
+      gradient[d] = (double(b[k + stride]) - double(b[k - stride])) -
+                    (double(a[k + stride]) - double(a[k - stride]));
     const double length = gradient.norm();
-    if (length > 0)
-      around.push_back({node, double(a[place]) * double(b[place]) / length * gradient});
+    if (length > 0) around.push_back({node, double(a[k]) * double(b[k]) / length * gradient});
   });
   if (around.empty()) return;
   for_each_index(filled(0), filled(B), [&](const std::array<int, D>& node) {
-    if (!shared(place_in<D>(node, padded_edge, -margin))) return;
+    if (!shared(flat_index<D>(node, padded_edge, -margin))) return;
     VecD<D> sum = VecD<D>::Zero();
-    for (const Raw& raw : around) {
+    for (const WeightedNormal& other : around) {
       int tent = 1;
-      for (int d = 0; d < D; ++d) tent *= std::max(margin - std::abs(raw.node[d] - node[d]), 0);
-      if (tent > 0) sum += double(tent) * raw.normal;
+      for (int d = 0; d < D; ++d) tent *= std::max(margin - std::abs(other.node[d] - node[d]), 0);
+      if (tent > 0) sum += double(tent) * other.normal;
     }
     const double length = sum.norm();
     if (!(length > 0)) return;
-    const int k = place_in<D>(node, B);
+    const int k = flat_index<D>(node, B);
     nodes.shared |= std::uint64_t(1) << k;
     for (int d = 0; d < D; ++d) {
       nodes.normal[k][d] = T(sum[d] / length);
@@ -160,13 +163,13 @@ void Meetings<T, D>::find_normals(const Masses& a, const Masses& b, Nodes& nodes
   });
 }
 
-/// Distance to which the particles of a field reach, with their radius; only particles that have
-/// weight at the nodes count.
+/// Finds how far the particles of a field, with their radius, reach along the normals of the nodes.
+/// Only particles that have weight at a node count.
 template <class T, int D>
 void Meetings<T, D>::find_reach(const Model<T, D>& model, const State<T, D>& state, std::int32_t g,
                                 bool first, Nodes& nodes) const {
   const Particles<T, D>& p = state.particles;
-  const BlockCoord<D> place = block_coord<D>(state.layout.grid_blocks[g]);
+  const BlockCoord<D> block = block_coord<D>(state.layout.grid_blocks[g]);
   const T offset = T(base_offset(model.options.settings.basis));
   for (const std::int32_t b : state.layout.around_nodes[g]) {
     if (b < 0) continue;
@@ -176,7 +179,7 @@ void Meetings<T, D>::find_reach(const Model<T, D>& model, const State<T, D>& sta
       std::array<int, D> begin, end;
       bool near = true;
       for (int d = 0; d < D; ++d) {
-        const T cell = p.cell[d][i] + T((from[d] - place[d]) * B);
+        const T cell = p.cell[d][i] + T((from[d] - block[d]) * B);
         const int lowest = int(std::floor(cell));
         x[d] = cell + offset;
         begin[d] = std::max(lowest, nodes.begin[d]);
@@ -185,7 +188,7 @@ void Meetings<T, D>::find_reach(const Model<T, D>& model, const State<T, D>& sta
       }
       if (!near) continue;
       for_each_index(begin, end, [&](const std::array<int, D>& node) {
-        const int k = place_in<D>(node, B);
+        const int k = flat_index<D>(node, B);
         if (!(nodes.shared >> k & 1)) return;
         T along = 0;
         for (int d = 0; d < D; ++d) along += x[d] * nodes.normal[k][d];
@@ -198,18 +201,18 @@ void Meetings<T, D>::find_reach(const Model<T, D>& model, const State<T, D>& sta
   }
 }
 
-/// Measures the contacts of a place, which keep their stored impulses. A node at which the snow has
+/// Finds the contacts of a meeting, which keep their stored impulses. A node at which the snow has
 /// separated stays a contact until friction has used up its stored impulse.
 template <class T, int D>
 void Meetings<T, D>::measure(const Model<T, D>& model, const State<T, D>& state, Grid<T, D>& grid,
-                             const Stores& before, std::ptrdiff_t place,
+                             const SortedContacts& before, std::ptrdiff_t meeting,
                              std::vector<FieldContact<T>>& contacts) const {
-  const auto begin = state.layout.meeting_blocks.begin() + state.layout.meeting_first[place];
-  const auto end = state.layout.meeting_blocks.begin() + state.layout.meeting_first[place + 1];
-  std::vector<T> room;
+  const auto begin = state.layout.meeting_blocks.begin() + state.layout.meeting_first[meeting];
+  const auto end = state.layout.meeting_blocks.begin() + state.layout.meeting_first[meeting + 1];
+  std::vector<T> buffer;
   std::vector<std::int32_t> reached;
   for (auto g = begin; g != end; ++g)
-    if (sums_of(state, grid, model.kernels, *g, room)) reached.push_back(*g);
+    if (sums_of(state, grid, model.kernels, *g, buffer)) reached.push_back(*g);
   if (reached.size() < 2) return;
   std::vector<Masses> masses;
   for (const std::int32_t g : reached) masses.push_back(masses_of(state, grid, model.kernels, g));
@@ -232,8 +235,8 @@ void Meetings<T, D>::measure(const Model<T, D>& model, const State<T, D>& state,
                           0,
                           0};
         for (int d = 0; d < D; ++d) c.normal[d] = nodes.normal[k][d];
-        const auto old = std::lower_bound(before.begin(), before.end(), &c, by_name<T>);
-        if (old != before.end() && (*old)->name() == c.name())
+        const auto old = std::lower_bound(before.begin(), before.end(), &c, by_key<T>);
+        if (old != before.end() && (*old)->key() == c.key())
           c.impulse = c.next_impulse = (*old)->next_impulse;
         if (c.touches || c.impulse > T(0)) contacts.push_back(c);
       }
@@ -242,9 +245,9 @@ void Meetings<T, D>::measure(const Model<T, D>& model, const State<T, D>& state,
 
 template <class T, int D>
 void Meetings<T, D>::exchange(const StepParameters<T>& step, double friction, State<T, D>& state,
-                              Grid<T, D>& grid, std::ptrdiff_t place) const {
-  FieldContact<T>* const end = state.field_contacts.data() + first_[place + 1];
-  for (FieldContact<T>* begin = state.field_contacts.data() + first_[place]; begin != end;) {
+                              Grid<T, D>& grid, std::ptrdiff_t meeting) const {
+  FieldContact<T>* const end = state.field_contacts.data() + first_[meeting + 1];
+  for (FieldContact<T>* begin = state.field_contacts.data() + first_[meeting]; begin != end;) {
     FieldContact<T>* const next = std::find_if(begin, end, [&](const FieldContact<T>& c) {
       return c.first != begin->first || c.second != begin->second;
     });
@@ -265,20 +268,20 @@ void Meetings<T, D>::exchange(const StepParameters<T>& step, T friction, Grid<T,
   const T* const sums[2] = {grid.sum(begin->first), grid.sum(begin->second)};
   T* const velocities[2] = {grid.velocity(begin->first), grid.velocity(begin->second)};
   Impulses impulses[block_nodes<D>];
-  T beyond = 0, room = 0;  // N s
+  T excess = 0, capacity = 0;  // N s
   for (FieldContact<T>* c = begin; c != end; ++c) {
     Impulses& i = impulses[c - begin];
     i = impulses_at(step, friction, sums, velocities, *c);
-    beyond += std::max(i.friction - i.stopping, T(0));
-    room += std::max(i.stopping - i.friction, T(0));
+    excess += std::max(i.friction - i.stopping, T(0));
+    capacity += std::max(i.stopping - i.friction, T(0));
   }
-  const T taken = beyond > 0 && room > 0 ? std::min(beyond / room, T(1)) : T(0);
+  const T used_share = excess > 0 && capacity > 0 ? std::min(excess / capacity, T(1)) : T(0);
   NodeStats& stats = grid.node_stats[begin->first];
   for (const FieldContact<T>* c = begin; c != end; ++c) {
     const Impulses& i = impulses[c - begin];
     if (i.push == T(0) && i.stopping == T(0)) continue;
     const T rubbing =
-        i.friction < i.stopping ? i.friction + taken * (i.stopping - i.friction) : i.stopping;
+        i.friction < i.stopping ? i.friction + used_share * (i.stopping - i.friction) : i.stopping;
     for (int field = 0; field < 2; ++field) {
       const T* const sum = sums[field] + c->node * node_values;
       T* const node = velocities[field] + c->node * node_values;

@@ -1,11 +1,12 @@
-// Where the snow of different events meets, when each has a velocity field of its own: blocks of
-// nodes of two or more fields at one place. The fields exchange impulses at the nodes where a
-// particle of one touches a particle of the other; elsewhere they do not feel each other.
+// Meetings of the snow of different events, each of which has its own velocity field. A meeting
+// consists of the blocks of nodes of two or more fields at the same position. The fields exchange
+// impulses at the nodes where particles of one field touch particles of the other. At other nodes
+// they do not act on each other.
 //
-// The impulse along the normal and the friction are those of the contact with obstacles
-// (NodeKernels::apply): pushes fill a store, pulls empty it, friction is charged for the impulse
-// that drains. Each impulse acts on the two fields of a pair with opposite signs, also where three
-// or more meet.
+// The normal impulse and the friction follow the rules for contact with obstacles
+// (NodeKernels::apply): pushes fill a store, pulls empty it, and the impulse that drains from it
+// exerts friction. Each impulse acts on the two fields of a pair with opposite signs. Three or more
+// fields interact in pairs.
 #pragma once
 
 #include <array>
@@ -22,32 +23,34 @@ class Meetings {
  public:
   explicit Meetings(Basis basis) : support_(support(basis)) {}
 
-  /// After a change of the layout or of the order of the particles: nothing is known any more.
+  /// Forgets all measurements. This is necessary after a change of the layout or of the order of
+  /// the particles.
   void forget(const Model<T, D>& model, const State<T, D>& state, int threads);
 
-  /// Finds the contacts between the fields again, if snow may have moved far enough since the last
-  /// time to change them. `moved` is the distance (m) by which the fastest snow has moved since the
-  /// last call. The sums of active blocks must be present.
+  /// Finds the contacts between the fields if snow may have moved far enough to change them.
+  /// `moved` is the distance (m) by which the fastest snow has moved since the last call. The sums
+  /// of active blocks must be up to date.
   void update(const Model<T, D>& model, State<T, D>& state, Grid<T, D>& grid, double moved,
               int threads);
 
-  std::ptrdiff_t places(const BlockLayout<D>& layout) const {
+  std::ptrdiff_t meeting_count(const BlockLayout<D>& layout) const {
     return std::ptrdiff_t(layout.meeting_first.size()) - 1;
   }
 
-  /// Exchanges the impulses of a step at a place.
+  /// Exchanges the impulses of a step in a meeting.
   void exchange(const StepParameters<T>& step, double friction, State<T, D>& state,
-                Grid<T, D>& grid, std::ptrdiff_t place) const;
+                Grid<T, D>& grid, std::ptrdiff_t meeting) const;
 
  private:
   static constexpr int B = block_edge<D>;
-  /// Nodes on either side over which normals are smoothed. With fewer, snow that slides is braked
-  /// by the roughness of two layers of particles; in three dimensions there are more of them.
+  /// Number of nodes on either side over which normals are smoothed. With fewer nodes the roughness
+  /// of two layers of particles brakes sliding snow. In three dimensions a smaller number suffices,
+  /// because it covers more nodes.
   static constexpr int smoothing = D == 2 ? 6 : 3;
   static constexpr int margin = smoothing + 1;  // nodes around a block whose masses are needed
   static constexpr int padded_edge = B + 2 * margin;
   static constexpr int padded_nodes = padded_edge * padded_edge * (D == 3 ? padded_edge : 1);
-  using Masses = std::vector<T>;  // masses of a field at the nodes of a place and around it
+  using Masses = std::vector<T>;  // masses of a field at the nodes of a block and around it
   static std::array<int, D> filled(int value) {
     std::array<int, D> index;
     index.fill(value);
@@ -62,21 +65,21 @@ class Meetings {
 
   struct Impulses {  // impulses of a step at a node, N s
     T push;          // from the first field to the second, along the normal
-    T friction;      // due
+    T friction;      // friction that is due
     T stopping;      // impulse that ends the slip
-    T slip[D];       // its direction
+    T slip[D];       // direction of the slip
   };
-  using Stores = std::vector<const FieldContact<T>*>;  // in the order of names
+  using SortedContacts = std::vector<const FieldContact<T>*>;  // in the order of their keys
 
   const T* sums_of(const State<T, D>& state, Grid<T, D>& grid, const Kernels<T>& kernels,
-                   std::int32_t block, std::vector<T>& room) const;
+                   std::int32_t block, std::vector<T>& buffer) const;
   Masses masses_of(const State<T, D>& state, Grid<T, D>& grid, const Kernels<T>& kernels,
                    std::int32_t block) const;
   static void find_normals(const Masses& a, const Masses& b, Nodes& nodes);
   void find_reach(const Model<T, D>& model, const State<T, D>& state, std::int32_t block,
                   bool first, Nodes& nodes) const;
   void measure(const Model<T, D>& model, const State<T, D>& state, Grid<T, D>& grid,
-               const Stores& before, std::ptrdiff_t place,
+               const SortedContacts& before, std::ptrdiff_t meeting,
                std::vector<FieldContact<T>>& contacts) const;
   void exchange(const StepParameters<T>& step, T friction, Grid<T, D>& grid, FieldContact<T>* begin,
                 FieldContact<T>* end) const;
@@ -85,8 +88,8 @@ class Meetings {
 
   int support_;
   std::vector<T> radius_;               // radius of each particle, cells
-  std::vector<std::int32_t> first_{0};  // first contact of each place
-  double since_measured_ = 0;           // m, that the fastest snow has moved
+  std::vector<std::int32_t> first_{0};  // first contact of each meeting
+  double since_measured_ = 0;           // distance (m) that the fastest snow has moved
   bool measured_ = false;
 };
 

@@ -40,8 +40,8 @@ void check_scheme(const Settings& n) {
   require(n.crack_band_length > 0, "crack_band_length", "0", "a length");
 }
 
-/// Softening is faster by dx / crack_band_length. On much finer grids snow would strain more than a
-/// particle can follow before it loses its strength; on much coarser grids it would lose it at
+/// Softening is faster by dx / crack_band_length. On much finer grids snow would keep its strength
+/// up to strains that a particle cannot follow. On much coarser grids it would lose its strength at
 /// once.
 void check_crack_band(const Settings& n) {
   constexpr double min_softening = 0.1, max_softening = 100;
@@ -63,7 +63,7 @@ class Descriptor final : public DescriptorBase<Descriptor, Settings> {
         "cells",
         names_of(named_energies(EnergyBalance{})),
         {{"volume_ratio", "1", "Current over initial volume"},
-         // Without a step for films, because a film would be larger by half with them.
+         // The next two have no film_step: films with them would be half as large again.
          {"deviatoric_stress", "Pa", "Deviatoric stress, von Mises equivalent of Kirchhoff's"},
          {"preconsolidation_pressure", "Pa",
           "Preconsolidation pressure, hardened or softened; 0: none, or elastic snow"},
@@ -87,7 +87,7 @@ class Descriptor final : public DescriptorBase<Descriptor, Settings> {
     check_crack_band(settings_);
   }
   ThickSolid thickened(const Shape& shape, int dimension) const override {
-    return as_grid_sees(shape, settings_.dx, dimension);
+    return thickened_for_grid(shape, settings_.dx, dimension);
   }
   std::unique_ptr<Method> build(const SceneView& scene,
                                 const Surroundings& surroundings) const override {

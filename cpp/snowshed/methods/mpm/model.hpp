@@ -12,11 +12,12 @@
 
 namespace snowshed::mpm {
 
-/// Fewer particles than this are not worth waking another thread for, twice a step.
+/// Smallest number of particles for which it is worth waking another thread twice a step.
 inline constexpr int particles_per_thread = 2000;
 
-/// Nodes up to this distance (in cells) outside an obstacle that acts by touch hold snow, too: on
-/// average the nodes then stand on its surface, wherever that lies between them.
+/// With contact by touch, nodes up to this distance (in cells) outside an obstacle hold snow, too.
+/// The outermost of these nodes then lie on the obstacle's surface on average, wherever the surface
+/// lies between the nodes.
 inline constexpr double touch_margin = 0.5;
 
 template <class T, int D>
@@ -31,7 +32,8 @@ struct Model {
   std::vector<Material> materials;              // one per snow of options.snows
   std::vector<MaterialConstants<T>> constants;  // the same for the kernels
 
-  /// Coulomb's coefficient between the fields of events: that of the snow with the least.
+  /// Returns Coulomb's coefficient between the fields of events, which is that of the snow with the
+  /// least friction.
   double event_friction() const {
     double slope = options.snows.front().critical_state_slope;
     for (const Snow& snow : options.snows) slope = std::min(slope, snow.critical_state_slope);
@@ -44,7 +46,7 @@ struct Model {
     return material_per_particle || options.snows.front().model == SnowModel::cam_clay;
   }
 
-  /// Threads worth using for this number of particles.
+  /// Returns the number of threads that is worth using for this number of particles.
   int threads(std::int64_t particles) const {
     return int(std::min<std::int64_t>(max_threads, particles / particles_per_thread + 1));
   }

@@ -32,16 +32,17 @@ bool lies_within(T x) {
   return x >= T(0) && x < T(block_edge<D>);
 }
 
-/// Number of blocks by which a cell coordinate lies beyond its own.
+/// Returns the number of blocks by which a cell coordinate lies beyond its own block.
 template <class T, int D>
 double blocks_beyond(T x) {
   return std::floor(double(x) / block_edge<D>);
 }
 
-/// The block that a particle is in, whose `cell` refers to `block`; none beyond the grid.
+/// Returns the block in which a particle lies, or nothing beyond the addressable grid. The
+/// particle's `cell` refers to `block`.
 template <class T, int D>
-std::optional<BlockKey> block_it_is_in(const Particles<T, D>& particles, std::size_t i,
-                                       BlockKey block) {
+std::optional<BlockKey> present_block(const Particles<T, D>& particles, std::size_t i,
+                                      BlockKey block) {
   BlockCoord<D> c = block_coord<D>(block);
   const int field = field_of(block);
   bool moved = false;
@@ -57,7 +58,7 @@ std::optional<BlockKey> block_it_is_in(const Particles<T, D>& particles, std::si
   return moved ? block_key<D>(c, field) : block;
 }
 
-/// Makes a particle's `cell` refer to the block it is in.
+/// Makes a particle's `cell` refer to the block in which the particle lies.
 template <class T, int D>
 void rebase(Particles<T, D>& particles, std::size_t i) {
   for (int d = 0; d < D; ++d) {
@@ -104,7 +105,7 @@ ParticleSort<T, D>::ParticleSort(const Particles<T, D>& particles, std::vector<B
                                  const BlockLayout<D>& present, int threads)
     : threads_(threads) {
   parallel_for_static(std::ptrdiff_t(blocks.size()), threads, [&](std::ptrdiff_t i) {
-    const auto block = block_it_is_in(particles, std::size_t(i), blocks[i]);
+    const auto block = present_block(particles, std::size_t(i), blocks[i]);
     if (!block)
       throw SimulationError("particle " + std::to_string(particles.id[std::size_t(i)]) +
                             " has left the addressable grid or is not finite");

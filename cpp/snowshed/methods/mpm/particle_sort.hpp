@@ -7,7 +7,7 @@
 
 namespace snowshed::mpm {
 
-/// Where a position (metres) lies: its block, and within it the `cell` coordinates.
+/// The block in which a position (m) lies, and the `cell` coordinates within this block.
 template <int D>
 struct Placement {
   BlockCoord<D> block;
@@ -16,7 +16,7 @@ struct Placement {
   static Placement of(const VecD<D>& position, double dx, Basis basis, int field = 0);
 };
 
-/// The position (metres) of cell coordinates in a block.
+/// Returns the position (m) of a particle whose `cell` refers to `block`.
 template <class T, int D>
 VecD<D> position_of(const Particles<T, D>& particles, std::size_t i, BlockKey block, double dx,
                     Basis basis) {
@@ -27,31 +27,31 @@ VecD<D> position_of(const Particles<T, D>& particles, std::size_t i, BlockKey bl
   return x;
 }
 
-/// Sorts particles that have moved back into blocks; stable, so the result does not depend on the
-/// number of threads. The constructor does all that can fail, and `apply` all that alters
-/// particles.
+/// Sorts particles into blocks after they have moved. The sort is stable, so the result does not
+/// depend on the number of threads. Everything that can fail happens in the constructor. Only
+/// `apply` changes the particles.
 template <class T, int D>
 class ParticleSort {
  public:
-  /// Finds where the particles belong. `blocks` holds the block that each one's `cell` refers to,
-  /// `present` the layout before. Throws SimulationError if one has left the addressable grid
-  /// (2^20 blocks to each side) or is not finite.
+  /// Finds the blocks of the particles. `blocks` holds the block to which the `cell` of each
+  /// particle refers, and `present` is the layout before the sort. Throws SimulationError if a
+  /// particle has left the addressable grid (2^20 blocks to each side) or is not finite.
   ParticleSort(const Particles<T, D>&, std::vector<BlockKey> blocks, const BlockLayout<D>& present,
                int threads);
 
   /// The layout of the particles once they are sorted; it may be moved away.
   BlockLayout<D> layout;
 
-  /// Sorts the particles that it was made from. Call it once only.
+  /// Sorts the particles that were given to the constructor. Call it only once.
   void apply(Particles<T, D>&) noexcept;
 
  private:
   int threads_;
-  std::vector<std::uint32_t> order_;  // empty: they are in order
+  std::vector<std::uint32_t> order_;  // empty if the particles are in order
   typename Particles<T, D>::Spare spare_;
 };
 
-/// The block of each particle in the layout.
+/// Returns the block of each particle in the layout.
 template <int D>
 std::vector<BlockKey> blocks_of_particles(const BlockLayout<D>&);
 

@@ -26,19 +26,19 @@ struct Particles {
 
   std::array<AlignedVector<T>, D> cell;        // in cells, relative to the block (ParticleView)
   std::array<AlignedVector<T>, D> velocity;    // m/s
-  std::array<AlignedVector<T>, D * D> affine;  // not of FLIP, 1/s
+  std::array<AlignedVector<T>, D * D> affine;  // 1/s; not with FLIP
   std::array<AlignedVector<T>, strain_size> be_minus_identity;  // b_e - I
-  AlignedVector<T> plastic;                                     // plastic laws, several materials
-  AlignedVector<T> mass;                                        // kg (per metre of width in 2D)
+  AlignedVector<T> plastic;  // only with plastic laws or several materials
+  AlignedVector<T> mass;     // kg (per metre of width in 2D)
   AlignedVector<std::uint32_t> id;
-  AlignedVector<std::uint16_t> event;       // in which each was released
-  AlignedVector<std::uint8_t> material_id;  // several materials or the energy balance
+  AlignedVector<std::uint16_t> event;       // event in which each particle was released
+  AlignedVector<std::uint8_t> material_id;  // only with several materials or the energy balance
 
   bool has_affine = false, has_plastic = false, has_material_id = false;
 
   std::size_t size() const { return mass.size(); }
 
-  /// Calls f(name, array) for every array in use: the only list of a particle's values.
+  /// Calls f(name, array) for every array in use. This is the only list of a particle's values.
   template <class F>
   void for_each_array(F f) {
     each(*this, f);
@@ -75,7 +75,7 @@ struct Particles {
     return mean / double(end - begin);
   }
 
-  /// Root of the mean square of their speeds, m/s.
+  /// Root of the mean square of the particles' speeds, m/s.
   double rms_speed(std::ptrdiff_t begin, std::ptrdiff_t end) const {
     double sum = 0;
     for (const auto& v : velocity)
@@ -101,7 +101,7 @@ struct Particles {
     });
   }
 
-  /// One array of each type: the room that `permute` needs.
+  /// One array of each type, as buffers for `permute`.
   using Spare = std::tuple<AlignedVector<T>, AlignedVector<std::uint32_t>,
                            AlignedVector<std::uint16_t>, AlignedVector<std::uint8_t>>;
   Spare spare(std::size_t n) const {
@@ -109,8 +109,8 @@ struct Particles {
             AlignedVector<std::uint8_t>(has_material_id ? n : 0)};
   }
 
-  /// Where the particles are, ordered by id: computed when first asked for, then known until they
-  /// are rearranged.
+  /// Returns the index of each particle, ordered by id. The first call computes the order, which is
+  /// then stored until particles are rearranged.
   const std::vector<std::uint32_t>& order_by_id() const {
     if (order_by_id_.size() != size()) order_by_id_ = snowshed::order_by_id(id.data(), size());
     return order_by_id_;
@@ -146,7 +146,7 @@ struct Particles {
     if (self.has_material_id) f("kind", self.material_id);
   }
 
-  mutable std::vector<std::uint32_t> order_by_id_;  // empty: not known
+  mutable std::vector<std::uint32_t> order_by_id_;  // empty if not known
 };
 
 }  // namespace snowshed::mpm

@@ -28,16 +28,16 @@ struct Settings {
   ContactRule contact = ContactRule::kernel;
   double contact_radius = 0.6;  // radius of a touching particle, over half the particles' spacing
   Fields fields = Fields::one;
-  double event_friction = 1;  // between the fields of events, over M/sqrt(3) of the snow
+  double event_friction = 1;  // friction between the fields of events, over the snow's M/sqrt(3)
   Basis basis = Basis::quadratic;
   double courant_factor = 0.9;  // time step over the largest stable one
   double strain_limit = 0.2;    // largest |dt grad v| a step may impose on a particle
   double sleep_speed = 0.02;    // m/s, snow slower than this drops out of the steps; 0: never
-  double sleep_time = 0.04;     // s, time for which it must stay slower
+  double sleep_time = 0.04;     // s, time for which snow must be slower before it drops out
   int threads = 0;              // 0: all
 
-  /// Sets the mechanisms of a scheme; all other settings stay. `thesis` is that of the thesis; the
-  /// results of `objective` depend less on the grid.
+  /// Sets the mechanisms of a scheme; all other settings stay. `thesis` is the scheme of the
+  /// thesis. The results of `objective` depend less on the grid.
   void adopt(Scheme chosen) {
     const Settings thesis;
     scheme = chosen;
@@ -59,7 +59,7 @@ struct Settings {
     fields = Fields::events;
   }
 
-  /// The size of the smallest thing the method resolves, m.
+  /// Returns the smallest length that the method resolves, m.
   double resolution() const { return dx; }
 
   /// Whether particles carry an affine velocity.
@@ -68,14 +68,16 @@ struct Settings {
   bool damps_over_length() const { return damping_length > 0; }
 
   /// FLIP's share in a step of dt seconds. Motion that the grid does not resolve keeps this part of
-  /// its velocity, so that exp(-rate t) of it is left after a time t of steps of any length.
+  /// its velocity. With a damping_rate, the part exp(-rate t) is left after a time t, whatever the
+  /// length of the steps.
   double flip_share(double dt) const {
     if (damps_over_length()) return 1.0;
     return damping_rate ? std::exp(-*damping_rate * dt) : flip_ratio;
   }
 
-  /// Factor by which snow that dilates beyond its initial volume softens faster than its own law.
-  /// Cracks are a few cells wide, and then take the same energy per area on any grid.
+  /// Factor by which snow that dilates beyond its initial volume softens faster than by its own
+  /// law. Cracks are a few cells wide. With this factor they take the same energy per area on any
+  /// grid.
   double softening() const { return crack_band_length > 0 ? dx / crack_band_length : 1.0; }
 
   /// Share of the stress beyond the yield surface that is left after a step of dt seconds.
@@ -83,9 +85,9 @@ struct Settings {
     return relaxation_time > 0 ? relaxation_time / (dt + relaxation_time) : 0.0;
   }
 
-  /// The mean rate (1/s) at which velocities were damped over `steps` steps in `time` (s); PIC's is
-  /// -ln(share)/dt. Nothing for APIC, which has no such share, for pure PIC, which leaves nothing,
-  /// and before the first step.
+  /// Returns the mean rate (1/s) at which velocities were damped over `steps` steps in `time` (s).
+  /// For a share of FLIP it is -ln(share)/dt. Returns nothing for APIC, which has no such share,
+  /// for pure PIC, whose rate would be infinite, and before the first step.
   std::optional<double> mean_damping_rate(std::int64_t steps, double time) const {
     if (transfer == Transfer::apic) return std::nullopt;
     if (damping_rate) return damping_rate;

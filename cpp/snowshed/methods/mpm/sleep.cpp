@@ -10,16 +10,16 @@ namespace snowshed::mpm {
 namespace {
 
 /// Largest speed of a single particle in a slow block, over the limit.
-constexpr double max_ratio_to_mean = 5;
+constexpr double max_fastest_over_limit = 5;
 
 /// Largest growth of the mean speed between the halves of a quiet period, relative to the limit,
 /// that counts as vibration.
-constexpr double noise = 0.005;
+constexpr double max_speed_gain = 0.005;
 
 /// Share of the velocity change of a free fall above which snow is in flight.
-constexpr double flight = 0.5;
+constexpr double min_flight_share = 0.5;
 
-/// Samples in the mean of a half, for any length of the steps.
+/// Smallest number of samples in the mean of a half, whatever the length of the steps.
 constexpr double min_samples = 4;
 
 template <int D>
@@ -30,7 +30,8 @@ std::vector<std::int32_t> particle_counts(const BlockLayout<D>& layout) {
   return counts;
 }
 
-/// Steps between the checks whether snow falls asleep or wakes: a wave crosses less than a block.
+/// Number of steps between the checks whether snow falls asleep or wakes. A wave crosses less than
+/// a block in this time.
 constexpr int steps_between_checks = 8;
 
 }  // namespace
@@ -52,14 +53,14 @@ Sleep<D> Sleep<D>::relocated(const BlockLayout<D>& layout, double now) const {
     if (old == keys_.size()) break;
     if (keys_[old] != layout.particle_blocks[b]) continue;
     states[b] = states_[old];
-    // Sleeping snow does not leave its block, so any change is snow that came.
+    // Sleeping snow does not leave its block, so another number means that snow has come.
     if (states[b].asleep && counts[b] != counts_[old]) states[b] = awake_since(now);
   }
-  return restored(layout, std::move(states));
+  return with_states(layout, std::move(states));
 }
 
 template <int D>
-Sleep<D> Sleep<D>::restored(const BlockLayout<D>& layout, std::vector<State> states) const {
+Sleep<D> Sleep<D>::with_states(const BlockLayout<D>& layout, std::vector<State> states) const {
   Sleep next(limit_, time_, gravity_);
   const std::size_t blocks = layout.particle_blocks.size(), nodes = layout.grid_blocks.size();
   for (auto* list : {&next.awake_, &next.border_, &next.newly_asleep_}) list->reserve(blocks);
@@ -110,11 +111,12 @@ const std::vector<std::int32_t>& Sleep<D>::update(const BlockLayout<D>& layout, 
 
 template <int D>
 bool Sleep<D>::is_slow(double rms_speed, double fastest) const {
-  return rms_speed < limit_ && fastest < max_ratio_to_mean * limit_;
+  return rms_speed < limit_ && fastest < max_fastest_over_limit * limit_;
 }
 
-/// Whether the awake snow beside a sleeping block moves it, or presses harder than it withstands.
-/// Its own snow does not move by forces, so these are summed up, and older ones fade.
+/// Returns whether the awake snow beside a sleeping block would carry it, or presses harder than it
+/// withstands. Forces do not move sleeping snow, so their effect is summed up, and the effect of
+/// older forces fades.
 template <int D>
 bool Sleep<D>::is_pushed(State& s, int steps, double dt, const CarriedMotion& carried) const {
   s.sum *= std::max(0.0, 1.0 - steps * dt / time_);
@@ -122,9 +124,10 @@ bool Sleep<D>::is_pushed(State& s, int steps, double dt, const CarriedMotion& ca
   return carried.speed_squared > limit_ * limit_ || s.sum.norm() > limit_;
 }
 
-/// Whether a slow block has been slow for long enough and is neither setting off nor in flight:
-/// from the first half of that time to the second it did not speed up along its motion, nor change
-/// its velocity as gravity alone would. Means over time tell motion from vibration.
+/// Returns whether a slow block has been slow for long enough and neither sets off nor is in
+/// flight. From the first half of that time to the second it must neither have sped up along its
+/// motion nor have changed its velocity as gravity alone would change it. Means over time
+/// distinguish motion from vibration.
 template <int D>
 bool Sleep<D>::falls_asleep(State& s, double now, const VecD<D>& velocity) const {
   s.sum += velocity;
@@ -133,10 +136,10 @@ bool Sleep<D>::falls_asleep(State& s, double now, const VecD<D>& velocity) const
   if (s.halfway && now - s.since < time_) return false;
   const VecD<D> mean = s.sum / s.samples;
   const VecD<D> change = mean - s.first_half;
-  const bool sets_off = change.dot(mean) > noise * limit_ * mean.norm();
-  const bool flies = gravity_ > 0 && change.norm() > flight * gravity_ * 0.5 * time_;
+  const bool sets_off = change.dot(mean) > max_speed_gain * limit_ * mean.norm();
+  const bool flies = gravity_ > 0 && change.norm() > min_flight_share * gravity_ * 0.5 * time_;
   if (s.halfway && !sets_off && !flies) return true;
-  // The end of the first half, or the second half becomes the first one.
+  // Either the first half ends, or the second half becomes the first one.
   s.since = now - 0.5 * time_;
   s.halfway = true;
   s.first_half = mean;
@@ -157,7 +160,7 @@ void Sleep<D>::list_blocks(const BlockLayout<D>& layout) noexcept {
   std::fill(touched_.begin(), touched_.end(), false);
   for (std::int32_t b : awake_)
     for (std::int32_t g : layout.around_particles[b]) touched_[g] = true;
-  // Snow of one field feels that of another at the same place.
+  // In a meeting, the snow of each field acts on that of the others.
   for (std::size_t i = 0; i + 1 < layout.meeting_first.size(); ++i) {
     const auto begin = layout.meeting_blocks.begin() + layout.meeting_first[i];
     const auto end = layout.meeting_blocks.begin() + layout.meeting_first[i + 1];
@@ -189,15 +192,15 @@ void SolverImpl<T, D>::update_sleep() noexcept {
   if (!state_.sleep.allowed() || counters().steps % steps_between_checks != 0) return;
   const ParticleView<T> view = state_.particles.view();
   const StepParameters<T> step = parameters(state_.progress.dt);
-  const auto& fallen =
+  const auto& newly_asleep =
       state_.sleep.update(state_.layout, time(), steps_between_checks, time_step(), block_probe());
-  for (std::int32_t b : fallen) {
+  for (std::int32_t b : newly_asleep) {
     state_.progress.energy.sleep += work_.grid.block_stats[b].kinetic;
     state_.progress.energy.kinetic -= work_.grid.block_stats[b].kinetic;
     state_.particles.zero_velocity(state_.layout.first[b], state_.layout.first[b + 1]);
     scatter_block(step, view, b);
   }
-  if (!fallen.empty()) clear_idle_nodes();
+  if (!newly_asleep.empty()) clear_idle_nodes();
 }
 
 template <class T, int D>

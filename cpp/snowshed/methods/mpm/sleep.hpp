@@ -1,17 +1,18 @@
 // Snow at rest: blocks of particles that sleep, and blocks of nodes that are then not needed.
 //
-// A block of particles falls asleep when it has been slower than a limit for some time, and its
-// snow did not speed up along its motion meanwhile, nor change its velocity as snow in flight does:
-// snow that is just setting off, or turns in the air, is slow, too. Its speed is the root of the
-// mean square over its particles; no single one may be several times faster. A sleeping block takes
-// no part in a step, but keeps its mass and its stresses on its tile, so that its neighbours rest
-// on it. It wakes when nodes that it shares with awake snow would carry it faster than the limit,
-// or when the forces at them would do so in the time that it takes to fall asleep. It also wakes
-// when particles come to it, and when an obstacle moves through its nodes.
+// A block of particles falls asleep when it has been slower than a limit for some time. Meanwhile
+// its snow must neither have sped up along its motion nor have changed its velocity as snow in
+// flight does, because snow that sets off or turns in the air is slow, too. The speed of a block is
+// the root of the mean square over its particles. No particle may be several times faster than the
+// limit. A sleeping block takes no part in a step, but keeps its mass and its stresses on its tile,
+// so that its neighbours rest on it. It wakes when nodes that it shares with awake snow would carry
+// it faster than the limit, or when the forces at these nodes would do so within the time that it
+// takes to fall asleep. It also wakes when particles come to it, and when an obstacle moves through
+// its nodes.
 //
-// The particles of a sleeping block lie within it: a block in which one has strayed beyond falls
-// asleep only after the next sort. Sorting therefore takes no particle from a sleeping block, and a
-// block with another number of particles than before has gained some.
+// The particles of a sleeping block lie within it. If a particle has strayed beyond its block, the
+// block falls asleep only after the next sort. Sorting therefore takes no particle from a sleeping
+// block. If the number of its particles has changed, the block has gained some.
 #pragma once
 
 #include <cstdint>
@@ -36,19 +37,19 @@ class Sleep {
     std::function<double(std::int32_t)> fastest;    // speed of its fastest particle, m/s
     std::function<double(std::int32_t)> speed;      // root of the mean square, m/s
     std::function<VecD<D>(std::int32_t)> velocity;  // mean, m/s
-    // Motion that its nodes would have given it.
+    // Motion that the block's nodes would have given it.
     std::function<CarriedMotion(std::int32_t)> carried;
-    std::function<bool(std::int32_t)> obstacle_moves;  // whether one does, through its nodes
+    std::function<bool(std::int32_t)> obstacle_moves;  // whether one moves through its nodes
     std::function<bool(std::int32_t)> holds_its_snow;  // whether its particles lie within it
   };
 
-  /// Checks all blocks at the time `now`, after some steps of dt; returns the blocks that fall
-  /// asleep, until the next call.
+  /// Checks all blocks at the time `now`, after `steps` steps of dt. Returns the blocks that fall
+  /// asleep; the list is valid until the next call.
   const std::vector<std::int32_t>& update(const BlockLayout<D>& layout, double now, int steps,
                                           double dt, const BlockProbe& block_probe) noexcept;
 
-  /// The same after a sort: blocks that kept their particles keep their state, all others are
-  /// awake.
+  /// Returns the sleep after a sort. Blocks keep their state, except that a sleeping block that has
+  /// gained particles wakes. New blocks are awake.
   Sleep relocated(const BlockLayout<D>& layout, double now) const;
 
   /// Wakes everything.
@@ -68,16 +69,16 @@ class Sleep {
   struct State {
     bool asleep = false;
     double since = 0;  // start of the present quiet spell, s
-    /// Awake: sum of mean velocities in this half of the spell. Asleep: the velocity that forces
-    /// would have given it lately. m/s
+    /// While awake, the sum of mean velocities (m/s) in this half of the spell. While asleep, the
+    /// velocity (m/s) that recent forces would have given the block.
     VecD<D> sum = VecD<D>::Zero();
-    double samples = 0;                    // their number
-    bool halfway = false;                  // whether the first half of the spell is over, and
-    VecD<D> first_half = VecD<D>::Zero();  // the mean velocity in it, m/s
+    double samples = 0;                    // number of velocities in `sum`
+    bool halfway = false;                  // whether the first half of the spell is over
+    VecD<D> first_half = VecD<D>::Zero();  // mean velocity in the first half, m/s
   };
   const std::vector<State>& states() const { return states_; }
-  /// The same with states from a checkpoint, one for each particle block of the layout.
-  Sleep restored(const BlockLayout<D>& layout, std::vector<State> states) const;
+  /// Returns the sleep with these states, one for each particle block of the layout.
+  Sleep with_states(const BlockLayout<D>& layout, std::vector<State> states) const;
 
  private:
   static State awake_since(double now);
@@ -87,10 +88,10 @@ class Sleep {
   void list_blocks(const BlockLayout<D>& layout) noexcept;
 
   double limit_, time_, gravity_;
-  std::vector<BlockKey> keys_;        // keys of the layout that `states_` belongs to
-  std::vector<std::int32_t> counts_;  // particles in each of its blocks
+  std::vector<BlockKey> keys_;        // keys of the blocks of `states_`
+  std::vector<std::int32_t> counts_;  // number of particles in each block
   std::vector<State> states_;
-  // The lists have room for all blocks, so that no step needs memory for them.
+  // The lists have capacity for all blocks, so that no step needs memory for them.
   std::vector<std::int32_t> awake_, active_, idle_, newly_asleep_;
   std::vector<bool> touched_;         // whether awake snow touches a grid block
   std::vector<std::int32_t> border_;  // sleeping blocks that share nodes with awake snow

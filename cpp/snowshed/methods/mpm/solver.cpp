@@ -172,18 +172,18 @@ void SolverImpl<T, D>::update(double dt) {
   if (!state_.layout.meets.empty()) update_meetings(step);
 }
 
-/// Where the fields of several events meet, they act on each other between the forces and the
-/// contact with obstacles.
+/// In a meeting, the fields act on each other after the forces and before the contact with
+/// obstacles.
 template <class T, int D>
 void SolverImpl<T, D>::update_meetings(const StepParameters<T>& step) {
-  parallel_for_dynamic(work_.meetings.places(state_.layout), threads(), 2,
-                       [&](std::ptrdiff_t place) { update_meeting(step, place); });
+  parallel_for_dynamic(work_.meetings.meeting_count(state_.layout), threads(), 2,
+                       [&](std::ptrdiff_t meeting) { update_meeting(step, meeting); });
 }
 
 template <class T, int D>
-void SolverImpl<T, D>::update_meeting(const StepParameters<T>& step, std::ptrdiff_t place) {
-  const auto begin = state_.layout.meeting_blocks.begin() + state_.layout.meeting_first[place];
-  const auto end = state_.layout.meeting_blocks.begin() + state_.layout.meeting_first[place + 1];
+void SolverImpl<T, D>::update_meeting(const StepParameters<T>& step, std::ptrdiff_t meeting) {
+  const auto begin = state_.layout.meeting_blocks.begin() + state_.layout.meeting_first[meeting];
+  const auto end = state_.layout.meeting_blocks.begin() + state_.layout.meeting_first[meeting + 1];
   if (!state_.sleep.is_active(*begin)) return;
   for (auto g = begin; g != end; ++g) {
     work_.grid.node_stats[*g] = {};
@@ -192,7 +192,7 @@ void SolverImpl<T, D>::update_meeting(const StepParameters<T>& step, std::ptrdif
     else
       clear_block(*g);
   }
-  work_.meetings.exchange(step, model_.event_friction(), state_, work_.grid, place);
+  work_.meetings.exchange(step, model_.event_friction(), state_, work_.grid, meeting);
   for (auto g = begin; g != end; ++g)
     if (work_.grid.touched[*g])
       model_.kernels.finish(step, work_.grid.sum(*g), work_.grid.velocity(*g),
@@ -218,8 +218,8 @@ void SolverImpl<T, D>::clear_block(std::ptrdiff_t g) {
   for (int c = 0; c < state_.contacts.count(g); ++c) contacts[c].next_normal_impulse = 0;
 }
 
-/// A step that would strain a particle beyond the limit is not taken: the grid's sums do not
-/// depend on dt, so only the node velocities are computed again with a smaller one.
+/// Shortens a step that would strain a particle beyond the limit. The grid's sums do not depend on
+/// dt, so only the node velocities are computed again.
 template <class T, int D>
 double SolverImpl<T, D>::shorten_to_limits(double dt) {
   const double limit = model_.options.settings.strain_limit;
@@ -228,7 +228,7 @@ double SolverImpl<T, D>::shorten_to_limits(double dt) {
     if (strain <= limit) return dt;
     ++state_.progress.counters.rejected;
     dt *= std::min(0.5, 0.8 * limit / strain);
-    if (!(dt > 1e-7 * state_.elastic_limit)) {  // also where the strain is not finite
+    if (!(dt > 1e-7 * state_.elastic_limit)) {  // also if the strain is not finite
       std::ostringstream message;
       message << "the time step fell to " << dt << " s at t = " << time()
               << " s: the snow would strain by " << strain << " in one step (limit " << limit
@@ -239,9 +239,10 @@ double SolverImpl<T, D>::shorten_to_limits(double dt) {
   }
 }
 
-/// The largest velocity gradient (1/s) the particles will see. B-spline derivatives average nodal
-/// differences, so the range of the nodal velocities bounds it: of all nodes, or of those around a
-/// block. The particles themselves are examined only if these bounds are too large.
+/// Returns the largest velocity gradient (1/s) that a particle will see, or a bound of it.
+/// Derivatives of B-splines average the differences between nodes, so the range of the nodes'
+/// velocities bounds the gradient. The range over all nodes is tried first, then the range around
+/// each block. The particles themselves are examined only if these bounds are too large.
 template <class T, int D>
 double SolverImpl<T, D>::largest_strain() {
   const double dx = model_.options.settings.dx;

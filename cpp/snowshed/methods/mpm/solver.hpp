@@ -17,12 +17,15 @@ struct Options {
   std::vector<Snow> snows{Snow()};  // indexed by material_id; at least one, at most `max_materials`
   Settings settings;
   std::vector<Obstacle> obstacles;
-  // Surfaces of the obstacles, before thin parts were made thicker; or none.
+  // Shapes that contact by touch uses, one for each obstacle in the same order. Leave this empty:
+  // contact then uses the shapes of `obstacles`, and the solver itself thickens parts that are too
+  // thin for the grid. Give the original shapes only if those of `obstacles` have already been
+  // thickened.
   std::vector<Shape> surfaces;
   bool energy = false;  // whether to keep the energy balance
 };
 
-/// MPM as a method, with its own additions.
+/// A solver of MPM: a method that can also settle, balance energy and sleep.
 class Solver : public Method, public Settles, public KeepsEnergy, public Sleeps {
  public:
   virtual EnergyBalance energy() const = 0;
@@ -30,8 +33,9 @@ class Solver : public Method, public Settles, public KeepsEnergy, public Sleeps 
 };
 
 inline constexpr int steps_between_sorts = 64;
-/// Fewer steps if each particle has more contacts than this: with thousands of overlapping
-/// obstacles steps take long, and a run that shall stop would wait for its safe point.
+/// If particles have more contacts than this on average, there are fewer steps between sorts. With
+/// thousands of overlapping obstacles steps take long, and a run can stop only at the safe point
+/// before a sort.
 inline constexpr double contacts_per_particle = 100;
 
 std::unique_ptr<Solver> make_solver(Options);

@@ -16,7 +16,7 @@
 
 namespace snowshed::mpm {
 
-/// Data that can be computed from a state before any sort, and thrown away then.
+/// Data that is computed from a state. It may be dropped before any sort.
 template <class T, int D>
 struct Workspace {
   Workspace(const Settings& n, std::size_t obstacles)
@@ -70,10 +70,10 @@ class SolverImpl final : public Solver {
   State<T, D> read_state(const BinaryReader&) const;
 
   // The phases of a step.
-  double try_step();  ///< returns its dt
+  double try_step();  ///< returns the length of the step
   void sort();
   void scatter();
-  double shorten_to_limits(double dt);  ///< returns the dt accepted
+  double shorten_to_limits(double dt);  ///< returns the accepted dt
   void gather_and_update(double dt);
   void update(double dt);
   void update_block(const StepParameters<T>& step, std::ptrdiff_t block);
@@ -82,8 +82,8 @@ class SolverImpl final : public Solver {
     return !state_.layout.meets.empty() && state_.layout.meets[grid_block];
   }
   void update_meetings(const StepParameters<T>& step);
-  void update_meeting(const StepParameters<T>& step, std::ptrdiff_t place);
-  double largest_strain();  ///< largest |dt grad v| any particle would take
+  void update_meeting(const StepParameters<T>& step, std::ptrdiff_t meeting);
+  double largest_strain();  ///< largest velocity gradient of a particle, 1/s
   void g2p2g(double dt);
   bool damps_next() const;  ///< whether the next step damps velocities over a length
   void average_velocities(double dt) noexcept;
@@ -103,8 +103,8 @@ class SolverImpl final : public Solver {
   std::string describe_unsound(std::int32_t block) const;
   void update_energy_balance() noexcept;
   void accept(State<T, D> next) noexcept;
-  Sym<double, D> elastic_strain(std::size_t particle) const;  ///< Hencky's
-  double elastic_volume(std::size_t particle) const;  ///< logarithm of the elastic volume ratio
+  Sym<double, D> elastic_strain(std::size_t particle) const;     ///< Hencky's
+  double elastic_volumetric_strain(std::size_t particle) const;  ///< logarithmic
   double plastic_strain(std::size_t particle) const;
   double volume_ratio(std::size_t particle) const;
   double pressure(std::size_t particle) const;           ///< Kirchhoff, Pa, compression positive
@@ -112,7 +112,7 @@ class SolverImpl final : public Solver {
   double preconsolidation_pressure(std::size_t particle) const;  ///< Pa; 0 for elastic snow
   Vec3 velocity(std::size_t particle) const;
   Mat3 affine(std::size_t particle) const;
-  std::vector<double> positions() const;  ///< x, y, z of each, in the order of storage
+  std::vector<double> positions() const;  ///< x, y, z of each particle, in the order of storage
   template <class Visit>
   void visit_fields(Visit visit) const;
 

@@ -19,7 +19,7 @@ constexpr double friction_memory_steps = 40;
 /// Largest volume of loose snow in contacts, over its initial volume.
 constexpr double max_expansion = 1.5;
 
-/// Largest number of velocity fields; with more events the oldest share one.
+/// Largest number of velocity fields. If there are more events, the oldest ones share a field.
 constexpr int fields_at_once = 8;
 
 }  // namespace
@@ -81,9 +81,9 @@ template <class T, int D>
 BlockKey State<T, D>::put(const Model<T, D>& model, std::size_t particle, const VecD<D>& position,
                           int field) {
   const Settings& n = model.options.settings;
-  const auto place = Placement<D>::of(position, n.dx, n.basis, field);
-  for (int d = 0; d < D; ++d) particles.cell[d][particle] = T(place.cell[d]);
-  return block_key<D>(place.block, field);
+  const auto placement = Placement<D>::of(position, n.dx, n.basis, field);
+  for (int d = 0; d < D; ++d) particles.cell[d][particle] = T(placement.cell[d]);
+  return block_key<D>(placement.block, field);
 }
 
 template <class T, int D>

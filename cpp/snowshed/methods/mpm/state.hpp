@@ -18,15 +18,16 @@ namespace snowshed::mpm {
 /// Part of a cell that snow may move before its contacts by touch are found again.
 inline constexpr double contact_tolerance = 0.02;
 
-/// The numbers of a state, cheap to copy: a step that fails puts them back.
+/// The scalar values of a state. They are cheap to copy, so that a step that fails can restore
+/// them.
 struct StepTotals {
-  double time = 0, dt = 0;  // s; dt: of the last step
+  double time = 0, dt = 0;  // s; dt is that of the last step
   double speed = 0;         // m/s, of the fastest particle
   double stress_power = 0;  // W, see SolverImpl::update_energy_balance
   std::uint32_t next_id = 0;
   StepCounters counters;
   std::int64_t slept_updates = 0;
-  // Since velocities were last damped over a length.
+  // Number and time of the steps since velocities were last damped over a length.
   std::int64_t undamped_steps = 0;
   double undamped_time = 0;  // s
   EnergyBalance energy;      // the gravitational part as it was when snow was last added
@@ -39,7 +40,7 @@ struct State {
   Particles<T, D> particles;
   BlockLayout<D> layout;
   Contacts<T, D> contacts;
-  // Contacts of the layout, once Meetings has updated them.
+  // Contacts between fields, valid after Meetings has updated them.
   std::vector<FieldContact<T>> field_contacts;
   Sleep<D> sleep;
   StepTotals progress;
@@ -48,23 +49,23 @@ struct State {
 
   // Limits of the snows that are present, or of all snows while there are no particles.
   double elastic_limit = 0;    // s, time step of the stiffest
-  double friction_memory = 0;  // s, by the slowest
+  double friction_memory = 0;  // s, from the snow with the slowest waves
 
-  /// Appends particles; `blocks` gets the block of each. Throws InputError for a batch that is not
-  /// of this model, SimulationError outside the addressable grid.
+  /// Appends particles, and the block of each to `blocks`. Throws InputError if the batch does not
+  /// fit the model, and SimulationError if a position is outside the addressable grid.
   void append(const Model<T, D>& model, const ParticleBatch& batch, std::vector<BlockKey>& blocks);
 
-  /// Puts a particle at a position (m); returns the block it is in.
+  /// Puts a particle at a position (m). Returns the block in which it lies.
   BlockKey put(const Model<T, D>& model, std::size_t particle, const VecD<D>& position, int field);
 
-  /// Sorts the particles, which lie in `blocks`, into the layout, and makes contacts and sleep
-  /// follow. All or nothing.
+  /// Sorts the particles, which lie in `blocks`, and updates the layout, the contacts and the
+  /// sleep. If this throws, nothing has changed.
   void arrange(const Model<T, D>& model, std::vector<BlockKey> blocks);
 
   void find_elastic_limits(const Model<T, D>& model);
 
-  /// The velocity field of an event's snow: its own as long as there are enough, else that of older
-  /// events, which are joined. `blocks` are those of the particles.
+  /// Returns the velocity field of an event's snow. A new event gets a field of its own. If all
+  /// fields are in use, the two oldest are joined before. `blocks` are those of the particles.
   int field_of_event(int event, std::vector<BlockKey>& blocks);
   /// Finds the fields of the events from the layout.
   void find_event_fields();
@@ -83,7 +84,7 @@ struct State {
   double elastic_energy(const Model<T, D>& model) const;
   /// The energy balance up to now.
   EnergyBalance energy(const Model<T, D>& model) const;
-  /// Enters the present energies, and their excess over `before` (J) as added.
+  /// Records the present energies, and their excess over `before` (J) as added energy.
   void record_added(const Model<T, D>& model, double before);
 };
 

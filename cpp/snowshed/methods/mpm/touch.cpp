@@ -33,9 +33,10 @@ std::uint64_t nodes_in_box(const int (&begin)[D], int size) {
   return nodes;
 }
 
-/// A node within a thin plate works for the side that it lies on, unless this many times more
-/// particles touch the other one: the few have crossed the middle.
-constexpr int crossed = 10;
+/// A node within a thin plate belongs to the side on which it lies, unless this many times more
+/// particles touch the other side. The few particles on the node's side have then crossed the
+/// middle.
+constexpr int min_majority = 10;
 /// Faces count as one if the cosine between their normals is larger than this.
 constexpr double cosine_of_one_face = 0.99;
 
@@ -60,14 +61,14 @@ template <class T, int D>
 void Touch<T, D>::update(const Model<T, D>& model, State<T, D>& state, double moved, int threads) {
   travel_ += moved;
   const bool all = !measured_ || model.boundary.any_motion();
-  std::vector<std::int32_t> due;
+  std::vector<std::int32_t> due_blocks;
   for (std::size_t b = 0; b < blocks_.size(); ++b)
     if (all || (travel_ >= blocks_[b].next && !state.sleep.states()[b].asleep))
-      due.push_back(std::int32_t(b));
-  if (due.empty()) return;
+      due_blocks.push_back(std::int32_t(b));
+  if (due_blocks.empty()) return;
   measured_ = false;  // until all has gone well
-  parallel_for_dynamic(std::ptrdiff_t(due.size()), threads, 4,
-                       [&](std::ptrdiff_t i) { measure(model, state, due[i]); });
+  parallel_for_dynamic(std::ptrdiff_t(due_blocks.size()), threads, 4,
+                       [&](std::ptrdiff_t i) { measure(model, state, due_blocks[i]); });
   parallel_for_dynamic(std::ptrdiff_t(state.layout.grid_blocks.size()), threads, 16,
                        [&](std::ptrdiff_t g) { mark(model, state, std::int32_t(g)); });
   measured_ = true;
@@ -79,12 +80,12 @@ void Touch<T, D>::measure(const Model<T, D>& model, const State<T, D>& state, st
   const BlockKey key = state.layout.particle_blocks[b];
   Block& block = blocks_[b];
   block.touchers.clear();
-  // Around the block's centre, with the cell by which particles may stray.
+  // Reach around the block's centre, including the cell by which particles may stray.
   const double reach = (0.5 * block_edge<D> + 1) * std::sqrt(double(D)) * n.dx;
   VecD<D> centre;
   for (int d = 0; d < D; ++d)
     centre[d] = ((block_coord<D>(key)[d] + 0.5) * block_edge<D> + base_offset(n.basis)) * n.dx;
-  double nearest = infinity;  // gap that has not closed yet
+  double nearest = infinity;  // smallest gap that is still open
   for (std::int32_t o = 0; o < std::int32_t(model.boundary.size()); ++o) {
     const auto surface = model.boundary.surface(o, state.progress.time);
     const double around = surface.distance(embed(centre)) - reach - largest_radius_;
@@ -107,7 +108,7 @@ void Touch<T, D>::measure(const Model<T, D>& model, const State<T, D>& state, st
       block.touchers.push_back(toucher);
     }
   }
-  // A particle may cease to touch earlier; it does not matter if this is noticed a little later.
+  // A particle may cease to touch before the next measurement. The short delay does not matter.
   block.next = travel_ + std::max(nearest, contact_tolerance * n.dx);
   if (!block.touchers.empty()) block.next = travel_ + contact_tolerance * n.dx;
 }
@@ -133,7 +134,7 @@ void Touch<T, D>::mark(const Model<T, D>& model, State<T, D>& state, std::int32_
       for (int d = 0; d < D; ++d)
         (is_near ? near : far)[d] += face.particles * double(face.normal[d]);
     }
-    const VecD<D> normal = at_far > crossed * at_near ? far : near;
+    const VecD<D> normal = at_far > min_majority * at_near ? far : near;
     const double length = normal.norm();
     c.acts = length > 1e-6;
     if (!c.acts) continue;
@@ -145,7 +146,7 @@ void Touch<T, D>::mark(const Model<T, D>& model, State<T, D>& state, std::int32_
 template <class T, int D>
 std::vector<typename Touch<T, D>::Face> Touch<T, D>::faces(const State<T, D>& state, std::int32_t g,
                                                            std::int32_t obstacle) const {
-  const BlockCoord<D> place = block_coord<D>(state.layout.grid_blocks[g]);
+  const BlockCoord<D> block = block_coord<D>(state.layout.grid_blocks[g]);
   std::vector<Face> touched;
   for (const std::int32_t b : state.layout.around_nodes[g]) {
     if (b < 0) continue;
@@ -155,7 +156,7 @@ std::vector<typename Touch<T, D>::Face> Touch<T, D>::faces(const State<T, D>& st
       int begin[D];
       for (int d = 0; d < D; ++d)
         begin[d] = int(std::floor(state.particles.cell[d][t.particle])) +
-                   (from[d] - place[d]) * block_edge<D>;
+                   (from[d] - block[d]) * block_edge<D>;
       const std::uint64_t nodes = nodes_in_box<D>(begin, support_);
       if (nodes == 0) continue;
       auto face = std::find_if(touched.begin(), touched.end(), [&](const Face& f) {

@@ -1,10 +1,12 @@
-// Contact by touch: an obstacle holds a node only once the surface of a particle with weight there
-// has come to the obstacle as it is, not as the grid sees it. Without it the snow whose splines
-// reach the obstacle's nodes is held too early, a cell before it arrives, or past the obstacle's
-// edge. The node pushes along the normal of the face that is touched: at the end of a plate the
-// node's own normal points along the plate, against snow that starts to slide.
+// Contact by touch: an obstacle holds a node only if a particle with weight at the node touches the
+// obstacle. The given shape of the obstacle counts, not the thickened one that the grid sees.
+// Otherwise snow would be held as soon as its splines reach the obstacle's nodes: a cell before it
+// arrives, or past the obstacle's edge. The node pushes along the normal of the touched face. At
+// the end of a plate the node's own normal would point along the plate, against snow that starts to
+// slide.
 //
-// Particles are measured again once they may have moved so far that another one touches.
+// The distances are measured again when particles may have moved far enough for another one to
+// touch.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +21,8 @@ class Touch {
  public:
   explicit Touch(Basis basis) : support_(support(basis)) {}
 
-  /// After a change of the layout or of the order of the particles: nothing is known any more.
+  /// Forgets all measurements. This is necessary after a change of the layout or of the order of
+  /// the particles.
   void forget(const Model<T, D>& model, const State<T, D>& state);
 
   /// Decides for each contact whether it acts. `moved` is the distance (m) by which the fastest
@@ -34,12 +37,12 @@ class Touch {
   };
   struct Face {  // face of an obstacle that some particles touch
     T normal[D];
-    std::uint64_t nodes;  // a bit for each node where they have weight
+    std::uint64_t nodes;  // a bit for each node where these particles have weight
     std::int32_t particles;
   };
   struct Block {
     std::vector<Toucher> touchers;  // ordered by obstacle
-    double next = 0;                // m, of travel, when to measure again
+    double next = 0;                // travel (m) at which distances are measured again
   };
 
   void measure(const Model<T, D>& model, const State<T, D>& state, std::int32_t block);
@@ -50,8 +53,8 @@ class Touch {
 
   int support_;
   std::vector<Block> blocks_;  // one per block of particles
-  double largest_radius_ = 0;  // m, of any particle
-  double travel_ = 0;          // m, of the fastest snow since `forget`
+  double largest_radius_ = 0;  // m, bound for all particles
+  double travel_ = 0;          // distance (m) that the fastest snow has moved since `forget`
   bool measured_ = false;
 };
 

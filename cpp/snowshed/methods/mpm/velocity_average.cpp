@@ -14,7 +14,8 @@ namespace {
 constexpr double min_spacing = 0.5;
 
 int nodes_of_tile(int block_cells, double per_cell) {
-  // The block with a cell of slack on either side, a spline's nodes, and one for its place.
+  // The block with a cell of slack on either side, the nodes of a spline, and one node because the
+  // block begins anywhere between coarse nodes.
   return int(std::ceil((block_cells + 2) * per_cell)) + 4;
 }
 
@@ -46,14 +47,14 @@ void VelocityAverage<T, D>::find_blocks(const BlockLayout<D>& layout) {
   tiles_of_.resize(blocks);
   first_nodes_.resize(blocks);
   settled_.resize(blocks);
-  struct Sharing {  // share in a coarse block, which each velocity field has of its own
+  struct BlockShare {  // a particle block that shares a coarse block; fields share none
     int field;
     Coord coarse;
     std::int32_t block;
-    auto name() const { return std::tie(field, coarse, block); }
-    bool operator<(const Sharing& other) const { return name() < other.name(); }
+    auto key() const { return std::tie(field, coarse, block); }
+    bool operator<(const BlockShare& other) const { return key() < other.key(); }
   };
-  std::vector<Sharing> pairs;
+  std::vector<BlockShare> pairs;
   for (std::size_t b = 0; b < blocks; ++b) {
     const BlockCoord<D> c = block_coord<D>(keys_[b]);
     AverageTile<T>& tile = tiles_of_[b];
@@ -99,7 +100,7 @@ template <class T, int D>
 template <class Row>
 void VelocityAverage<T, D>::for_each_shared_row(std::int32_t coarse_block, std::int32_t block,
                                                 Row row) const {
-  // Range within the coarse block.
+  // Range of the shared nodes within the coarse block.
   int low[3] = {0, 0, 0}, high[3] = {1, 1, 1}, shift[3] = {0, 0, 0};
   for (int d = 0; d < D; ++d) {
     const int k = d + 3 - D;

@@ -32,7 +32,7 @@ class VelocityAverage {
   void connect(const BlockLayout<D>& layout);
 
   /// Averages the velocities of all particles. `share` is the part of the difference from the
-  /// average that they lose. No other call is allowed before the calls of `tile`.
+  /// average that they lose. The next calls must be those of `tile`.
   void update(const Kernels<T>& kernels, const ParticleView<T>& view, const BlockLayout<D>& layout,
               const Sleep<D>& sleep, double share, int threads) noexcept;
 
@@ -59,7 +59,7 @@ class VelocityAverage {
   std::vector<BlockKey> keys_;  // keys of the particle blocks that all arrays below belong to
   std::vector<AverageTile<T>> tiles_of_;  // one per particle block
   std::vector<Coord> first_nodes_;        // first nodes of the tiles, one per particle block
-  std::vector<std::uint8_t> settled_;     // one per particle block: the tile holds sums that stay
+  std::vector<std::uint8_t> settled_;  // one per particle block: whether its tile's sums stay valid
   int around_size_;
   std::vector<std::int32_t> around_;  // the coarse blocks of each particle block
   std::vector<Coord> coarse_blocks_;

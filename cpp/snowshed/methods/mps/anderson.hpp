@@ -17,7 +17,7 @@ class AndersonMixing {
  public:
   using Vectors = AlignedVector<VecD<D>>;
 
-  /// Replaces the result of an iteration from a point by the next point.
+  /// Replaces `result`, which an iteration has made from `point`, by the next point.
   void mix(const Vectors& point, Vectors& result) {
     const std::size_t n = result.size();
     Vectors residual(n), plain = result;
@@ -43,7 +43,7 @@ class AndersonMixing {
 
  private:
   static constexpr double max_extrapolation = 10;
-  double last_square_ = 0;  // last square of the residual; 0: there is none
+  double last_square_ = 0;  // squared norm of the last residual; 0: there is none
   Vectors last_residual_, last_result_;
 };
 

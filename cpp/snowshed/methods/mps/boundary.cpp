@@ -7,7 +7,7 @@
 namespace snowshed::mps {
 namespace {
 
-/// Consecutive particles are close to each other.
+/// Number of particles in a box; consecutive particles are close to each other.
 constexpr std::size_t particles_in_box = 64;
 
 struct PointBox {
@@ -74,7 +74,8 @@ void find_contacts(const std::vector<Obstacle>& obstacles, double reach,
               const double distance = o->distance(x);
               if (distance >= reach) continue;
               const VecD<D> normal = section<D>(o->normal(x));
-              if (!(normal.squaredNorm() > 1e-12)) continue;  // a surface along the plane (x, z)
+              if (!(normal.squaredNorm() > 1e-12))
+                continue;  // surface parallel to the plane (x, z)
               VecD<D> velocity = VecD<D>::Zero();
               if (o->obstacle->motion) velocity = section<D>(o->pose.velocity(x));
               list.push_back({o->number, distance, o->thickness(x), normal.normalized(), velocity});

@@ -26,7 +26,7 @@ struct WallContact {
   VecD<D> velocity;  // m/s, of the obstacle's surface
 };
 
-/// An obstacle at its place at some time.
+/// An obstacle with its pose at a given time.
 struct PlacedObstacle {
   const Obstacle* obstacle;
   std::uint32_t number;

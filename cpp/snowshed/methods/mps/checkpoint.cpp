@@ -53,7 +53,7 @@ void SolverImpl<D>::save(BinaryWriter& out) const {
 }
 
 template <int D>
-State<D> SolverImpl<D>::restored(const BinaryReader& in) const {
+State<D> SolverImpl<D>::read_state(const BinaryReader& in) const {
   const StateReader archive(in);
   State<D> next;
   visit_state(archive, next);
@@ -64,13 +64,13 @@ State<D> SolverImpl<D>::restored(const BinaryReader& in) const {
 
 template <int D>
 void SolverImpl<D>::load(const BinaryReader& in) {
-  state_ = restored(in);
+  state_ = read_state(in);
   order_.forget();
 }
 
 template <int D>
 void SolverImpl<D>::check(const BinaryReader& in) const {
-  restored(in);
+  read_state(in);
 }
 
 template class SolverImpl<2>;

@@ -8,18 +8,17 @@
 namespace snowshed::mps {
 namespace {
 
-/// Particles push each other as if all had the mass of a cell. The particles of a body whose volume
-/// is not a whole number of cells differ from it by up to half a particle in total, and so does the
-/// momentum that bodies exchange. A single particle that differs by more is refused as another
-/// snow.
+/// Forces between particles assume that each has the mass of a cell. If a body's volume is not a
+/// whole number of cells, its mass differs from that of its cells by up to half a particle, and so
+/// does the momentum that bodies exchange. A mass below 0.5 or above 1.5 cells is refused, because
+/// it belongs to another snow.
 void check_mass(double mass, double of_cell) {
   constexpr double min_ratio = 0.5, max_ratio = 1.5;
   if (mass < min_ratio * of_cell * (1 - 1e-6) || mass > max_ratio * of_cell * (1 + 1e-6))
     throw InputError("mass", std::to_string(mass) +
-                                 " kg; a particle has the mass of a cell, density times spacing "
-                                 "to the power of the dimension (" +
-                                 std::to_string(of_cell) +
-                                 " kg), or from half to one and a half of it");
+                                 " kg; allowed: 0.5 to 1.5 times the mass of a cell, density "
+                                 "times spacing to the power of the dimension (" +
+                                 std::to_string(of_cell) + " kg)");
 }
 
 }  // namespace

@@ -14,10 +14,10 @@ EnergyBalance stored_energy(const Model<D>& model, const Particles<D>& particles
   return e;
 }
 
-/// The work of each force of the step is its impulse times the mean of the velocities before and
-/// after: the sum of all is the change of the kinetic energy. Gravity's work differs from the
-/// change of its potential, because particles move with the velocity after the step; that is the
-/// residual.
+/// The work of each force in the step is its impulse times the mean of the velocities before and
+/// after, so that all works add up to the change of the kinetic energy. Gravity's work differs from
+/// the change of potential energy, because particles move with the velocity after the step; this
+/// difference is the residual.
 template <int D>
 void SolverImpl<D>::record_energy(State<D>& next, double dt) const {
   const Particles<D>& after = next.particles;
@@ -31,7 +31,7 @@ void SolverImpl<D>::record_energy(State<D>& next, double dt) const {
     for (const WallContact<D>* c = workspace_.near.contacts.begin(i);
          c < workspace_.near.contacts.end(i); ++c) {
       const VecD<D> relative = viscous - c->velocity;
-      friction += dt * mass * workspace_.wall_friction.drag[workspace_.near.contacts.place(c)] *
+      friction += dt * mass * workspace_.wall_friction.drag[workspace_.near.contacts.index_of(c)] *
                   (relative - relative.dot(c->normal) * c->normal).dot(mean);
     }
     e.friction += friction;

@@ -33,12 +33,12 @@ void SolverImpl<D>::visit_fields(Visit visit) const {
 
 template <int D>
 std::vector<FieldInfo> SolverImpl<D>::fields() const {
-  return listed_fields([this](const auto& visit) { visit_fields(visit); });
+  return list_fields([this](const auto& visit) { visit_fields(visit); });
 }
 
 template <int D>
 FieldView SolverImpl<D>::field(const std::string& name) const {
-  return found_field(name, [this](const auto& visit) { visit_fields(visit); });
+  return find_field(name, [this](const auto& visit) { visit_fields(visit); });
 }
 
 template <int D>
@@ -89,7 +89,7 @@ std::size_t SolverImpl<D>::bytes() const {
                   near.correction, near.spread, near.asymmetry, near.slip) +
          bytes_of(w.rates.pair_rate, w.rates.correction, w.viscosity.coupling, w.viscosity.block,
                   w.viscosity.inverse_block, w.rates.gradient, w.spacing.concentration,
-                  w.pressure.sum, w.spacing.yielding, w.pressure.base, w.pressure.diagonal,
+                  w.pressure.sum, w.spacing.impulse_share, w.pressure.base, w.pressure.diagonal,
                   w.pressure.source, w.pressure.values, w.cg.r, w.cg.z, w.cg.p, w.cg.q);
 }
 

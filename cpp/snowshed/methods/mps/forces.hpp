@@ -12,12 +12,13 @@ namespace snowshed::mps {
 template <int D>
 void find_neighbours(const Model<D>&, Particles<D>&, double time, Workspace<D>&);
 
-/// The slope of each pair, set to zero if the neighbour is a wall of this kind or one farther in.
-/// The array is valid until the next call.
+/// The slope of each pair, or zero if the neighbour is of this kind or of a later one. The array is
+/// valid until the next call.
 template <int D>
 const float* slope_without(Kind, const Model<D>&, const Particles<D>&, Neighbourhood<D>&);
 
-/// The pressures of the yield stress: those of the particles, smoothed and not negative.
+/// The pressures from which yield stresses follow: the particles' pressures, smoothed and not
+/// negative.
 template <int D>
 void smooth_pressures(const Model<D>&, const Particles<D>&, Workspace<D>&);
 
@@ -27,7 +28,7 @@ double shear_rate(const Eigen::Matrix<double, D, D>& gradient) {
   return (gradient + gradient.transpose()).norm() / std::sqrt(2.0);
 }
 
-/// Prepares find_rates for the present places of the particles.
+/// Prepares find_rates for the present positions of the particles.
 template <int D>
 void prepare_rates(const Model<D>&, const Particles<D>&, Workspace<D>&);
 
@@ -44,7 +45,7 @@ void find_rates(const Model<D>&, Particles<D>&, Workspace<D>&);
 template <int D>
 void find_viscosities(const Model<D>&, Particles<D>&, const Workspace<D>&);
 
-/// Change of every particle's velocity in a step by gravity, m/s.
+/// Adds to the velocity of every moving particle its change by gravity in a step.
 template <int D>
 void add_gravity(const Model<D>&, double dt, Particles<D>&);
 
@@ -66,7 +67,7 @@ SolveReport solve_pressure(const Model<D>&, double dt, Particles<D>&, Workspace<
 template <int D>
 void apply_pressure(const Model<D>&, double dt, Particles<D>&, Workspace<D>&);
 
-/// Keeps particles apart as the settings say.
+/// Keeps particles apart by the rule that the settings name.
 template <int D>
 void keep_spacing(const Model<D>&, double dt, Particles<D>&, Workspace<D>&);
 

@@ -7,8 +7,8 @@
 namespace snowshed::mps {
 namespace {
 
-/// Particles do not come nearer to walls than this, in l0, and those that are nearer are pushed out
-/// by at most a part of l0 in a step.
+/// The smallest distance to which particles approach walls, and the largest distance by which
+/// nearer particles are pushed out in a step, in l0.
 constexpr double min_wall_distance = 0.25, max_push = 0.1;
 
 /// The least pressure among a particle and its neighbours, Pa.
@@ -22,11 +22,11 @@ double least_pressure(const Particles<D>& particles, const Neighbourhood<D>& nea
 }
 
 /// Pressure that a gradient adds to the neighbours' pressures, Pa. `conservative`: the particle's
-/// own, so that each pair has equal and opposite forces. `corrected`: minus its own, so that linear
-/// pressures have their exact gradient once it is corrected. `published`: minus the least pressure
-/// around, as in equation (4). At the surface the missing neighbours have the opposite pressure, as
-/// in the pressure equation, and the rule of `conservative` holds. (`corrected` would push a
-/// particle that rises above others up even more.)
+/// pressure, so that each pair has equal and opposite forces. `corrected`: minus the particle's
+/// pressure, so that the corrected gradient of linear pressures is exact. `published`: minus the
+/// least pressure around, as in equation (4). At the surface the missing neighbours have the
+/// opposite pressure, as in the pressure equation, and the rule of `conservative` holds.
+/// (`corrected` would push a particle that rises above others up even more.)
 template <int D>
 double base_pressure(const Model<D>& model, const Particles<D>& particles,
                      const Neighbourhood<D>& near, std::size_t i) {
@@ -51,9 +51,8 @@ void find_base_pressures(const Model<D>& model, const Particles<D>& particles, W
   });
 }
 
-/// The sum of (p_j + base) w r/r^2 over the neighbours, which include particles of walls: dummies
-/// have the pressure of the particle itself if pairs shall have equal and opposite forces, and
-/// otherwise no part.
+/// The sum of (p_j + base) w r/r^2 over the neighbours, with wall particles. Dummies have the
+/// pressure of the particle itself if the gradient is conservative; otherwise they are left out.
 template <int D>
 void sum_beside_wall_particles(const Model<D>& model, const Particles<D>& particles,
                                Workspace<D>& work) {
@@ -73,7 +72,7 @@ void sum_beside_wall_particles(const Model<D>& model, const Particles<D>& partic
   });
 }
 
-/// The part of the neighbours in gradients of the pressure, Pa/m over the factor of gradients.
+/// The sums over neighbours in gradients of the pressure; times Model::gradient() they are in Pa/m.
 template <int D>
 void sum_pressures(const Model<D>& model, const Particles<D>& particles, Workspace<D>& work) {
   const Neighbourhood<D>& near = work.near;
@@ -88,8 +87,8 @@ void sum_pressures(const Model<D>& model, const Particles<D>& particles, Workspa
   });
 }
 
-/// The part of the images behind walls. Their pressure grows along the normal as much as stops a
-/// motion into the wall; a wall never pulls.
+/// The sum over the images behind walls. The pressure of an image is raised such that it stops a
+/// motion into the wall. It is not negative: a wall never pulls.
 template <int D>
 VecD<D> gradient_at_walls(const Model<D>& model, const Particles<D>& particles,
                           const Neighbourhood<D>& near, std::size_t i, double base, double dt) {

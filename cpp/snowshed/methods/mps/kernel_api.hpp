@@ -16,8 +16,8 @@ struct PairRows {
   const std::uint32_t *first, *index;  // first pair of each row; neighbour of each pair
 };
 
-/// The sums of a row of which corrections are made: of slope r r^T, weight r r^T (the upper halves
-/// by rows) and weight r.
+/// The sums of a row from which corrections are computed: slope r r^T, weight r r^T (the upper
+/// halves by rows) and weight r.
 template <int D>
 struct RowMoments {
   static constexpr int half = D * (D + 1) / 2;
@@ -28,7 +28,7 @@ template <int D>
 struct Kernels {
   NeighbourSearch<D> search;
   /// Weights r_e/r - 1, weights over r^2, and the sums of the weights and of filling_weight of each
-  /// row. `offset`: of each pair, by axes.
+  /// row. `offset`: one array of separations per axis.
   void (*weigh)(const PairRows&, const float* const* offset, float reach, float* weight,
                 float* slope, float* sum, float* filling, std::ptrdiff_t begin, std::ptrdiff_t end);
   void (*sum_moments)(const PairRows&, const float* const* offset, const float* weight,
@@ -43,31 +43,31 @@ struct Kernels {
   /// The same in single precision: r = b - (diagonal x - sum of weight x).
   void (*residual)(const PairRows&, const float* weight, const float* diagonal, const float* x,
                    const float* b, float* r, std::ptrdiff_t begin, std::ptrdiff_t end);
-  /// q = block p - sum of coupling p, with vectors p and matrices by columns; rows whose block is
-  /// zero at first are left out.
+  /// q = block p - sum of coupling p, with vectors p and matrices by columns; rows whose block
+  /// begins with zero are left out.
   void (*apply_to_velocities)(const PairRows&, const float* coupling, const double* block,
                               const double* p, double* q, std::ptrdiff_t begin, std::ptrdiff_t end);
   /// The sum of slope (u_j - u_i) r^T of each row, matrices by columns, 1/s.
   void (*sum_gradients)(const PairRows&, const float* const* offset, const float* slope,
                         const double* velocity, double* gradient, std::ptrdiff_t begin,
                         std::ptrdiff_t end);
-  /// The sum of slope (value_j + base_i) r of each row; without values that of slope r.
+  /// The sum of slope (value_j + base_i) r of each row; without values the sum of slope r.
   void (*sum_separations)(const PairRows&, const float* const* offset, const float* slope,
                           const double* value, const double* base, double* sum,
                           std::ptrdiff_t begin, std::ptrdiff_t end);
-  /// The sum of e v over the neighbours nearer than `limit`, e the direction to each and v the
-  /// speed of approach where it is not negative, times `share` of the neighbour, m/s.
+  /// The sum of e v over the neighbours nearer than `limit`, m/s. e is the direction to the
+  /// neighbour; v is the speed of approach, not negative, times the neighbour's `share`.
   void (*sum_approaches)(const PairRows&, const float* const* offset, const double* velocity,
                          const double* share, double limit, double* sum, std::ptrdiff_t begin,
                          std::ptrdiff_t end);
-  /// The shear rate midway of each pair whose neighbour comes after the particle, 1/s. It is that
-  /// of the mean of both gradients, except along the separation, where the difference of the
-  /// velocities counts.
+  /// The shear rate midway between the particles of each pair whose neighbour comes after the
+  /// particle, 1/s. It follows from the mean of both gradients, in which the difference of the
+  /// velocities replaces the part along the separation.
   void (*pair_rates)(const PairRows&, const float* const* offset, const double* velocity,
                      const double* gradient, float* rate, std::ptrdiff_t begin, std::ptrdiff_t end);
 };
 
-/// Those of the instruction set in use.
+/// The kernels of the instruction set in use.
 template <int D>
 const Kernels<D>& chosen_kernels();
 

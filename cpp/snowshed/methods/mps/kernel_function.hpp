@@ -17,10 +17,10 @@ struct KernelConstants {
 inline double kernel_weight(double r, double radius) { return r < radius ? radius / r - 1 : 0.0; }
 
 /// Wendland's function (1995, doi:10.1007/BF02123482) of w(r) as above; 1 at r = 0. Its sum over a
-/// particle and its neighbours says how much of the room around is filled, however they lie: in
-/// hexagons it is 1.0005 times that of squares that fill as much, and in disorder 1.001 to 1.01
-/// times. The sum of w, which is more curved, is 0.993 times it, or 1.003 to 1.025 times (2D,
-/// radius 2.1). Disordered snow whose sum of w is n0 therefore needs more room than on its
+/// particle and its neighbours measures the filled part of the space around, in any arrangement.
+/// Relative to squares of the same density it is 1.0005 in hexagons and 1.001 to 1.01 in disorder.
+/// The sum of w, which is more curved, is 0.993 in hexagons and 1.003 to 1.025 in disorder (2D,
+/// radius 2.1). Disordered snow whose sum of w is n0 therefore takes up more space than its
 /// lattice.
 inline double filling_weight(double w) {
   const double q = 1 / (1 + w), rest = (1 - q) * (1 - q);
@@ -45,8 +45,8 @@ inline KernelConstants kernel_constants(int dimension, double radius) {
   return {radius, n, moment / n, filling};
 }
 
-/// Calls visit(w, z) for the points that the second layer of a lattice would see beyond the layer
-/// next to it, where z is the distance across in l0: behind a wall, or above a surface.
+/// Calls visit(w, z) for the lattice points that a particle of the second layer would have beyond
+/// the first layer: behind a wall, or above a surface. z is the distance along the normal in l0.
 template <class Visit>
 void visit_beyond_second_layer(int dimension, const KernelConstants& k, const Visit& visit) {
   const int reach = int(std::ceil(k.radius)), across = dimension == 3 ? reach : 0;

@@ -9,7 +9,7 @@ namespace snowshed::mps {
 namespace {
 
 constexpr float jacobi_damping = 0.9f;  // damping of Jacobi sweeps
-// Enlargement of corrections that are constant within aggregates: of particles, and of aggregates.
+// Enlargement of corrections that are constant within an aggregate: first level, and higher levels.
 constexpr float first_enlargement = 1.4f, enlargement = 1.8f;
 constexpr std::size_t max_direct_unknowns = 64;  // unknowns of the level that is solved directly
 constexpr std::size_t max_levels = 24;
@@ -25,7 +25,7 @@ void for_each_row(std::size_t n, int threads, F f) {
                   });
 }
 
-/// Number of an aggregate among the 3^D around another one.
+/// Index of the aggregate `to` among the 3^D around the aggregate `from`.
 template <std::size_t D>
 int slot_of(const std::array<std::int32_t, D>& from, const std::array<std::int32_t, D>& to,
             std::int32_t period) {
@@ -43,14 +43,14 @@ int slot_of(const std::array<std::int32_t, D>& from, const std::array<std::int32
 
 }  // namespace
 
-/// One aggregate for each cell.
+/// Makes the first level, with one aggregate for each cell.
 template <int D, int C>
 void Multigrid<D, C>::make_first(const CellOrder<D>& cells, std::int32_t period_cells) {
   Level& level = levels_.front();
   level.period = period_cells;
   level.at.resize(cells.cells());
   level.child_first.resize(cells.cells() + 1);
-  level.child.clear();  // the points of a cell follow on each other
+  level.child.clear();  // the points of a cell are consecutive
   parent_.resize(size_);
   for (std::size_t c = 0; c < cells.cells(); ++c) {
     level.at[c] = cells.coordinates(c);
@@ -61,7 +61,7 @@ void Multigrid<D, C>::make_first(const CellOrder<D>& cells, std::int32_t period_
   level.child_first.back() = std::uint32_t(size_);
 }
 
-/// One aggregate for 2^D of the level below.
+/// Makes the next level, with one aggregate for 2^D of the level below.
 template <int D, int C>
 void Multigrid<D, C>::make_next() {
   levels_.emplace_back();
@@ -92,7 +92,7 @@ void Multigrid<D, C>::make_next() {
 }
 
 /// Makes the rows of a level: visit(c, add_diagonal, add) adds the diagonal of the unknowns in
-/// aggregate c, and their couplings with those in other aggregates, or in c itself.
+/// aggregate c, and their couplings with unknowns in other aggregates or in c itself.
 template <int D, int C>
 template <class Visit>
 void Multigrid<D, C>::fill(Level& level, const Visit& visit) {
@@ -127,7 +127,7 @@ void Multigrid<D, C>::fill_first() {
     for (std::uint32_t i = level.child_first[c]; i < level.child_first[c + 1]; ++i) {
       if (diagonal_[i] == 0) continue;
       add_diagonal(diagonal_[i]);
-      // Neighbours of a cell follow on each other.
+      // Neighbours in the same cell are consecutive.
       std::uint32_t last = std::uint32_t(c);
       float sum = 0;
       for (std::uint32_t e = lists_->begin(i); e < lists_->end(i); ++e) {
@@ -157,8 +157,8 @@ void Multigrid<D, C>::fill_next(const Level& below, Level& level) {
   });
 }
 
-/// A small increase of the diagonal makes the factor safe against rounding, and against a fluid
-/// without a free surface.
+/// Factors the matrix of the coarsest level. A small increase of the diagonal keeps it positive
+/// definite in spite of rounding, and without a free surface.
 template <int D, int C>
 void Multigrid<D, C>::factor_coarsest() {
   const Level& level = levels_.back();

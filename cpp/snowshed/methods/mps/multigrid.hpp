@@ -14,16 +14,17 @@
 namespace snowshed::mps {
 
 /// Aggregation multigrid (Notay 2010; Braess 1995, doi:10.1007/BF02238484): the unknowns of a cell
-/// are one unknown of the next level, those of 2^D cells one of the level after it. Corrections are
-/// constant within an aggregate, and enlarged to make up for that. One damped Jacobi
-/// sweep before and one after each correction keep the cycle symmetric, as conjugate gradients
-/// require. A particle has C unknowns; above the particles they are independent of each other.
+/// are one unknown of the next level, and 2^D unknowns of a level are one unknown of the level
+/// above. Corrections are constant within an aggregate, and enlarged to compensate for this. One
+/// damped Jacobi sweep before and one after each correction keep the cycle symmetric, as conjugate
+/// gradients require. A particle has C unknowns; above the particles they are independent of each
+/// other.
 template <int D, int C>
 class Multigrid {
  public:
   /// The matrix has the given diagonal, and -weight for each pair of neighbours. Unknowns with a
-  /// zero diagonal are left out: their values stay zero. `period_cells`: cells along x after which
-  /// all is repeated, or 0.
+  /// zero diagonal are left out: their values stay zero. `period_cells`: the period along x in
+  /// cells, or 0.
   void update(const NeighbourLists<D>& lists, const AlignedVector<float>& weight,
               const AlignedVector<double>& diagonal, const CellOrder<D>& cells,
               std::int32_t period_cells, int threads);
@@ -31,7 +32,7 @@ class Multigrid {
   /// z = M^-1 r, for one unknown.
   void apply(const double* r, double* z);
 
-  /// Corrects the particles' unknowns by their residuals on the levels above.
+  /// Adds to the particles' unknowns the correction that the levels above make from the residual.
   template <class T>
   void correct(const T* residual, T* x);
 
@@ -43,7 +44,7 @@ class Multigrid {
   using Value = Eigen::Array<float, C, 1>;
   static constexpr int stencil = D == 2 ? 9 : 27;
 
-  /// A level above the particles: rows of at most `stencil` entries, itself among them.
+  /// A level above the particles: rows of at most `stencil` entries, including the row's own.
   struct Level {
     std::vector<Coordinates> at;
     std::vector<std::uint32_t> child_first;  // ranges of `child` for the level below

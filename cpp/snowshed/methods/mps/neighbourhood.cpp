@@ -9,14 +9,15 @@
 namespace snowshed::mps {
 namespace {
 
-/// Particles that see the fluid on all sides are within it, however low their density: the sum of
-/// w r/r over the neighbours and walls, over n0 (after Khayyer and others 2009). On a lattice it is
-/// 0.28 at a plane surface in 2D, and 0.26 in 3D.
+/// Least asymmetry of a particle at the surface: the norm of the sum of w r/|r| over the neighbours
+/// and walls, over n0 (after Khayyer and others 2009). A particle below it has fluid on all sides,
+/// and is not at the surface even if its density is low. On a lattice the asymmetry is 0.28 at a
+/// plane surface in 2D, and 0.26 in 3D.
 constexpr double min_asymmetry = 0.12;
-/// The same for inner walls, on a lattice 0.05 where the surface meets the wall.
+/// The same for inner walls; on a lattice it is 0.05 where the surface meets the wall.
 constexpr double min_wall_asymmetry = 0.03;
-/// Below this ratio of number densities a particle is at a surface, with any neighbours.
-constexpr double sparse = 0.75;
+/// Below this ratio of number densities a particle is at a surface with any asymmetry.
+constexpr double sparse_density = 0.75;
 /// Minimum determinant of the matrix of a particle's neighbours for which gradients are corrected;
 /// it is 1 on a lattice, 0.4 at its surface.
 constexpr double min_determinant = 0.1;
@@ -47,8 +48,8 @@ void weigh_pairs(const Model<D>& model, Neighbourhood<D>& near, int threads) {
   });
 }
 
-/// Walls are at the surface only if the snow there is; otherwise disorder of the snow beside a wall
-/// would release all pressure through it.
+/// A wall particle is at the surface only if snow beside it is. Otherwise disorder of the snow
+/// beside a wall would release all pressure through the wall.
 template <int D>
 void leave_walls_within(const Particles<D>& particles, Neighbourhood<D>& near, int threads) {
   const auto is_snow_at_surface = [&](std::size_t j) {
@@ -63,7 +64,8 @@ void leave_walls_within(const Particles<D>& particles, Neighbourhood<D>& near, i
   });
 }
 
-/// Equation (7), with the images of the neighbours, and equation (19).
+/// Number densities by equation (7), with the images of the neighbours, and the surface by equation
+/// (19).
 template <int D>
 void find_surface(const Model<D>& model, const Particles<D>& particles, Neighbourhood<D>& near,
                   int threads) {
@@ -81,7 +83,7 @@ void find_surface(const Model<D>& model, const Particles<D>& particles, Neighbou
     near.density[i] = n;
     near.filling[i] = filling / model.kernel.filling;
     bool surface = particles.kind[i] != Kind::dummy_wall && n < ratio * n0;
-    if (surface && !published && n >= sparse * n0) {
+    if (surface && !published && n >= sparse_density * n0) {
       VecD<D> side = VecD<D>::Zero();
       for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e)
         side += double(near.weight[e]) * near.separation(e).stableNormalized();
@@ -101,13 +103,13 @@ void find_surface(const Model<D>& model, const Particles<D>& particles, Neighbou
   });
 }
 
-/// The inverse of d/n0 sum of w r r^T/r^2 over neighbours and walls, with which gradients are right
-/// for linear fields however the neighbours lie (Randles and Libersky 1996,
-/// doi:10.1016/S0045-7825(96)01090-0; in MPS Khayyer and Gotoh 2011,
-/// doi:10.1016/j.jcp.2011.01.009). On a lattice it is the identity, and so it is where too few
-/// neighbours are left. `spread` is a first-order correction (ours) of weights by e.B e, e the
-/// direction of a pair, that makes the sum of w r r^T, and with it Laplacians of quadratic fields,
-/// that of a lattice. Dummy walls have no pressure, and no part in gradients.
+/// `correction` is the inverse of d/n0 times the sum of w r r^T/r^2 over neighbours and walls. With
+/// it gradients are exact for linear fields in any arrangement of the neighbours (Randles and
+/// Libersky 1996, doi:10.1016/S0045-7825(96)01090-0; in MPS Khayyer and Gotoh 2011,
+/// doi:10.1016/j.jcp.2011.01.009). It is the identity on a lattice, and if there are too few
+/// neighbours. `spread` is a matrix B. The factor e.B e of weights, with the direction e of a pair,
+/// is a first-order correction (ours): the sum of w r r^T, and with it Laplacians of quadratic
+/// fields, become those of a lattice. Dummy walls have no pressure, and are left out of gradients.
 template <int D>
 void find_corrections(const Model<D>& model, const Particles<D>& particles, Neighbourhood<D>& near,
                       int threads) {
@@ -157,7 +159,8 @@ void find_even_weights(const Model<D>& model, Neighbourhood<D>& near, int thread
   });
 }
 
-/// Inner walls that no snow touches are dummies: no pressure spreads along a wall beyond the snow.
+/// Makes inner walls dummies if no snow touches them, so that no pressure spreads along a wall
+/// beyond the snow.
 template <int D>
 void leave_dry_walls(Particles<D>& particles, Neighbourhood<D>& near, int threads) {
   near.dry.resize(particles.size());
@@ -173,8 +176,8 @@ void leave_dry_walls(Particles<D>& particles, Neighbourhood<D>& near, int thread
   });
 }
 
-/// Each step makes new inner walls. The hydrostatic pressure of the snow around is a first
-/// guess of theirs.
+/// Sets first guesses of the pressures of inner walls, which are new in each step, to the
+/// hydrostatic pressure of the snow around them.
 template <int D>
 void guess_wall_pressures(const Model<D>& model, Particles<D>& particles,
                           const Neighbourhood<D>& near) {

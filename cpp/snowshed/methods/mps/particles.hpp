@@ -23,8 +23,8 @@ struct Particles {
   AlignedVector<double> relative_density;  // number density over n0
   AlignedVector<double> shear_rate;        // 1/s
   AlignedVector<double> viscosity;         // Pa s, apparent
-  /// m/s2, the gradient of the pressure over the density, in the last step. Walls have no
-  /// acceleration: their array holds `wall_normal`.
+  /// m/s2, the gradient of the pressure over the density, in the last step. Wall particles have no
+  /// acceleration; the array holds their `wall_normal`.
   AlignedVector<VecD<D>> pressure_acceleration;
   AlignedVector<VecD<D>> viscous_acceleration;  // m/s2, in the last step
   AlignedVector<Kind> kind;
@@ -45,7 +45,7 @@ struct Particles {
   void for_each_array(const Visit& visit) const {
     visit_arrays(*this, *this, [&](const char* name, auto& array, auto&) { visit(name, array); });
   }
-  /// Calls visit(name, array, other's array) for each array; the one list of them.
+  /// Calls visit(name, array, other's array) for each array; the only list of the arrays.
   template <class Self, class Other, class Visit>
   static void visit_arrays(Self& self, Other& other, const Visit& visit) {
     visit("position", self.position, other.position);

@@ -49,9 +49,9 @@ double slip_divergence(const Model<D>& model, const Particles<D>& particles,
   return model.gradient() * sum + model.laplacian() * flow;
 }
 
-/// The share of walls' images in the divergence, 1/s. They move along the wall as the particles do.
-/// The flow through the wall counts as the pressure's slope does in the Laplacian, so that both
-/// cancel at rest.
+/// The part of images behind walls in the divergence, 1/s. Images move along the wall as their
+/// particles do. The flow through the wall has the weight of the pressure's slope in the Laplacian,
+/// so that both cancel at rest.
 template <int D>
 double image_divergence(const Model<D>& model, const Particles<D>& particles,
                         const Neighbourhood<D>& near, const Eigen::Matrix<double, D, D>& correction,
@@ -94,10 +94,10 @@ void prepare_divergence(const Model<D>& model, const Particles<D>& particles, Wo
     sum_velocity_gradients(model, particles, work.near.slope.data(), work);
 }
 
-/// The time in which the share `compensation` of the density's error is removed, s: the step, or
-/// the time in which a particle of usual speed moves by the Courant factor times l0 where that is
-/// longer. With the step alone a single fast particle, which shortens the step, would raise the
-/// pressure of all snow. (Ours.)
+/// The time in which the share `compensation` of the density's error is removed, s: the longer of
+/// the step and the time in which a particle of usual speed moves by the Courant factor times l0.
+/// With the step alone a single fast particle, which shortens the step, would raise the pressure of
+/// all snow. (Ours.)
 template <int D>
 double compensation_time(const Model<D>& model, double dt, const Particles<D>& particles) {
   const Settings& s = model.settings();
@@ -109,17 +109,17 @@ double compensation_time(const Model<D>& model, double dt, const Particles<D>& p
                    : dt;
 }
 
-/// Sources smaller than this share of the source by a particle's weight are rounding errors, and
-/// set no tolerance.
+/// Sources smaller than this share of the source by a particle's weight are rounding errors, and do
+/// not lower the tolerance.
 constexpr double min_source = 1e-8;
 
 /// Tolerance of densities below the surface, where particles need not form a lattice.
 constexpr double surface_tolerance = 0.002;
 
 /// Excess of density over that of a lattice, which the compensation (ours) reduces. Inside the snow
-/// the filled share of the room gives it. Beside wall particles the number density gives it,
-/// because it grows faster near a wall. A particle at the surface lacks neighbours. Only the
-/// neighbours that it lacks beyond the surface of a lattice count, so that gaps close.
+/// it follows from the filled part of the space. Beside wall particles it follows from the number
+/// density, which grows faster near a wall. At the surface only a positive excess counts. Below the
+/// surface a lack of neighbours counts only beyond that of a lattice, so that gaps close.
 template <int D>
 double compensated_excess(const Model<D>& model, const Particles<D>& particles,
                           const Neighbourhood<D>& near, std::size_t i) {
@@ -135,8 +135,8 @@ double compensated_excess(const Model<D>& model, const Particles<D>& particles,
 
 /// The right-hand side of lap p = ..., Pa/m2: equation (18), or after Tanaka and Masunaga (2010,
 /// doi:10.1016/j.jcp.2010.02.011) the divergence of the velocities and a share of the density's
-/// error. They weigh the divergence with one less the share, which would take as much from the
-/// pressure of snow at rest; here its weight is one.
+/// error. They multiply the divergence by one minus this share, which would lower the pressure of
+/// snow at rest by the share; here the factor is one.
 template <int D>
 double source(const Model<D>& model, double dt, double compensation_time,
               const Particles<D>& particles, const Workspace<D>& work, std::size_t i) {
@@ -165,7 +165,8 @@ void balance_sources(Workspace<D>& work, std::size_t n) {
 
 }  // namespace
 
-/// All is divided by -2 d/(lambda n0): sum of w (p_i - p_j) + diagonal of the surface.
+/// The equation is divided by -2 d/(lambda n0): the sum of w (p_i - p_j) and the surface's part of
+/// the diagonal remain.
 template <int D>
 void prepare_pressure(const Model<D>& model, const Particles<D>& particles, Workspace<D>& work) {
   const Neighbourhood<D>& near = work.near;
@@ -242,8 +243,8 @@ SolveReport solve_pressure(const Model<D>& model, double dt, Particles<D>& parti
   const std::size_t n = particles.size();
   prepare_divergence(model, particles, work);
   const double relaxation = compensation_time(model, dt, particles);
-  // The Laplacian of a linear pressure, which is not zero because neighbours do not lie evenly
-  // around.
+  // With corrected gradients the source contains the Laplacian of a linear pressure, which is not
+  // zero because neighbours are not distributed evenly.
   const bool corrected = model.settings().gradient == Gradient::corrected;
   work.pressure.source.resize(n);
   work.pressure.values.resize(n);
@@ -254,7 +255,7 @@ SolveReport solve_pressure(const Model<D>& model, double dt, Particles<D>& parti
     double value = -source(model, dt, relaxation, particles, work, i) / model.laplacian();
     if (corrected)
       value -= model.settings().density * near.asymmetry[i].dot(particles.pressure_acceleration[i]);
-    if (near.surface[i]) value = std::max(value, 0.0);  // snow does not hang together there
+    if (near.surface[i]) value = std::max(value, 0.0);  // no suction at the surface
     work.pressure.source[i] = value;
   });
   if (work.pressure.enclosed) balance_sources(work, n);

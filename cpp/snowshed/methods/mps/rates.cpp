@@ -11,18 +11,18 @@ namespace {
 /// Distance from a wall, in l0, below which the velocity behind it grows no further.
 constexpr double min_no_slip_distance = 0.25;
 
-/// The difference of velocities between a particle and one behind a wall's surface over that
-/// between the particle and the surface.
+/// The velocity difference between a particle and a wall particle, over that between the particle
+/// and the wall's surface.
 template <int D>
 double no_slip_factor(const WallContact<D>& c, const VecD<D>& separation, double spacing) {
   return std::max(1.0,
                   -separation.dot(c.normal) / std::max(c.distance, min_no_slip_distance * spacing));
 }
 
-/// Calls visit(separation, slope, change of velocity) for each wall particle and image that a
-/// velocity gradient sees. Snow does not slide on sticky walls: images behind them have the
-/// opposite velocity, and wall particles one that makes the velocity at the surface that of the
-/// wall (Morris and others 1997, doi:10.1006/jcph.1997.5776).
+/// Calls visit(separation, slope, change of velocity) for each wall particle and image that
+/// contributes to a velocity gradient. Snow does not slide on sticky walls: images behind them have
+/// the opposite velocity relative to the wall, and wall particles the velocity for which the snow
+/// at the surface moves with the wall (Morris and others 1997, doi:10.1006/jcph.1997.5776).
 template <int D, class Visit>
 void visit_walls(const Model<D>& model, const Particles<D>& particles, const Neighbourhood<D>& near,
                  std::size_t i, const Visit& visit) {
@@ -46,8 +46,8 @@ void visit_walls(const Model<D>& model, const Particles<D>& particles, const Nei
   }
 }
 
-/// Matrices that make velocity gradients right for linear velocities in any arrangement of the
-/// neighbours (as find_corrections).
+/// The matrix, with the factor d/n0, that makes velocity gradients exact for linear velocities in
+/// any arrangement of the neighbours (see find_corrections).
 template <int D>
 Eigen::Matrix<double, D, D> rate_correction(const Model<D>& model, const Particles<D>& particles,
                                             const Neighbourhood<D>& near, std::size_t i) {
@@ -64,8 +64,8 @@ Eigen::Matrix<double, D, D> rate_correction(const Model<D>& model, const Particl
 }
 
 /// The pressures of the last step, smoothed over the neighbours with the weight function and cut
-/// off at zero. Walls continue them hydrostatically, and the free surface with the opposite sign,
-/// so that a pressure that grows linearly stays as it is.
+/// off at zero. Behind walls the pressures continue hydrostatically, and above the free surface
+/// with the opposite sign, so that smoothing does not change a linear pressure.
 template <int D>
 double smooth_pressure(const Model<D>& model, const Particles<D>& particles,
                        const Neighbourhood<D>& near, std::size_t i) {

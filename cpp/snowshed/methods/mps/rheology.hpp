@@ -11,16 +11,16 @@ namespace snowshed::mps {
 
 /// The shear stress over the shear rate, gdot = sqrt(2 D:D).
 ///
-/// Up to `dilatant_rate` it is that of a Bingham fluid, tau = tau0 + eta gdot (20), above it grows
-/// as a power of the rate, tau = tau_c (gdot/gdot_c)^k (21), where tau_c makes it continuous. The
-/// yield stress tau0 = c + max(p, 0) tan(phi) grows with the pressure. Near zero it is approached
-/// as tau0 (1 - exp(-m gdot)) (22; Papanastasiou 1987, doi:10.1122/1.549926), or linearly up to the
-/// rate 1/m (bi-viscous; Dent and Lang 1983). The paper's equations are
-/// lost; their form is inferred from the wording.
+/// Up to `dilatant_rate` the stress is that of a Bingham fluid, tau = tau0 + eta gdot (20). Above
+/// it grows as a power of the rate, tau = tau_c (gdot/gdot_c)^k (21), where tau_c makes it
+/// continuous. The yield stress tau0 = c + max(p, 0) tan(phi) grows with the pressure. At small
+/// rates tau0 is replaced by tau0 (1 - exp(-m gdot)) (22; Papanastasiou 1987,
+/// doi:10.1122/1.549926), or by a linear function up to the rate 1/m (bi-viscous; Dent and Lang
+/// 1983). The paper's equations are lost; their form is inferred from the wording.
 struct Rheology {
   double viscosity, cohesion, friction;  // Pa s, Pa, tan(phi)
   double growth;                         // s
-  double dilatant_rate, exponent;        // 1/s; the rate is infinite without that branch
+  double dilatant_rate, exponent;        // 1/s; infinite without the dilatant branch
   bool bi_viscous;
 
   static Rheology from(const Settings& s) {
@@ -36,7 +36,7 @@ struct Rheology {
 
   bool is_newtonian() const { return cohesion == 0 && friction == 0 && dilatant_rate == HUGE_VAL; }
 
-  /// Whether the yield stress is reached, at a shear rate; fluids without one always flow.
+  /// Whether snow with this shear rate has reached the yield stress; fluids without it always flow.
   bool flows(double rate) const { return is_newtonian() || growth * rate > 2; }
 
   /// Pa; `pressure` in Pa.
@@ -44,8 +44,8 @@ struct Rheology {
     return cohesion + std::max(pressure, 0.0) * friction;
   }
 
-  /// A stress that is reached as soon as something shears, over the shear rate: `stress`/rate, but
-  /// at most `stress` m, Pa s.
+  /// The viscosity of a stress that acts at any shear rate: `stress`/rate, but at most `stress` m,
+  /// Pa s.
   double regularised(double stress, double rate) const {
     const double x = growth * rate;
     if (bi_viscous) return stress * growth / std::max(x, 1.0);

@@ -1,4 +1,4 @@
-// Lists of anything, one for each particle, in one array.
+// Lists of any type, one for each particle, in one array.
 #pragma once
 
 #include <algorithm>
@@ -15,11 +15,11 @@ class RowLists {
   const T* begin(std::size_t i) const { return all_.data() + first_[i]; }
   const T* end(std::size_t i) const { return all_.data() + first_[i + 1]; }
   const std::vector<T>& all() const { return all_; }
-  /// Where an entry stands among all.
-  std::size_t place(const T* entry) const { return std::size_t(entry - all_.data()); }
+  /// The index of an entry in all().
+  std::size_t index_of(const T* entry) const { return std::size_t(entry - all_.data()); }
 
-  /// Makes new lists of the particles: make(begin, end, first, list) appends those of a part of
-  /// the particles to `list`, one after another, and sets first[i + 1] to the length of each.
+  /// Replaces the lists: make(begin, end, first, list) appends the lists of the particles [begin,
+  /// end) to `list`, one after another, and sets first[i + 1] to the length of each.
   template <class Make>
   void update(std::size_t particles, std::size_t in_part, int threads, const Make& make) {
     const std::size_t parts = (particles + in_part - 1) / in_part;

@@ -12,7 +12,7 @@
 namespace snowshed::mps {
 
 /// Fills a body with as many particles as its volume holds cells of the spacing. They share its
-/// mass, so that it is exact, and are as heavy as their cells, to half a particle. Adds a note if
+/// mass exactly, and their number is rounded, so each has about the mass of a cell. Adds a note if
 /// the body is too small for that. Throws as `fill_lattice`.
 void seed_on_lattice(const Settings&, const LevelSet& shape, int dimension, const StopRequest& stop,
                      ParticleBatch& batch, std::vector<std::string>& notes);

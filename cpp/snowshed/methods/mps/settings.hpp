@@ -9,13 +9,13 @@ enum class ShearLaw { newtonian, bingham, bingham_dilatant };
 enum class Regularisation { papanastasiou, bi_viscous };
 /// Right-hand side of the pressure equation: Koshizuka and Oka (1996); Tanaka and Masunaga (2010).
 enum class Source { published, compensated };
-/// Pressure gradient: from the least neighbouring pressure, with equal and opposite forces, or
-/// right for linear pressures however the neighbours lie.
+/// Pressure gradient: relative to the least neighbouring pressure, with equal and opposite forces,
+/// or exact for linear pressures in any arrangement of the neighbours.
 enum class Gradient { published, conservative, corrected };
-/// Whether viscosity acts before the pressure, or after it and then the pressure once more.
+/// Whether viscosity acts before the pressure or after it.
 enum class Splitting { viscosity_first, pressure_first };
-/// When pressure and viscosity of a step are solved together: never, where the plastic viscosity is
-/// stiff, or always. Only if the pressure acts first.
+/// Steps in which pressure and viscosity are solved together: none, those of stiff creeping fluids,
+/// or all. This requires Splitting::pressure_first.
 enum class Coupling { none, stiff, always };
 /// Where the pressure is zero: at particles of low number density, or half a spacing above them.
 enum class Surface { published, mirrored };
@@ -29,8 +29,8 @@ enum class Walls { mirrors, particles };
 enum class Preconditioner { jacobi, incomplete_cholesky, multigrid };
 
 /// Settings of the moving particle semi-implicit method, with the snow of Saito and others (2012,
-/// Annals of Glaciology 53(61)). Their growth coefficient, dilatant branch and thresholds of
-/// erosion are not printed: those here are ours, see docs/methods/mps.md.
+/// Annals of Glaciology 53(61)). Their paper does not print the growth coefficient, the dilatant
+/// branch and the thresholds of erosion; the values here are ours, see docs/methods/mps.md.
 struct Settings {
   double spacing = 0.01;        // m, l0, of particles
   double radius = 2.1;          // r_e over l0
@@ -46,10 +46,10 @@ struct Settings {
   double stress_growth = 1e4;  // s, m of Papanastasiou
   double dilatant_rate = 100;  // 1/s, above which the dilatant branch holds
   double dilatant_exponent = 1.5;
-  int yield_iterations = 50;  // at most, of the apparent viscosity in a step
+  int yield_iterations = 50;  // largest number, for the apparent viscosity in a step
 
   bool erosion = false;             // whether snow erodes and is deposited
-  double erodible_thickness = 0;    // m, of the snow on obstacles that is at rest at first
+  double erodible_thickness = 0;    // m, of the erodible snow on obstacles at the beginning
   double erosion_pressure = 50;     // Pa
   double erosion_speed = 0.1;       // m/s
   double deposition_pressure = 25;  // Pa

@@ -12,33 +12,34 @@ namespace snowshed::mps {
 namespace {
 
 /// If a particle would move farther than this (in l0), the step is repeated with half its length,
-/// at most `max_halvings` times: the particle could pass through a wall.
+/// at most `max_halvings` times, because the particle could pass through a wall.
 constexpr double max_distance = 0.5;
 constexpr int max_halvings = 20;
 
-/// With conservative gradients pairs repel each other with the sum of their pressures, as springs
-/// do: a disturbance of the lattice runs through it with about twice the root of p/rho. A step is
-/// at most this times the spacing over that root (the form and the number are ours: above 1 columns
-/// of water break up).
+/// With conservative gradients pairs repel each other by the sum of their pressures, as springs do.
+/// A disturbance runs through the lattice at about twice the root of p/rho. A step is at most this
+/// number times the spacing over that root (form and number are ours; above 1 columns of water
+/// break up).
 constexpr double pressure_courant = 0.5;
 
-/// The share of the last step's viscous force that the pressure of flowing snow expects. Without it
-/// stiff fluids are compressed more, because viscosity acts last; with 0.9 the pressure of a column
-/// of 1e4 Pa s at rest was 1.4 % too low (ours).
-constexpr double expected_shear = 0.5;
+/// The share of the last step's viscous force that the pressure of flowing snow takes into account.
+/// Without this share stiff fluids are compressed more, because viscosity acts last; with 0.9 the
+/// pressure of a column of 1e4 Pa s at rest was 1.4 % too low (ours).
+constexpr double expected_share = 0.5;
 
 /// Pressure and viscosity are solved together under three conditions, with the root mean square u
 /// of the speeds. The plastic viscosity eta is at least `min_stiffness` rho l0^2/dt. The fluid
-/// moves: u is more than `min_fall` times rho g l0^2/eta, the speed of a fall that viscosity
-/// slows down within l0. (In a stiff fluid at rest errors of the gradients would cause large
-/// pressures, because these hardly move it.) The fluid creeps: rho u^3/(eta g), the square of the
-/// Reynolds number of a body so high that it flows at u, is less than `max_inertia`. Fast flows
-/// lose no volume to viscosity, and are solved the cheaper way for any l0.
+/// moves: u is more than `min_fall` times rho g l0^2/eta, the speed of a fall that viscosity slows
+/// down within l0. (In a stiff fluid at rest errors of the gradients would cause large pressures,
+/// because pressures hardly move such a fluid.) The fluid creeps: rho u^3/(eta g), the square of
+/// the Reynolds number of a body whose height makes it flow at u, is less than `max_inertia`. Fast
+/// flows lose no volume to viscosity, and are solved without coupling, which is cheaper, for any
+/// l0.
 constexpr double min_stiffness = 2, min_fall = 2, max_inertia = 1e-3;
 /// The iteration begins with this share of the last step's viscous force; errors of the pressure
-/// then die out. It ends when the force changes by less than this part of gravity. It also ends if
-/// it diverges; the iterations made until then are kept, because they are better than one.
-constexpr double first_shear = 0.9, coupling_tolerance = 3e-3;
+/// then die out. It ends when the force changes by less than `coupling_tolerance` times gravity, or
+/// after `max_couplings` iterations; even without convergence these are better than a single one.
+constexpr double first_share = 0.9, coupling_tolerance = 3e-3;
 constexpr int max_couplings = 20;
 
 void require_converged(const SolveReport& report, const char* what, int max_iterations) {
@@ -49,7 +50,8 @@ void require_converged(const SolveReport& report, const char* what, int max_iter
       " iterations; allowed: " + std::to_string(max_iterations));
 }
 
-/// The last of several solves, with the iterations of all.
+/// Adds a solve to the report on several: the iterations are those of all, the rest is that of the
+/// last.
 void add_solve(const SolveReport& solve, SolveReport& all) {
   all = {all.iterations + solve.iterations, solve.residual, solve.converged};
 }
@@ -106,7 +108,7 @@ double SolverImpl<D>::pressure_step(const Particles<D>& particles) const {
 
 /// The longest step in which no particle moves farther than the Courant factor times the spacing,
 /// also with the speed that gravity adds in it: (u + g dt) dt = C l0. Viscosity is implicit and
-/// does not limit it.
+/// does not limit the step.
 template <int D>
 double SolverImpl<D>::choose_step(const Particles<D>& particles) const {
   const Settings& s = model_.settings();
@@ -133,7 +135,7 @@ void SolverImpl<D>::move(double dt, Particles<D>& particles) const {
   });
 }
 
-/// The velocities and pressures after a step of dt, from those in the workspace.
+/// Computes the velocities and pressures after a step of dt; `next` holds those before it.
 template <int D>
 void SolverImpl<D>::try_step(double dt, State<D>& next) {
   add_gravity(model_, dt, next.particles);
@@ -175,9 +177,9 @@ bool SolverImpl<D>::is_coupled(double dt) const {
 }
 
 /// The pressure acts before viscosity, so that unyielded snow does not move. In flowing snow it
-/// includes a share of the last step's viscous force. Viscosity may still compress the snow: the
-/// next step's pressure corrects this, or, in coupled steps, both are iterated with Anderson
-/// acceleration until the force converges (ours).
+/// takes a share of the last step's viscous force into account. Viscosity may still compress the
+/// snow: the next step's pressure corrects this, or, in coupled steps, both are iterated with
+/// Anderson acceleration until the force converges (ours).
 template <int D>
 void SolverImpl<D>::solve_pressure_first(double dt, State<D>& next) {
   Particles<D>& p = next.particles;
@@ -193,7 +195,7 @@ void SolverImpl<D>::solve_pressure_first(double dt, State<D>& next) {
     workspace_.splitting.expected_shear[i].setZero();
     if (workspace_.splitting.flowing[i])
       workspace_.splitting.expected_shear[i] =
-          (coupled ? first_shear : expected_shear) * p.viscous_acceleration[i];
+          (coupled ? first_share : expected_share) * p.viscous_acceleration[i];
   });
   AndersonMixing<D> mixing;
   SolveReport pressure, viscosity;
@@ -233,7 +235,7 @@ void SolverImpl<D>::solve_with_expected_shear(double dt, State<D>& next) {
   apply_viscosity(dt, next);
 }
 
-/// As published.
+/// Viscosity acts before the pressure, as published.
 template <int D>
 void SolverImpl<D>::solve_viscosity_first(double dt, State<D>& next) {
   const Settings& s = model_.settings();

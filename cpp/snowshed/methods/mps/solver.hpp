@@ -18,10 +18,10 @@ struct Options {
   Vec3 gravity = Vec3::Zero();  // m/s2
   std::vector<Obstacle> obstacles;
   bool energy = false;  // whether to keep the energy balance
-  double period = 0;    // m, with which all is repeated along x, from x = 0; 0: not at all
+  double period = 0;    // m, period along x, from x = 0; 0: not periodic
 };
 
-/// The equations of the last step, and of all steps.
+/// Solution of the equations in the last step and on average, and density of the snow.
 struct Report {
   int pressure_iterations = 0, viscosity_iterations = 0;
   double pressure_residual = 0, viscosity_residual = 0;  // relative
@@ -36,7 +36,7 @@ class Solver : public Method, public KeepsEnergy, public ReportsRun {
   virtual Report report() const = 0;
 };
 
-/// Throws InputError if the parts of a step cannot follow each other in the order of the settings.
+/// Throws InputError if the settings `order` and `splitting` contradict each other.
 void check_order(const Settings&);
 
 /// Throws InputError if the settings do not fit each other.

@@ -6,8 +6,9 @@
 
 namespace snowshed::mps {
 
-/// A step builds the next state beside the present one, and fails before it takes it over. A failed
-/// step therefore never leaves unsound particles, and the class has no Soundness.
+/// A step builds the next state beside the present one, and can fail only before it takes the next
+/// one over. A failed step therefore never leaves unsound particles, and the class has no
+/// Soundness.
 template <int D>
 class SolverImpl final : public Solver {
  public:
@@ -61,7 +62,7 @@ class SolverImpl final : public Solver {
   double choose_step(const Particles<D>&) const;
   double pressure_step(const Particles<D>&) const;
   double largest_speed(const Particles<D>&) const;
-  State<D> restored(const BinaryReader&) const;
+  State<D> read_state(const BinaryReader&) const;
   template <class Visit>
   void visit_fields(Visit) const;
 

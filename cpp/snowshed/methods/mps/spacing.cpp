@@ -7,20 +7,21 @@
 namespace snowshed::mps {
 namespace {
 
-/// Particles nearer to each other than this (in l0) bounce, and keep this share of their speed.
+/// Particles nearer to each other than `distance` (in l0) bounce, and keep the share `restitution`
+/// of the speed at which they approach.
 struct Collision {
   double distance, restitution;
 };
-/// As is common in MPS codes.
-constexpr Collision common{0.5, 0.2};
-/// With shifting they only stop approaching each other, beginning at the spacing of the lattice
+/// The values that are common in MPS codes.
+constexpr Collision common_collision{0.5, 0.2};
+/// With shifting, particles nearer than the spacing of the lattice only stop approaching each other
 /// (ours, after the dynamic stabilisation of Tsuruta and others 2013, Computers & Fluids 82):
-/// velocities that alternate between neighbours have no divergence and would otherwise stay. With
-/// 0.8 water at rest boils after 5 s.
-constexpr Collision inelastic{1.0, 0.0};
+/// velocities that alternate between neighbours have no divergence and would otherwise persist.
+/// With a distance of 0.8 water at rest boils after 5 s.
+constexpr Collision inelastic_collision{1.0, 0.0};
 
 /// Shift over the gradient of the concentration, in l0^2 (Lind and others 2012,
-/// doi:10.1016/j.jcp.2011.10.027, where the same is half the square of the smoothing length).
+/// doi:10.1016/j.jcp.2011.10.027, where this factor is half the square of the smoothing length).
 constexpr double shift_factor = 0.05;
 
 template <int D>
@@ -29,16 +30,16 @@ void collide(const Model<D>& model, const Collision& law, Particles<D>& particle
   const Neighbourhood<D>& near = work.near;
   const std::size_t n = particles.size();
   const int threads = model.threads_for(n);
-  work.spacing.yielding.resize(n);
+  work.spacing.impulse_share.resize(n);
   work.change.resize(n);
   for_each_particle(n, threads, [&](std::size_t i) {
-    work.spacing.yielding[i] = particles.moves(i) ? 0.5 : 1.0;
+    work.spacing.impulse_share[i] = particles.moves(i) ? 0.5 : 1.0;
   });
   for_each_piece(n, threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    model.kernels.sum_approaches(near.rows(), near.offsets().data(),
-                                 particles.velocity.data()->data(), work.spacing.yielding.data(),
-                                 law.distance * model.settings().spacing,
-                                 work.change.data()->data(), begin, end);
+    model.kernels.sum_approaches(
+        near.rows(), near.offsets().data(), particles.velocity.data()->data(),
+        work.spacing.impulse_share.data(), law.distance * model.settings().spacing,
+        work.change.data()->data(), begin, end);
   });
   for_each_particle(n, threads, [&](std::size_t i) {
     if (particles.moves(i)) particles.velocity[i] -= (1 + law.restitution) * work.change[i];
@@ -62,8 +63,8 @@ void find_concentration_gradients(const Model<D>& model, std::size_t n, Workspac
   });
 }
 
-/// The direction into the snow at its surface: that of the gradients of a particle and of its
-/// neighbours.
+/// The direction into the snow at its surface: that of the weighted sum of the gradients of a
+/// particle and of its neighbours.
 template <int D>
 VecD<D> inward(const AlignedVector<VecD<D>>& gradients, const Neighbourhood<D>& near,
                std::size_t i) {
@@ -74,9 +75,10 @@ VecD<D> inward(const AlignedVector<VecD<D>>& gradients, const Neighbourhood<D>& 
   return sum.stableNormalized();
 }
 
-/// Shifts particles to where there are fewer; at the surface only along it, and below it not
-/// towards it, because the surface would rise. Snow at rest is shifted, too, at the speed of a fall
-/// over l0: the corrected gradient does not keep its particles apart (ours).
+/// Shifts particles towards lower concentrations. At the surface they are shifted only along it,
+/// and below it not towards it, because the surface would rise. Snow at rest is shifted, too, as if
+/// it moved at the speed of a fall over l0, because the corrected gradient does not keep its
+/// particles apart (ours).
 template <int D>
 void shift(const Model<D>& model, double dt, Particles<D>& particles, Workspace<D>& work) {
   const Neighbourhood<D>& near = work.near;
@@ -111,9 +113,9 @@ void keep_spacing(const Model<D>& model, double dt, Particles<D>& particles, Wor
     case SpacingLaw::none:
       return;
     case SpacingLaw::collision:
-      return collide(model, common, particles, work);
+      return collide(model, common_collision, particles, work);
     case SpacingLaw::shifting:
-      collide(model, inelastic, particles, work);
+      collide(model, inelastic_collision, particles, work);
       shift(model, dt, particles, work);
   }
 }

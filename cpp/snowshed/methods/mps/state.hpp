@@ -44,7 +44,7 @@ struct Model {
   VecD<D> gravity;  // m/s2
   KernelConstants kernel;
   double second_layer;       // see second_layer_share
-  SurfaceLack surface_lack;  // below a surface that is not that of a lattice
+  SurfaceLack surface_lack;  // lack of the second layer below a surface, see second_layer_lack
   Rheology rheology;
   const Kernels<D>& kernels = chosen_kernels<D>();
   int threads;
@@ -71,12 +71,12 @@ struct State {
   double time = 0, dt = 0;  // s
   std::uint32_t next_id = 0;
   StepCounters counters;
-  EnergyBalance energy;                                            // its sums over steps
-  Solves solves;                                                   // those of the last step
+  EnergyBalance energy;  // sums over steps; stored energies are computed on request
+  Solves solves;         // solves of the last step
   std::int64_t pressure_iterations = 0, viscosity_iterations = 0;  // sums over all steps
 };
 
-/// Geometry of the particles at their present places, found in each step.
+/// Geometry of the particles at their present positions, found in each step.
 template <int D>
 struct Neighbourhood {
   CellOrder<D> cells;
@@ -101,9 +101,9 @@ struct Neighbourhood {
   AlignedVector<Eigen::Matrix<double, D, D>> correction;
   AlignedVector<std::array<float, RowMoments<D>::half>> spread;  // upper half of B, for Laplacians
 
-  // Kind of each particle.
+  // Classes of particles, and wall velocities.
   AlignedVector<std::uint8_t> surface;        // at the free surface
-  AlignedVector<std::uint8_t> below_surface;  // a neighbour of one at the free surface
+  AlignedVector<std::uint8_t> below_surface;  // at the free surface or next to it
   AlignedVector<std::uint8_t> dry;            // inner wall that no snow touches
   AlignedVector<VecD<D>> slip;                // velocity of a wall particle that acts on snow, m/s
 
@@ -133,7 +133,7 @@ struct PressureSolve {
   bool enclosed = false;                           // whether there is no free surface
   double scale = 0;                                // norm of the right-hand side
   AlignedVector<double> base;                      // Pa, see find_base_pressures
-  AlignedVector<VecD<D>> sum;                      // sum of the neighbours' pressures
+  AlignedVector<VecD<D>> sum;                      // weighted sum of pressures, see sum_pressures
   Multigrid<D, 1> multigrid;
 };
 
@@ -142,7 +142,7 @@ template <int D>
 struct ShearRates {
   AlignedVector<Eigen::Matrix<double, D, D>> gradient;    // velocity gradients, 1/s
   AlignedVector<Eigen::Matrix<double, D, D>> correction;  // correction of velocity gradients
-  const float* snow_slope = nullptr;                      // near.slope without walls
+  const float* snow_slope = nullptr;                      // slopes of pairs, 0 for walls
   AlignedVector<float> pair_rate;                         // 1/s, midway between a pair
   AlignedVector<double> smooth_pressure;                  // Pa
 };
@@ -154,10 +154,10 @@ struct ViscousSolve {
   AlignedVector<float> coupling;                // coupling of velocities, one per pair
   AlignedVector<Eigen::Matrix<double, D, D>> block, inverse_block;
   AlignedVector<double> diagonal;
-  Multigrid<D, D> multigrid;  // made where it is needed
+  Multigrid<D, D> multigrid;  // built if needed
 };
 
-/// The viscous force that the pressure of a step expects.
+/// Viscous forces that the pressure of a step takes into account.
 template <int D>
 struct SplitForces {
   AlignedVector<VecD<D>> predicted_velocity;     // with gravity alone, m/s
@@ -167,14 +167,14 @@ struct SplitForces {
 
 /// Friction of walls on the particles beside them.
 struct WallFriction {
-  AlignedVector<double> share, hold;  // see find_shares
-  AlignedVector<double> drag;         // one per contact with a wall, 1/s
+  AlignedVector<double> share, weight_sum;  // see find_shares
+  AlignedVector<double> drag;               // one per contact with a wall, 1/s
 };
 
 /// Corrections of the distances between particles.
 template <int D>
 struct SpacingCorrection {
-  AlignedVector<double> yielding;        // share of a collision that the other particle takes
+  AlignedVector<double> impulse_share;   // share of a collision that the other particle takes
   AlignedVector<VecD<D>> concentration;  // gradient of the concentration, 1/m, for shifting
 };
 
@@ -193,7 +193,7 @@ struct Workspace {
   Particles<D> spare;
   Neighbourhood<D> near;
   AlignedVector<VecD<D>> before;        // velocities at the beginning of the step, m/s
-  AlignedVector<VecD<D>> change;        // change of velocities or positions by one of its parts
+  AlignedVector<VecD<D>> change;        // change of velocities or positions by a part of the step
   AlignedVector<std::uint8_t> changed;  // whether a particle is eroded or deposited
   SplitForces<D> splitting;
   PressureSolve<D> pressure;

@@ -12,8 +12,8 @@ namespace {
 /// Distance from a wall, in l0, below which its friction grows no further.
 constexpr double min_friction_distance = 0.25;
 
-/// The share of the wall's shear stress that acts on a particle at a distance, in l0: that of the
-/// first or of the second layer of a lattice, whose sum is one.
+/// The share of the wall's shear stress that acts on a particle at a distance, in l0. The shares of
+/// the first and of the second layer of a lattice add up to one.
 double share_of_mirror(double distance, double second) {
   const auto falls = [&](double from, double to) {
     return std::clamp((to - distance) / (to - from), 0.0, 1.0);
@@ -24,28 +24,30 @@ double share_of_mirror(double distance, double second) {
 /// Weight of a wall particle's friction on a particle that touches its obstacle, m; 0 if the wall
 /// particle is not in the layer at the surface.
 template <int D>
-double hold(const Model<D>& model, float weight, const VecD<D>& to_wall, const WallContact<D>& c) {
+double friction_weight(const Model<D>& model, float weight, const VecD<D>& to_wall,
+                       const WallContact<D>& c) {
   const double below = -to_wall.dot(c.normal);
   const bool at_surface = below - c.distance < model.settings().spacing;
   return at_surface ? double(weight) * std::max(0.0, below) : 0.0;
 }
 
 /// Sum of these weights over the particles that touch a wall particle's obstacle, but at least
-/// most of that on a lattice: a wall particle beside the snow has less friction.
+/// `min_touched_share` times the sum on a lattice, so that a wall particle at the edge of the snow
+/// has less friction.
 template <int D>
-double hold_of_all(const Model<D>& model, const Particles<D>& particles,
-                   const Neighbourhood<D>& near, std::size_t wall) {
+double friction_weight_sum(const Model<D>& model, const Particles<D>& particles,
+                           const Neighbourhood<D>& near, std::size_t wall) {
   double sum = 0;
   for (std::uint32_t e = near.lists.begin(wall); e < near.lists.end(wall); ++e) {
     const std::size_t i = near.lists.neighbour(e);
     const WallContact<D>* c =
         particles.is_wall(i) ? nullptr : near.contact_with(i, particles.event[wall]);
-    if (c) sum += hold(model, near.weight[e], VecD<D>(-near.separation(e)), *c);
+    if (c) sum += friction_weight(model, near.weight[e], VecD<D>(-near.separation(e)), *c);
   }
-  constexpr double touched = 0.8;
+  constexpr double min_touched_share = 0.8;
   const double on_lattice =
       (1 - model.second_layer) / (model.laplacian() * model.settings().spacing);
-  return std::max(sum, touched * on_lattice);
+  return std::max(sum, min_touched_share * on_lattice);
 }
 
 /// The share of each contact with a wall in the wall's shear stress. The particles around a wall
@@ -61,9 +63,10 @@ void find_shares(const Model<D>& model, const Particles<D>& particles, Workspace
           near.contacts.all()[k].distance / model.settings().spacing, model.second_layer);
     return;
   }
-  work.wall_friction.hold.resize(particles.size());
+  work.wall_friction.weight_sum.resize(particles.size());
   for_each_particle(particles.size(), threads, [&](std::size_t j) {
-    if (particles.is_wall(j)) work.wall_friction.hold[j] = hold_of_all(model, particles, near, j);
+    if (particles.is_wall(j))
+      work.wall_friction.weight_sum[j] = friction_weight_sum(model, particles, near, j);
   });
   for_each_particle(particles.size(), threads, [&](std::size_t i) {
     for (const WallContact<D>* c = near.contacts.begin(i); c < near.contacts.end(i); ++c) {
@@ -71,15 +74,17 @@ void find_shares(const Model<D>& model, const Particles<D>& particles, Workspace
       for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) {
         const std::size_t j = near.lists.neighbour(e);
         if (particles.is_wall(j) && particles.event[j] == c->obstacle)
-          sum += hold(model, near.weight[e], near.separation(e), *c) / work.wall_friction.hold[j];
+          sum += friction_weight(model, near.weight[e], near.separation(e), *c) /
+                 work.wall_friction.weight_sum[j];
       }
-      work.wall_friction.share[near.contacts.place(c)] = sum;
+      work.wall_friction.share[near.contacts.index_of(c)] = sum;
     }
   });
 }
 
-/// The coupling of the velocities of each pair, from the viscosity between them: that of the shear
-/// rate midway, and of the mean of both pressures. Walls have none: they act by their drag.
+/// The coupling of the velocities of each pair, from the viscosity at the shear rate midway between
+/// them and at the mean of both pressures. Wall particles have no coupling; walls act by their
+/// drag.
 template <int D>
 void find_couplings(const Model<D>& model, double factor, const Particles<D>& particles,
                     Workspace<D>& work) {
@@ -133,11 +138,11 @@ using Velocities = AlignedVector<VecD<D>>;
 constexpr double yield_tolerance = 1e-3;
 /// The iterations begin at this fraction of the way from the velocities before the step to those
 /// predicted without viscosity.
-constexpr double first_guess = 0.01;
+constexpr double first_guess_share = 0.01;
 
 /// Tolerances of an iteration's equation: in the first iteration relative to the change by gravity
 /// in a step, and then as a share of the change in the iteration before.
-constexpr double loosest_solve = 0.1, solve_share = 0.03;
+constexpr double max_solve_tolerance = 0.1, solve_share = 0.03;
 
 /// With the diagonal alone few iterations suffice if viscosity does not reach far in a step. After
 /// `max_diagonal_iterations` iterations multigrid takes over. Its sweeps of the particles'
@@ -145,9 +150,10 @@ constexpr double loosest_solve = 0.1, solve_share = 0.03;
 constexpr int max_diagonal_iterations = 12;
 constexpr double sweep_damping = 0.9;
 
-/// The wall's shear stress is that of the snow at the rate u/h with which it slides by, h its
-/// distance, and at the pressure on the wall. It acts on the particles next to the wall. Where the
-/// obstacle is not sticky, it is at most the obstacle's own friction.
+/// The wall's shear stress is that of snow with the shear rate u/h at the pressure on the wall; u
+/// is the speed at which the particle slides, and h is its distance from the wall. The stress acts
+/// on the particles next to the wall. If the obstacle is not sticky, the stress is at most the
+/// obstacle's own friction. Returns the drag, 1/s.
 template <int D>
 double wall_drag(const Model<D>& model, const Particles<D>& particles, double share, std::size_t i,
                  const WallContact<D>& c) {
@@ -204,8 +210,8 @@ void precondition_velocities(std::size_t n, int threads, const Apply& apply, con
   for_each_particle(n * D, threads, [&](std::size_t k) { z[k] += residual[k]; });
 }
 
-/// The equation of the present apparent viscosities; `start` are the velocities before viscosity
-/// acts, particles.velocity a guess that becomes the solution.
+/// Solves the equation with the present apparent viscosities. `start` holds the velocities before
+/// viscosity acts; particles.velocity holds a guess, which the solution replaces.
 template <int D>
 SolveReport solve_viscosity(const Model<D>& model, double dt, const Velocities<D>& start,
                             double tolerance, double scale, Particles<D>& particles,
@@ -228,8 +234,9 @@ SolveReport solve_viscosity(const Model<D>& model, double dt, const Velocities<D
     VecD<D> right = start[i];
     if (moves)
       for (const WallContact<D>* c = near.contacts.begin(i); c < near.contacts.end(i); ++c) {
-        double& drag = work.wall_friction.drag[near.contacts.place(c)];
-        drag = wall_drag(model, particles, work.wall_friction.share[near.contacts.place(c)], i, *c);
+        double& drag = work.wall_friction.drag[near.contacts.index_of(c)];
+        drag =
+            wall_drag(model, particles, work.wall_friction.share[near.contacts.index_of(c)], i, *c);
         const Matrix along = dt * drag * (Matrix::Identity() - c->normal * c->normal.transpose());
         block += along;
         right += along * c->velocity;
@@ -296,21 +303,20 @@ void add_gravity(const Model<D>& model, double dt, Particles<D>& particles) {
     if (particles.moves(i)) particles.velocity[i] += dt * model.gravity;
 }
 
-/// The apparent viscosity is that of the velocities after the step: it is found by fixed-point
-/// iteration (Kacanov's, which descends for Bingham fluids), from the rates of the last step, and
-/// accelerated.
+/// The apparent viscosity is that of the velocities after the step. It is found by accelerated
+/// fixed-point iteration (Kacanov's, which descends for Bingham fluids).
 template <int D>
 SolveReport apply_viscosity(const Model<D>& model, double dt, Particles<D>& particles,
                             Workspace<D>& work) {
   const Settings& s = model.settings();
-  // The iterations begin near the velocities before the step, not at those that forces have driven
-  // apart, so that creeping snow comes to rest. They do not begin quite at rest, because viscosity
-  // would keep it for too many iterations.
+  // The iterations begin near the velocities before the step, not at the velocities after the
+  // action of forces, so that creeping snow comes to rest. They do not begin exactly at rest,
+  // because viscosity would then keep the snow at rest for too many iterations.
   const Velocities<D> start = particles.velocity;
   const bool newtonian = model.rheology.is_newtonian();
   if (!newtonian)
     for (std::size_t i = 0; i < start.size(); ++i)
-      particles.velocity[i] = work.before[i] + first_guess * (start[i] - work.before[i]);
+      particles.velocity[i] = work.before[i] + first_guess_share * (start[i] - work.before[i]);
   const double scale = velocity_scale(model, dt, particles);
   find_shares(model, particles, work);
   if (!newtonian) {
@@ -320,7 +326,7 @@ SolveReport apply_viscosity(const Model<D>& model, double dt, Particles<D>& part
   SolveReport report;
   AndersonMixing<D> mixing;
   Velocities<D> last;
-  double tolerance = newtonian ? s.viscosity_tolerance : loosest_solve;
+  double tolerance = newtonian ? s.viscosity_tolerance : max_solve_tolerance;
   for (int k = 0; k < std::max(s.yield_iterations, 1); ++k) {
     const bool last_chance = k + 1 >= s.yield_iterations;
     if (last_chance) tolerance = s.viscosity_tolerance;

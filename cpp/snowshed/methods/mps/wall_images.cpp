@@ -9,9 +9,9 @@ namespace {
 constexpr std::size_t particles_with_images = 256;
 /// Minimum distance of a particle's image from a wall, in l0.
 constexpr double min_image_distance = 0.1;
-/// Two walls make a corner, with images behind both, if the cosine between their normals is
-/// smaller.
-constexpr double corner = 0.7;
+/// Two walls make a corner, with images behind both, if the cosine between their normals is at most
+/// this.
+constexpr double max_corner_cosine = 0.7;
 
 /// Another particle's contact with the same obstacle, or null.
 template <int D>
@@ -34,8 +34,8 @@ struct ImageMaker {
              const WallContact<D>* b, double rise_a, double rise_b) {
     if (r2 >= reach * reach) return 0;
     const float weight = float(reach / std::sqrt(r2) - 1);
-    const std::uint32_t first = std::uint32_t(contacts.place(a));
-    const std::uint32_t second = b ? std::uint32_t(contacts.place(b)) : first;
+    const std::uint32_t first = std::uint32_t(contacts.index_of(a));
+    const std::uint32_t second = b ? std::uint32_t(contacts.index_of(b)) : first;
     VecD<D> to = separation - rise_a * a->normal;
     if (b) to -= rise_b * b->normal;
     list.push_back(
@@ -43,7 +43,7 @@ struct ImageMaker {
     return weight;
   }
 
-  /// All images of k; returns the sum of their weights.
+  /// Makes all images of k; returns the sum of their weights.
   float make_all(std::size_t i, std::size_t k, const VecD<D>& separation) {
     float sum = 0;
     const double r2 = separation.squaredNorm();
@@ -54,7 +54,7 @@ struct ImageMaker {
       sum += make(k, separation, with_a, a, nullptr, 2 * height(*ka), 0);
       for (const WallContact<D>* b = a + 1; b < contacts.end(i); ++b) {
         const WallContact<D>* kb = contact_with(contacts, k, b->obstacle);
-        if (!kb || std::abs(a->normal.dot(b->normal)) > corner) continue;
+        if (!kb || std::abs(a->normal.dot(b->normal)) > max_corner_cosine) continue;
         sum += make(k, separation, with_a + 4 * height(*b) * height(*kb), a, b, 2 * height(*ka),
                     2 * height(*kb));
       }

@@ -7,23 +7,24 @@
 
 namespace snowshed::mps {
 
-/// The image of particle k behind a wall, or behind two at once in a corner, for particle i.
-/// For a plane wall r'^2 = r^2 + 4 h_i h_k with the distances h from the wall, which is used for
-/// curved walls, too: so i sees the image of k as far away as k that of i.
+/// The image of particle k behind a wall, or behind two at once in a corner, for particle i. Its
+/// distance is r'^2 = r^2 + 4 h_i h_k with the distances h from the wall. This holds for plane
+/// walls. It is used for curved walls, too, because i is then as far from the image of k as k from
+/// that of i.
 template <int D>
 struct WallImage {
   std::uint32_t of;          // k, which may be i itself
   float weight, slope;       // w, and w/r'^2 in 1/m2
   VecD<D> separation;        // from i to the image, m
-  std::uint32_t contact[2];  // indices of i among all contacts; both the same if there is one wall
-  double rise[2];            // twice the distance of k from each wall, m; 0 for the second of one
+  std::uint32_t contact[2];  // indices of i's contacts; equal if there is one wall
+  double rise[2];            // twice the distance of k from each wall, m; 0 without a second wall
 };
 
 template <int D>
 class WallImages {
  public:
-  /// `weight` gets, for each pair of neighbours, the sum of the weights of the neighbour and of its
-  /// images.
+  /// Makes the images. Sets `weight` of each pair to the sum of the weights of the neighbour and of
+  /// its images.
   void update(const NeighbourLists<D>& lists, const RowLists<WallContact<D>>& contacts,
               double reach, double spacing, int threads, const AlignedVector<float>& direct,
               AlignedVector<float>& weight);

@@ -8,9 +8,10 @@ namespace {
 
 /// Wall particles nearer to each other than this (in l0) push each other apart, in this number of
 /// rounds.
-constexpr double closest = 0.8;
-constexpr int pushes = 8;
-/// Tolerance of the middle of a layer, in l0; a solid that is less deep has no such layer.
+constexpr double min_separation = 0.8;
+constexpr int push_rounds = 8;
+/// Tolerance of the depth of a layer's middle, in l0; a solid that is not deep enough lacks the
+/// layer.
 constexpr double layer_tolerance = 0.25;
 
 Mat3 frame_with(const Vec3& normal, int dimension) {
@@ -32,7 +33,7 @@ bool is_bounded(const Bounds& bounds, int dimension) {
   return true;
 }
 
-/// Calls f with every cell whose coordinates differ by at most `rings`, in a fixed order.
+/// Calls f with every cell whose coordinates differ from `at` by at most `rings`, in a fixed order.
 template <std::size_t D, class F>
 void for_cells_around(const std::array<std::int32_t, D>& at, int rings, const F& f) {
   std::array<std::int32_t, D> c{};
@@ -62,7 +63,7 @@ void sort_and_unite(std::vector<std::array<std::int32_t, D>>& cells) {
   cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
 }
 
-/// The cells that points lie in, also where a period repeats them.
+/// The cells that contain points or, near the ends of a period, their repetitions.
 template <int D>
 std::vector<std::array<std::int32_t, D>> cells_with(const AlignedVector<VecD<D>>& points,
                                                     double edge, double period) {
@@ -125,9 +126,9 @@ WallParticles<D>::WallParticles(const std::vector<Obstacle>& obstacles, double s
 template <int D>
 void WallParticles<D>::push_apart(const LevelSet& shape, std::vector<VecD<D>>& points,
                                   const std::vector<double>& depth) const {
-  const double limit = closest * spacing_;
+  const double limit = min_separation * spacing_;
   std::vector<VecD<D>> shift(points.size());
-  for (int push = 0; push < pushes; ++push) {
+  for (int push = 0; push < push_rounds; ++push) {
     bool any = false;
     std::fill(shift.begin(), shift.end(), VecD<D>(VecD<D>::Zero()));
     for (std::size_t i = 0; i < points.size(); ++i)
@@ -150,10 +151,10 @@ void WallParticles<D>::push_apart(const LevelSet& shape, std::vector<VecD<D>>& p
   }
 }
 
-/// New place of a point of a lattice, if it lies in a layer.
+/// The new position of a point of a lattice, if it lies in a layer.
 template <int D>
-typename WallParticles<D>::Placed WallParticles<D>::place(const LevelSet& shape,
-                                                          const Vec3& x) const {
+typename WallParticles<D>::LayerPoint WallParticles<D>::place(const LevelSet& shape,
+                                                              const Vec3& x) const {
   const double distance = shape.distance(x), thin = shape.half_thickness(x);
   double target = thin;
   if (thin >= 0.5 * spacing_) {
@@ -169,7 +170,7 @@ typename WallParticles<D>::Placed WallParticles<D>::place(const LevelSet& shape,
   return {true, section<D>(moved), target};
 }
 
-/// The particles whose lattice points lie in a cell.
+/// Makes the particles whose lattice points lie in a cell.
 template <int D>
 void WallParticles<D>::make(std::uint32_t number, const Cell& cell, Points& to) {
   const LevelSet& shape = *(*obstacles_)[number].shape;
@@ -193,7 +194,7 @@ void WallParticles<D>::make(std::uint32_t number, const Cell& cell, Points& to) 
     const Vec3 x = lattice.origin + spacing_ * (lattice.axes * embed(index));
     if ((x - middle).norm() > around) return;
     const auto [entry, is_new] = lattice.placed.try_emplace(k);
-    Placed& placed = entry->second;
+    LayerPoint& placed = entry->second;
     if (is_new) placed = place(shape, x);
     if (!placed.exists) return;
     points.push_back(placed.position);
@@ -211,9 +212,9 @@ void WallParticles<D>::make(std::uint32_t number, const Cell& cell, Points& to) 
   }
 }
 
-/// If obstacles of a group overlap, the first one has the wall particles there. Their normal is
-/// that of the obstacle in which they are deepest, as of the union of all; it is zero if two are
-/// as deep.
+/// If obstacles of a group overlap, the first one has the wall particles there. A particle's normal
+/// is that of the obstacle in which it is deepest, as for the union of all; it is zero if two
+/// obstacles with different normals are equally deep.
 template <int D>
 const typename WallParticles<D>::Points& WallParticles<D>::points_in(Group& group,
                                                                      const Cell& cell) {
@@ -301,7 +302,7 @@ void WallParticles<D>::append_near(double time, double period, double mass, Part
     if (group.obstacles.empty()) continue;
     const bool moves = &group != &groups_.front();
     RigidPose pose;
-    AlignedVector<VecD<D>> seen;  // from a moving group
+    AlignedVector<VecD<D>> seen;  // positions in the frame of a moving group
     if (moves) {
       pose = (*obstacles_)[group.obstacles.front()].motion->at(time);
       seen = points;
@@ -319,7 +320,7 @@ std::size_t WallParticles<D>::bytes() const {
     for (const auto& cell : group.made)
       total += sizeof(cell) + cell.second.capacity() * sizeof(Point);
   for (const Lattice& lattice : lattices_)
-    total += lattice.placed.size() * sizeof(std::pair<const Cell, Placed>);
+    total += lattice.placed.size() * sizeof(std::pair<const Cell, LayerPoint>);
   return total;
 }
 

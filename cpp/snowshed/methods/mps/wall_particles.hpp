@@ -13,13 +13,14 @@ namespace snowshed::mps {
 
 /// Wall particles of obstacles, made where snow comes near.
 ///
-/// They stand in layers half a spacing, one and a half, ... below the surface. Those of the first
-/// are inner walls, the others dummy walls, as many as fill the radius of the particles at the
-/// surface [P]. They are the points of a lattice, moved along the normal to the middle of their
-/// layer; the lattice follows the faces of boxes and planes, so that these are covered evenly.
-/// Where others lie nearer than `closest`, they push each other apart along the surface (ours).
-/// Obstacles thinner than a particle have one layer, in the middle. Those too thin for dummies
-/// between the inner walls of both sides have dummies only: no pressure goes through them (ours).
+/// They lie in layers half a spacing, one and a half, ... below the surface. The first layer
+/// consists of inner walls. The others consist of dummy walls, and are as many as fill the radius
+/// of a particle at the surface [P]. Wall particles are the points of a lattice, moved along the
+/// normal to the middle of their layer; the lattice follows the faces of boxes and planes, so that
+/// these are covered evenly. On other surfaces, particles that are nearer than `min_separation`
+/// push each other apart along the surface (ours). Obstacles thinner than a particle have one
+/// layer, in the middle. Obstacles too thin for dummies between the inner walls of both sides have
+/// dummies only, so that no pressure goes through them (ours).
 template <int D>
 class WallParticles {
  public:
@@ -27,7 +28,7 @@ class WallParticles {
   /// `obstacles` must live as long as this. `reach` is the radius of the weight function, m.
   WallParticles(const std::vector<Obstacle>& obstacles, double spacing, double reach);
 
-  /// Appends to the snow all wall particles that it, or inner walls next to it, can reach.
+  /// Appends to the snow all wall particles within reach of the snow or of inner walls next to it.
   /// `period` as in CellOrder.
   void append_near(double time, double period, double mass, Particles<D>& snow);
 
@@ -44,8 +45,8 @@ class WallParticles {
     Kind kind;
   };
   using Points = std::vector<Point>;
-  /// A point of a lattice, moved to the middle of its layer, where it has one.
-  struct Placed {
+  /// A point of a lattice, moved to the middle of its layer, if it lies in one.
+  struct LayerPoint {
     bool exists = false;
     VecD<D> position;  // m
     double depth = 0;  // m, of the layer
@@ -55,10 +56,10 @@ class WallParticles {
   struct Lattice {
     Mat3 axes = Mat3::Identity();
     Vec3 origin = Vec3::Zero();
-    std::unordered_map<Cell, Placed, Hash> placed{};
+    std::unordered_map<Cell, LayerPoint, Hash> placed{};
   };
-  /// Obstacles that do not move against each other, and the particles of cells that have been
-  /// asked for.
+  /// Obstacles that do not move relative to each other, and the particles of all cells requested so
+  /// far.
   struct Group {
     std::vector<std::uint32_t> obstacles;
     std::unordered_map<Cell, Points, Hash> made;
@@ -67,7 +68,7 @@ class WallParticles {
 
   const Points& points_in(Group&, const Cell&);
   bool is_near_wall(Group&, const Cell&);
-  Placed place(const LevelSet&, const Vec3& lattice_point) const;
+  LayerPoint place(const LevelSet&, const Vec3& lattice_point) const;
   void make(std::uint32_t obstacle, const Cell&, Points&);
   void push_apart(const LevelSet&, std::vector<VecD<D>>& points,
                   const std::vector<double>& depth) const;
@@ -78,7 +79,7 @@ class WallParticles {
   double spacing_ = 0, edge_ = 0;
   int layers_ = 0;
   std::vector<Lattice> lattices_;  // one per obstacle
-  std::vector<Group> groups_;      // those at rest first
+  std::vector<Group> groups_;      // the group at rest is the first
 };
 
 /// Removes the wall particles; the others keep their order.

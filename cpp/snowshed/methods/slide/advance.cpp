@@ -17,7 +17,7 @@ void advance(const Model& model, State& state, Workspace& work) {
     work.piece_sums[std::size_t(begin / particles_in_piece)] =
         chosen_kernels().advance(view, begin, end);
   });
-  // Piece by piece, so that the sum does not depend on the threads.
+  // The sum is made piece by piece, so that it does not depend on the threads.
   const std::ptrdiff_t pieces =
       (std::ptrdiff_t(p.size()) + particles_in_piece - 1) / particles_in_piece;
   state.kinetic_energy =
@@ -72,8 +72,9 @@ void remove_marked(State& state, Workspace& work) {
 
 namespace {
 
-/// Gives new ids to the particles from `begin` on, which still have the ids of those they split
-/// from. The new ids follow the order of these, so that they do not depend on the order of storage.
+/// Gives new ids to the particles from `begin` on, which still have the ids of the particles that
+/// were split. The new ids follow the order of these ids, so that they do not depend on the order
+/// of storage.
 void number_new(State& state, Workspace& work, std::size_t begin) {
   Particles& p = state.particles;
   std::vector<std::uint32_t>& order = work.new_places;
@@ -99,14 +100,14 @@ void split_heavy(const Model& model, State& state, Workspace& work) {
     const double speed = along.norm();
     along = speed > 0 ? Vec3(along * (distance / speed)) : Vec3(distance, 0, 0);
     const Vec3 x{p.x[i], p.y[i], p.z[i]};
-    const GridPlace behind = model.terrain.place(x.x() - along.x(), x.y() - along.y());
-    const GridPlace ahead = model.terrain.place(x.x() + along.x(), x.y() + along.y());
+    const CellPosition behind = model.terrain.place(x.x() - along.x(), x.y() - along.y());
+    const CellPosition ahead = model.terrain.place(x.x() + along.x(), x.y() + along.y());
     if (!behind.inside() || !ahead.inside() || !model.terrain.known(behind) ||
         !model.terrain.known(ahead))
       continue;
     p.for_each_array([i](const char*, auto& array) { array.push_back(array[i]); });
     p.mass[i] = p.mass.back() = 0.5 * p.mass[i];
-    const auto put = [&](std::size_t at, const Vec3& to, const GridPlace& place) {
+    const auto put = [&](std::size_t at, const Vec3& to, const CellPosition& place) {
       p.x[at] = to.x();
       p.y[at] = to.y();
       p.z[at] = model.compatible() ? to.z() : model.terrain.height(place);

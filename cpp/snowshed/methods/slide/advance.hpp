@@ -5,18 +5,19 @@
 
 namespace snowshed::slide {
 
-/// New velocities and positions, brought back onto the ground. Particles that leave the terrain
-/// are marked in `work.removed`. Updates the kinetic energy and whether the slide has stopped.
+/// Computes new velocities and positions, and brings the positions back onto the ground. Particles
+/// that leave the terrain are marked in `work.removed`. Updates the kinetic energy and whether the
+/// slide has stopped.
 void advance(const Model&, State&, Workspace&);
 
-/// Removes the marked particles and their bonds, and counts the mass that they carry.
+/// Removes the marked particles and their bonds, and counts their mass as `left_terrain`.
 void remove_marked(State&, Workspace&);
 
 /// Splits particles that have become too heavy.
 void split_heavy(const Model&, State&, Workspace&);
 
-/// Stores the particles in the order of their cells. It reads only the cells' order from the
-/// workspace, which does not follow. All or nothing.
+/// Stores the particles in the order of their cells. Only the order of the cells is read from the
+/// workspace, which must be refreshed afterwards. Changes nothing if it throws.
 void sort_by_cell(State&, Workspace&);
 
 }  // namespace snowshed::slide

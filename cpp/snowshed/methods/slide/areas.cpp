@@ -33,7 +33,7 @@ NodeRange nodes_within(const Ring& ring, int axis, int nodes) {
           int(std::clamp(std::ceil(high) + 1, 0.0, last))};
 }
 
-/// In units of cells.
+/// Returns a ring in units of cells.
 Ring scaled(const Ring& ring, double cell) {
   Ring result;
   for (const Point2& p : ring) result.push_back({p[0] / cell, p[1] / cell});

@@ -15,7 +15,8 @@ struct Area {
   std::string name;
   Polygon polygon;
   double thickness = 0;  // m of snow, normal to the ground; unused for areas of resistance
-  /// Instead, for releases: the thickness in the cells around nodes.
+  /// For releases, in place of `thickness`: a raster with the thickness in the cell around each
+  /// node.
   std::shared_ptr<const HeightField> map;
   double max_thickness = 100;  // m, that the map may give
 };
@@ -27,17 +28,18 @@ struct Areas {
 /// Distance around an area within which a node still belongs to it.
 enum class Reach {
   edge,      // on the outline, except for rounding
-  one_cell,  // so near that snow of the area may lie in the node's cell
+  one_cell,  // near enough for snow of the area to lie in the node's cell
 };
 
-/// Returns the thickness at each node of a grid, 0 outside of the areas. Where areas overlap, each
-/// further area gives the mean of its own thickness and of that so far, as in AvaFrame.
+/// Returns the thickness at each node of a grid, 0 outside of the areas. Where areas overlap, the
+/// thickness becomes the mean of its value so far and that of the next area, as in AvaFrame.
 std::vector<double> thickness_at_nodes(const std::vector<Area>& areas, const Terrain& terrain,
                                        Reach reach);
 
-/// Returns the outline of an area, widened by half of `radius` as AvaFrame 2.1 does it. The outside
-/// follows from the sense of rotation that most corners show as seen from the first one. For some
-/// outlines with deep bays this sense is wrong. The result is then narrower than the area.
+/// Returns the outline of an area, widened by half of `radius` as AvaFrame 2.1 does it. The outline
+/// moves to the side that follows from the sense in which most corners are passed, as seen from the
+/// first one. For some outlines with deep bays this sense is wrong, and the result is narrower than
+/// the area.
 Ring widened_as_avaframe(const Ring& outline, double radius);
 
 }  // namespace snowshed::slide

@@ -19,7 +19,7 @@ class MapPoints {
       : points_(points_of(particles, begin)), grid_(points_, reach, stop), reach_(reach) {}
 
   /// Calls visit(triangle, longest side) for the Delaunay triangles with no side beyond the reach,
-  /// each once. A triangle belongs to the triangulation where no other point lies within its
+  /// each once. A triangle belongs to the triangulation if no other point lies within its
   /// circumscribed circle.
   template <class Visit>
   void for_each_triangle(Visit visit, const StopRequest& stop) const {
@@ -60,10 +60,10 @@ class MapPoints {
     const double bx = points_[t[1]].x() - o.x(), by = points_[t[1]].z() - o.z();
     const double cx = points_[t[2]].x() - o.x(), cy = points_[t[2]].z() - o.z();
     const double d = 2 * (bx * cy - by * cx), b2 = bx * bx + by * by, c2 = cx * cx + cy * cy;
-    if (std::abs(d) < 1e-6 * (b2 + c2)) return false;  // hardly an area
+    if (std::abs(d) < 1e-6 * (b2 + c2)) return false;  // almost no area
     const Vec3 centre{o.x() + (cy * b2 - by * c2) / d, 0.0, o.z() + (bx * c2 - cx * b2) / d};
     const double radius = (1 - 1e-9) * (centre - o).norm();
-    // The circle of a triangle with sides within the reach and not too flat is within it, too.
+    // The radius of the circle is within the reach, too, because the triangle is not too flat.
     bool empty = true;
     grid_.for_each_near(centre, [&](std::uint32_t i, const Vec3& p) {
       if (i != t[0] && i != t[1] && i != t[2] && (p - centre).norm() < radius) empty = false;
@@ -101,7 +101,7 @@ bool crosses_outline(const std::vector<Area>& areas, const Point2& a, const Poin
   return false;
 }
 
-/// Pairs of points: for each first point a chain of those it is paired with, in little memory.
+/// A set of pairs of points in little memory: each first point has a chain of its second points.
 class PairSet {
  public:
   explicit PairSet(std::size_t points) : newest_(points, end) {}

@@ -1,4 +1,4 @@
-// Bonds between particles: elastic until they are strained too much, then gone for good.
+// Bonds between particles: elastic up to a largest strain, beyond which they break for good.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace snowshed::slide {
 
-/// The bonds that hold, each between two particles (by their places in storage).
+/// The bonds that hold, each between two particles, given by their storage indices.
 struct Bonds {
   std::vector<std::uint32_t> first, second;
   std::vector<double> rest_length;  // m
@@ -36,15 +36,15 @@ struct Bonds {
 Bonds bonds_between(const Particles& particles, std::size_t begin, double spacing,
                     const std::vector<Area>* areas, const StopRequest& stop = {});
 
-/// Removes the bonds of particles that are gone and renumbers the rest: `new_place[i]` is where
-/// particle i is stored now, `removed_particle` where it is not.
+/// Removes the bonds of removed particles and renumbers the others: `new_place[i]` is the new
+/// storage index of particle i, or `removed_particle`.
 inline constexpr std::uint32_t removed_particle = 0xffffffff;
 void renumber(Bonds& bonds, const std::vector<std::uint32_t>& new_place);
 
 /// Returns the longest step in which the vibration of bonds does not grow, s; infinite without
 /// bonds. A bond has the stiffness k = E h / sqrt(3). A particle of mass m whose bonds have the
-/// stiffness K in all vibrates with omega^2 <= 2 K / m (Gershgorin), and forces at the end points
-/// of the velocities before are stable where omega dt <= sqrt(2).
+/// total stiffness K vibrates with omega^2 <= 2 K / m (Gershgorin). Forces are evaluated at the
+/// positions to which the velocities before the step lead, which is stable if omega dt <= sqrt(2).
 double max_bond_step(const Bonds& bonds, const Particles& particles,
                      const AlignedVector<double>& thickness, double modulus);
 

@@ -30,9 +30,9 @@ void CellLists::update(const AlignedVector<std::int32_t>& column,
                        const AlignedVector<std::int32_t>& row) {
   find_rectangle(column, row);
   const std::size_t n = column.size(), cells = std::size_t(columns_) * std::size_t(rows_);
-  // A stable counting sort. While particles are counted, a cell's number is stored two places
-  // further; while they are ordered, its begin is stored one place further, and grows until it is
-  // the end.
+  // A stable counting sort. During the count the number of particles in cell c is stored at c + 2.
+  // During the ordering the begin of cell c is stored at c + 1, where it grows to the end of the
+  // cell.
   begin_.assign(cells + 2, 0);
   const auto cell_of = [&](std::size_t i) {
     return std::size_t(row[i] - first_row_) * std::size_t(columns_) +

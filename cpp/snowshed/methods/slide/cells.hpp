@@ -13,7 +13,7 @@ namespace snowshed::slide {
 /// that holds them all and a margin of one cell. Within a cell they keep the order of storage.
 class CellLists {
  public:
-  /// `column` and `row` are those of the particles' cells.
+  /// `column` and `row` hold the cell of each particle.
   void update(const AlignedVector<std::int32_t>& column, const AlignedVector<std::int32_t>& row);
 
   /// Reserves memory for this number of particles anywhere on the terrain.
@@ -32,7 +32,7 @@ class CellLists {
   }
 
   std::size_t size() const { return order_.size(); }
-  /// Where the particle of an entry is stored.
+  /// The storage index of an entry's particle.
   std::uint32_t particle(std::size_t entry) const { return order_[entry]; }
   const std::vector<std::uint32_t>& order() const { return order_; }
   const std::uint32_t* begins() const { return begin_.data(); }

@@ -33,7 +33,7 @@ void visit_state(Archive& archive, State& s) {
 
 void check_places(const StateReader& archive, const Particles& p, const Terrain& terrain) {
   for (std::size_t i = 0; i < p.size(); ++i) {
-    const GridPlace place = terrain.place(p.x[i], p.y[i]);
+    const CellPosition place = terrain.place(p.x[i], p.y[i]);
     if (!place.inside() || !terrain.known(place))
       archive.refuse("a particle lies outside of the terrain");
     if (!(p.mass[i] > 0)) archive.refuse("a particle has no mass");

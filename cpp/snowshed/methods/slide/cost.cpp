@@ -8,7 +8,7 @@
 namespace snowshed::slide {
 namespace {
 
-/// Memory of a particle with three bonds, and of a node of the terrain.
+/// Bytes of a particle with three bonds, and of a node of the terrain.
 constexpr double bytes_per_particle = 620, bytes_per_node = 100;
 
 Point2 middle(const Ring& ring) {
@@ -27,7 +27,7 @@ double block_travel_time(const Terrain& terrain, const Settings& s, const Area& 
   Vec3 x(start[0], start[1], 0), u = Vec3::Zero();
   double time = 0;
   for (; time < max_time; time += dt) {
-    const GridPlace place = terrain.place(x.x(), x.y());
+    const CellPosition place = terrain.place(x.x(), x.y());
     if (!place.inside() || !terrain.known(place)) break;
     const Vec3 n = terrain.normal(place);
     u -= u.dot(n) * n;
@@ -50,7 +50,7 @@ CostEstimate estimate_cost(const Settings& s, const SceneView& scene, const Area
   cost.particles = {particles};
   cost.total_particles = particles;
   cost.time_step = s.time_step;
-  // The snow spreads meanwhile, and its last parts creep.
+  // The slide takes longer than a block, because the snow spreads and its last parts creep.
   constexpr double longer_than_block = 1.5;
   const double block = block_travel_time(terrain, s, release, scene.gravity, max_time);
   cost.event_time = std::min(longer_than_block * block, max_time);

@@ -32,8 +32,8 @@ Drag drag_parts(const Model& model, const Workspace& work, std::size_t i) {
 }
 
 /// The sum over the neighbours of a particle of m_l (R - r)^3; R is the width of a cell.
-double cover_of(const Particles& p, const CellLists& cells, const Places& places, std::uint32_t i,
-                double radius) {
+double kernel_mass_sum(const Particles& p, const CellLists& cells, const Places& places,
+                       std::uint32_t i, double radius) {
   const int column = places.column[i] - cells.first_column();
   const int row = places.row[i] - cells.first_row();
   double sum = 0;
@@ -51,9 +51,11 @@ double cover_of(const Particles& p, const CellLists& cells, const Places& places
 double raised_integral(double n) {
   const double rest = 1 - few_neighbours.power;
   // Up to this number of neighbours the factor is 2.
-  const double twofold = std::pow(few_neighbours.factor, 1 / few_neighbours.power);
-  if (n <= twofold) return 2 * n;
-  return twofold + n + few_neighbours.factor / rest * (std::pow(n, rest) - std::pow(twofold, rest));
+  const double neighbours_at_factor_2 = std::pow(few_neighbours.factor, 1 / few_neighbours.power);
+  if (n <= neighbours_at_factor_2) return 2 * n;
+  return neighbours_at_factor_2 + n +
+         few_neighbours.factor / rest *
+             (std::pow(n, rest) - std::pow(neighbours_at_factor_2, rest));
 }
 
 /// The potential energy of the pressure (kernels/surface_pressure.hpp), J: sum_k m_k g n_z h_k / 2,
@@ -63,11 +65,11 @@ double pressure_energy(const Model& model, const State& state, const Workspace& 
   const Particles& p = state.particles;
   double sum = 0;
   for (std::uint32_t i = 0; i < p.size(); ++i) {
-    const double cover = cover_of(p, work.cells, work.places, i, radius);
-    const double seen = 10 / (radius * radius * radius) * cover / p.mass[i];
+    const double mass_sum = kernel_mass_sum(p, work.cells, work.places, i, radius);
+    const double neighbours = 10 / (radius * radius * radius) * mass_sum / p.mass[i];
     const double thickness_of_one = p.mass[i] / (pi * radius * radius * model.settings.density);
     sum += 0.5 * p.mass[i] * model.gravity * work.places.nz[i] * thickness_of_one *
-           raised_integral(seen);
+           raised_integral(neighbours);
   }
   return sum;
 }
@@ -122,7 +124,7 @@ void EnergyAudit::after_ground(const Model& model, const State& state, const Wor
   }
 }
 
-/// The energy of the bonds that break.
+/// Adds the energy of the bonds that break in this step.
 void EnergyAudit::add_broken(const Model& model, const State& state, const Workspace& work,
                              EnergyBalance& e) const {
   const Bonds& bonds = state.bonds;
@@ -148,11 +150,11 @@ void EnergyAudit::after_motion(const Model& model, const State& state, const Wor
       e.left_terrain += mass * (0.5 * before_[i].squaredNorm() + model.gravity * heights_[i]);
       continue;
     }
-    // Friction shortens the velocity; afterwards the ground turns it.
-    const Vec3 pushed = before_[i] + state.step * Vec3(l.ax[i], l.ay[i], l.az[i]);
-    const double after = velocity_at(state, i).norm(), before = pushed.norm();
-    const Vec3 slowed = before > 0 ? Vec3(pushed * (after / before)) : pushed;
-    const double work_of_friction = 0.5 * mass * (pushed - slowed).dot(before_[i] + slowed);
+    // Friction reduces the velocity, and afterwards the ground turns it.
+    const Vec3 accelerated = before_[i] + state.step * Vec3(l.ax[i], l.ay[i], l.az[i]);
+    const double after = velocity_at(state, i).norm(), before = accelerated.norm();
+    const Vec3 slowed = before > 0 ? Vec3(accelerated * (after / before)) : accelerated;
+    const double work_of_friction = 0.5 * mass * (accelerated - slowed).dot(before_[i] + slowed);
     const Drag drag = drag_parts(model, work, i);
     const double turbulent = drag.turbulent * after * after;
     const double resistance = drag.resistance * after * after;

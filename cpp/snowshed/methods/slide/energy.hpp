@@ -12,18 +12,18 @@ struct Model;
 struct State;
 struct Workspace;
 
-/// The energy of a slide, J. The first three are the present store; the others are sums over all
-/// steps of the energy that left it. The balance closes when `residual` is small beside the drop of
-/// potential energy.
+/// The energy of a slide, J. The first three are the energies stored now, and `added` is the energy
+/// of new snow. The others are sums over all steps of the energy that left the store. The balance
+/// closes when `residual` is small beside the drop of potential energy.
 struct EnergyBalance {
-  double kinetic = 0, potential = 0;  // the latter with that of the snow's thickness
+  double kinetic = 0, potential = 0;  // the latter with the energy of the snow's thickness
   double bonds = 0;                   // elastic
   double coulomb = 0, turbulent = 0;  // friction with the ground: mu sigma, and rho g u^2 / xi
   double resistance = 0;              // loss to forest and buildings
   double viscosity = 0;               // artificial
-  double entrainment = 0;             // to bring snow up to speed, and to break it loose
-  double broken = 0;                  // energy that bonds held as they broke
-  double left_terrain = 0;            // carried beyond the terrain
+  double entrainment = 0;             // to accelerate entrained snow and to break it loose
+  double broken = 0;                  // energy of bonds when they broke
+  double left_terrain = 0;            // energy of snow that left the terrain
   double added = 0;                   // energy of snow when it was released or entrained
 
   double stored() const { return kinetic + potential + bonds; }
@@ -33,10 +33,10 @@ struct EnergyBalance {
   double residual() const { return stored() + spent() - added; }
 };
 
-/// Returns the balance as tables have it, names with units.
+/// Returns the energies of the balance with the names of tables, which end in the unit.
 NamedEnergies named_energies(const EnergyBalance&);
 
-/// Fills in the energy that is stored now.
+/// Sets the stored energies of a balance.
 void store_energy(const Model&, const State&, const Workspace&, EnergyBalance&);
 
 /// Audits the energy of a step: it is called between its parts, reads velocities and loads, and
@@ -51,9 +51,9 @@ class EnergyAudit {
   }
 
   void begin_step(const State&);
-  /// After friction, viscosity and entrainment are known.
+  /// Called after friction, viscosity and entrainment are known.
   void after_ground(const Model&, const State&, const Workspace&, EnergyBalance&);
-  /// Before bonds that break and particles that left the terrain are removed.
+  /// Called before bonds that break and particles that left the terrain are removed.
   void after_motion(const Model&, const State&, const Workspace&, EnergyBalance&) const;
 
  private:

@@ -30,11 +30,11 @@ void SolverImpl::visit_fields(Visit visit) const {
 }
 
 std::vector<FieldInfo> SolverImpl::fields() const {
-  return listed_fields([this](const auto& visit) { visit_fields(visit); });
+  return list_fields([this](const auto& visit) { visit_fields(visit); });
 }
 
 FieldView SolverImpl::field(const std::string& name) const {
-  return found_field(name, [this](const auto& visit) { visit_fields(visit); });
+  return find_field(name, [this](const auto& visit) { visit_fields(visit); });
 }
 
 ParticleState SolverImpl::state() const {
@@ -50,7 +50,7 @@ ParticleState SolverImpl::state() const {
     s.positions.push_back({p.x[i], p.y[i], p.z[i]});
     s.velocities.push_back({p.ux[i], p.uy[i], p.uz[i]});
     s.masses.push_back(p.mass[i]);
-    // Hydrostatic, at the base.
+    // The hydrostatic pressure at the base.
     s.pressures.push_back(model_.settings.density * model_.gravity * workspace_.places.nz[i] *
                           workspace_.thickness[i]);
     s.ids.push_back(p.id[i]);
@@ -59,7 +59,7 @@ ParticleState SolverImpl::state() const {
   return s;
 }
 
-/// Adds thickness, speed, how many bonds hold a particle, and the bonds as lines.
+/// Adds thickness, speed and number of bonds of each particle, and the bonds as lines.
 PointCloud SolverImpl::snapshot() const {
   PointCloud cloud = Method::snapshot();
   const std::vector<std::uint32_t>& order = order_by_id();
@@ -87,7 +87,7 @@ PointCloud SolverImpl::snapshot() const {
   return cloud;
 }
 
-/// Mass that was released and entrained, and where it is: the sums differ by rounding alone.
+/// The mass balance. Its residual consists of rounding errors only.
 ReportsRun::Section SolverImpl::run_section() const {
   const MassBalance& m = state_.balance;
   const double on_terrain = compensated_sum(state_.particles.mass.data(), size());
@@ -118,9 +118,10 @@ std::size_t SolverImpl::bytes() const {
   state_.particles.for_each_array(
       [&total](const char*, const auto& array) { total += bytes_of(array); });
   const Bonds& bonds = state_.bonds;
-  total += bytes_of(bonds.first, bonds.second, bonds.rest_length, state_.peaks.thickness,
-                    state_.peaks.speed, state_.erodible, workspace_.thickness, workspace_.predicted,
-                    workspace_.pushed, workspace_.sorted_pressing, workspace_.bond_force);
+  total +=
+      bytes_of(bonds.first, bonds.second, bonds.rest_length, state_.peaks.thickness,
+               state_.peaks.speed, state_.erodible, workspace_.thickness, workspace_.predicted,
+               workspace_.pressure_force, workspace_.sorted_pressure_factor, workspace_.bond_force);
   const Loads& l = workspace_.loads;
   total += bytes_of(l.ax, l.ay, l.az, l.yield, l.drag, l.speed);
   Places::for_each_array(workspace_.places, [&](const auto& array) { total += bytes_of(array); });

@@ -10,7 +10,7 @@ namespace {
 constexpr double min_speed = 1e-6;  // m/s
 
 /// The node nearest to a place.
-std::size_t nearest_node(const Terrain& terrain, const GridPlace& p) {
+std::size_t nearest_node(const Terrain& terrain, const CellPosition& p) {
   return terrain.index(p.column + int(p.east >= 0.5), p.row + int(p.north >= 0.5));
 }
 
@@ -64,7 +64,7 @@ void apply_entrainment_and_resistance(const Model& model, State& state, Workspac
       work.entrained[i] = state.erodible[node] > 0 ? entrain_by(model, state, v, p, i, node) : 0.0;
     if (!model.resistance.empty())
       v.drag[i] += model.resistance[node] / std::max(v.thickness[i], min_thickness);
-    if (model.compatible() && !work.entrained.empty()) {  // forces on the mass before, there
+    if (model.compatible() && !work.entrained.empty()) {  // there forces act on the mass before
       const double share = 1 - work.entrained[i] / p.mass[i];
       for (double* load : {v.ax, v.ay, v.az, v.yield, v.drag}) load[i] *= share;
     }

@@ -5,14 +5,14 @@
 
 namespace snowshed::slide {
 
-/// The mixing of velocities, gravity, friction, resistance and entrainment: one particle at a time.
-/// Changes velocities, and masses where snow is entrained.
+/// Applies the mixing of velocities, gravity, friction, resistance and entrainment, one particle at
+/// a time. Changes velocities, and masses where snow is entrained.
 void apply_ground(const Model&, State&, Workspace&);
 
-/// Forces between particles: the gradient of the snow's own pressure by smoothed particle
+/// Finds the forces between particles: the gradient of the snow's own pressure by smoothed particle
 /// hydrodynamics, along the ground or, in compatible mode, along the map (see
 /// kernels/surface_pressure.hpp and kernels/map_pressure.hpp), and the forces of the bonds. Marks
-/// those that are strained too much.
+/// the bonds that are strained too much.
 void apply_neighbours(const Model&, State&, Workspace&);
 
 /// Removes the bonds that are marked.

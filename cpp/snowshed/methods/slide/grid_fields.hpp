@@ -33,10 +33,10 @@ class GridFields {
   /// at its nodes.
   void take_shape(const CellLists& cells);
 
-  /// The nodes of the rectangle, row by row, and where it begins on the terrain.
+  /// The nodes of the rectangle, row by row, and its first column and row on the terrain.
   const Node* nodes() const { return nodes_.data(); }
   Node* nodes() { return nodes_.data(); }
-  /// Room for mass and momentum on the nodes of the rectangle.
+  /// Memory for mass and momentum on the nodes of the rectangle.
   Node* sums() {
     sums_.resize(nodes_.size());
     return sums_.data();
@@ -45,7 +45,7 @@ class GridFields {
   int first_row() const { return first_row_; }
   int columns() const { return columns_; }
 
-  /// One value of each node of the terrain.
+  /// One value for each node of the terrain.
   std::vector<double> thickness_everywhere(const Terrain& terrain) const;
   std::vector<double> speed_everywhere(const Terrain& terrain) const;
 

@@ -11,7 +11,7 @@
 namespace snowshed::slide {
 namespace {
 
-Ring moved(const Ring& ring, const HeightField& field) {
+Ring relative_to_field(const Ring& ring, const HeightField& field) {
   Ring local;
   for (const Point2& p : ring) local.push_back({p[0] - field.west, p[1] - field.south});
   return local;
@@ -21,8 +21,9 @@ template <class Spec>
 Area area_of(const Spec& spec, const HeightField& field) {
   Area area;
   area.name = spec.name;
-  area.polygon.outline = moved(spec.outline, field);
-  for (const HoleSpec& hole : spec.holes) area.polygon.holes.push_back(moved(hole.outline, field));
+  area.polygon.outline = relative_to_field(spec.outline, field);
+  for (const HoleSpec& hole : spec.holes)
+    area.polygon.holes.push_back(relative_to_field(hole.outline, field));
   return area;
 }
 
@@ -35,7 +36,7 @@ std::vector<Area> areas_of(const std::vector<AreaSpec>& specs, const HeightField
   return areas;
 }
 
-/// Throws if the ground under a release, or anywhere, has an impossible cliff.
+/// Throws InputError if `cliff` describes an impossible cliff.
 void check_cliff(const std::string& where, const std::string& cliff, double max_slope) {
   if (cliff.empty()) return;
   throw InputError(where, "elevations of " + cliff + "; are some missing? At most " +
@@ -56,7 +57,7 @@ HeightField read_terrain(const TerrainSpec& terrain, const Settings& settings,
   }
 }
 
-/// The areas, from the south-west node of the grid.
+/// The areas, in coordinates from the south-west node of the grid.
 Areas read_areas(const TerrainSpec& terrain, const HeightField& field,
                  const std::filesystem::path& base_dir) {
   Areas areas;

@@ -17,8 +17,8 @@ enum class FrictionScheme {
 
 /// Correction of the pressure for few neighbours. With n neighbours in the kernel the pressure is
 /// multiplied by 1 + factor n^-power, at most by 2. In a triangular lattice with N particles within
-/// the kernel the sum gives n = N - 5 N^-0.4, within a few percent for N above 10; this is its
-/// inverse, to 2 %.
+/// the kernel the sum gives n = N - 5 N^-0.4, within a few percent for N above 10. The factor is N
+/// / n within 2 %.
 struct FewNeighbours {
   double factor, power;
 };
@@ -39,7 +39,7 @@ struct View {
 
   // The snow on the nodes of a rectangle: records of thickness and velocity, row by row.
   const double* flow;
-  int flow_column, flow_row, flow_columns;  // the first node, counted from that of the ground
+  int flow_column, flow_row, flow_columns;  // the first node, on the grid of the ground
 
   // The same records while they are computed, and the peaks that they raise at the nodes of the
   // terrain, or null.
@@ -63,12 +63,12 @@ struct View {
   double* drag;          // 1/m, deceleration over the square of the speed
   double* speed;         // m/s, at the beginning of the step
   double* predicted;     // records of x, y, z at the end of the step without forces, and thickness
-  double* pushed;        // records of force by the snow's pressure (N) and 0
-  char* removed;         // set for those that left the terrain
+  double* pressure_force;  // records of force by the snow's pressure (N) and 0
+  char* removed;           // set for particles that left the terrain
 
   // Particles in the order of their cells; in the default mode with z and the factor on the
   // pressure.
-  double *sorted_x, *sorted_y, *sorted_z, *sorted_mass, *sorted_pressing;
+  double *sorted_x, *sorted_y, *sorted_z, *sorted_mass, *sorted_pressure_factor;
   const std::uint32_t* sorted_particle;
   const std::uint32_t* cell_begin;  // entries of the cells of a rectangle with a margin, row by row
   int cell_columns, cell_rows;
@@ -89,9 +89,10 @@ struct View {
   double added_speed;  // m/s; AvaFrame adds it where it divides by a speed
 };
 
-/// Each takes the particles (bonds, cells) of a range; ranges may run at the same time.
+/// Each kernel processes a range of particles or bonds, or a row; several of these may run at the
+/// same time.
 struct Kernels {
-  /// Finds the places of the particles, all on the terrain, and the normals there.
+  /// Finds the places of the particles, which must be on the terrain, and the normals there.
   void (*locate)(const View&, std::ptrdiff_t begin, std::ptrdiff_t end);
   /// Mixes velocities with those of the snow around and finds the forces of the ground.
   void (*ground)(const View&, std::ptrdiff_t begin, std::ptrdiff_t end);
@@ -119,7 +120,7 @@ struct Kernels {
                  std::int32_t& high);
 };
 
-/// Returns those of the instruction set in use.
+/// Returns the kernels of the instruction set in use.
 const Kernels& chosen_kernels();
 
 }  // namespace snowshed::slide

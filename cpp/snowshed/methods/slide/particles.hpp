@@ -14,7 +14,7 @@ struct Particles {
   AlignedVector<double> x, y, z;     // m
   AlignedVector<double> ux, uy, uz;  // m/s, along the ground
   AlignedVector<double> mass;        // kg
-  AlignedVector<double> fresh_mass;  // kg, that of a particle as it is seeded; decides on splitting
+  AlignedVector<double> fresh_mass;  // kg, of a particle when it is seeded; decides on splitting
   AlignedVector<std::uint32_t> id;
   AlignedVector<std::uint16_t> event;
 

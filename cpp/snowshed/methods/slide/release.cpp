@@ -24,20 +24,21 @@ double lattice_side(double area, double points) { return std::sqrt(area / points
 
 void place_on_ground(const Terrain& terrain, double x, double y, double mass,
                      ParticleBatch& batch) {
-  const GridPlace place = terrain.place(x, y);
+  const CellPosition place = terrain.place(x, y);
   batch.positions.push_back({x, y, terrain.height(place)});
   batch.masses.push_back(mass);
 }
 
 // --- as AvaFrame does it ------------------------------------------------------------------------
 
-/// The points of the lattice from the origin that lie in the square around a node.
+/// Calls visit(x, y) for the points of the lattice from the origin that lie in the square around a
+/// node.
 template <class Visit>
 void for_lattice_points_near(int column, int row, double cell, double side, Visit visit) {
   const double height = side * row_distance;
   const double west = (column - 0.5) * cell, south = (row - 0.5) * cell;
   const double east = (column + 0.5) * cell, north = (row + 0.5) * cell;
-  // Rounded toward zero first: there are no points west or south of the origin.
+  // Rounding toward zero leaves out points west or south of the origin.
   const auto first = [](double edge, double step) {
     const int i = int(edge / step);
     return i * step < edge ? i + 1 : i;
@@ -48,7 +49,7 @@ void for_lattice_points_near(int column, int row, double cell, double side, Visi
       if (i * side >= west && j * height >= south) visit(i * side, j * height);
 }
 
-/// The share of the areas' sloping ground that it covers on the map.
+/// The area of the nodes with snow on the map, over the area of their sloping ground.
 double projected_share(const Terrain& terrain, const std::vector<double>& thickness) {
   double sloping = 0, projected = 0;
   for (std::size_t i = 0; i < thickness.size(); ++i)
@@ -132,7 +133,7 @@ double thickness_at(const Area& area, double x, double y) {
   return m.height(column, row);
 }
 
-/// The snow of a thickness raster: the thickest, m, and that of all its cells, m3.
+/// The largest thickness (m) and the volume (m3) of the snow of a thickness raster.
 struct SnowOfMap {
   double thickest = 0, volume = 0;
 };
@@ -147,7 +148,8 @@ SnowOfMap snow_of(const HeightField& map) {
   return snow;
 }
 
-/// The mean of a map's thickness over an area. Throws if the map does not cover all of it.
+/// The mean thickness over an area, m. Throws InputError if the area's map does not cover all of
+/// it.
 double mean_thickness(const Area& area, const Terrain& terrain, std::size_t index) {
   if (!area.map) return area.thickness;
   const HeightField& m = *area.map;
@@ -205,7 +207,7 @@ Ground ground_under(const Terrain& terrain, const Polygon& polygon) {
   const Bounds b = bounds_of(polygon.outline);
   const double step = terrain.cell() / 2;
   const auto look_at = [&](double x, double y) {
-    const GridPlace p = terrain.place(x, y);
+    const CellPosition p = terrain.place(x, y);
     if (!p.inside()) return;
     const Vec3 n = terrain.normal(p);
     g.stretch += 1 / n.z();
@@ -216,7 +218,7 @@ Ground ground_under(const Terrain& terrain, const Polygon& polygon) {
   for (double y = b.low[1] + step / 2; y < b.high[1]; y += step)
     for (double x = b.low[0] + step / 2; x < b.high[0]; x += step)
       if (contains(polygon, {x, y})) look_at(x, y);
-  // Areas narrower than the points are apart may lie between them.
+  // Areas narrower than the distance of the points may contain none.
   if (g.points == 0)
     for (const Point2& corner : polygon.outline) look_at(corner[0], corner[1]);
   if (g.points == 0) return Ground{1.0, 1.0, 0.0, 0};
@@ -229,8 +231,8 @@ Ground ground_under(const Terrain& terrain, const Polygon& polygon) {
   return g;
 }
 
-/// Calls visit(x, y) for the points of a lattice within a ring's bounds, row by row; it begins at
-/// `origin` and its rows run along the fall line.
+/// Calls visit(x, y) for the points of a lattice within a ring's bounds, row by row. The lattice
+/// begins at `origin`, and its rows run along the fall line.
 template <class Visit>
 void for_lattice_points(const Ring& ring, const Point2& origin, const Ground& along, double side,
                         Visit visit) {
@@ -286,7 +288,7 @@ ParticleBatch seed_area(const Settings& s, const Terrain& terrain, const Area& a
   for_lattice_points(area.polygon.outline, centroid(area.polygon.outline), ground,
                      lattice_side(cell * cell, points), [&](double x, double y) {
                        give_up();
-                       const GridPlace p = terrain.place(x, y);
+                       const CellPosition p = terrain.place(x, y);
                        if (!p.inside() || !contains(area.polygon, {x, y})) return;
                        const double share = thickness_at(area, x, y) / terrain.normal(p).z();
                        place_on_ground(terrain, x, y, share, batch);

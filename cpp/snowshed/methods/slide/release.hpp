@@ -10,7 +10,7 @@
 
 namespace snowshed::slide {
 
-/// Returns the largest mass of a fresh particle, kg: that of a layer of the given thickness over
+/// Returns the largest mass of a fresh particle, kg: the mass of a layer of `layer_thickness` over
 /// one cell.
 double mass_per_particle(const Settings& settings, double cell);
 
@@ -19,13 +19,13 @@ double mass_per_particle(const Settings& settings, double cell);
 double lattice_spacing(const ParticleBatch& batch);
 
 /// Throws InputError if the release has so many particles or corners that setting it up takes more
-/// than seconds or a gigabyte.
+/// than some seconds or a gigabyte.
 void check_effort(const Settings& settings, const Terrain& terrain, const std::vector<Area>& areas);
 
 /// Returns the particles of all release areas, on triangular lattices, a batch for each area.
 ///
 /// Improved mode: the lattice of each area begins at its centre and follows its mean slope, so the
-/// result does not depend on the position of the grid. A layer thinner than that of a particle has
+/// result does not depend on the position of the grid. A layer thinner than `layer_thickness` has
 /// one particle per cell. The mass is exactly that of the thickness over the sloping area.
 ///
 /// Compatible mode: one lattice begins at the grid's origin. The mean slope of all areas decides

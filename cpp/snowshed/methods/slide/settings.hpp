@@ -31,10 +31,10 @@ struct Settings {
   double min_bond_length = 1e-3;  // m, below which a bond exerts no force
 
   double entrained_density = 100;  // kg/m3
-  double erosion_energy = 5000;    // J/kg; 0: all that the snow sweeps over
+  double erosion_energy = 5000;    // J/kg; 0: all snow below the slide is entrained
   double entrainment_shear = 0;    // N/m2, resistance of the entrained snow against shear
   double entrainment_work = 0;     // J/kg, to break it up
-  double split_ratio = 1.5;        // times the mass of a fresh particle, beyond which it splits
+  double split_ratio = 1.5;        // mass over that of a fresh particle above which it splits
 
   double stop_ratio = 0.01;  // kinetic energy over its peak at which the slide has stopped
   int threads = 0;           // 0: all

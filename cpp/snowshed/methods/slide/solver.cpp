@@ -18,7 +18,7 @@ namespace {
 /// Steps between two sorts of the particles by their cells.
 constexpr int steps_between_sorts = 32;
 
-/// Where a node lies on the map, m.
+/// The position of a node on the map as text, m.
 std::string on_map(const Terrain& terrain, int column, int row) {
   char text[80];
   std::snprintf(text, sizeof text, "%.10g, %.10g", terrain.west() + column * terrain.cell(),
@@ -86,7 +86,7 @@ void SolverImpl::append(State& state, const ParticleBatch& batch, const StopRequ
   p.resize(old + batch.positions.size());
   for (std::size_t k = 0; k < batch.positions.size(); ++k) {
     const Vec3& x = batch.positions[k];
-    const GridPlace place = model_.terrain.place(x.x(), x.y());
+    const CellPosition place = model_.terrain.place(x.x(), x.y());
     if (!place.inside() || std::isnan(model_.terrain.height(place)))
       throw SimulationError("a particle at (" + std::to_string(x.x()) + ", " +
                             std::to_string(x.y()) + ") m lies outside of the terrain");
@@ -114,7 +114,7 @@ void SolverImpl::append(State& state, const ParticleBatch& batch, const StopRequ
 }
 
 /// Shortens the steps for the bonds. With these steps snow may pile up to four times its thickness
-/// before bonds become too stiff. Compatible mode takes the given step.
+/// before bonds become too stiff. Compatible mode keeps the given step.
 void SolverImpl::choose_step(State& next, const Workspace& work) const {
   const Settings& s = model_.settings;
   if (model_.compatible()) return;
@@ -131,7 +131,7 @@ void SolverImpl::choose_step(State& next, const Workspace& work) const {
   next.counters.smallest_dt = std::min(next.counters.smallest_dt, next.step);
 }
 
-/// Counts the energy that a change from outside adds to the present one.
+/// Counts the difference of the next state's energy from the present one as added.
 void SolverImpl::count_as_added(const State& next, const Workspace& work,
                                 EnergyBalance& sums) const {
   if (!model_.keeps_energy) return;
@@ -190,8 +190,8 @@ void SolverImpl::add_velocity(const std::vector<Vec3>& changes) {
   accept(std::move(next));
 }
 
-/// In the order of their cells particles find their neighbours faster. All or nothing: the
-/// workspace has the memory for this.
+/// Sorts the particles by cells from time to time, because they then find their neighbours faster.
+/// Changes nothing if it throws; the workspace has the memory for the refresh.
 void SolverImpl::sort_if_due() {
   if (state_.counters.steps % steps_between_sorts != 0) return;
   if (std::is_sorted(workspace_.cells.order().begin(), workspace_.cells.order().end())) return;

@@ -21,11 +21,11 @@ struct Options {
   bool energy = false;    // whether to keep the energy balance
 };
 
-/// A slide as a method, with its own additions. `seed` gives the particles of the release areas
+/// A slide as a method, with its own additions. `seed` returns the particles of the release areas
 /// (`seed_release`).
 class Solver : public Method, public SeedsItself, public KeepsEnergy, public ReportsRun {
  public:
-  /// Number of particles that `seed` gives.
+  /// Number of particles that `seed` returns.
   virtual std::size_t count_seeds() const = 0;
   virtual const Terrain& terrain() const = 0;
   virtual const PeakFields& peaks() const = 0;
@@ -35,7 +35,8 @@ class Solver : public Method, public SeedsItself, public KeepsEnergy, public Rep
   virtual const MassBalance& mass_balance() const = 0;
 };
 
-/// Throws InputError if an area does not lie on known terrain.
+/// Throws InputError if a release area reaches beyond the terrain or into a hole of it, or makes
+/// too many particles.
 std::unique_ptr<Solver> make_solver(Options);
 
 }  // namespace snowshed::slide

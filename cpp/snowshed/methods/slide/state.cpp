@@ -17,7 +17,7 @@ std::vector<double> resistance_at_nodes(const Settings& s, const Areas& areas,
   return values;
 }
 
-/// Where snow is released, none is entrained.
+/// The erodible snow at each node, kg/m2; none where snow is released.
 std::vector<double> erodible_at_nodes(const Model& model) {
   if (model.areas.entrainment.empty()) return {};
   std::vector<double> values =
@@ -55,7 +55,7 @@ void Workspace::reserve_memory(const Model& model, State& state) {
   thickness.reserve(most);
   loads.resize(now);
   predicted.resize(4 * now);
-  pushed.resize(4 * now);
+  pressure_force.resize(4 * now);
   entrained.resize(state.erodible.empty() ? 0 : now);
   removed.resize(now);
   new_places.reserve(most);
@@ -65,9 +65,10 @@ void Workspace::reserve_memory(const Model& model, State& state) {
   bond_lists.reserve(most, state.bonds.size());
   cells.reserve(most, model.terrain);
   if (!model.compatible()) {
-    // Lanes beyond the last particle have the weight 0, which must not meet infinity.
-    sorted_pressing.resize(now + sorted_padding);
-    std::fill(sorted_pressing.end() - std::ptrdiff_t(sorted_padding), sorted_pressing.end(), 0.0);
+    // Lanes beyond the last particle have the weight 0, which must not be multiplied by infinity.
+    sorted_pressure_factor.resize(now + sorted_padding);
+    std::fill(sorted_pressure_factor.end() - std::ptrdiff_t(sorted_padding),
+              sorted_pressure_factor.end(), 0.0);
   }
   fields.reserve(model.terrain, !model.compatible());
   if (model.keeps_energy) audit.reserve(now);
@@ -150,7 +151,7 @@ void view_loads(Workspace& work, View& v) {
   v.drag = l.drag.data();
   v.speed = l.speed.data();
   v.predicted = work.predicted.data();
-  v.pushed = work.pushed.data();
+  v.pressure_force = work.pressure_force.data();
   v.removed = work.removed.data();
 }
 
@@ -174,7 +175,7 @@ View view_of(const Model& model, State& state, Workspace& work) {
   view_loads(work, v);
   view_particles(state, v);
   view_bonds(state, work, v);
-  v.sorted_pressing = work.sorted_pressing.data();
+  v.sorted_pressure_factor = work.sorted_pressure_factor.data();
   v.time_step = state.step;
   return v;
 }
@@ -206,7 +207,7 @@ namespace {
 /// The speed at a node fades if the mass there is less than this share of a particle's mass.
 constexpr double share_of_fading = 0.15;
 
-/// The mass of the lightest particle as it was seeded, kg; 0 without particles.
+/// The smallest mass that a particle had when it was seeded, kg; 0 without particles.
 double lightest(const Particles& p) {
   return p.size() == 0 ? 0.0 : *std::min_element(p.fresh_mass.begin(), p.fresh_mass.end());
 }
@@ -227,8 +228,9 @@ void refresh_fields(const Model& model, const State& state, Workspace& work, Pea
     view.peak_speed = raised->speed.data();
     if (!model.compatible()) view.sums = &work.fields.sums()->thickness;
   }
-  // Two rows of cells add to the same row of nodes: every other row at a time, so that no two
-  // threads meet and the sums do not depend on how many there are.
+  // Two neighbouring rows of cells add to the same row of nodes. First the even rows run, and then
+  // the odd ones, so that no two threads add to the same node and the sums do not depend on the
+  // number of threads.
   for (const int parity : {0, 1})
     parallel_pieces((work.cells.rows() + 1 - parity) / 2, work.threads, 1,
                     [&](std::ptrdiff_t pair, std::ptrdiff_t) {

@@ -42,7 +42,7 @@ struct Model {
   Terrain terrain;
   Areas areas;
   BasalFriction friction;
-  std::vector<double> resistance;  // coefficient at each node; empty without such areas
+  std::vector<double> resistance;  // coefficient at each node; empty without areas
   int threads;
   bool keeps_energy;
 };
@@ -60,7 +60,7 @@ struct State {
   Bonds bonds;
   std::int64_t bonds_made = 0;
   PeakFields peaks;
-  std::vector<double> erodible;  // kg/m2 at each node that can still be entrained; may be empty
+  std::vector<double> erodible;  // kg/m2 of snow left to entrain at each node; may be empty
   MassBalance balance;
   double time = 0, dt = 0;                      // s
   double step;                                  // s, the length of the steps to come
@@ -68,7 +68,7 @@ struct State {
   bool stopped = false;
   std::uint32_t next_id = 0;
   StepCounters counters;
-  EnergyBalance energy;  // its sums over steps
+  EnergyBalance energy;  // sums over steps; stored energies are computed on request
 };
 
 /// Places of the particles in the grid, and the normals of the ground there.
@@ -78,7 +78,7 @@ struct Places {
   AlignedVector<double> nx, ny, nz;
 
   std::size_t size() const { return column.size(); }
-  GridPlace at(std::size_t i) const { return {column[i], row[i], east[i], north[i]}; }
+  CellPosition at(std::size_t i) const { return {column[i], row[i], east[i], north[i]}; }
   Vec3 normal(std::size_t i) const { return {nx[i], ny[i], nz[i]}; }
 
   template <class Self, class Visit>
@@ -109,17 +109,17 @@ struct Workspace {
   Places places;
   AlignedVector<double> thickness;  // m, of the snow at the particles
   CellLists cells;
-  AlignedVector<double> sorted_pressing;  // in the order of the cells, see View
+  AlignedVector<double> sorted_pressure_factor;  // in the order of the cells, see View
   GridFields fields;
   BondLists bond_lists;
   Loads loads;
-  AlignedVector<double> predicted;   // records of four for each particle, see View
-  AlignedVector<double> pushed;      // records of four for each particle
-  AlignedVector<double> bond_force;  // records of four for each bond
-  std::vector<double> entrained;     // kg, by each particle in this step; empty without entrainment
-  std::vector<char> removed;         // particles that left the terrain
-  std::vector<char> broken;          // bonds
-  bool bonds_break = false;          // whether any of them does in this step
+  AlignedVector<double> predicted;       // records of four for each particle, see View
+  AlignedVector<double> pressure_force;  // records of four for each particle
+  AlignedVector<double> bond_force;      // records of four for each bond
+  std::vector<double> entrained;  // kg, by each particle in this step; empty without entrainment
+  std::vector<char> removed;      // particles that left the terrain
+  std::vector<char> broken;       // bonds that break in this step
+  bool bonds_break = false;       // whether any bond breaks in this step
   std::vector<std::uint32_t> new_places;
   std::vector<double> piece_sums;
   bool no_particle_splits = false;  // no particle is too heavy, and none becomes heavier
@@ -131,24 +131,24 @@ struct Workspace {
   void reserve_memory(const Model&, State&);
 };
 
-/// Iterations that a thread takes at a time.
+/// Number of particles or bonds that a thread processes at a time.
 inline constexpr std::ptrdiff_t particles_in_piece = 64;
 
 /// The kernels' view of a slide, valid until an array of it changes its size.
 View view_of(const Model&, State&, Workspace&);
 
-/// Calls f(begin, end) for pieces of this number of particles or bonds.
+/// Calls f(begin, end) for the pieces of `count` particles or bonds.
 template <class F>
 void for_each_piece(const Workspace& work, std::size_t count, F f) {
   parallel_pieces(std::ptrdiff_t(count), work.threads, particles_in_piece, f);
 }
 
-/// Updates the workspace from the particles: places, cells, fields, bonds. The fields raise the
-/// given peaks.
+/// Updates the workspace from the particles: places, cells, fields, bonds. Raises the given peaks
+/// to the values of the fields.
 void refresh(const Model&, const State&, Workspace&, PeakFields* raised = nullptr);
-/// The places of the particles [begin, end), which the workspace has room for.
+/// Updates the places of the particles [begin, end), for which the workspace must have memory.
 void refresh_places(const Model&, const State&, Workspace&, std::size_t begin, std::size_t end);
-/// The same as `refresh` if bonds and the particles' places are known already.
+/// Does the rest of `refresh` if bonds and the particles' places are up to date.
 void refresh_fields(const Model&, const State&, Workspace&, PeakFields* raised);
 
 }  // namespace snowshed::slide

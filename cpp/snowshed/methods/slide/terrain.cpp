@@ -17,7 +17,7 @@ Slope cell_slope(const HeightField& f, int column, int row) {
   return {-(z10 - z01 + (z11 - z00)) / (2 * f.cell), -(z11 - z00 - (z10 - z01)) / (2 * f.cell)};
 }
 
-/// The mean of the four cells around a node; beyond the border the last cells count twice.
+/// The mean slope of the four cells around a node. At the border the last cells count twice.
 Slope node_slope(const HeightField& f, int column, int row) {
   const auto clamped = [](int i, int cells) { return std::clamp(i, 0, cells - 1); };
   Slope sum{0, 0};

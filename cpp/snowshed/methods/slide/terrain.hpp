@@ -36,15 +36,15 @@ class Terrain {
   const Node& node(int column, int row) const { return nodes_[index(column, row)]; }
   const Node* nodes() const { return nodes_.data(); }
 
-  /// The place of a point; outside where its nearest node is unknown or the grid ends.
-  GridPlace place(double x, double y) const {
-    return place_in(x * per_cell_, y * per_cell_, columns_, rows_);
+  /// The position of a point in the grid; outside if it lies beyond the last nodes.
+  CellPosition place(double x, double y) const {
+    return find_cell(x * per_cell_, y * per_cell_, columns_, rows_);
   }
 
   /// Whether the south-west node of a cell is known.
-  bool known(const GridPlace& p) const { return !std::isnan(node(p.column, p.row).height); }
+  bool known(const CellPosition& p) const { return !std::isnan(node(p.column, p.row).height); }
 
-  double height(const GridPlace& p) const {
+  double height(const CellPosition& p) const {
     const Node* a = &nodes_[index(p.column, p.row)];
     const Node* b = a + columns_;
     const double w0 = (1 - p.east) * (1 - p.north), w1 = p.east * (1 - p.north),
@@ -53,7 +53,7 @@ class Terrain {
   }
 
   /// The upward unit normal.
-  Vec3 normal(const GridPlace& p) const {
+  Vec3 normal(const CellPosition& p) const {
     const Node* a = &nodes_[index(p.column, p.row)];
     const Node* b = a + columns_;
     const double w0 = (1 - p.east) * (1 - p.north), w1 = p.east * (1 - p.north),

@@ -135,8 +135,8 @@ TEST_F(MeshIo, QuadsBecomeTwoTriangles) {
   EXPECT_NEAR(enclosed_volume(mesh), 1, 1e-12);
 }
 
-// A trough whose ends are polygons of eight corners, from any of them, and a plate with a hole that
-// a cut joins to its outline, as OBJ and as PLY.
+// A trough whose ends are polygons of eight corners, and a plate with a hole that a cut joins to
+// its outline, as OBJ and as PLY. The polygons begin at any of their corners.
 TEST_F(MeshIo, ConcavePolygonsAreWhatTheyLookLike) {
   struct Case {
     std::vector<std::array<double, 2>> outline;
@@ -179,7 +179,7 @@ TEST_F(MeshIo, ConcavePolygonsAreWhatTheyLookLike) {
            {read("a.obj", obj.str()),
             read("a.ply", header.str() + ply_vertices.str() + ply_faces.str())}) {
         ASSERT_NEAR(enclosed_volume(mesh), c.area, 1e-12) << start;
-        double surface = 0;  // no walls that are not there
+        double surface = 0;  // is too large if there are additional walls
         for (const Triangle& t : mesh.triangles) {
           const Vec3& a = mesh.vertices[t[0]];
           surface += (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a).norm() / 2;

@@ -96,10 +96,10 @@ class Solver final : public Method, public SeedsItself, public KeepsEnergy {
   const StepCounters& counters() const override { return state_.counters; }
 
   std::vector<FieldInfo> fields() const override {
-    return listed_fields([this](const auto& visit) { visit_fields(visit); });
+    return list_fields([this](const auto& visit) { visit_fields(visit); });
   }
   FieldView field(const std::string& name) const override {
-    return found_field(name, [this](const auto& visit) { visit_fields(visit); });
+    return find_field(name, [this](const auto& visit) { visit_fields(visit); });
   }
   const std::vector<std::uint32_t>& order_by_id() const override { return order_.of(state_.id); }
 
@@ -141,8 +141,8 @@ class Solver final : public Method, public SeedsItself, public KeepsEnergy {
     StateWriter archive(out);
     visit_state(archive, state_);
   }
-  void load(const BinaryReader& in) override { accept(restored(in)); }
-  void check(const BinaryReader& in) const override { restored(in); }
+  void load(const BinaryReader& in) override { accept(read_state(in)); }
+  void check(const BinaryReader& in) const override { read_state(in); }
 
  private:
   template <class Archive, class SomeState>
@@ -154,7 +154,7 @@ class Solver final : public Method, public SeedsItself, public KeepsEnergy {
     archive.numbers("clock", s.time, s.heat);
     archive.counts("counters", s.counters.steps, s.counters.particle_updates, s.next_id);
   }
-  static State restored(const BinaryReader& in) {
+  static State read_state(const BinaryReader& in) {
     const StateReader archive(in);
     State next;
     visit_state(archive, next);

@@ -36,7 +36,7 @@ TEST_F(GrainsCheckpoint, ResumesToTheSameBits) {
     for (const double strength : {1e6, 3e8}) {
       Options o = story(sides);
       o.settings.tensile_strength = o.settings.shear_strength = strength;  // also far bonds
-      const auto whole = filled(o);
+      const auto whole = filled_solver(o);
       for (int part = 0; part < 4; ++part) {
         take_steps(*whole, 57);
         save(*whole);
@@ -63,7 +63,7 @@ TEST_F(GrainsCheckpoint, ResumesToTheSameBitsInEveryKindOfStage) {
   Options o = story_of_all_kinds();
   for (const Sides sides : {Sides::walls, Sides::periodic}) {
     o.settings.sides = sides;
-    const auto whole = filled(o);
+    const auto whole = filled_solver(o);
     std::vector<bool> seen(o.loading.size());
     while (!*whole->at_rest()) {
       take_steps(*whole, 3);
@@ -89,7 +89,7 @@ TEST_F(GrainsCheckpoint, ResumesToTheSameBitsInEveryKindOfStage) {
 TEST_F(GrainsCheckpoint, WithoutGrainsIsRestored) {
   const Options o = story(Sides::walls);
   save(*make_solver(o));
-  const auto other = filled(o);
+  const auto other = filled_solver(o);
   other->load(saved());
   EXPECT_EQ(other->size(), 0u);
   other->add(other->seed());
@@ -97,10 +97,10 @@ TEST_F(GrainsCheckpoint, WithoutGrainsIsRestored) {
 }
 
 TEST_F(GrainsCheckpoint, OfAnotherSampleIsRefusedAndChangesNothing) {
-  save(*filled(story(Sides::walls)));
+  save(*filled_solver(story(Sides::walls)));
   Options o = story(Sides::walls);
   o.sample = make_sample(random_snow(12, 4));
-  const auto other = filled(o);
+  const auto other = filled_solver(o);
   const ParticleState before = other->state();
   EXPECT_THROW(other->load(saved()), InputError);
   EXPECT_EQ(other->state().positions, before.positions);
@@ -131,7 +131,7 @@ void forge(const BinaryReader& in, const std::string& section, std::size_t at, T
 
 TEST_F(GrainsCheckpoint, ThatIsForgedIsRefused) {
   const Options o = story(Sides::walls);
-  const auto grains = filled(o);
+  const auto grains = filled_solver(o);
   take_steps(*grains, 50);
   save(*grains);
   const BinaryReader sound = saved();

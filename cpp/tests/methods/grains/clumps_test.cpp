@@ -8,7 +8,7 @@
 namespace snowshed::grains {
 namespace {
 
-/// Two blocks of n^3 voxels, one upon the other, with air around.
+/// Two blocks of n^3 voxels, one on top of the other, with air around.
 LabelImage two_blocks(std::size_t n) {
   return image_of(n + 2, n + 2, 2 * n + 2, [n](std::size_t i, std::size_t j, std::size_t k) {
     const auto inside = [](std::size_t x, std::size_t size) { return x >= 1 && x <= size; };
@@ -30,7 +30,7 @@ TEST(GrainClumps, AreTheShellsOfBlocksWithTheMassOfAllVoxels) {
       EXPECT_TRUE(c.inertia.isApprox(volume * side * side / 6 * Mat3::Identity(), 1e-12));
     }
     EXPECT_EQ(sample.bonds.size(), n * n);
-    // Labels in rising order: 7 lies above.
+    // Clumps are in the order of labels: the block 7, which is on top, is the first.
     EXPECT_NEAR(sample.clumps[0].centre.z() - sample.clumps[1].centre.z(), side, 1e-15);
     for (const BondedPair& bond : sample.bonds)
       EXPECT_NEAR((sample.spheres[bond.first] - sample.spheres[bond.second]).norm(),
@@ -56,7 +56,7 @@ TEST(GrainClumps, AreMeasuredBeforeTheyAreMade) {
   EXPECT_EQ(size.grains, sample.clumps.size());
   EXPECT_EQ(size.spheres, sample.spheres.size());
   EXPECT_EQ(size.bonds, sample.bonds.size());
-  EXPECT_GE(size.bytes, filled(grains_of(image))->bytes());
+  EXPECT_GE(size.bytes, filled_solver(grains_of(image))->bytes());
 }
 
 TEST(GrainClumps, RefuseImagesThatAreNotSound) {

@@ -1,5 +1,5 @@
-// Lack of memory with grains: every allocation of a run in which bonds break and pairs are searched
-// again fails once. Each failed call must leave the grains as they were, and the run must end
+// Lack of memory with grains: every allocation fails once in a run in which bonds break and pairs
+// are searched again. Each failed call must leave the grains as they were, and the run must end
 // with the same bits.
 #include "io/temporary_folder.hpp"
 #include "methods/fault_story.hpp"

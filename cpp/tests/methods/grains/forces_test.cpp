@@ -10,7 +10,7 @@ namespace {
 
 constexpr double diameter = test_voxel, face = diameter * diameter;
 
-/// Two blocks of n x n x 2 voxels, one upon the other, in a wide box.
+/// Two blocks of n x n x 2 voxels, one on top of the other, in a wide box.
 Options bonded_blocks(std::size_t n) {
   return grains_of(image_of(n + 4, n + 4, 8, [n](std::size_t i, std::size_t j, std::size_t k) {
     if (i < 2 || j < 2 || i >= n + 2 || j >= n + 2 || k < 2 || k >= 6) return 0;
@@ -51,9 +51,10 @@ TEST(GrainForces, OfACompressedContactGrowWithTheOverlap) {
               1e-10);
 }
 
-/// A bond of n x n pairs that is bent by an angle about an axis in its middle. Spheres of a pair at
-/// y from the axis stand 2 (r cos(angle / 2) + y sin(angle / 2)) apart, along the bisector of the
-/// two bodies, and meet at y cos(angle / 2) - r sin(angle / 2): exact for any angle.
+/// A bond of n x n pairs that is bent by an angle about an axis in its middle. The spheres of a
+/// pair at y from the axis are 2 (r cos(angle / 2) + y sin(angle / 2)) apart along the bisector of
+/// the two bodies. They touch at y cos(angle / 2) - r sin(angle / 2) from the axis. Both are exact
+/// for any angle.
 struct BentBond {
   std::size_t n;
   double stiffness, half;  // N/m, half the angle
@@ -69,7 +70,7 @@ struct BentBond {
       sum += gap(place(i)) * (place(i) * std::cos(half) - 0.5 * diameter * std::sin(half));
     return double(n) * stiffness * sum;
   }
-  /// Half the angle at which the outer pairs are so far apart.
+  /// Half the angle at which the outer pairs have this gap, rad.
   static double half_angle(std::size_t n, double gap) {
     BentBond bond{n, 0, gap / (double(n - 1) * diameter)};
     for (int k = 0; k < 20; ++k)
@@ -102,7 +103,7 @@ TEST(GrainForces, OfABentBondBeginToBreakAtTheMomentOfItsOuterPairs) {
         const Vec3 moment = lower.torque + (lower.position - hinge).cross(lower.force);
         const double rounding = 1e-13 * diameter / limit;
         EXPECT_NEAR(moment.x() / bond.moment(), 1, std::max(1e-10, rounding));
-        // Without the geometry of a finite angle: (n + 1) / n of what a beam bears.
+        // For small angles the moment is (n + 1) / n times that of a beam.
         const double side = double(n) * diameter;
         const double linear = double(n + 1) / double(n) * strength * side * side * side / 6;
         EXPECT_NEAR(bond.moment() / linear, 1, 2e-7 + limit / diameter);
@@ -167,7 +168,8 @@ TEST(GrainForces, OfShearTurnWithThePair) {
   grains.state.bodies[1].velocity.x() = 1e-9;
   grains.evaluate(1.0);
   const double before = grains.state.bodies[0].force.x();
-  // Both turn together, in small steps, by a right angle about z: the force follows.
+  // Both bodies turn together, in small steps, by a right angle about z, and the force turns with
+  // them.
   const int steps = 2000;
   const double angle = 0.5 * 3.14159265358979323846 / steps;
   for (GrainBody& body : grains.state.bodies) body.velocity.setZero();
@@ -188,7 +190,7 @@ TEST(GrainForces, OfPlatesAndWallsAreThoseOfSpheresOfTheSameSize) {
   Options o = grains_of(image_of(3, 3, 3, [](auto, auto, auto) { return 1; }));
   PosedGrains grains(o);
   grains.evaluate();
-  EXPECT_LT(grains.state.bodies[0].force.norm(), 1e-12);  // it fits exactly
+  EXPECT_LT(grains.state.bodies[0].force.norm(), 1e-12);  // the grain fills the box exactly
   const double push = 9 * normal_stiffness(o) * 1e-8;
   grains.state.boundary.plate[1].z() -= 1e-8;
   grains.state.boundary.side[0] += 1e-8;

@@ -66,7 +66,7 @@ inline Options grains_of(const LabelImage& image) {
   return o;
 }
 
-/// One stage of each kind after another, each some tens of steps long.
+/// A loading with one stage of each kind, each tens of steps long.
 inline Options story_of_all_kinds() {
   Options o = grains_of(random_snow(26, 6));
   o.settings.density_scaling = 1e3;
@@ -81,7 +81,7 @@ inline Options story_of_all_kinds() {
   return o;
 }
 
-inline std::unique_ptr<Solver> filled(const Options& options) {
+inline std::unique_ptr<Solver> filled_solver(const Options& options) {
   auto grains = make_solver(options);
   grains->add(grains->seed());
   return grains;
@@ -91,7 +91,7 @@ inline void take_steps(Method& method, int steps) {
   for (int i = 0; i < steps; ++i) method.step();
 }
 
-/// Steps until all stages are done, or so many times.
+/// Steps until all stages are done, at most `most` times.
 inline void load_all(Method& method, int most) {
   for (int i = 0; i < most && !*method.at_rest(); ++i) method.step();
 }
@@ -103,10 +103,10 @@ inline std::map<std::string, double> energies_of(const Method& method) {
   return found;
 }
 
-/// Grains at rest whose poses and velocities a test sets before it asks for the forces.
+/// Grains at rest. A test sets poses and velocities, and then evaluates the forces.
 struct PosedGrains {
   explicit PosedGrains(const Options& options) : model(options) {
-    state.boundary = state.listed_boundary = initial_boundary(model.loaded());
+    state.boundary = state.searched_boundary = initial_boundary(model.loaded_sample());
     for (const GrainConstants& grain : model.grains) {
       state.bodies.emplace_back();
       state.bodies.back().position = grain.initial_position;

@@ -12,7 +12,7 @@
 namespace snowshed::grains {
 namespace {
 
-/// Blocks of 3^3 voxels a voxel apart, numbered from 1 on as `number` says.
+/// Blocks of 3^3 voxels, a voxel apart. The label of a block is number(index).
 template <class Number>
 LabelImage blocks(std::size_t n, const Number& number) {
   return image_of(4 * n, 4 * n, 4 * n, [&](std::size_t i, std::size_t j, std::size_t k) {

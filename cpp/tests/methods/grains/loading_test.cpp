@@ -7,7 +7,7 @@
 namespace snowshed::grains {
 namespace {
 
-/// A bar that fills the box, n x n voxels wide, of two grains bonded in the middle.
+/// A bar, n x n voxels wide, that fills the box and consists of two grains bonded in the middle.
 Options bar(std::size_t n, std::size_t height) {
   Options o =
       grains_of(image_of(n, n, height, [=](auto, auto, auto k) { return k < height / 2 ? 1 : 2; }));
@@ -20,7 +20,7 @@ Options bar(std::size_t n, std::size_t height) {
 TEST(GrainLoading, ABarBreaksInTensionAtItsStrength) {
   Options o = bar(4, 6);
   o.loading = {{LoadingKind::stretch, 0.005, 0.01, 0}};
-  const auto grains = filled(o);
+  const auto grains = filled_solver(o);
   double peak = 0;
   while (!*grains->at_rest()) {
     grains->step();
@@ -37,7 +37,7 @@ TEST(GrainLoading, ALayerBreaksInShearAtItsStrength) {
   o.settings.friction = 0;
   o.loading = {{LoadingKind::shear, 0.005, 0.03, 0}};
   o.settings.sides = Sides::walls;
-  const auto grains = filled(o);
+  const auto grains = filled_solver(o);
   double peak = 0;
   while (!*grains->at_rest()) {
     grains->step();
@@ -55,7 +55,7 @@ TEST(GrainLoading, SnowComesBackAsLongAsNoBondBreaks) {
   o.loading = {{LoadingKind::compress, 0.02, 3e-4, 0},
                {LoadingKind::hold, 0.02, 3e-4, 0},
                {LoadingKind::unload, 0.02, 1, 0}};
-  const auto grains = filled(o);
+  const auto grains = filled_solver(o);
   double half = 0, full = 0;
   while (grains->measures().stage == 0) {
     grains->step();
@@ -80,14 +80,14 @@ TEST(GrainLoading, SnowBreaksInCompressionAndItsEnergyCloses) {
   o.settings.damping = 0.2;
   o.energy = true;
   o.loading = {{LoadingKind::compress, 1, 0.2, 0}};
-  const auto grains = filled(o);
+  const auto grains = filled_solver(o);
   const std::int64_t bonds = grains->measures().bonds;
   load_all(*grains, 100000);
   const LoadingMeasures end = grains->measures();
   EXPECT_NEAR(end.axial_strain, 0.2, 1e-3);
   EXPECT_GT(end.broken_in_tension + end.broken_in_shear, bonds / 10);
   EXPECT_EQ(end.bonds + end.broken_in_tension + end.broken_in_shear, bonds);
-  EXPECT_NEAR(end.solid_fraction / filled(o)->measures().solid_fraction, 1 / 0.8, 2e-3);
+  EXPECT_NEAR(end.solid_fraction / filled_solver(o)->measures().solid_fraction, 1 / 0.8, 2e-3);
   const auto e = energies_of(*grains);
   EXPECT_GT(e.at("boundary_work_j"), 0);
   for (const char* part : {"friction_j", "damping_j", "broken_bonds_j", "elastic_normal_j"})
@@ -99,7 +99,7 @@ TEST(GrainLoading, AStressEndsAStage) {
   Options o = grains_of(random_snow(15, 5));
   o.settings.damping = 0.2;
   o.loading = {{LoadingKind::compress, 0.05, 0.2, 5e4}, {LoadingKind::unload, 0.05, 0.2, 2e4}};
-  const auto grains = filled(o);
+  const auto grains = filled_solver(o);
   while (grains->measures().stage == 0) grains->step();
   EXPECT_NEAR(grains->measures().top_stress, 5e4, 1e4);
   load_all(*grains, 100000);
@@ -114,7 +114,7 @@ TEST(GrainLoading, ShearKeepsTheNormalStressThatIsAskedFor) {
   o.settings.tensile_strength = o.settings.shear_strength = 1e8;  // so that it shears as a solid
   o.energy = true;
   o.loading = {{LoadingKind::shear, 0.02, 6e-4, 1e5}};
-  const auto grains = filled(o);
+  const auto grains = filled_solver(o);
   double mean = 0, count = 0;
   while (!*grains->at_rest()) {
     grains->step();
@@ -138,12 +138,12 @@ TEST(GrainLoading, APeriodThatShrinksPressesLikeWalls) {
     o.settings.damping = 0.3;
     o.energy = true;
     o.loading = {{LoadingKind::isotropic, 0.01, 2e-4, 0}};
-    const auto grains = filled(o);
+    const auto grains = filled_solver(o);
     load_all(*grains, 100000);
     const LoadingMeasures m = grains->measures();
     EXPECT_GT(m.top_stress, 0);
-    // There are as many springs in a row in all directions, except at the seam: walls and plates
-    // press on both ends, the period closes with one spring.
+    // The number of springs in a row is the same in all directions, except at the ends: walls and
+    // plates add a spring at both ends, a period adds only one.
     const double springs = sides == Sides::walls ? 3 : 2;
     const double side_stress = o.settings.elastic_modulus * 0.5 * test_voxel *
                                (8 * test_voxel * 2e-4 / springs) / (test_voxel * test_voxel);
@@ -161,7 +161,7 @@ TEST(GrainLoading, AConeMeetsResistance) {
   o.energy = true;
   o.cone = {2e-4, 30};
   o.loading = {{LoadingKind::compress, 1, 0.01, 0}, {LoadingKind::penetrate, 1, 0.3, 0}};
-  const auto grains = filled(o);
+  const auto grains = filled_solver(o);
   while (grains->measures().stage == 0) grains->step();
   double peak = 0;
   while (!*grains->at_rest()) {

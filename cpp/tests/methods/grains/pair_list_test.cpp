@@ -8,11 +8,11 @@
 namespace snowshed::grains {
 namespace {
 
-/// A sample whose grains are strewn about and turned, some beyond the box.
-struct Strewn {
-  explicit Strewn(bool periodic) : model(options(periodic)) {
+/// A sample whose grains are scattered and turned, some beyond the box.
+struct ScatteredGrains {
+  explicit ScatteredGrains(bool periodic) : model(options(periodic)) {
     Random random(3);
-    boundary = initial_boundary(model.loaded());
+    boundary = initial_boundary(model.loaded_sample());
     boundary.plate[1].z() -= 0.3 * model.box.z();
     for (const GrainConstants& grain : model.grains) {
       const auto between = [&](double low, double high) {
@@ -37,7 +37,8 @@ struct Strewn {
             model.periodic(), model.cone,
             1000000,          threads};
   }
-  /// All pairs of spheres of grains, each with each, in all images near by.
+  /// All near pairs of grains' spheres, found by comparing each sphere with each other in all near
+  /// images.
   std::vector<PairKey> by_brute_force() const {
     std::vector<PairKey> found;
     std::vector<Vec3> x;
@@ -67,55 +68,57 @@ struct Strewn {
 
 TEST(GrainPairs, AreAllThatAreNear) {
   for (const bool periodic : {false, true}) {
-    const Strewn strewn(periodic);
-    std::vector<PairKey> found = find_pairs(strewn.search(), strewn.poses, strewn.boundary);
-    EXPECT_EQ(found, find_pairs(strewn.search(3), strewn.poses, strewn.boundary));
+    const ScatteredGrains scattered(periodic);
+    std::vector<PairKey> found =
+        find_pairs(scattered.search(), scattered.poses, scattered.boundary);
+    EXPECT_EQ(found, find_pairs(scattered.search(3), scattered.poses, scattered.boundary));
     EXPECT_TRUE(std::is_sorted(found.begin(), found.end()));
-    found.erase(std::remove_if(
-                    found.begin(), found.end(),
-                    [&](const PairKey& key) { return key.second >= strewn.model.grains.size(); }),
+    found.erase(std::remove_if(found.begin(), found.end(),
+                               [&](const PairKey& key) {
+                                 return key.second >= scattered.model.grains.size();
+                               }),
                 found.end());
     EXPECT_GT(found.size(), 50u);
-    EXPECT_TRUE(found == strewn.by_brute_force());
+    EXPECT_TRUE(found == scattered.by_brute_force());
   }
 }
 
 TEST(GrainPairs, WithPlatesAndWallsAreAllThatAreNear) {
-  const Strewn strewn(false);
+  const ScatteredGrains scattered(false);
   std::size_t expected = 0;
-  const double r = strewn.model.radius;
-  const auto& spheres = strewn.model.spheres;
+  const double r = scattered.model.radius;
+  const auto& spheres = scattered.model.spheres;
   for (std::size_t s = 0; s < spheres.offsets.size(); ++s) {
-    const GrainPose& pose = strewn.poses[spheres.grain[s]];
+    const GrainPose& pose = scattered.poses[spheres.grain[s]];
     const Vec3 x = pose.position + pose.orientation * spheres.offsets[s];
     for (int axis = 0; axis < 2; ++axis) {
       expected += x[axis] - r < 0.4 * r;
-      expected += strewn.model.box[axis] - x[axis] - r < 0.4 * r;
+      expected += scattered.model.box[axis] - x[axis] - r < 0.4 * r;
     }
-    for (const Vec3& plate : strewn.boundary.plate)
+    for (const Vec3& plate : scattered.boundary.plate)
       for (int i = -20; i < 40; ++i)
         for (int j = -20; j < 40; ++j)
           expected += (plate + Vec3((2 * i + 1) * r, (2 * j + 1) * r, 0) - x).norm() < 2.4 * r;
   }
-  const auto found = find_pairs(strewn.search(), strewn.poses, strewn.boundary);
+  const auto found = find_pairs(scattered.search(), scattered.poses, scattered.boundary);
   EXPECT_EQ(std::size_t(std::count_if(
                 found.begin(), found.end(),
-                [&](const PairKey& key) { return key.second >= strewn.model.grains.size(); })),
+                [&](const PairKey& key) { return key.second >= scattered.model.grains.size(); })),
             expected);
 }
 
 TEST(GrainPairs, KeepTheirPastAndTheirBondsFromListToList) {
-  const Strewn strewn(true);
-  const auto found = find_pairs(strewn.search(), strewn.poses, strewn.boundary);
+  const ScatteredGrains scattered(true);
+  const auto found = find_pairs(scattered.search(), scattered.poses, scattered.boundary);
   std::vector<PairHistory> past;
   for (std::size_t i = 0; i < found.size(); i += 7)
     past.push_back({found[i], Vec3(double(i), 1, 2), i % 2 == 0, i % 2 == 0});
-  // One that has come apart: kept if it is bonded.
-  PairKey far{0, 1, {9, 9}, 0, strewn.model.grains[1].first_sphere};
+  // A bonded pair whose spheres have moved apart is kept.
+  PairKey far{0, 1, {9, 9}, 0, scattered.model.grains[1].first_sphere};
   past.push_back({far, Vec3(5, 5, 5), true, true});
   std::sort(past.begin(), past.end(),
             [](const PairHistory& x, const PairHistory& y) { return x.key < y.key; });
-  const PairList list = make_list(strewn.search(), found, past);
+  const PairList list = make_list(scattered.search(), found, past);
   EXPECT_EQ(list.size() % pairs_at_once, 0u);
   EXPECT_EQ(list.all().size(), found.size() + 1);
   const std::vector<PairHistory> kept = list.histories();
@@ -128,22 +131,23 @@ TEST(GrainPairs, KeepTheirPastAndTheirBondsFromListToList) {
   // A bond that breaks while its spheres are far apart leaves a pair that is listed as before.
   PairList broken = list;
   std::fill(broken.bonded.begin(), broken.bonded.end(), std::uint8_t(0));
-  EXPECT_EQ(make_list(strewn.search(), found, broken.all()).a, list.a);
+  EXPECT_EQ(make_list(scattered.search(), found, broken.all()).a, list.a);
   for (PairHistory& h : past) h.always_listed = h.bonded = false;
-  EXPECT_EQ(make_list(strewn.search(), found, past).all().size(), found.size());
+  EXPECT_EQ(make_list(scattered.search(), found, past).all().size(), found.size());
 }
 
 TEST(GrainPairs, ThatAreTooManyAreAnError) {
-  const Strewn strewn(false);
-  PairSearch search = strewn.search();
+  const ScatteredGrains scattered(false);
+  PairSearch search = scattered.search();
   search.max_pairs = 10;
-  EXPECT_THROW(find_pairs(search, strewn.poses, strewn.boundary), SimulationError);
+  EXPECT_THROW(find_pairs(search, scattered.poses, scattered.boundary), SimulationError);
 }
 
 TEST(GrainPairs, OfAPeriodAsShortAsASphereAreAnError) {
-  Strewn strewn(true);
-  strewn.boundary.side[1] = 4 * strewn.model.radius;
-  EXPECT_THROW(find_pairs(strewn.search(), strewn.poses, strewn.boundary), SimulationError);
+  ScatteredGrains scattered(true);
+  scattered.boundary.side[1] = 4 * scattered.model.radius;
+  EXPECT_THROW(find_pairs(scattered.search(), scattered.poses, scattered.boundary),
+               SimulationError);
 }
 
 }  // namespace

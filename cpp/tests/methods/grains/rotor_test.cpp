@@ -13,14 +13,14 @@ double energy_of(const Orientation& q) {
   return 0.5 * l.dot(l.cwiseQuotient(moments));
 }
 
-Orientation spun(double dt, int steps) {
+Orientation rotate_steps(double dt, int steps) {
   Orientation q(Eigen::Quaterniond(0.9, 0.1, -0.3, 0.2).normalized());
   for (int i = 0; i < steps; ++i) rotate_freely(q, momentum, moments, dt);
   return q;
 }
 
 TEST(Rotor, KeepsTheEnergyOfAnAsymmetricBodyOver1e5Steps) {
-  Orientation q = spun(0, 1);
+  Orientation q = rotate_steps(0, 1);
   const double before = energy_of(q);
   double worst = 0;
   for (int i = 0; i < 100000; ++i) {
@@ -32,21 +32,21 @@ TEST(Rotor, KeepsTheEnergyOfAnAsymmetricBodyOver1e5Steps) {
 }
 
 TEST(Rotor, IsOfSecondOrder) {
-  const Orientation exact = spun(1.0 / 8192, 16384);
-  const double coarse = exact.angularDistance(spun(1.0 / 32, 64));
-  const double fine = exact.angularDistance(spun(1.0 / 64, 128));
+  const Orientation exact = rotate_steps(1.0 / 8192, 16384);
+  const double coarse = exact.angularDistance(rotate_steps(1.0 / 32, 64));
+  const double fine = exact.angularDistance(rotate_steps(1.0 / 64, 128));
   EXPECT_NEAR(std::log2(coarse / fine), 2, 0.05);
 }
 
 TEST(Rotor, GoesBackTheWayItCame) {
-  Orientation q = spun(0.05, 100);
+  Orientation q = rotate_steps(0.05, 100);
   for (int i = 0; i < 100; ++i) rotate_freely(q, momentum, moments, -0.05);
-  EXPECT_LT(q.angularDistance(spun(0, 1)), 1e-13);
+  EXPECT_LT(q.angularDistance(rotate_steps(0, 1)), 1e-13);
 }
 
 TEST(Rotor, OfABallTurnsAboutItsMomentum) {
   Orientation q(1, 0, 0, 0);
-  // One axis at a time is exact where the momentum lies along it.
+  // Turning about one axis after the other is exact if the momentum lies along an axis.
   for (int i = 0; i < 10; ++i) rotate_freely(q, Vec3(0, 0, 2), Vec3(4, 4, 4), 0.1);
   EXPECT_LT(q.angularDistance(Orientation(Eigen::AngleAxisd(0.5, Vec3::UnitZ()))), 1e-14);
 }

@@ -9,7 +9,7 @@ namespace snowshed::grains {
 namespace {
 
 /// One voxel, or a block, in the middle of a wide box.
-LabelImage lonely(std::size_t nx, std::size_t ny, std::size_t nz, std::size_t box = 20) {
+LabelImage single_block(std::size_t nx, std::size_t ny, std::size_t nz, std::size_t box = 20) {
   return image_of(box, box, box, [=](std::size_t i, std::size_t j, std::size_t k) {
     const std::size_t low = box / 3;
     const auto in = [low](std::size_t x, std::size_t n) { return x >= low && x < low + n; };
@@ -18,10 +18,10 @@ LabelImage lonely(std::size_t nx, std::size_t ny, std::size_t nz, std::size_t bo
 }
 
 TEST(Grains, FlyFreelyWithConstantEnergyAndVelocity) {
-  Options o = grains_of(lonely(5, 2, 3));
+  Options o = grains_of(single_block(5, 2, 3));
   o.energy = true;
   PosedGrains model(o);
-  const auto grains = filled(o);
+  const auto grains = filled_solver(o);
   grains->add_velocity({Vec3(1e-3, 2e-3, -1e-3)});
   const double before = energies_of(*grains).at("kinetic_j");
   take_steps(*grains, 20000);
@@ -31,16 +31,16 @@ TEST(Grains, FlyFreelyWithConstantEnergyAndVelocity) {
 }
 
 TEST(Grains, FallAsNewtonSays) {
-  Options o = grains_of(lonely(2, 2, 2));
+  Options o = grains_of(single_block(2, 2, 2));
   o.gravity = 9.81;
-  // It scales the inertia: then weight moves it ten thousand times slower.
+  // The scaling multiplies the inertia, so that the weight accelerates the grain 10000 times less.
   o.settings.density_scaling = 1e4;
-  const auto grains = filled(o);
+  const auto grains = filled_solver(o);
   take_steps(*grains, 500);
   EXPECT_NEAR(grains->state().velocities[0].z() / (-9.81e-4 * grains->time()), 1, 1e-10);
   o.settings.density_scaling = 1;
   o.settings.damping = 0.3;
-  const auto damped = filled(o);
+  const auto damped = filled_solver(o);
   take_steps(*damped, 500);  // local damping takes a share of the weight
   EXPECT_NEAR(damped->state().velocities[0].z() / (-0.7 * 9.81 * damped->time()), 1, 2e-3);
 }
@@ -54,7 +54,7 @@ TEST(Grains, ThatCollideKeepMomentumAndEnergy) {
   o.settings.friction = 0;
   o.settings.courant_factor = 0.03;
   o.energy = true;
-  const auto grains = filled(o);
+  const auto grains = filled_solver(o);
   grains->add_velocity({Vec3(1, 0, 0), Vec3(-1, 0, 0)});
   const auto momentum = [&] {
     const ParticleState s = grains->state();
@@ -73,8 +73,8 @@ TEST(Grains, ThatCollideKeepMomentumAndEnergy) {
   EXPECT_NEAR(energies_of(*grains).at("kinetic_j") / kinetic, 1, 1e-3);
 }
 
-/// Angular momentum about the centre, kg m2/s: the orientation is that of the spheres now against
-/// those of the sample, and the inertia that of the voxels.
+/// Angular momentum about the centre, kg m2/s. The rotation follows from the present spheres and
+/// those of the sample, and the inertia from the voxels.
 Vec3 spin_momentum_of(const Solver& grains, const Options& o, std::size_t grain) {
   const std::vector<Vec3> now = grains.sphere_positions();
   const Clump& clump = o.sample.clumps[grain];
@@ -99,7 +99,7 @@ TEST(Grains, ThatSpinKeepEnergyAndAngularMomentumOver1e5Steps) {
     return first ? 1 : second ? 2 : 0;
   }));
   o.energy = true;
-  const auto grains = filled(o);
+  const auto grains = filled_solver(o);
   grains->add_velocity({Vec3(0.05, 0, 0), Vec3(-0.05, 0, 0)});
   bool touched = false;
   for (int i = 0; i < 100000 && !(touched && grains->measures().contacts == 0); ++i) {
@@ -107,7 +107,7 @@ TEST(Grains, ThatSpinKeepEnergyAndAngularMomentumOver1e5Steps) {
     touched = touched || grains->measures().contacts > 0;
   }
   ASSERT_TRUE(touched);
-  take_steps(*grains, 40000);  // they meet again before they part
+  take_steps(*grains, 40000);  // the grains collide again before they separate
   const double kinetic = energies_of(*grains).at("kinetic_j");
   const Vec3 spins[2] = {spin_momentum_of(*grains, o, 0), spin_momentum_of(*grains, o, 1)};
   const std::vector<Vec3> start = grains->sphere_positions();
@@ -126,7 +126,8 @@ TEST(Grains, ThatSpinKeepEnergyAndAngularMomentumOver1e5Steps) {
   EXPECT_GT(((end[0] - end[1]) - (start[0] - start[1])).norm(), test_voxel) << "it has turned";
 }
 
-/// A block of voxels that its weight, upward, presses to a flat punch (a cone of 90 degrees).
+/// A block of voxels whose weight, which acts upward, presses it against a flat punch (a cone of 90
+/// degrees).
 struct Slider {
   Slider(std::size_t nx, std::size_t ny, std::size_t nz, double friction, double speed)
       : v0(speed), mu(friction) {
@@ -137,7 +138,7 @@ struct Slider {
     o.gravity = -g;
     o.loading = {{LoadingKind::penetrate, 1e-9, 1e-3, 0}};
     o.cone = {0.01, 90};
-    grains = filled(o);
+    grains = filled_solver(o);
     grains->add_velocity({Vec3(speed, 0, 0)});
   }
   Vec3 velocity() const { return grains->state().velocities[0]; }
@@ -145,7 +146,7 @@ struct Slider {
   std::unique_ptr<Solver> grains;
 };
 
-/// The pressing force is the weight, less the lifting force: its impulse is m (g t - v_z).
+/// The impulse of the pressing force is m (g t - v_z).
 void expect_coulomb(const Slider& s) {
   const double lost = s.mu * (s.g * s.grains->time() - s.velocity().z());
   EXPECT_NEAR((s.v0 - s.velocity().x()) / lost, 1, 1e-3);
@@ -167,7 +168,7 @@ TEST(Grains, RollOnAfterSlidingWithThreeFifthsOfTheirSpeed) {
   for (const std::size_t length : {1, 4}) {
     Slider s(1, length, 1, 0.2, 0.1);
     while (s.grains->time() < 3e-5) s.grains->step();
-    double mean = 0;  // the springs of the contact swing
+    double mean = 0;  // the springs of the contact oscillate
     for (int i = 0; i < 2000; ++i) {
       s.grains->step();
       mean += s.velocity().x() / 2000;
@@ -183,7 +184,7 @@ TEST(Grains, DoTheSameOnAnyNumberOfThreadsWhateverTheStage) {
     std::vector<std::unique_ptr<Solver>> all;
     for (const int threads : {1, 2, 3}) {
       o.settings.threads = threads;
-      all.push_back(filled(o));
+      all.push_back(filled_solver(o));
     }
     int stages = 0;
     while (!*all[0]->at_rest()) {
@@ -207,13 +208,13 @@ TEST(Grains, DoTheSameOnAnyNumberOfThreads) {
   o.settings.density_scaling = 1e3;
   o.loading = {{LoadingKind::compress, 2, 0.1, 0}};
   o.energy = true;
-  const auto one = filled(o);
+  const auto one = filled_solver(o);
   take_steps(*one, 300);
   EXPECT_GT(one->measures().contacts, 3 * std::int64_t(pairs_per_thread)) << "or one works alone";
   EXPECT_GT(one->measures().broken_in_shear, 0);
   for (const int threads : {2, 3}) {
     o.settings.threads = threads;
-    const auto more = filled(o);
+    const auto more = filled_solver(o);
     take_steps(*more, 300);
     EXPECT_EQ(one->state().positions, more->state().positions);
     EXPECT_EQ(one->state().velocities, more->state().velocities);
@@ -245,7 +246,7 @@ TEST(Grains, ThatAreReplacedBeginAnewWithOtherNumbers) {
   Options o = grains_of(random_snow(12, 5));
   o.settings.density_scaling = 1e3;
   o.loading = {{LoadingKind::compress, 2, 0.1, 0}};
-  const auto grains = filled(o);
+  const auto grains = filled_solver(o);
   const std::uint32_t count = std::uint32_t(grains->size());
   const ParticleState fresh = grains->state();
   take_steps(*grains, 100);
@@ -258,7 +259,7 @@ TEST(Grains, ThatAreReplacedBeginAnewWithOtherNumbers) {
 }
 
 TEST(Grains, ShowTheirFields) {
-  const auto grains = filled(grains_of(random_snow(12, 5)));
+  const auto grains = filled_solver(grains_of(random_snow(12, 5)));
   for (const FieldInfo& info : grains->fields())
     EXPECT_EQ(grains->field(info.name).count, grains->size()) << info.name;
   const FieldView radius = grains->field("equivalent_radius"), mass = grains->field("mass");
@@ -269,7 +270,7 @@ TEST(Grains, ShowTheirFields) {
 
 TEST(Grains, StayFiniteWhateverTheSettings) {
   const LabelImage snow = random_snow(12, 4);
-  const LabelImage voxel = lonely(1, 1, 1, 4);
+  const LabelImage voxel = single_block(1, 1, 1, 4);
   const double infinite = std::numeric_limits<double>::infinity();
   for (const LabelImage* image : {&snow, &voxel})
     for (const double modulus : {1e3, 1e9, 1e12})
@@ -284,7 +285,7 @@ TEST(Grains, StayFiniteWhateverTheSettings) {
             o.settings.damping = 0.2;
             o.energy = true;
             o.loading = {{LoadingKind::compress, 10, 0.5, 0}};
-            const auto grains = filled(o);
+            const auto grains = filled_solver(o);
             take_steps(*grains, 150);
             SCOPED_TRACE("E " + std::to_string(modulus) + ", friction " + std::to_string(friction) +
                          ", strength " + std::to_string(strength) + ", scaling " +

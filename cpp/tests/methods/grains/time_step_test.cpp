@@ -15,10 +15,10 @@ TEST(GrainTimeStep, IsThatOfTheRotationOfAVoxelOnABlock) {
   }));
   const double r = 0.5 * test_voxel, k = o.settings.elastic_modulus * r;
   const double mass = o.settings.density * 8 * r * r * r;
-  // One contact at a distance r turns a cube with I = 2/3 m r^2.
-  EXPECT_NEAR(filled(o)->time_step() / (0.3 * std::sqrt(mass / (1.5 * k))), 1, 1e-9);
+  // The cube with I = 2/3 m r^2 has one contact, at the distance r from its centre.
+  EXPECT_NEAR(filled_solver(o)->time_step() / (0.3 * std::sqrt(mass / (1.5 * k))), 1, 1e-9);
   o.settings.density_scaling = 100;
-  EXPECT_NEAR(filled(o)->time_step() / (3 * std::sqrt(mass / (1.5 * k))), 1, 1e-9);
+  EXPECT_NEAR(filled_solver(o)->time_step() / (3 * std::sqrt(mass / (1.5 * k))), 1, 1e-9);
 }
 
 TEST(GrainTimeStep, IsStableWithTheLargestFactor) {
@@ -26,7 +26,7 @@ TEST(GrainTimeStep, IsStableWithTheLargestFactor) {
   o.settings.courant_factor = 1;
   o.settings.tensile_strength = o.settings.shear_strength = 1e12;
   o.energy = true;
-  const auto grains = filled(o);
+  const auto grains = filled_solver(o);
   std::vector<Vec3> kicks;
   Random random(5);
   for (std::size_t i = 0; i < grains->size(); ++i) {

@@ -25,7 +25,7 @@ class Layout : public testing::Test {};
 using Dimensions = testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
 TYPED_TEST_SUITE(Layout, Dimensions);
 
-/// Whether the neighbours of all blocks are where they should be.
+/// Expects that the layout has the right neighbours for all blocks.
 template <int D>
 void expect_connected(const BlockLayout<D>& layout, const std::set<BlockKey>& keys) {
   const std::vector<BlockKey>& blocks = layout.particle_blocks;
@@ -67,7 +67,7 @@ TYPED_TEST(Layout, ConnectsEveryBlockWithAllAroundIt) {
   for (std::size_t i = 0; i < starts.size(); ++i) starts[i] = int(3 * i);
   const auto one = BlockLayout<D>::of({blocks[0]}, {0, 1}, 1);
   for (const BlockLayout<D>& before : {BlockLayout<D>::of(blocks, starts, 1), one}) {
-    SCOPED_TRACE(before.first.size());  // the blocks it has already, or others
+    SCOPED_TRACE(before.first.size());  // the same blocks, or others
     const BlockLayout<D> layout = before.rearranged(blocks, starts, 2);
     EXPECT_EQ(layout.particle_blocks, blocks);
     EXPECT_EQ(layout.first, starts);

@@ -114,7 +114,7 @@ struct Chunk {
 /// friction must be Coulomb's, and friction must take as much energy. The delay of friction, half a
 /// cell of sliding, matters most for a chunk of two cells: it covers a node only while it slides
 /// four cells.
-void expect_coulomb(const Chunk& c, double bar) {
+void expect_coulomb(const Chunk& c, double tolerance) {
   SCOPED_TRACE(testing::Message() << c.cells << " cells, " << c.speed << " m/s, " << c.tilt);
   constexpr double dx = 0.01;
   const double a = radians(c.tilt);
@@ -130,7 +130,7 @@ void expect_coulomb(const Chunk& c, double bar) {
   solver->add(chunk);
   run_until(*solver, 0.02);  // contact sets in
   struct Sample {
-    double time, place, speed, taken;
+    double time, position, speed, friction_energy;
   };
   const auto sample = [&] {
     const ParticleState s = solver->state();
@@ -142,9 +142,9 @@ void expect_coulomb(const Chunk& c, double bar) {
   const Sample to = sample();
   const double friction = c.friction * 9.81 * std::cos(a);  // m/s2
   const double felt = 9.81 * std::sin(a) - (to.speed - from.speed) / (to.time - from.time);
-  EXPECT_NEAR(felt, friction, bar * friction);
-  const double work = total_mass(solver->state()) * friction * (to.place - from.place);
-  EXPECT_NEAR(to.taken - from.taken, work, bar * work);
+  EXPECT_NEAR(felt, friction, tolerance * friction);
+  const double work = total_mass(solver->state()) * friction * (to.position - from.position);
+  EXPECT_NEAR(to.friction_energy - from.friction_energy, work, tolerance * work);
 }
 
 TEST(Friction, OfFastChunksIsAsCoulombSays) {
@@ -166,13 +166,13 @@ TEST(Friction, OfFastSlabsIsAsCoulombSays) {
 
 TEST(ThickEnough, LeavesThickBodiesAloneAndPadsThinOnes) {
   const Shape thick = make_box(Vec3::Zero(), Vec3(1, 1, 0.02));
-  EXPECT_EQ(as_grid_sees(thick, 0.01, 3).shape, thick);
+  EXPECT_EQ(thickened_for_grid(thick, 0.01, 3).shape, thick);
   const Shape thin = make_plate(Vec3::Zero(), Vec3::UnitZ(), 1, 1, 0.002);
-  const Shape padded = as_grid_sees(thin, 0.01, 3).shape;
+  const Shape padded = thickened_for_grid(thin, 0.01, 3).shape;
   EXPECT_NEAR(padded->inradius(), 0.01, 1e-12);
   EXPECT_NEAR(padded->distance(Vec3(0, 0, 0.009)), 0.0, 1e-12);
   EXPECT_NEAR(padded->distance(Vec3(0, 0, -0.011)), 0.0, 1e-12);
-  EXPECT_EQ(as_grid_sees(padded, 0.01, 3).shape, padded);
+  EXPECT_EQ(thickened_for_grid(padded, 0.01, 3).shape, padded);
 }
 
 struct Throw {
@@ -221,12 +221,12 @@ TEST(ThinPanel, SnowThrownAgainstItsUndersideFallsOffAgain) {
       run_steps(*solver, 100);
       for (const Vec3& x : solver->state().positions) reached = std::max(reached, normal.dot(x));
     }
-    EXPECT_GT(reached, -0.03);  // it did hit the panel
+    EXPECT_GT(reached, -0.03);  // the snow did hit the panel
     for (const Vec3& x : solver->state().positions) ASSERT_LT(x.dot(normal), -0.1) << degrees;
   }
 }
 
-// Walls of combined solids are as thin as those of plates, however thick the whole is.
+// A combined solid can have walls as thin as a plate, however thick it is as a whole.
 TEST(ThinPanel, OfACombinedSolidLetsNoSnowThrough) {
   const double wall = 0.003;
   const Shape bin = subtract(make_box(Vec3(0, 0, 0.1), Vec3(0.3, 10, 0.2)),
@@ -284,7 +284,8 @@ TEST(Contact, AMovingPlateCarriesSnowAlong) {
   const ParticleState end = solver->state();
   const Vec3 moved = weighted_mean(end, end.positions) - weighted_mean(start, start.positions);
   EXPECT_LT((moved - solver->time() * motion.velocity).norm(), 0.002);  // a fifth of a cell
-  EXPECT_LT((mean_velocity(*solver) - motion.velocity).norm(), 0.05);   // it rattles over the cells
+  // The snow rattles over the cells.
+  EXPECT_LT((mean_velocity(*solver) - motion.velocity).norm(), 0.05);
 }
 
 TEST(Contact, TheUndersideOfASeparatingObstacleDoesNotHold) {

@@ -23,7 +23,7 @@ std::unique_ptr<Solver> block_on(const ContactLaw& law, double gravity, const Ve
   return solver;
 }
 
-/// Mean position of the lowest layer, which are the particles that began below half a cell.
+/// Mean position of the lowest layer: the particles that were below half a cell at the start.
 Vec3 foot(const ParticleState& now, const ParticleState& start) {
   Vec3 sum = Vec3::Zero();
   int count = 0;
@@ -35,12 +35,12 @@ Vec3 foot(const ParticleState& now, const ParticleState& start) {
   return sum / count;
 }
 
-struct Pulled {
-  Vec3 foot, velocity;  // m, how far the lowest layer has come; m/s, mean of all
+struct PullResult {
+  Vec3 foot, velocity;  // m, displacement of the lowest layer; m/s, mean of all particles
 };
 
 /// Motion of snow that is thrown up and along the ground.
-Pulled pulled_off(Condition condition, double duration) {
+PullResult pulled_off(Condition condition, double duration) {
   const auto solver = block_on({condition, 0.0}, 0.0, Vec3(0.3, 0, 0.3));
   const ParticleState start = solver->state();
   run_until(*solver, duration);
@@ -49,21 +49,22 @@ Pulled pulled_off(Condition condition, double duration) {
 
 TEST(Conditions, SnowThatIsPulledOffLeavesWithSeparateOnly) {
   constexpr double t = 0.1;
-  const Pulled separate = pulled_off(Condition::separate, t);
+  const PullResult separate = pulled_off(Condition::separate, t);
   EXPECT_NEAR(separate.foot.x(), 0.3 * t, 0.01 * t);
   EXPECT_NEAR(separate.foot.z(), 0.3 * t, 0.01 * t);
   EXPECT_NEAR(separate.velocity.z(), 0.3, 0.003);
 
-  const Pulled slip = pulled_off(Condition::slip, t);
+  const PullResult slip = pulled_off(Condition::slip, t);
   EXPECT_NEAR(slip.foot.x(), 0.3 * t, 0.01 * t);
   EXPECT_NEAR(slip.velocity.x(), 0.3, 0.003);
   EXPECT_LT(std::abs(slip.foot.z()), 0.1 * cell);
 
-  const Pulled sticky = pulled_off(Condition::sticky, t);
+  const PullResult sticky = pulled_off(Condition::sticky, t);
   EXPECT_LT(sticky.foot.norm(), 0.1 * cell);
 }
 
-// Friction acts on what presses: where slip holds snow against its weight, there is none.
+// Only snow that presses on an obstacle feels friction. Where slip holds snow up against its
+// weight, there is none.
 TEST(Conditions, SnowThatSlipHoldsUpFeelsNoFriction) {
   for (const double gravity : {9.81, -9.81}) {
     const auto solver = block_on({Condition::slip, 0.5}, gravity, Vec3(0.3, 0, 0));
@@ -74,8 +75,8 @@ TEST(Conditions, SnowThatSlipHoldsUpFeelsNoFriction) {
 }
 
 /// A slab of elastic snow, 20 cm long, that lies on a level shelf and reaches 12 cm beyond its
-/// edge, so that its weight turns it over the edge where nothing holds its rear. Returns how far
-/// its middle has sunk after a third of a second, m.
+/// edge, so that its weight turns it over the edge unless its rear is held. Returns how far its
+/// middle has sunk after a third of a second, m.
 double sunk_over_the_edge(Condition condition) {
   Options o = options_for({2, Precision::float32}, cell);
   o.snows[0].model = SnowModel::elastic;
@@ -89,11 +90,11 @@ double sunk_over_the_edge(Condition condition) {
 
 TEST(Conditions, ASlabTipsOverAnEdgeWithSeparateOnly) {
   EXPECT_GT(sunk_over_the_edge(Condition::separate), 0.1);
-  EXPECT_LT(sunk_over_the_edge(Condition::slip), 0.01);  // it bends
+  EXPECT_LT(sunk_over_the_edge(Condition::slip), 0.01);  // the slab bends
   EXPECT_LT(sunk_over_the_edge(Condition::sticky), 0.01);
 }
 
-// Nothing but its edge lets snow off a panel with slip; there it must not be caught.
+// Snow leaves a panel with slip only over its edge. There it must not be caught.
 TEST(Conditions, WithSlipSnowLeavesAPanelOverItsEdge) {
   const double tilt = radians(40), length = 0.2;
   const Vec3 normal(std::sin(tilt), 0, std::cos(tilt)), slope(std::cos(tilt), 0, -std::sin(tilt));

@@ -19,8 +19,8 @@ Obstacle jaw(double side, double half_length) {
   return jaw;
 }
 
-/// A bar with a notch as wide as deep in the middle of its top, pulled apart along x: the plastic
-/// work over the area that breaks, J/m2.
+/// Returns the plastic work over the area that breaks (J/m2) of a bar that is pulled apart along x.
+/// A notch, as wide as deep, is in the middle of its top.
 double energy_of_crack(int dimension, double dx, double crack_band_length, Transfer transfer,
                        double time = 0.12, double relaxation_time = 0) {
   Options o = options_for({dimension, Precision::float32, transfer}, dx);
@@ -59,7 +59,7 @@ TEST(CrackBand, ACrackTakesTheSameEnergyOnAnyGrid) {
     most = std::max(most, energy);
   }
   EXPECT_LT(most / least, 1.15) << least << " to " << most << " J/m2";
-  // The law itself: nearly in proportion to the cells.
+  // Without a crack band the energy is nearly in proportion to the cells.
   EXPECT_LT(energy_of_crack(2, 0.005, 0.0, Transfer::affine_flip), 0.7 * least);
 }
 
@@ -84,7 +84,7 @@ TEST(CrackBand, ActsWithAnyTransfer) {
   EXPECT_NEAR(energy_of_crack(2, 0.005, 0.01, Transfer::flip), coarse, 0.1 * coarse);
 }
 
-/// Two halves of the snows `left` and `right` in a list, of which the right one flies off.
+/// Two blocks of the snows `left` and `right` of a list. The right block flies off.
 std::unique_ptr<Solver> broken_snow(const Way& way, double crack_band_length,
                                     const std::vector<Snow>& snows = {Snow{}}, int left = 0,
                                     int right = 0, bool energy = true) {
@@ -123,7 +123,8 @@ TEST(CrackBand, TheStrengthThatResultsShowIsThatOfTheBand) {
   const FieldView strength = solver->field("preconsolidation_pressure");
   int weakened = 0;
   for (std::size_t i = 0; i < strains.size(); ++i) {
-    const double dilated = std::max(strains[i] - begin, 0.0);  // softens four times as fast
+    // Dilated snow softens four times as fast.
+    const double dilated = std::max(strains[i] - begin, 0.0);
     const double expected =
         k * std::sinh(snow.hardening_factor * std::max(-(strains[i] + 3 * dilated), 0.0));
     weakened += dilated > 0 && expected > 0;
@@ -132,7 +133,7 @@ TEST(CrackBand, TheStrengthThatResultsShowIsThatOfTheBand) {
   EXPECT_GT(weakened, 0);
 }
 
-/// The kernels that balance the energy are others.
+/// The energy balance has kernels of its own.
 TEST(CrackBand, ActsWithoutAnEnergyBalance) {
   const auto strains = [](double crack_band_length, bool energy) {
     const Way way{2, Precision::float64, Transfer::flip};

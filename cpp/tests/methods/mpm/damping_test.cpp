@@ -40,8 +40,9 @@ TEST(Damping, OverALengthLeavesNothingToPic) {
   EXPECT_EQ(s.flip_share(1e-3), 1.0);
 }
 
-/// The part of its spin that a disc of elastic snow, two cells in radius, has left after a while:
-/// the grid does not resolve all of so small a spin, and PIC damps what it does not resolve.
+/// Returns the part of its spin that a disc of elastic snow, two cells in radius, has left after a
+/// while. The grid does not resolve the spin of such a small disc completely, and PIC damps the
+/// unresolved part.
 double spin_left(const Settings& numerics) {
   constexpr double radius = 0.02, spin = 20, duration = 0.02;
   Options o = options_for({2, Precision::float64});

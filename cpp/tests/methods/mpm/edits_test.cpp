@@ -1,4 +1,4 @@
-// Changes of the snow between steps, and a method's fields of its particles.
+// Changes of the snow between steps, and the fields of particles.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -12,8 +12,8 @@ double turnover(const EnergyBalance& now, double gravitational_at_start) {
   return std::max({gravitational_at_start - now.gravitational, now.kinetic, now.spent()});
 }
 
-/// No dissipation may ever flow back. Impact may: it is the work of the normal forces of contact,
-/// and transfer is what the PIC part takes, up to round-off of the energy itself.
+/// Expects that no dissipated energy flows back, up to round-off. Impact and transfer are not
+/// checked: normal forces of contact may return energy, and so may transfers.
 void expect_dissipation(const EnergyBalance& before, const EnergyBalance& now, double scale) {
   const double round_off = 1e-5 * scale;
   EXPECT_GE(now.plastic - before.plastic, -round_off);
@@ -64,12 +64,12 @@ TEST(Energy, BooksOfASlidingSlabClose) {
       last = now;
     }
     EXPECT_NEAR(last.residual(), 0.0, 0.01 * turnover(last, height));
-    // Friction's work is mu m g cos(tilt) times the way.
+    // Friction's work is mu m g cos(tilt) times the distance.
     const ParticleState end = solver->state();
     const double way =
         (weighted_mean(end, end.positions) - weighted_mean(start, start.positions)).norm();
     const double work = 0.3 * total_mass(end) * 9.81 * std::cos(tilt) * way;
-    EXPECT_NEAR(last.friction, work, 0.03 * work);  // it sets in a little late
+    EXPECT_NEAR(last.friction, work, 0.03 * work);  // friction sets in a little late
     EXPECT_EQ(last.sticking, 0.0);
   }
 }

@@ -1,6 +1,5 @@
-// The solver after a call that fails. Where memory is short, at every allocation of a run with
-// everything in it, the call must leave the state as it was, and the run must end with the same
-// bits.
+// The solver after a call that fails. Each allocation of a run with all features is made to fail in
+// turn. The call must then leave the state as it was, and the run must end with the same bits.
 #include <sys/resource.h>
 
 #include <csignal>
@@ -16,14 +15,14 @@ namespace {
 constexpr double dx = 0.02;
 
 /// All that can be seen of a solver.
-struct Seen {
+struct Observation {
   ParticleState particles;
   double time;
   StepCounters counters;
   std::int64_t slept_updates;
   EnergyBalance energy;
 
-  explicit Seen(const Solver& solver)
+  explicit Observation(const Solver& solver)
       : particles(solver.state()),
         time(solver.time()),
         counters(solver.counters()),
@@ -39,8 +38,8 @@ void expect_same_counters(const StepCounters& a, const StepCounters& b) {
   EXPECT_EQ(a.smallest_dt, b.smallest_dt);
 }
 
-/// Positions may have been rounded: the sort of a step that failed stays.
-void expect_same(const Seen& now, const Seen& before) {
+/// Positions may have been rounded, because the sort of a failed step is kept.
+void expect_same(const Observation& now, const Observation& before) {
   ASSERT_EQ(now.particles.ids, before.particles.ids);
   for (std::size_t i = 0; i < before.particles.ids.size(); ++i)
     ASSERT_LT((now.particles.positions[i] - before.particles.positions[i]).norm(), 1e-6 * dx);
@@ -59,7 +58,7 @@ void expect_same(const Seen& now, const Seen& before) {
 struct Case {
   int threads;
   double spacing;  // spacing of the particles, m
-  int steps;       // until the snow is hit, and so many may let it fall asleep
+  int steps;       // before the snow is hit; if they are many, it falls asleep
   bool moving;     // whether an obstacle moves, which takes memory in each step
 };
 
@@ -114,8 +113,7 @@ struct Story : FaultStory<Solver> {
 
 class AllocationFaults : public TemporaryFolder {
  protected:
-  /// Lets each allocation of each call of a story fail in turn, until it is done; returns their
-  /// number.
+  /// Makes each allocation of each call of a story fail in turn. Returns the number of failures.
   int try_all(const Case& c);
 };
 
@@ -123,10 +121,12 @@ int AllocationFaults::try_all(const Case& c) {
   Story whole(c, path("whole")), faulty(c, path("faulty"));
   const int faults = fail_every_allocation(
       whole, faulty,
-      [](const Solver& now, const Solver& wanted) { expect_same(Seen(now), Seen(wanted)); },
+      [](const Solver& now, const Solver& wanted) {
+        expect_same(Observation(now), Observation(wanted));
+      },
       [](const Solver&) {});
   if (HasFailure()) return faults;
-  const Seen now(*faulty.method), end(*whole.method);
+  const Observation now(*faulty.method), end(*whole.method);
   EXPECT_EQ(end.slept_updates > 0, c.steps > 64);
   expect_same_bits(now.particles, end.particles);
   expect_same_counters(now.counters, end.counters);
@@ -144,7 +144,8 @@ TEST_F(AllocationFaults, OnTwoThreadsLeaveNoTrace) {
   EXPECT_GE(try_all({2, 0.0025, 12, false}), 500);
 }
 
-/// While it lives, no file of this process grows beyond so many bytes, as on a full disk.
+/// While an object exists, no file of this process grows beyond a number of bytes, as on a full
+/// disk.
 class FullDisk {
  public:
   explicit FullDisk(rlim_t bytes) {
@@ -159,7 +160,7 @@ class FullDisk {
 };
 
 TEST_F(AllocationFaults, AFullDiskLeavesTheLastCheckpointAsItWas) {
-  std::signal(SIGXFSZ, SIG_IGN);  // else it ends the process instead of failing the write
+  std::signal(SIGXFSZ, SIG_IGN);  // otherwise the signal ends the process
   Story story({1, 0.0025, 12, false}, path("checkpoint"));
   for (std::size_t k = 0; k < 4; ++k) story.calls[k]();
   story.save_now();
@@ -213,7 +214,7 @@ TEST(Failure, ToFindATimeStepLeavesTheSnowAsItWas) {
   }
 }
 
-/// Snow so soft that it cannot take the blow.
+/// Snow that is too soft to take the blow.
 TEST(Failure, ThatIsSeenAfterwardsEndsTheRun) {
   Options o = options_for({2, Precision::float32});
   o.snows[0].model = SnowModel::elastic;

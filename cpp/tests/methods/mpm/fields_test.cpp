@@ -16,7 +16,7 @@ class ParticleFields : public testing::TestWithParam<Way> {
     shake(0.5);
   }
 
-  /// Gives the particles random velocities up to a speed (m/s), and goes on.
+  /// Gives the particles random velocities up to a speed (m/s), and takes some steps.
   void shake(double speed) {
     std::vector<Vec3> changes;
     Random random(1);
@@ -29,7 +29,7 @@ class ParticleFields : public testing::TestWithParam<Way> {
   std::unique_ptr<Solver> solver_;
 };
 
-/// Every field in the order of ids has the bits of the state, which is in that order.
+/// Every field, in the order of ids, has the same bits as the state.
 TEST_P(ParticleFields, AgreeWithTheState) {
   const ParticleState state = solver_->state();
   const auto expect = [&](const char* name, const auto& expected) {
@@ -54,7 +54,7 @@ TEST_P(ParticleFields, AgreeWithTheState) {
   EXPECT_TRUE(std::is_sorted(state.ids.begin(), state.ids.end()));
 }
 
-/// The stresses lie within the yield surface of the law, and some on it.
+/// All stresses lie within the yield surface of the law or on it, and some lie on it.
 TEST_P(ParticleFields, StressesAreThoseOfTheLaw) {
   shake(10.0);  // so that snow yields
   const ParticleState state = solver_->state();
@@ -88,7 +88,7 @@ TEST_P(ParticleFields, AreOfKnownQuantities) {
   EXPECT_THROW(solver_->field("masss"), InputError);
 }
 
-/// Particles that are added take the last places by id, and the order follows.
+/// Added particles are the last in the order of ids.
 TEST_P(ParticleFields, OrderFollowsParticlesThatAreAdded) {
   const std::size_t old = solver_->order_by_id().size();
   solver_->add(

@@ -21,12 +21,13 @@ namespace {
 template <class T>
 constexpr T all_pushing[] = {1, 1, 1, 1};
 
-/// Where a block's particles are, in cells, along each direction.
+/// The range of a block's particles along each direction, in cells.
 struct Spread {
   double low[3], high[3];
 };
 
-/// Anywhere in the tile, in the block's first cell, and in all of the block along one direction.
+/// Returns ranges over the whole tile, over the block's first cell, and over the block along one
+/// direction.
 template <int D>
 std::vector<Spread> spreads() {
   constexpr double edge = block_edge<D>;
@@ -106,7 +107,8 @@ void expect_exact_sums(const Way& way, const Spread& spread) {
   }
   const Kernels<T> kernels =
       select_kernels<T>({D, way.transfer, way.basis, SnowModel::cam_clay, false});
-  constexpr T unset = std::numeric_limits<T>::quiet_NaN();  // nothing that is not cleared is read
+  // Values that are not cleared must not be read.
+  constexpr T unset = std::numeric_limits<T>::quiet_NaN();
   AlignedVector<T> tile(std::size_t(tile_nodes<D>(way.basis)) * node_values, unset);
   const auto snow = material_constants<T>(Snow(), D);
   const StepParameters<T> step{T(1e-4), T(0.01), T(9.81), T(0.99),       T(0.02),
@@ -167,7 +169,7 @@ TEST(Scatter, SaysWhenAParticleHasLeftTheTile) {
   }
 }
 
-/// In a process of its own, because the choice is made once.
+/// Runs in a process of its own, because kernels are chosen only once.
 [[noreturn]] void choose_kernels(const char* name) {
   setenv("SNOWSHED_KERNELS", name, 1);
   try {

@@ -51,8 +51,9 @@ double height_of(const ParticleState& s, int event) {
   return sum / mass;
 }
 
-/// Mean height of a slab of five of 2 cm that come down one after the other, m.
-double height_of_slab(const Way& way, double dx, Fields fields, int slabs) {
+/// Mean distance (m) from one slab to the next in a stack of slabs of 2 cm that come down one after
+/// the other.
+double distance_of_slabs(const Way& way, double dx, Fields fields, int slabs) {
   Options o = event_options(way, dx);
   o.settings.scheme = Scheme::thesis;
   o.settings.fields = fields;
@@ -74,17 +75,18 @@ INSTANTIATE_TEST_SUITE_P(Meetings, SlabsOnGrid, testing::Values(0.01, 0.005));
 
 TEST_P(SlabsOnGrid, RestOnEachOther) {
   const double dx = GetParam();
-  const double height = height_of_slab({2, Precision::float32}, dx, Fields::events, 5);
+  const double height = distance_of_slabs({2, Precision::float32}, dx, Fields::events, 5);
   EXPECT_NEAR(height, 0.02, 0.03 * 0.02);
   EXPECT_LT(height - 0.02, 0.11 * dx);
 }
 
 TEST(Meetings, SlabsOfOneFieldRestTwoCellsApart) {
-  EXPECT_GT(height_of_slab({2, Precision::float32}, 0.01, Fields::one, 3), 0.027);
+  EXPECT_GT(distance_of_slabs({2, Precision::float32}, 0.01, Fields::one, 3), 0.027);
 }
 
 TEST(Meetings, SlabsRestOnEachOtherInThreeDimensions) {
-  EXPECT_NEAR(height_of_slab({3, Precision::float32}, 0.01, Fields::events, 2), 0.02, 0.06 * 0.02);
+  EXPECT_NEAR(distance_of_slabs({3, Precision::float32}, 0.01, Fields::events, 2), 0.02,
+              0.06 * 0.02);
 }
 
 std::unique_ptr<Solver> weightless_solver(Fields fields = Fields::events) {
@@ -99,14 +101,15 @@ ParticleBatch lower_block(int event) {
   return slab(2, event, Vec3(0, 0, 0), Vec3(0.06, 0, 0.03), 0.004);
 }
 
-/// It touches the lower one and moves away from it.
+/// A block that touches the lower one and moves away from it.
 ParticleBatch upper_block(int event) {
   ParticleBatch block = slab(2, event, Vec3(0, 0, 0.03), Vec3(0.06, 0, 0.06), 0.004);
   block.velocity.z() = 0.2;
   return block;
 }
 
-/// The speed (m/s) to which the upper block has carried the lower one, of an event, along.
+/// Returns the speed (m/s) to which the upper block has accelerated the lower one, the snow of an
+/// event.
 double speed_carried_along(Solver& solver, int event) {
   run_until(solver, solver.time() + 0.02);
   return momentum_of(solver.state(), event).z() / (0.06 * 0.03 * 210);
@@ -174,7 +177,8 @@ TEST(Meetings, SleepingSnowCarriesThatOfAnotherEvent) {
   EXPECT_NEAR(height_of_block(0.02), height_of_block(0), 0.0003);
 }
 
-/// Momentum that a block, at 1 m/s at first, loses to a layer of snow over what presses it on.
+/// Returns the coefficient of friction between a block, at 1 m/s at first, and a layer of snow: the
+/// momentum that the block loses over the impulse that presses it on the layer.
 double coefficient_felt(int dimension, double dx, double event_friction, int seed) {
   Options o = event_options({dimension, Precision::float32}, dx);
   o.settings.event_friction = event_friction;
@@ -223,13 +227,14 @@ TEST_P(BlockOnSnow, FeelsItsFriction) {
   const double coefficient = 0.5 / std::sqrt(3.0);
   const double felt = mean_coefficient_felt(2, c.dx, c.event_friction, c.seeds);
   if (c.event_friction == 0)
-    EXPECT_LT(felt, 0.02);  // it ploughs a little
+    EXPECT_LT(felt, 0.02);  // the block ploughs a little
   else
     EXPECT_NEAR(felt, c.event_friction * coefficient,
                 (c.event_friction == 1 ? 0.07 : 0.3) * coefficient);
 }
 
-/// A block comes to rest as soon as its friction says, although some of its nodes stop before.
+/// A block comes to rest within the time that its friction implies, although some of its nodes stop
+/// before.
 TEST(Meetings, ABlockStopsInTime) {
   double left = 0;
   for (int seed = 2; seed < 10; ++seed) {
@@ -354,7 +359,7 @@ TEST_F(MeetingsFiles, SnowThatSlidesGoesOnFromACheckpoint) {
   expect_resumes(*solver, *falling_slabs(1, 0), path("state"), 200);
 }
 
-/// More than there are fields: the oldest share one.
+/// There are more events than fields. The oldest share a field.
 TEST(Meetings, AnyNumberOfEventsMayMeet) {
   const auto solver = falling_slabs(1, 12);
   run_steps(*solver, 300);

@@ -1,4 +1,5 @@
-// Obstacles in motion: where their nodes are, how they move, and which conditions hold snow.
+// Obstacles in motion: the nodes they hold, the velocities there, and the conditions under which
+// they hold snow.
 #include <gtest/gtest.h>
 
 #include "methods/mpm/solver_testing.hpp"

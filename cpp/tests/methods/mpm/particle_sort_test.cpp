@@ -87,7 +87,7 @@ TYPED_TEST(ParticleSorting, PutsEveryParticleIntoItsBlock) {
   const std::vector<BlockKey> in = blocks_of_particles(layout);
   for (std::size_t i = 0; i < p.size(); ++i) {
     const std::uint32_t id = p.id[i];
-    EXPECT_EQ(p.mass[i], T(id));  // everything travels with it
+    EXPECT_EQ(p.mass[i], T(id));  // all values move with the particle
     EXPECT_EQ(p.plastic[i], T(-double(id)));
     for (int d = 0; d < D; ++d) {
       EXPECT_GE(p.cell[d][i], T(0));
@@ -121,7 +121,7 @@ TYPED_TEST(ParticleSorting, RefusesParticlesThatAreNowhere) {
     this->blocks.clear();
     this->add_random(10, 0.1);
     this->particles.cell[1][7] = bad;
-    this->particles.cell[0][9] = bad;  // the error names the first
+    this->particles.cell[0][9] = bad;  // the error names the first bad particle
     const Particles<T, D> before = this->particles;
     try {
       sorted(this->particles, this->blocks, BlockLayout<D>(), 2);
@@ -130,7 +130,7 @@ TYPED_TEST(ParticleSorting, RefusesParticlesThatAreNowhere) {
       EXPECT_NE(std::string(error.what()).find("particle 7 "), std::string::npos);
     }
     EXPECT_EQ(this->particles.id, before.id);
-    for (int i = 0; i < 7; ++i)  // those before it have not been moved either
+    for (int i = 0; i < 7; ++i)  // the particles before it have not been moved either
       EXPECT_EQ(this->particles.cell[0][i], before.cell[0][i]);
   }
 }

@@ -71,7 +71,7 @@ TEST(MaterialPerParticle, ThatAreEqualMoveAsOneDoes) {
       EXPECT_EQ(first_of_two->energy().residual(), both->energy().residual());
       EXPECT_EQ(std::count(c.material_ids.begin(), c.material_ids.end(), 1),
                 std::ptrdiff_t(c.material_ids.size() / 2));
-      // Kernels of one snow, which may round differently, without the balance.
+      // Without the balance, a single snow has kernels of its own, which may round differently.
       EXPECT_TRUE(a.material_ids.empty());
       const double round_off = 1000 * way.epsilon();
       EXPECT_LT(relative_difference(a.positions, b.positions), round_off);
@@ -144,10 +144,10 @@ TEST(MaterialPerParticle, TheStiffestLimitsTheStepWhereverItStandsInTheList) {
 }
 
 TEST(MaterialPerParticle, AColumnOfTwoSettlesPiecewise) {
-  // Confined between frictionless walls on a sticky floor, elastic: with s = lambda + 2 mu of each
-  // layer, the lower one carries the upper: u' = g (rho_1 (h_1 - z) + rho_2 h_2)/s_1 below, and
-  // g rho_2 (H - z)/s_2 above. Set free it vibrates about this state; its average over many of the
-  // longest periods is the static state.
+  // Elastic snow stands on a sticky floor between frictionless walls, and the lower layer carries
+  // the upper one. With s = lambda + 2 mu of each layer, u' = g (rho_1 (h_1 - z) + rho_2 h_2)/s_1
+  // in the lower layer, and u' = g rho_2 (H - z)/s_2 in the upper one. The snow vibrates about this
+  // state. Its average over many of the longest periods is the static state.
   constexpr double half = 0.1, dx = 0.0025, width = 4 * dx, bin = 0.01, g = 9.81;
   Options o = options_for({2, Precision::float64}, dx);
   o.snows.assign(2, Snow());

@@ -10,7 +10,7 @@ namespace {
 constexpr double speed_limit = 0.02, time_to_sleep = 0.04, step = 1e-4;
 constexpr int steps_between_checks = 8;
 
-/// Result of a check of the quiet block.
+/// Measurements of the quiet block.
 struct QuietBlock {
   double speed = 0, fastest = 0;
   CarriedMotion carried;
@@ -19,7 +19,8 @@ struct QuietBlock {
 
 class TwoBlocks : public testing::Test {
  protected:
-  /// Checks every few steps for a time (s); returns whether the quiet block sleeps then.
+  /// Checks the blocks every few steps for a time (s). Returns whether the quiet block sleeps at
+  /// the end.
   bool sleeps_after(double duration, const QuietBlock& block) {
     Sleep<2>::BlockProbe probe;
     probe.fastest = [&](std::int32_t b) { return b == 0 ? 1.0 : block.fastest; };
@@ -55,7 +56,8 @@ TEST_F(TwoBlocks, StayAwakeAboveTheLimitAndWithOneFastParticle) {
   EXPECT_TRUE(sleeps_after(5 * time_to_sleep, {0.5 * speed_limit, 4 * speed_limit, {}}));
 }
 
-/// The mean velocity in the first half of the time to fall asleep, and in the second.
+/// The mean velocity is 2 mm/s in the first half of the time to fall asleep, and smaller or larger
+/// in the second.
 TEST_F(TwoBlocks, StayAwakeWhileTheySetOff) {
   for (const double second : {0.001, 0.009}) {
     wake_all();
@@ -86,11 +88,12 @@ TEST_F(TwoBlocks, WakeWhereTheirNeighbourWouldCarryThemFasterThanTheLimit) {
   }
 }
 
-/// A steady force gives within the time to fall asleep the velocity a t.
+/// A steady force that causes the acceleration a gives the velocity a t within the time t to fall
+/// asleep.
 TEST_F(TwoBlocks, WakeByForcesThatActForAsLongAsItTakesToFallAsleep) {
   for (const double part : {0.8, 1.2}) {
     fall_asleep();
-    QuietBlock block{1.0, 1.0, {}};  // once awake it stays so
+    QuietBlock block{1.0, 1.0, {}};  // fast: once awake, the block stays awake
     block.carried.change[1] = part * speed_limit / time_to_sleep * step;
     EXPECT_EQ(sleeps_after(10 * time_to_sleep, block), part < 1) << part;
   }

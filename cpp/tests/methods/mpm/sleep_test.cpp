@@ -79,8 +79,8 @@ TEST(Sleep, IsOffAtSpeedZero) {
   EXPECT_EQ(solver->energy().sleep, 0.0);
 }
 
-/// In the twentieth of a second that it takes to become faster than the limit, it must not be
-/// taken for resting: its mean velocity grows.
+/// The snow takes a twentieth of a second to become faster than the limit. It must not fall asleep
+/// in this time, because its mean velocity grows.
 TEST(Sleep, SnowThatSetsOffSlowlyGoesOn) {
   Options o = sleepy(two_d);
   o.gravity = 0.4;
@@ -138,7 +138,7 @@ TEST(Sleep, PressureWakes) {
     const double top = 0.085;  // where a block of particles ends
     const ParticleBatch below = filled_box(2, Vec3::Zero(), Vec3(0.3, 0, top), 0.005);
     solver->add(below);
-    const auto pressure = [&](double from) {  // mean over the tenth of a second after that
+    const auto pressure = [&](double from) {  // mean over the tenth of a second after `from`
       double sum = 0, count = 0;
       run_until(*solver, from);
       while (solver->time() < from + 0.1) {
@@ -176,8 +176,8 @@ TEST(Sleep, ArrivalsWake) {
 }
 
 TEST(Sleep, SnowThatTurnsInTheAirGoesOn) {
-  // Speed is the same before and after the top of a throw, and when a blow takes one component
-  // while gravity adds another.
+  // The speed is the same before and after the top of a throw. It can also stay the same when a
+  // blow reduces one component of the velocity while gravity increases another.
   Options o = sleepy(two_d, 0.2);
   for (const Vec3& thrown : {Vec3(0, 0, 0.05), Vec3(0.1, 0, 0.05), Vec3(-0.15, 0, 0.02)}) {
     const auto solver = make_solver(o, {});

@@ -46,7 +46,8 @@ TEST_P(InEveryWay, FreeFlightKeepsMassAndMomentum) {
   // Every step rounds each particle's momentum a few times; the errors do not all add up.
   const double round_off = 70 * way.epsilon() * sum_of_speeds(before);
   EXPECT_LT((momentum(after) - momentum(before)).norm(), round_off);
-  EXPECT_GT((after.velocities[0] - before.velocities[0]).norm(), 0.01);  // they did interact
+  EXPECT_GT((after.velocities[0] - before.velocities[0]).norm(),
+            0.01);  // the particles did interact
 }
 
 TEST_P(InEveryWay, FreeFallIsExact) {
@@ -95,7 +96,8 @@ class SolverFiles : public TemporaryFolder {
       }
     return {sum(2, 1) - sum(1, 2), sum(0, 2) - sum(2, 0), sum(1, 0) - sum(0, 1)};
   }
-  /// About the origin; APIC's affine part carries its own (inertia dx^2/4 or dx^2/3).
+  /// Angular momentum about the origin, including that of the affine velocities (inertia dx^2/4 or
+  /// dx^2/3).
   Vec3 angular_momentum(const Method& solver, const Way& way, double dx) {
     const ParticleState s = solver.state();
     Vec3 sum = Vec3::Zero();
@@ -117,14 +119,15 @@ TEST_F(SolverFiles, ApicKeepsAngularMomentum) {
     const Vec3 before = angular_momentum(*solver, way, 0.01);
     run_steps(*solver, 70);
     const Vec3 after = angular_momentum(*solver, way, 0.01);
-    // Arms of 3 cm; as for momentum.
+    // Round-off as for the momentum, times arms of some 3 cm.
     const double round_off = 70 * way.epsilon() * 0.05 * sum_of_speeds(solver->state());
     EXPECT_LT((after - before).norm(), round_off) << way.name();
     EXPECT_GT(before.norm(), 1e-5) << way.name();
   }
 }
 
-/// Affine FLIP keeps as much of the noise as its affine velocities are those of its velocities.
+/// Affine FLIP keeps the angular momentum if the affine velocities fit the particles' velocities,
+/// as in a spin.
 TEST_F(SolverFiles, AffineFlipKeepsTheAngularMomentumOfASpin) {
   const Way way{2, Precision::float64, Transfer::affine_flip};
   Options o = options_for(way);
@@ -136,7 +139,7 @@ TEST_F(SolverFiles, AffineFlipKeepsTheAngularMomentumOfASpin) {
   const Vec3 before = angular_momentum(*solver, way, 0.01);
   run_until(*solver, 0.11);
   const Vec3 after = angular_momentum(*solver, way, 0.01);
-  EXPECT_NEAR(after.y(), before.y(), 0.005 * before.y());  // FLIP loses it at 16 1/s: four fifths
+  EXPECT_NEAR(after.y(), before.y(), 0.005 * before.y());  // FLIP loses four fifths, at 16 1/s
 }
 
 TEST_F(SolverFiles, ADiscKeepsSpinning) {
@@ -214,10 +217,10 @@ TEST(Method, AnElasticBarVibratesAtItsNaturalFrequency) {
 }
 
 TEST(Method, AColumnCarriesItsWeight) {
-  // Confined between frictionless walls on a sticky floor, elastic: with s = lambda + 2 mu the
-  // vertical stress is rho g (H - z), the pressure (lambda + mu)/s of it, and the settlement
-  // rho g (H z - z^2/2)/s. Set free it vibrates about this state; its average over four of the
-  // longest periods, 4 H/c, is the static state.
+  // Elastic snow stands on a sticky floor between frictionless walls. With s = lambda + 2 mu, the
+  // vertical stress is rho g (H - z), the pressure is (lambda + mu)/s of it, and the settlement is
+  // rho g (H z - z^2/2)/s. The snow vibrates about this state. Its average over four of the longest
+  // periods, 4 H/c, is the static state.
   constexpr double height = 0.2, width = 0.04, spacing = 0.005;
   Options o = options_for({2, Precision::float64});
   o.snows[0].model = SnowModel::elastic;
@@ -242,7 +245,8 @@ TEST(Method, AColumnCarriesItsWeight) {
   });
   const double bottom = weight * height * (lambda + mu) / s;
   const double top = weight / s * height * height / 2;
-  for (int cell = 2; cell < 20; ++cell) {  // means over cells: within them stress scatters
+  for (int cell = 2; cell < 20;
+       ++cell) {  // means over cells, because stress scatters within a cell
     const double z = (cell + 0.5) * 0.01;
     double mean_pressure = 0, mean_settlement = 0, particles = 0;
     for (std::size_t i = 0; i < n; ++i) {
@@ -272,7 +276,7 @@ std::unique_ptr<Solver> thrown_snow(Way way, int threads, double size, bool ener
   return solver;
 }
 
-/// The kernels with the energy balance are others.
+/// The energy balance has kernels of its own.
 class SameBits : public SolverFiles, public testing::WithParamInterface<bool> {};
 
 TEST_P(SameBits, OnAnyNumberOfThreads) {

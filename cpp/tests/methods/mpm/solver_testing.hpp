@@ -115,9 +115,9 @@ inline void run_steps(Method& solver, int steps) {
   for (int i = 0; i < steps; ++i) solver.step();
 }
 
-/// Average over a duration for snow that vibrates about its static state: `add` gets each part of
-/// the whole with its state. The weights, 2 sin^2 of the time, filter all modes out that are
-/// several times shorter than the duration.
+/// Averages over a duration, for snow that vibrates about its static state. Calls `add` with each
+/// state and its weight in the average. The weights, 2 sin^2 of the time, filter out all modes that
+/// are several times shorter than the duration.
 template <class Add>
 void average(Method& solver, double duration, const Add& add) {
   double covered = 0;
@@ -156,7 +156,8 @@ inline void expect_same_bits(const ParticleState& a, const ParticleState& b) {
   EXPECT_EQ(a.ids, b.ids);
 }
 
-/// Expects a fresh solver that loads what another one saves into `file` to go on as that one does.
+/// Expects that a fresh solver, which loads the state of another one from `file`, goes on with the
+/// same bits as that one.
 inline void expect_resumes(Solver& solver, Solver& fresh, const std::string& file, int steps) {
   BinaryWriter out;
   solver.save(out);

@@ -84,7 +84,7 @@ TEST(TimeStep, StepsWithinTheLimitAreStable) {
 }
 
 TEST(TimeStep, TheLimitIsNotFarTooSafe) {
-  // Just past it, a lone particle blows up at the worst place.
+  // Just beyond the limit, a lone particle blows up at the worst position.
   for (Transfer transfer : {Transfer::flip, Transfer::apic, Transfer::affine_flip}) {
     EXPECT_GT(pressure_from_round_off(transfer, Basis::quadratic, 1e-3, 1.1), 1.0);
     EXPECT_GT(pressure_from_round_off(transfer, Basis::cubic, 0.5, 1.1), 1.0);

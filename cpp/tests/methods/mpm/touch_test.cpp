@@ -24,7 +24,7 @@ double lowest(const ParticleState& s) {
   return z;
 }
 
-/// Height of the snow's surface over the ground, in cells, of a slab that came down on it.
+/// Gap (in cells) between the ground and a slab that came down on it.
 double resting_gap(const Way& way, double dx, ContactRule contact, const Obstacle& ground,
                    double surface) {
   Options o = touching_options(way, dx);
@@ -41,7 +41,8 @@ class RestingGap : public testing::TestWithParam<Condition> {};
 INSTANTIATE_TEST_SUITE_P(Touch, RestingGap,
                          testing::Values(Condition::sticky, Condition::slip, Condition::separate));
 
-/// Wherever the surface lies between the nodes, and of a plate thinner than a cell, too.
+/// The gap is small wherever the surface lies between the nodes, also on a plate thinner than a
+/// cell.
 TEST_P(RestingGap, IsLessThanATenthOfACell) {
   const Condition condition = GetParam();
   for (const double dx : {0.02, 0.005})
@@ -79,10 +80,10 @@ TEST(Touch, SnowPastAnEdgeIsNotCarried) {
   const double free_fall = -9.81 * 0.06;
   EXPECT_NEAR(speed_beside_edge(ContactRule::touch, 0.001), free_fall, 0.01);
   EXPECT_GT(speed_beside_edge(ContactRule::kernel, 0.001),
-            0.8 * free_fall);  // the grid carries it
+            0.8 * free_fall);  // the grid carries the snow
 }
 
-/// Snow that lies on the ground a few cells away does not hold what falls.
+/// Snow that lies on the ground does not hold snow that falls a few cells away.
 TEST(Touch, SnowBesideSnowThatTouchesFallsFreely) {
   const auto solver =
       make_solver(touching_options({2, Precision::float64}),
@@ -133,7 +134,8 @@ TEST(Touch, FrictionIsCoulombs) {
     }
 }
 
-/// Acceleration over Coulomb's of a slab that covers a tilted plate from end to end, once at rest.
+/// Acceleration, over Coulomb's, of a slab that starts at rest and covers a tilted plate from end
+/// to end.
 double acceleration_on_plate(double dx, double along, double thickness, Condition condition) {
   constexpr double tilt = radians(50), friction = 0.6, length = 0.245;
   const Vec3 normal(std::sin(tilt), 0, std::cos(tilt)), slope(std::cos(tilt), 0, -std::sin(tilt));
@@ -173,7 +175,7 @@ TEST(Touch, AMovingObstaclePushesOnceItTouches) {
   const auto solver = make_solver(o, {wall});
   solver->add(filled_box(2, Vec3(0.02, 0, 0), Vec3(0.06, 0, 0.04), 0.004));
   run_until(*solver,
-            0.036);  // it has come 1.8 cm: its nodes hold the snow for some time
+            0.036);  // the wall has moved 1.8 cm, and its nodes have long reached the snow
   EXPECT_EQ(mean_velocity(*solver).norm(), 0.0);
   run_until(*solver, 0.08);
   EXPECT_GT(mean_velocity(*solver).x(), 0.45);
@@ -192,7 +194,7 @@ void expect_radius_of_volume() {
   std::vector<BlockKey> blocks;
   state.append(model, particle, blocks);
   const double initial = state.particles.plastic[0];
-  for (const double ratio : {1.0, 0.5, 1.4, 4.0}) {  // loose snow is no larger than by half
+  for (const double ratio : {1.0, 0.5, 1.4, 4.0}) {  // loose snow counts as larger by half at most
     state.particles.plastic[0] = initial + std::log(ratio);
     EXPECT_NEAR(state.contact_radius(model, 0),
                 part * spacing / 2 * std::pow(std::min(ratio, 1.5), 1.0 / D), 1e-9)

@@ -26,9 +26,9 @@ void add_turning_chunk(Method& solver, int dimension, double w, double spacing, 
   const Vec3 half(w / 2, w / 4, w / 4);
   const ParticleBatch box = filled_box(dimension, -half, half, spacing);
   const Mat3 turn = Eigen::AngleAxisd(angle, Vec3::UnitY()).toRotationMatrix();
-  for (const Vec3& place : box.positions) {
+  for (const Vec3& position : box.positions) {
     ParticleBatch one;
-    const Vec3 x = turn * place;
+    const Vec3 x = turn * position;
     one.positions = {x + Vec3(0.003, 0, 0.302)};
     one.velocity = spin * Vec3::UnitY().cross(x);
     one.mass = box.mass;
@@ -36,7 +36,8 @@ void add_turning_chunk(Method& solver, int dimension, double w, double spacing, 
   }
 }
 
-/// About y and the centre of mass; affine velocities carry their own (inertia dx^2/4).
+/// Angular momentum about y and the centre of mass, including that of affine velocities (inertia
+/// dx^2/4).
 double spin_momentum(const Method& solver, double dx) {
   const ParticleState s = solver.state();
   const Vec3 x = weighted_mean(s, s.positions), v = weighted_mean(s, s.velocities);
@@ -48,7 +49,7 @@ double spin_momentum(const Method& solver, double dx) {
   return sum;
 }
 
-/// Mean rate, 1/s, at which a chunk turns ever more slowly, over some orientations.
+/// Mean rate (1/s) at which the rotation of a chunk decays, over some orientations.
 double decay_rate(int dimension, double w, double dx) {
   double sum = 0;
   const double angles[] = {0.4, 1.1, 2.0};
@@ -63,8 +64,8 @@ double decay_rate(int dimension, double w, double dx) {
   return sum / 3;
 }
 
-/// The same of a rigid body of points, without any grid of cells: what the average takes of its
-/// angular momentum. The coarse grid is laid at random.
+/// The same rate for a rigid body of points, without cells: `rate` times the share of angular
+/// momentum that the average lacks. The coarse grid has random positions.
 double exact_decay_rate(double w) {
   constexpr int n = 48;
   Random random(3);
@@ -152,7 +153,7 @@ TEST(VelocityAverage, IsNotOfTheStep) {
     EXPECT_NEAR(left(courant_factor), expected, 0.06 * expected) << courant_factor;
 }
 
-/// Particles at random places with random velocities.
+/// A particle with random position, velocity and mass.
 ParticleBatch swarm_particle(Random& random, int dimension) {
   ParticleBatch one;
   one.positions = {random_vector(random, dimension, 0.03)};
@@ -210,7 +211,7 @@ void add_parting_particles(Solver& solver) {
   }
 }
 
-/// Damping so fast leaves them at rest.
+/// Such fast damping leaves the two particles at rest.
 TEST(VelocityAverage, BooksWhatItTakes) {
   Options o = damped_options({2, Precision::float64});
   o.energy = true;
@@ -224,7 +225,7 @@ TEST(VelocityAverage, BooksWhatItTakes) {
   EXPECT_NEAR(e.kinetic, 0, 1e-6 * e.added);
 }
 
-/// Neither the average over a length far below a cell nor PIC.
+/// Neither an average over a length far below a cell nor PIC takes energy.
 TEST(VelocityAverage, OverNoLengthTakesNothing) {
   Options o = damped_options({2, Precision::float64});
   o.settings.damping_length = 1e-5;

@@ -1,5 +1,5 @@
-// Snow brought to yield by the whole solver, against closed forms: constants, kernels and transfer
-// must all be right for it to break where the law says.
+// Snow that the whole solver brings to yield, compared with closed forms. Constants, kernels and
+// transfer must all be right if it breaks where the law says.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -67,7 +67,8 @@ double fall_of_column(int dimension, double part_of_strength) {
   return before - middle();
 }
 
-/// It breaks a little early, because the stress of particles scatters about that of the column.
+/// The column breaks a little early, because the stress of particles scatters about that of the
+/// column.
 TEST(HangingColumn, BreaksAtItsTensileStrength) {
   for (int dimension : {2, 3}) {
     EXPECT_LT(fall_of_column(dimension, 0.85), 5e-4) << dimension;
@@ -115,7 +116,7 @@ Stress stress_at_middle(const Method& solver, const Snow& snow, int dimension) {
 }
 
 /// A block about the origin in which the velocity is `gradient` times the position. Waves from its
-/// faces reach the middle only after what the tests look at.
+/// faces reach the middle only after the tests have measured there.
 std::unique_ptr<Solver> straining_block(const Snow& snow, int dimension, const Mat3& gradient) {
   Options o = options_for({dimension, Precision::float64});
   o.gravity = 0;

@@ -14,7 +14,7 @@
 namespace snowshed::mps {
 namespace {
 
-/// A random cloud, denser and sparser than a lattice, so that rows of many lengths come up.
+/// A random cloud, denser and sparser than a lattice, so that rows of many lengths occur.
 template <int D>
 struct Cloud {
   static constexpr double radius = 2.1;

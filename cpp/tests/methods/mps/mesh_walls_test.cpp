@@ -1,4 +1,4 @@
-// Walls by particles on what is no plane: terrain and an obstacle of triangles, in 3D.
+// Wall particles of surfaces that are not plane: terrain and an obstacle of triangles, in 3D.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace {
 
 using geometry_testing::sphere_mesh;
 
-constexpr double bump = 0.01;  // m, by which the ground is higher and lower than zero
+constexpr double bump = 0.01;  // m, largest height and depth of the ground
 
 /// Ground with bumps, 0.2 m long along both axes, from -0.1 to `edge` + 0.1 m.
 TriangleMesh bumpy_ground(double edge) {
@@ -49,16 +49,18 @@ TriangleMesh bumpy_ground(double edge) {
   return mesh;
 }
 
-Obstacle of_mesh(const char* name, TriangleMesh mesh) {
-  return {
-      name, make_mesh(joined(solid_of_shells(mesh, name))), {Condition::sticky, 0.0}, std::nullopt};
+Obstacle mesh_obstacle(const char* name, TriangleMesh mesh) {
+  return {name,
+          make_mesh(merged_layers(solid_of_shells(mesh, name))),
+          {Condition::sticky, 0.0},
+          std::nullopt};
 }
 
 /// A tank with bumpy ground.
 Options bumpy_tank(double width) {
   Options o = tank(3, width, 0.02);
   o.settings.walls = Walls::particles;
-  o.obstacles.front() = of_mesh("ground", bumpy_ground(width));
+  o.obstacles.front() = mesh_obstacle("ground", bumpy_ground(width));
   return o;
 }
 
@@ -83,7 +85,7 @@ double least_distance(const Method& method, const Options& o) {
   return least;
 }
 
-// Its volume, over the ground's mean height of zero, says how high it stands.
+// The depth of the water follows from its volume, because the ground's mean height is zero.
 TEST(MpsMeshWalls, HoldWaterAtRestOnBumpyGround) {
   constexpr double edge = 0.2;
   Options o = bumpy_tank(edge);
@@ -108,7 +110,7 @@ TEST(MpsMeshWalls, LetNoSnowThrough) {
   o.settings.viscosity = 0.012;
   TriangleMesh ball = sphere_mesh(0.06, 6);
   for (Vec3& x : ball.vertices) x += Vec3(0.22, 0.2, 0.05);
-  o.obstacles.push_back(of_mesh("ball", ball));
+  o.obstacles.push_back(mesh_obstacle("ball", ball));
   const auto mps = make_solver(o);
   ParticleBatch snow = block_outside(o, {0, 0.1, 0}, {0.14, 0.3, 0.2});
   snow.velocity = {2, 0, 0};

@@ -9,7 +9,7 @@
 
 namespace snowshed::mps {
 
-/// A particle at the middle of every cell of a box, in 2D of its face.
+/// A particle at the middle of every cell of a box, or of its section y = 0 in 2D.
 inline ParticleBatch block_of(const Options& o, const Vec3& low, const Vec3& high) {
   const double l0 = o.settings.spacing;
   ParticleBatch batch;
@@ -46,7 +46,7 @@ inline Options tank(int dimension, double width, double spacing) {
   return o;
 }
 
-/// Between two plates, without gravity but a force along x; all repeats after `length`.
+/// A channel between two plates, with a force along x in place of gravity and the period `length`.
 inline Options channel(double length, double half_gap, int across, double force) {
   Options o;
   o.dimension = 2;

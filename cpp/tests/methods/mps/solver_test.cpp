@@ -14,7 +14,7 @@
 namespace snowshed::mps {
 namespace {
 
-// Constants of the regular lattice, by hand and by others.
+// Constants of the regular lattice, against values computed by hand and by others.
 TEST(MpsKernel, ConstantsOfALattice) {
   const struct {
     int dimension;
@@ -29,7 +29,7 @@ TEST(MpsKernel, ConstantsOfALattice) {
   }
 }
 
-// Hexagons as large as the squares of a lattice: the sum of w says that they are less dense.
+// In hexagons as large as the squares of a lattice the sum of w is smaller at the same density.
 TEST(MpsKernel, FillingIsThatOfTheRoomHoweverParticlesLie) {
   const KernelConstants k = kernel_constants(2, 2.1);
   const double side = std::sqrt(2 / std::sqrt(3.0));
@@ -58,8 +58,8 @@ TEST(MpsRheology, IsContinuousWhereItBecomesDilatant) {
   EXPECT_NEAR(law.apparent_viscosity(yield, 1e-18), s.viscosity + s.stress_growth * yield, 1e-6);
 }
 
-/// The slope of the pressure over height, between two spacings from the bottom and the top, over
-/// the specific weight.
+/// The slope of the pressure over height, relative to the specific weight. Particles within two
+/// spacings from the bottom or the top are left out.
 double pressure_slope(const Method& method, const Options& o, double height) {
   const ParticleState s = method.state();
   const double margin = 2 * o.settings.spacing;
@@ -132,7 +132,7 @@ TEST(MpsSolver, TheFloorOfWallParticlesBearsTheWaterInEveryStep) {
   EXPECT_LT(mps->motion(0).rms_speed, 0.02);
 }
 
-// Where pressure and viscosity are coupled only as they flow: errors of the pressure do not grow.
+// Pressure and viscosity are not coupled at rest, so errors of the pressure do not grow.
 TEST(MpsSolver, AStiffColumnIsHydrostatic) {
   for (const Walls walls : {Walls::mirrors, Walls::particles}) {
     Options o = tank(2, 0.2, 0.01);
@@ -146,7 +146,7 @@ TEST(MpsSolver, AStiffColumnIsHydrostatic) {
   }
 }
 
-// The same with walls of particles, which conduct pressure: also in the corners.
+// The same with wall particles, which conduct pressure, in corners, too.
 TEST(MpsSolver, ColumnsBetweenWallParticlesStayAtRest) {
   for (const int dimension : {2, 3}) {
     Options o = tank(dimension, 0.1, dimension == 2 ? 0.01 : 0.02);
@@ -282,7 +282,7 @@ TEST(MpsSolver, SlabOnAnInclineAcceleratesByCoulombsFriction) {
     }
 }
 
-// It stops if it is thinner than c/(rho g (sin a - cos a tan phi)), and else accelerates.
+// A slab stops if it is thinner than c/(rho g (sin a - cos a tan phi)); otherwise it accelerates.
 class MpsSlab : public testing::TestWithParam<Walls> {};
 TEST_P(MpsSlab, WithCohesionStopsOrSlides) {
   for (const double thickness : {0.2, 0.3}) {
@@ -303,7 +303,7 @@ TEST_P(MpsSlab, WithCohesionStopsOrSlides) {
 
 INSTANTIATE_TEST_SUITE_P(Walls, MpsSlab, testing::Values(Walls::mirrors, Walls::particles));
 
-// Nothing presses: the right-hand side of the pressure equation is rounding errors.
+// No force causes a pressure: the right-hand side of its equation consists of rounding errors.
 TEST(MpsSolver, FlowsBetweenWallParticlesWithoutASurface) {
   Options o = channel(0.2, 0.1, 10, 100);
   o.settings.walls = Walls::particles;
@@ -313,7 +313,7 @@ TEST(MpsSolver, FlowsBetweenWallParticlesWithoutASurface) {
   EXPECT_GT(mean_speed(*mps), 0);
 }
 
-/// Errors of the plug's speed and of the discharge of a Bingham fluid between plates, over them.
+/// Relative errors of the plug's speed and of the discharge of a Bingham fluid between plates.
 struct FlowErrors {
   double plug, discharge;
 };
@@ -372,11 +372,11 @@ TEST(MpsSolver, BinghamSlumpComesToRest) {
   EXPECT_LT(std::sqrt(error / square), 0.1);
 }
 
-// Water falls from a column of twice its width, and contacts of particles take little of its
+// A column of water, twice as high as wide, collapses. Contacts of particles take little of its
 // energy.
 TEST(MpsSolver, DamBreakKeepsItsEnergy) {
   const double width = 0.05715;
-  Options o = tank(2, 6 * width, width / 20);  // half as wide particles lose half as much
+  Options o = tank(2, 6 * width, width / 20);  // the loss is proportional to the spacing
   o.settings.viscosity = 1e-3;
   const auto mps = body_of(o, {width, 0, 2 * width});
   const auto energy = [&] {

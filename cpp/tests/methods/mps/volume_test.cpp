@@ -10,8 +10,8 @@
 namespace snowshed::mps {
 namespace {
 
-/// The mean of the number density over that of a lattice, less one, of what is not at the surface:
-/// the part of its volume that a body has lost within.
+/// The mean of n/n0 - 1 of the particles that are not at the surface: the share of its volume that
+/// a body has lost inside.
 double mean_excess(const Method& method, double surface_ratio) {
   const FieldView density = method.field("number_density");
   double sum = 0, count = 0;
@@ -24,7 +24,8 @@ double mean_excess(const Method& method, double surface_ratio) {
   return sum / count;
 }
 
-// Viscosity acts after the pressure: alone it would leave a velocity that compresses the fluid.
+// Viscosity acts after the pressure. Without coupling it would leave a velocity that compresses the
+// fluid.
 TEST(MpsVolume, AStiffSlumpKeepsItsVolume) {
   for (const Walls walls : {Walls::mirrors, Walls::particles}) {
     Options o = tank(2, 10, 0.02);
@@ -42,8 +43,9 @@ TEST(MpsVolume, AStiffSlumpKeepsItsVolume) {
   }
 }
 
-/// The mean room of the particles deeper than three spacings below the surface, over that on a
-/// lattice: of the places that are nearest to each, in a heap on z = 0 beside x = 0.
+/// The mean space of the particles deeper than three spacings below the surface, over that on a
+/// lattice. The space of a particle consists of the points that are nearest to it. The heap lies on
+/// z = 0, beside x = 0.
 double mean_room(const Method& method, double spacing) {
   const std::vector<Vec3> points = method.state().positions;
   constexpr int parts = 16;
@@ -72,8 +74,8 @@ double mean_room(const Method& method, double spacing) {
   return places / (parts * parts) / deep;
 }
 
-// Particles that have left the lattice have more neighbours near than those of a lattice in as much
-// room: with their number density for volume, the heap took up 1.8 % more while it flowed.
+// At the same density disordered particles have a higher number density than a lattice. When the
+// compensation used it, the heap took up 1.8 % more space while it flowed.
 TEST(MpsVolume, ABinghamHeapKeepsItsVolume) {
   for (const Walls walls : {Walls::mirrors, Walls::particles}) {
     Options o = tank(2, 10, 0.01);

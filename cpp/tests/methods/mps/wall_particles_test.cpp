@@ -44,7 +44,8 @@ std::pair<double, double> densities(const Options& o, Particles<D> p) {
   return {low, high};
 }
 
-// A lattice of snow in a corner goes on in the walls: nothing is missing and nothing twice.
+// Wall particles continue a lattice of snow in a corner: no point is missing, and none is occupied
+// twice.
 TEST(MpsWallParticles, ContinueTheLatticeOfTheSnow) {
   for (const int dimension : {2, 3}) {
     Options o = tank(dimension, 0.08, 0.01);
@@ -79,7 +80,7 @@ TEST(MpsWallParticles, CoverAnInclineEvenly) {
   EXPECT_EQ(touched, 20);
 }
 
-// On curved walls, where points of a lattice are moved onto layers and would crowd there.
+// On curved walls the points of a lattice are moved onto layers, where they would crowd.
 TEST(MpsWallParticles, OfABallStandApartInTheMiddleOfLayers) {
   constexpr double spacing = 0.01, radius = 0.06;
   Options o = tank(3, 1, spacing);
@@ -124,7 +125,8 @@ TEST(MpsWallParticles, OfAThinBoardStandInItsMiddle) {
   EXPECT_EQ(p.size(), 2u);
 }
 
-// The wall of a bin has particles on both sides, however thick the block is that it was cut from.
+// The wall of a bin has particles on both sides, no matter how thick the block was from which it
+// was cut.
 TEST(MpsWallParticles, OfAThinWallOfACombinedSolidStandWhereItIs) {
   const double spacing = 0.01, wall = 0.004;
   const Shape bin = subtract(make_box(Vec3(0, 0, 0.2), Vec3(0.6, 10, 0.4)),

@@ -106,7 +106,8 @@ TEST(SlideBonds, AStrainedBondPullsWithItsModulusTimesContactAreaTimesStrain) {
   EXPECT_NEAR(measured / expected, 1, 0.02);
 }
 
-/// A slab half on rough ground and half on a steeper slope, that the roll between them pulls apart.
+/// A slab that lies half on a slope and half on a steeper one; the roll between them pulls it
+/// apart.
 struct Roll {
   explicit Roll(double modulus, double max_strain) {
     Options o = slide_on(terrain_of(80, 30, 2,
@@ -120,7 +121,7 @@ struct Roll {
     o.settings.artificial_viscosity = 0;
     o.settings.bond_modulus = modulus;
     o.settings.max_strain = max_strain;
-    slide = released(o);
+    slide = released_slide(o);
     while (slide->time() < 1.5) slide->step();
   }
   /// Standard deviation of the speeds, over their mean.

@@ -20,7 +20,7 @@ HeightField run_out() {
   });
 }
 
-Options audited(HeightField terrain, Area release) {
+Options options_with_energy(HeightField terrain, Area release) {
   Options o = slide_on(std::move(terrain), std::move(release));
   o.energy = true;
   return o;
@@ -39,12 +39,12 @@ double gap(const std::map<std::string, double>& e, double potential_before) {
 }
 
 TEST(SlideEnergy, OfASlideWithAllThatTakesEnergyCloses) {
-  Options o = audited(run_out(), rectangle(20.3, 30.3, 50.3, 64.3));
+  Options o = options_with_energy(run_out(), rectangle(20.3, 30.3, 50.3, 64.3));
   o.areas.entrainment = {rectangle(60, 20, 90, 80, 0.2)};
   o.areas.resistance = {rectangle(90, 20, 120, 80)};
   o.settings.resistance = 0.05;
   o.settings.max_strain = 0.02;  // so that bonds break
-  const auto slide = released(o);
+  const auto slide = released_slide(o);
   const double before = energies(*slide).at("potential_j");
   EXPECT_NEAR(energies(*slide).at("residual_j") / before, 0, 1e-12);
   while (!*slide->at_rest() && slide->time() < 60) slide->step();
@@ -56,10 +56,10 @@ TEST(SlideEnergy, OfASlideWithAllThatTakesEnergyCloses) {
 }
 
 TEST(SlideEnergy, OfFrictionIsWhatABlockLoses) {
-  Options o = audited(inclined(35, 120, 40), rectangle(20.3, 18.3, 60.3, 58.3));
+  Options o = options_with_energy(inclined(35, 120, 40), rectangle(20.3, 18.3, 60.3, 58.3));
   o.settings.friction_law = FrictionLaw::coulomb;
   o.settings.friction = 0.4;
-  const auto slide = released(o);
+  const auto slide = released_slide(o);
   const double mass = total_mass(*slide);
   const Vec3 from = slide->state().positions[0];
   step(*slide, 200);
@@ -69,14 +69,14 @@ TEST(SlideEnergy, OfFrictionIsWhatABlockLoses) {
 }
 
 TEST(SlideEnergy, OfSnowThatSpreadsOnLevelGroundComesFromItsThickness) {
-  Options o = audited(terrain_of(60, 60, 2, [](double, double) { return 0.0; }),
-                      rectangle(40.3, 42.3, 70.3, 72.3));
+  Options o = options_with_energy(terrain_of(60, 60, 2, [](double, double) { return 0.0; }),
+                                  rectangle(40.3, 42.3, 70.3, 72.3));
   o.settings.friction = 0;
   o.settings.friction_law = FrictionLaw::coulomb;
   o.settings.bonds = false;
   o.settings.artificial_viscosity = 0;
   o.settings.layer_thickness = 0.05;
-  const auto slide = released(o);
+  const auto slide = released_slide(o);
   const double before = energies(*slide).at("potential_j");
   step(*slide, 200);
   const auto e = energies(*slide);
@@ -85,7 +85,8 @@ TEST(SlideEnergy, OfSnowThatSpreadsOnLevelGroundComesFromItsThickness) {
 }
 
 TEST(SlideEnergy, OfSnowThatLeavesTheTerrainIsCounted) {
-  const auto slide = released(audited(inclined(40, 40, 30), rectangle(20.3, 18.3, 50.3, 40.3)));
+  const auto slide =
+      released_slide(options_with_energy(inclined(40, 40, 30), rectangle(20.3, 18.3, 50.3, 40.3)));
   const double before = energies(*slide).at("potential_j");
   while (slide->size() > 0 && slide->time() < 60) slide->step();
   const auto e = energies(*slide);
@@ -96,8 +97,8 @@ TEST(SlideEnergy, OfSnowThatLeavesTheTerrainIsCounted) {
 class SlideEnergyCheckpoint : public TemporaryFolder {};
 
 TEST_F(SlideEnergyCheckpoint, GoesOnWhereItWas) {
-  const Options o = audited(run_out(), rectangle(20.3, 30.3, 50.3, 64.3));
-  const auto slide = released(o);
+  const Options o = options_with_energy(run_out(), rectangle(20.3, 30.3, 50.3, 64.3));
+  const auto slide = released_slide(o);
   step(*slide, 100);
   BinaryWriter out;
   slide->save(out);
@@ -110,9 +111,9 @@ TEST_F(SlideEnergyCheckpoint, GoesOnWhereItWas) {
 }
 
 TEST(SlideEnergy, StiffBondsShortenTheStepAndDoNotShakeTheSlab) {
-  Options o = audited(inclined(35), rectangle(20.3, 18.3, 40.3, 38.3));
+  Options o = options_with_energy(inclined(35), rectangle(20.3, 18.3, 40.3, 38.3));
   o.settings.bond_modulus = 5e7;
-  const auto slide = released(o);
+  const auto slide = released_slide(o);
   const double before = energies(*slide).at("potential_j");
   while (slide->time() < 1.0) slide->step();
   EXPECT_LT(slide->time_step(), 0.005);

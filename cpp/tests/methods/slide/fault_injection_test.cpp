@@ -1,6 +1,6 @@
-// Lack of memory with a slide: every allocation of a run that entrains snow and loses some over the
-// edge of the terrain fails once. Each failed call must leave the snow as it was, and the run must
-// end with the same bits.
+// Lack of memory with a slide: every allocation fails once in a run that entrains snow and loses
+// some over the edge of the terrain. Each failed call must leave the snow as it was, and the run
+// must end with the same bits.
 #include "io/temporary_folder.hpp"
 #include "methods/fault_story.hpp"
 #include "methods/slide/slide_testing.hpp"
@@ -27,7 +27,7 @@ struct SlideStory : FaultStory<Solver> {
   }
 };
 
-/// All that can be seen of a slide. Where the particles are stored may change.
+/// Compares all that callers can read of a slide. The order of storage may differ.
 void expect_same_slide(const Solver& now, const Solver& wanted) {
   const ParticleState a = now.state(), b = wanted.state();
   ASSERT_EQ(a.ids, b.ids);

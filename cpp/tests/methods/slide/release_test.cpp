@@ -22,7 +22,7 @@ std::size_t count(const std::vector<ParticleBatch>& batches) {
   return n;
 }
 
-std::vector<ParticleBatch> seeded(Settings settings, const Area& area, double degrees = 35) {
+std::vector<ParticleBatch> seed_on_slope(Settings settings, const Area& area, double degrees = 35) {
   const bool compatible = settings.mode == Mode::compatible;
   const Terrain terrain(inclined(degrees),
                         compatible ? BorderSlope::level_in_the_south_west : BorderSlope::one_sided);
@@ -32,7 +32,7 @@ std::vector<ParticleBatch> seeded(Settings settings, const Area& area, double de
 TEST(SlideRelease, MassIsThatOfTheThicknessOverTheSlopingArea) {
   const double sloping = 30.0 * 24.0 / std::cos(radians(35));
   for (const double thickness : {0.01, 0.2, 0.5, 3.0}) {
-    const auto batches = seeded({}, rectangle(20.3, 18.3, 50.3, 42.3, thickness));
+    const auto batches = seed_on_slope({}, rectangle(20.3, 18.3, 50.3, 42.3, thickness));
     EXPECT_NEAR(mass_of(batches) / (sloping * thickness * 300), 1, 1e-12) << thickness;
   }
 }
@@ -41,13 +41,13 @@ TEST(SlideRelease, CompatibleMassIsThatOfWholeParticlesAndThinLayersAreRefused) 
   Settings s;
   s.mode = Mode::compatible;
   const double exact = 30.0 * 24.0 / std::cos(radians(35)) * 0.5 * 300;
-  EXPECT_NEAR(mass_of(seeded(s, rectangle(20.3, 18.3, 50.3, 42.3))) / exact, 1, 0.1);
-  EXPECT_THROW(seeded(s, rectangle(20.3, 18.3, 50.3, 42.3, 0.15)), InputError);
+  EXPECT_NEAR(mass_of(seed_on_slope(s, rectangle(20.3, 18.3, 50.3, 42.3))) / exact, 1, 0.1);
+  EXPECT_THROW(seed_on_slope(s, rectangle(20.3, 18.3, 50.3, 42.3, 0.15)), InputError);
 }
 
 TEST(SlideRelease, ParticlesLieOnTheGroundWithinTheArea) {
   const Area area = rectangle(20.3, 18.3, 50.3, 42.3);
-  for (const ParticleBatch& batch : seeded({}, area))
+  for (const ParticleBatch& batch : seed_on_slope({}, area))
     for (const Vec3& x : batch.positions) {
       EXPECT_TRUE(contains(area.polygon, {x.x(), x.y()}));
       EXPECT_NEAR(x.z(), 200 - std::tan(radians(35)) * x.x(), 1e-9);
@@ -91,18 +91,20 @@ TEST(SlideRelease, FinerLayersMakeMoreParticles) {
   Settings fine;
   fine.layer_thickness = 0.05;
   const Area area = rectangle(20, 18, 50, 42);
-  EXPECT_NEAR(double(count(seeded(fine, area))) / double(count(seeded({}, area))), 6, 0.3);
+  EXPECT_NEAR(double(count(seed_on_slope(fine, area))) / double(count(seed_on_slope({}, area))), 6,
+              0.3);
 }
 
 TEST(SlideRelease, AnAreaThatIsSmallerThanAParticleIsRefused) {
-  // Its centre has a particle; of a ring's, which lies in the hole, there is none.
+  // A small area has a particle at its centre. A ring has none, because its centre lies in the
+  // hole.
   Area ring = rectangle(20, 20, 20.2, 20.2);
   ring.polygon.holes = {{{20.01, 20.01}, {20.19, 20.01}, {20.19, 20.19}, {20.01, 20.19}}};
-  EXPECT_THROW(seeded({}, ring), InputError);
+  EXPECT_THROW(seed_on_slope({}, ring), InputError);
 }
 
-/// A raster of thickness whose cells of 4 m begin at the origin.
-Area mapped(Area area, std::vector<double> heights, int columns = 4) {
+/// Gives an area a raster of thickness with cells of 4 m, which begins at (20, 20) m.
+Area with_thickness_raster(Area area, std::vector<double> heights, int columns = 4) {
   HeightField map;
   map.columns = columns;
   map.rows = int(heights.size()) / columns;
@@ -114,12 +116,13 @@ Area mapped(Area area, std::vector<double> heights, int columns = 4) {
 }
 
 TEST(SlideRelease, ARasterOfThicknessGivesEachCellItsSnow) {
-  // Two rows of four cells, of which the area covers a half of the western column.
-  const Area area = mapped(rectangle(22, 20, 36, 28), {0.2, 0.4, 0.6, 0.8, 1.0, 0.8, 0.6, 0.4});
+  // The raster has two rows of four cells; the area covers only half of the western column.
+  const Area area =
+      with_thickness_raster(rectangle(22, 20, 36, 28), {0.2, 0.4, 0.6, 0.8, 1.0, 0.8, 0.6, 0.4});
   const double volume = 4 * (2 * 0.2 + 4 * (0.4 + 0.6 + 0.8) + 2 * 1.0 + 4 * (0.8 + 0.6 + 0.4));
-  const auto batches = seeded({}, area);
+  const auto batches = seed_on_slope({}, area);
   EXPECT_NEAR(mass_of(batches) / (volume / std::cos(radians(35)) * 300), 1, 1e-12);
-  // Particles of thicker snow are heavier in its ratio.
+  // The mass of a particle is proportional to the thickness.
   double thin = 0, thick = 0;
   for (std::size_t k = 0; k < batches[0].positions.size(); ++k) {
     const Vec3& x = batches[0].positions[k];
@@ -132,8 +135,10 @@ TEST(SlideRelease, ARasterThatDoesNotSayTheThicknessEverywhereIsRefused) {
   const Area area = rectangle(22, 20, 36, 28);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const double bad : {nan, 0.0, -0.5, 1e4})
-    EXPECT_THROW(seeded({}, mapped(area, {1, 1, bad, 1, 1, 1, 1, 1})), InputError) << bad;
-  EXPECT_THROW(seeded({}, mapped(area, {1, 1, 1, 1, 1, 1}, 3)), InputError);
+    EXPECT_THROW(seed_on_slope({}, with_thickness_raster(area, {1, 1, bad, 1, 1, 1, 1, 1})),
+                 InputError)
+        << bad;
+  EXPECT_THROW(seed_on_slope({}, with_thickness_raster(area, {1, 1, 1, 1, 1, 1}, 3)), InputError);
 }
 
 TEST(SlideRelease, AreasMayTouchButNotOverlap) {

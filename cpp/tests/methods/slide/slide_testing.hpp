@@ -29,7 +29,7 @@ inline Options slide_on(HeightField terrain, Area release) {
   return o;
 }
 
-inline std::unique_ptr<Solver> released(const Options& options) {
+inline std::unique_ptr<Solver> released_slide(const Options& options) {
   auto slide = make_solver(options);
   slide->add(slide->seed());
   return slide;

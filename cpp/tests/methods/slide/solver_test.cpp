@@ -21,7 +21,7 @@ Options slab(double degrees, double friction, FrictionLaw law = FrictionLaw::cou
 
 TEST(Slide, ABlockWithCoulombFrictionAcceleratesAsNewtonSays) {
   for (const double friction : {0.0, 0.2, 0.5}) {
-    const auto slide = released(slab(35, friction));
+    const auto slide = released_slide(slab(35, friction));
     step(*slide, 200);
     const double acceleration =
         gravity * (std::sin(radians(35)) - friction * std::cos(radians(35)));
@@ -32,9 +32,9 @@ TEST(Slide, ABlockWithCoulombFrictionAcceleratesAsNewtonSays) {
 TEST(Slide, ABlockWithVoellmyFrictionFollowsItsOrdinaryDifferentialEquation) {
   Options fine = slab(35, 0.325, FrictionLaw::voellmy);
   fine.areas.release = {rectangle(20.3, 18.3, 48.3, 46.3)};
-  fine.settings.layer_thickness = 0.02;  // so many particles that the thickness is even
-  fine.settings.bonds = false;           // or the thin rim would hold the middle back
-  const auto slide = released(fine);
+  fine.settings.layer_thickness = 0.02;  // many particles, so that the thickness is even
+  fine.settings.bonds = false;           // with bonds the thin rim would hold the middle back
+  const auto slide = released_slide(fine);
   step(*slide, 150);
   // du/dt = a - b u^2, u = sqrt(a / b) tanh(sqrt(a b) t), in the middle, where h stays 0.5 m.
   const double a = gravity * (std::sin(radians(35)) - 0.325 * std::cos(radians(35)));
@@ -63,7 +63,7 @@ TEST(Slide, PeakSpeedIsThatOfTheSnowAndFadesBeyondItsRim) {
   const double speed = 100;  // m/s; pressure changes it by little within a step
   snow[0].velocity = speed * Vec3(std::cos(radians(35)), 0, -std::sin(radians(35)));
   slide->add(snow);
-  // All of the snow moves alike, so that a node has the speed of the mass that it sees.
+  // All snow has the same velocity, so that a node's speed shows only how much mass is around it.
   const std::vector<double>& peaks = slide->peaks().speed;
   const auto at = [&](int column) { return peaks[slide->terrain().index(column, 15)] / speed; };
   EXPECT_NEAR(at(17), 1, 1e-3);
@@ -77,7 +77,7 @@ TEST(Slide, PeakSpeedIsThatOfTheSnowAndFadesBeyondItsRim) {
 TEST(Slide, SnowBelowTheAngleOfFrictionStaysExactlyWhereItIs) {
   Options o = slab(20, 0.6);
   o.settings.artificial_viscosity = 0;
-  const auto slide = released(o);
+  const auto slide = released_slide(o);
   const ParticleState before = slide->state();
   step(*slide, 50);
   const ParticleState after = slide->state();
@@ -95,15 +95,15 @@ TEST(Slide, PressureMovesNoCentreOfMass) {
   o.settings.friction_law = FrictionLaw::coulomb;
   o.settings.bonds = false;
   o.settings.artificial_viscosity = 0;
-  const auto slide = released(o);
+  const auto slide = released_slide(o);
   step(*slide, 100);
-  EXPECT_GT(slide->motion(0).rms_speed, 0.2);  // it spreads
+  EXPECT_GT(slide->motion(0).rms_speed, 0.2);  // the snow spreads
   EXPECT_LT(mean_slide_velocity(*slide).norm(), 1e-9 * slide->motion(0).rms_speed);
 }
 
 TEST(Slide, MassIsKeptAndWhatLeavesTheTerrainIsCounted) {
   Options o = slide_on(inclined(40, 40, 30), rectangle(20.3, 18.3, 50.3, 40.3));
-  const auto slide = released(o);
+  const auto slide = released_slide(o);
   const double released_mass = total_mass(*slide);
   while (!*slide->at_rest() && slide->time() < 60) slide->step();
   const MassBalance& m = slide->mass_balance();
@@ -115,7 +115,7 @@ TEST(Slide, MassIsKeptAndWhatLeavesTheTerrainIsCounted) {
 TEST(Slide, EntrainedMassIsWhatTheParticlesGain) {
   Options o = slide_on(inclined(38, 100, 30), rectangle(20.3, 18.3, 50.3, 40.3));
   o.areas.entrainment = {rectangle(60, 6, 120, 52, 0.3)};
-  const auto slide = released(o);
+  const auto slide = released_slide(o);
   const double released_mass = total_mass(*slide);
   step(*slide, 1500);
   const MassBalance& m = slide->mass_balance();
@@ -128,7 +128,7 @@ TEST(Slide, ForestHoldsSnowBack) {
   Options forest = open;
   forest.settings.resistance = 0.5;
   forest.areas.resistance = {rectangle(60, 6, 120, 52)};
-  const auto a = released(open), b = released(forest);
+  const auto a = released_slide(open), b = released_slide(forest);
   step(*a, 1000);
   step(*b, 1000);
   EXPECT_LT(mean_slide_velocity(*b).norm(), 0.9 * mean_slide_velocity(*a).norm());
@@ -143,9 +143,9 @@ bool are_equal(const Method& a, const Method& b) {
 TEST(Slide, TheNumberOfThreadsChangesNoBit) {
   Options o = slide_on(inclined(38, 100, 60), rectangle(20.3, 18.3, 80.3, 98.3));
   o.settings.layer_thickness = 0.1;
-  const auto one = released(o);
+  const auto one = released_slide(o);
   o.settings.threads = 3;
-  const auto three = released(o);
+  const auto three = released_slide(o);
   step(*one, 60);
   step(*three, 60);
   EXPECT_TRUE(are_equal(*one, *three));
@@ -155,7 +155,7 @@ class SlideCheckpoint : public TemporaryFolder {};
 
 TEST_F(SlideCheckpoint, ResumesToTheSameBits) {
   const Options o = slide_on(inclined(38, 100, 40), rectangle(20.3, 18.3, 50.3, 58.3));
-  const auto slide = released(o);
+  const auto slide = released_slide(o);
   step(*slide, 45);  // between two sorts
   BinaryWriter out;
   slide->save(out);
@@ -181,7 +181,7 @@ TEST(Slide, ExtremeGroundGivesNoNumberThatIsNone) {
   for (const auto& f : {terrain_of(90, 40, 2, cliff), terrain_of(90, 40, 2, pit),
                         terrain_of(90, 40, 2, gully), terrain_of(90, 40, 2, flat)})
     for (const double thickness : {0.001, 0.5, 10.0}) {
-      const auto slide = released(slide_on(f, rectangle(30.3, 24.3, 50.3, 52.3, thickness)));
+      const auto slide = released_slide(slide_on(f, rectangle(30.3, 24.3, 50.3, 52.3, thickness)));
       for (int i = 0; i < 120 && slide->size() > 0; ++i) slide->step();
       for (const Vec3& x : slide->state().positions) ASSERT_TRUE(x.allFinite());
     }

@@ -1,8 +1,8 @@
 """The error of a stack, measured with companions of its scene: coarser grids, and several seeds.
 
 Three seeds on each of three grids give means and their scatter. A straight line through the means
-over the size of the cells gives the value on an infinitely fine grid. A line is the least that the
-means can show: the contact of snow with snow and ground errs by about a cell.
+over the size of the cells gives the value on an infinitely fine grid. The error is
+assumed to be linear, because contact of snow with snow and ground errs by about a cell.
 """
 
 from __future__ import annotations
@@ -87,7 +87,7 @@ class MeasuredError:
 
 
 def check_has_companions(scene: ResolvedScene) -> None:
-    """Raise InputError unless the scene lays slabs and is one of the material point method."""
+    """Raise InputError unless the scene lays slabs and uses the material point method."""
     if not isinstance(settings_of(scene.data), MpmSettings) or scene.data.get("slab") is None:
         raise InputError("the error is measured for slabs of the material point method only")
 
@@ -98,7 +98,7 @@ def companions(scene: Scene) -> Study:
     Raises
     ------
     InputError
-        If the scene lays no slabs, or is not one of the material point method.
+        If the scene lays no slabs, or uses another method than the material point method.
 
     Examples
     --------

@@ -75,8 +75,8 @@ class MeasuredSolution:
     measured
         All quantities of the case; their numbers are NaN if the measurement failed.
     wall_s, updates, steps, particles
-        Time of the solution alone (without seeding, imports or evaluation), s; particles times
-        steps; steps; particles. 0 if the measurement failed, or nobody counted them.
+        Time of the solution alone (without seeding, imports or evaluation), s; number of particle
+        updates, of steps and of particles. 0 if the measurement failed, or did not count them.
     peak_memory_mb
         Largest memory of its process, including Python and its libraries (20 to 100 MB).
     elapsed_s
@@ -112,7 +112,7 @@ class MeasuredSolution:
 
     @property
     def updates_per_s(self) -> float:
-        """Pace of the solution, 1/s; NaN if it was not measured."""
+        """Particle updates per second of the solution; NaN if not measured."""
         return self.updates / self.wall_s if self.wall_s and self.updates else math.nan
 
     def to_json(self) -> dict[str, Any]:
@@ -127,7 +127,7 @@ class MeasuredSolution:
 
     @classmethod
     def from_json(cls, data: Any, where: str) -> MeasuredSolution:
-        """Return the measurement that `to_json` gave.
+        """Return the measurement for the output of `to_json`.
 
         Raises
         ------
@@ -160,7 +160,7 @@ def to_table(measurements: Iterable[MeasuredSolution]) -> pd.DataFrame:
     Returns
     -------
     pandas.DataFrame
-        Columns: `IDENTITY`, every setting that any measurement has (None where one has it not),
+        Columns: `IDENTITY`, every setting that any measurement has (else None),
         then `RESULTS`.
 
     Raises

@@ -1,6 +1,6 @@
 """Mechanisms of a run: its scheme, and how its settings depart from those of the scheme.
 
-A run says something about another's error only if both have the same mechanisms.
+The error of a run holds for another run only if both have the same mechanisms.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ SCHEME = "scheme"
 FIRST_SCHEME = "thesis"
 #: Settings that a scheme decides unless they are given.
 DECIDED = MpmSettings.ADOPTS[SCHEME]
-#: Those that are lengths, whatever the slab is.
+#: Decided settings that are lengths, which do not depend on the slab.
 LENGTHS = ("damping_length", "crack_band_length")
 
 
@@ -36,7 +36,7 @@ class Mechanisms:
     scheme
         Name of the scheme.
     departures
-        Settings that the scheme decides, where they have other values.
+        Settings that the scheme decides, if their values are not the scheme's.
     """
 
     scheme: str = FIRST_SCHEME
@@ -44,7 +44,7 @@ class Mechanisms:
 
     @classmethod
     def of_scene(cls, scene: Mapping[str, Any]) -> Optional[Mechanisms]:
-        """Return those of a resolved scene; None if its method is another than the MPM.
+        """Return the mechanisms of a resolved scene; None if its method is not the MPM.
 
         Examples
         --------
@@ -58,7 +58,7 @@ class Mechanisms:
 
     @classmethod
     def of_settings(cls, settings: Mapping[str, Any]) -> Mechanisms:
-        """Return those of settings by their names without section; missing ones are defaults.
+        """Return the mechanisms of settings, named without section; missing ones are defaults.
 
         Examples
         --------
@@ -78,7 +78,7 @@ class Mechanisms:
 
     @classmethod
     def of_texts(cls, texts: Mapping[str, str]) -> Mechanisms:
-        """Return those of settings whose values are texts, as in a table of a study.
+        """Return the mechanisms of settings whose values are texts, as in a table of a study.
 
         Examples
         --------
@@ -89,13 +89,13 @@ class Mechanisms:
 
     @property
     def label(self) -> str:
-        """The scheme by name, with what departs from it."""
+        """The name of the scheme, with the departures from it."""
         departures = settings_label(self.departures)
         return f"scheme {self.scheme}" + (f" with {departures}" if departures else "")
 
     @property
     def calibration_note(self) -> str:
-        """A clause that the calibrated snow was found with another scheme; empty for its own.
+        """A clause on the other scheme with which the calibrated snow was found; empty for its own.
 
         Examples
         --------
@@ -110,7 +110,7 @@ class Mechanisms:
         return f"the calibrated snow was found with {found_with}, which stacks it higher"
 
     def lengths_note(self, recorded: float, thickness: float) -> str:
-        """Return that the scheme's lengths are other shares of a slab than in recorded runs.
+        """Return a clause if the scheme's lengths are other shares of the slab than recorded.
 
         Parameters
         ----------
@@ -139,7 +139,7 @@ class Mechanisms:
 
 
 def scheme_of(settings: Mapping[str, Any]) -> str:
-    """Return the scheme of settings, which recorded runs of the first one do not name.
+    """Return the scheme of settings; recorded runs of the first scheme do not name it.
 
     Examples
     --------
@@ -164,7 +164,7 @@ def decided_by(scheme: str) -> CaseSettings:
 
 
 def _value(text: str) -> Optional[Value]:
-    """Return a number where a text is one; None for what a table has not."""
+    """Return a cell as a number, else as a text; None for an empty cell."""
     if text in ("", "nan", "None"):
         return None
     try:

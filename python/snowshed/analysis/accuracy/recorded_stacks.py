@@ -22,9 +22,9 @@ from snowshed.methods.mpm.settings import MpmSettings
 
 CASE = "stack_convergence"
 QUANTITIES = ("height", "length")
-PRESET = "lab-50"  # whose slab the case's stacks are made of
+PRESET = "lab-50"  # preset whose slab the stacks are made of
 PRESET_THICKNESS = 0.02  # of that slab, m
-ORDER_IN = MpmSettings.RESOLUTION  # the case is one of the material point method
+ORDER_IN = MpmSettings.RESOLUTION  # the setting that refines the grid
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ class RecordedStack:
 
     @property
     def error(self) -> float:
-        """The largest."""
+        """The largest of the errors."""
         return max(self.errors)
 
 

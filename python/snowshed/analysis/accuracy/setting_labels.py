@@ -11,7 +11,7 @@ from snowshed.scene.accuracy_settings import ACCURACY
 
 
 def setting_label(name: str, value: Optional[Value]) -> str:
-    """Return the label of a setting: for a text only its value. `None`: not given.
+    """Return the label of a setting; for a text only its value. None: not given.
 
     Examples
     --------

@@ -91,7 +91,7 @@ def settings_key(settings: CaseSettings, *, without: Collection[str] = ()) -> Ha
 
 
 def alike(solved: Iterable[Solution], order_in: str) -> list[list[Solution]]:
-    """Return the solutions that differ in one setting only, from the coarsest to the finest."""
+    """Return groups of solutions that differ in one setting only, each from coarse to fine."""
     groups: dict[Hashable, list[Solution]] = {}
     for solution in solved:
         if order_in in solution.settings:

@@ -27,10 +27,10 @@ from snowshed.analysis.accuracy.recorded_stacks import (
     slab_thickness,
 )
 from snowshed.base.formatting import number
-from snowshed.running.scene_notes import FEW_CELLS
+from snowshed.running.scene_notes import MIN_CELLS_ACROSS
 from snowshed.scene.scene import ResolvedScene, Scene
 
-#: Settings of recorded runs that differ from the defaults in their mechanisms at most.
+#: Settings that plain recorded runs may have; their other settings are defaults.
 _PLAIN = {"dimension", "between", "events", ORDER_IN, SCHEME, *DECIDED}
 
 
@@ -140,7 +140,7 @@ def stack_error(
 
 
 def error_sentence(scene: ResolvedScene) -> str:
-    """Return what is recorded of the error of a scene's stack; empty if it builds none on a grid.
+    """Return a sentence on the error of a scene's stack; empty if it has no stack on a grid.
 
     Examples
     --------
@@ -160,9 +160,9 @@ def error_sentence(scene: ResolvedScene) -> str:
 
 
 def recorded_bias(dimension: int, events: int, mechanisms: Optional[Mechanisms] = None) -> str:
-    """Return by how much recorded stacks were too high, over all grids that resolve the slab.
+    """Return a clause on the error of recorded stacks, over all grids that resolve the slab.
 
-    It is for answers that combine slabs of several thicknesses, and for those that name none.
+    It is for answers that combine slabs of several thicknesses, or name no thickness.
 
     Parameters
     ----------
@@ -192,7 +192,7 @@ def recorded_bias(dimension: int, events: int, mechanisms: Optional[Mechanisms] 
     cells = {
         PRESET_THICKNESS / float(stack.settings[ORDER_IN]): stack.biases[0] for stack in stacks
     }
-    resolved = {n: bias for n, bias in cells.items() if n > FEW_CELLS - 1e-9}
+    resolved = {n: bias for n, bias in cells.items() if n > MIN_CELLS_ACROSS - 1e-9}
     if not resolved:
         return _nothing(mechanisms)
     low, high = 100 * min(resolved.values()), 100 * max(resolved.values())
@@ -207,7 +207,7 @@ def recorded_bias(dimension: int, events: int, mechanisms: Optional[Mechanisms] 
 def _plain_stacks(
     measurements: Iterable[MeasuredSolution], mechanisms: Mechanisms
 ) -> list[RecordedStack]:
-    """Return the recorded stacks with these mechanisms and all else as by default."""
+    """Return the recorded stacks with these mechanisms, and with defaults otherwise."""
     return [
         stack
         for stack in recorded_stacks(measurements)

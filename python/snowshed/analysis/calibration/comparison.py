@@ -104,8 +104,8 @@ def compare_stacks(stacks: SimulatedStacks, measurements: Sequence[Measurement])
     Raises
     ------
     InputError
-        If the study has no run for a measured tilt or event, naming the measurement's line; or if
-        no set has all stacks that were measured.
+        If the study has no run for a measured tilt or event (the message has the measurement's
+        line), or if no set has all measured stacks.
     """
     for measurement in measurements:
         _check_simulated(stacks, measurement)

@@ -124,7 +124,7 @@ def _name_sets(axes: Axes, rows: pd.DataFrame, parameters: Sequence[str], best: 
 def fit_figure(
     comparison: pd.DataFrame, best: int, posterior: Posterior, predictions: pd.DataFrame
 ) -> Figure:
-    """Draw measured stacks, those of the best parameter set, and those that the posterior allows.
+    """Draw measured stacks, stacks of the best set, and stacks that the posterior allows.
 
     Parameters
     ----------

@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 POSITIVE = ("height", "length")
 KEYS = ("tilt_deg", "event")
 ROUND = "round"
-MAX_TILT = 90.0  # degrees, not allowed itself
-MAX_DISTANCE = 100.0  # m, of anything that is measured of a stack
+MAX_TILT = 90.0  # degrees; a tilt must be smaller
+MAX_DISTANCE = 100.0  # m, of all measured lengths and positions
 MAX_LENGTH_DEVIATIONS = (
     3.0  # largest difference between length and tail - head, in standard deviations
 )
@@ -62,7 +62,7 @@ def uncertainty_column(quantity: str) -> str:
     return f"{quantity}_std_m"
 
 
-MAX_EVENT_NUMBER = 1000  # of an event or a round; a scene has no more events
+MAX_EVENT_NUMBER = 1000  # largest number of an event (as in scenes) or a round
 
 COLUMNS = (
     *KEYS,
@@ -122,7 +122,7 @@ def read_measurements(file: PathLike) -> list[Measurement]:
     Raises
     ------
     InputError
-        Naming the file, the line, the column, the error and the allowed values.
+        If the file is wrong; the message has file, line, column, error and allowed values.
     OSError
         If the file cannot be read.
 

@@ -35,7 +35,7 @@ def rank_sets(stacks: SimulatedStacks, comparison: pd.DataFrame) -> pd.DataFrame
         measured quantity ``..._relative_error`` (height and length only: mean of (measured -
         simulated) / measured, which may cancel), ``..._mean_error_m`` (mean of the absolute
         differences), ``..._rmse_m``, and for height and length ``..._rescaled`` (equation 3.4.1
-        over the sets). ``rescaled_rmse`` is the mean of the latter, by which the sets are ranked;
+        over the sets). ``rescaled_rmse``, the mean of ``..._rescaled``, ranks the sets;
         ``chi_square`` is the mean of ((measured - simulated) / uncertainty)^2.
 
     Raises

@@ -38,11 +38,11 @@ if TYPE_CHECKING:
 PURPOSE = "the posterior of the parameters"
 WALKERS_PER_DIMENSION = 8
 STEPS = 2000
-MIN_STEPS = 100  # shorter chains do not even show how correlated they are
+MIN_STEPS = 100  # shorter chains do not even allow to estimate their correlation
 BURN_IN = 0.33  # share of the steps that is discarded
 MAX_SAMPLES = 4000  # samples, at most
 PRIOR_POINTS = 4096  # points of the prior among which the walkers start
-DISCREPANCY = 0.1  # scale of its prior
+DISCREPANCY_SCALE = 0.1  # scale of its prior
 MAX_DISCREPANCY = 1.0
 END_SHARE = 0.05  # share of a range that counts as its end
 OPEN_DENSITY_RATIO = (
@@ -55,8 +55,8 @@ LEVELS = {
     "upper_68": 0.84,
     "upper_95": 0.975,
 }
-#: Convergence of the chains: independent samples that quantiles of 95 % need, and the largest
-#: r_hat of chains that have forgotten where they began.
+#: Convergence of the chains: number of independent samples that quantiles of 95 % need, and the
+#: largest r_hat of chains that no longer depend on their starts.
 MIN_EFFECTIVE_SAMPLES = 400
 MAX_R_HAT = 1.1
 DIAGNOSTICS = ("ess_bulk", "ess_tail", "r_hat")
@@ -101,13 +101,13 @@ class Posterior:
         """Convergence of the chains by arviz, indexed by the variables of `draws`.
 
         ``ess_bulk`` and ``ess_tail`` are the effective numbers of independent samples for the
-        median and for the ends of the ranges. ``r_hat`` is the deviation of all chains over that
-        within single ones, 1 if they agree (Vehtari et al., Rank-normalization, folding, and
-        localization, Bayesian Analysis 16, 2021). The chains are those of the walkers, which are
-        not independent; independent chains may differ a little more.
+        median and for the ends of the ranges. ``r_hat`` is the deviation of all chains over the
+        deviation within single chains, 1 if the chains agree (Vehtari et al., Rank-normalization,
+        folding, and localization, Bayesian Analysis 16, 2021). The chains are those of the walkers,
+        which are not independent; independent chains may differ a little more.
         """
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # notes of arviz on its own next version
+            warnings.simplefilter("ignore")  # arviz warns of its own next version
             arviz = require("arviz", EXTRA, PURPOSE)
             summary = arviz.summary(self.draws, kind="diagnostics", round_to="none")
         columns: pd.DataFrame = summary[[*DIAGNOSTICS]]
@@ -121,8 +121,8 @@ class Posterior:
         pandas.DataFrame
             ``parameter``; ``low`` and ``high``: the box that was searched; the quantiles
             ``lower_95``, ``lower_68``, ``median``, ``upper_68``, ``upper_95``; ``open``: "below",
-            "above" or "both" where the density at an end of the box is more than half of the
-            prior's, so that the range extends beyond it; else empty; and the columns of
+            "above" or "both" if the density at an end of the box is more than half of the
+            prior's, so that the range extends beyond the box; else empty; and the columns of
             `diagnostics`.
         """
         import pandas as pd
@@ -147,11 +147,11 @@ class Posterior:
     @property
     def converged(self) -> bool:
         """True if the draws suffice for the quantiles of 95 % and the chains agree."""
-        enough = self.effective >= MIN_EFFECTIVE_SAMPLES
+        enough = self.effective_samples >= MIN_EFFECTIVE_SAMPLES
         return bool(enough and (self.diagnostics["r_hat"] <= MAX_R_HAT).all())
 
     @property
-    def effective(self) -> float:
+    def effective_samples(self) -> float:
         """The smallest effective sample size, in the bulk or the tails, of any parameter."""
         return float(self.diagnostics[["ess_bulk", "ess_tail"]].to_numpy(float).min())
 
@@ -204,7 +204,7 @@ def sample_posterior(
     dimensions = len(surrogate.parameters) + len(density.quantities)
     random = np.random.RandomState(seed)
     walkers = WALKERS_PER_DIMENSION * dimensions
-    start = emcee.State(density.starts(walkers, random), random_state=random.get_state())
+    start = emcee.State(density.walker_starts(walkers, random), random_state=random.get_state())
     # Six times as many independent samples as emcee's default, the stretch move.
     moves = [(emcee.moves.DEMove(), 0.8), (emcee.moves.DESnookerMove(), 0.2)]
     sampler = emcee.EnsembleSampler(walkers, dimensions, density, moves=moves, vectorize=True)
@@ -232,12 +232,12 @@ class _Density:
     surrogate
         Surrogate that predicts the outputs.
     quantities
-        The measured ones; each has a discrepancy.
+        The measured quantities; each has a discrepancy.
     output, quantity
         Shape (m,): output and quantity of each mean of rounds.
     values, variances
         Shape (m,): the means, m, and their variances by measuring and seeding, m².
-    seedings
+    seeding_variances
         Shape (m,): variance by the seeding of a single run, a part of the surrogate's, m².
     scales
         Shape (m,): mean of the quantity over the measurements, m.
@@ -249,7 +249,7 @@ class _Density:
     quantity: Integers
     values: Floats
     variances: Floats
-    seedings: Floats
+    seeding_variances: Floats
     scales: Floats
 
     @classmethod
@@ -262,8 +262,11 @@ class _Density:
                 (measurement.quantity, measurement.tilt, measurement.event), []
             ).append(measurement)
         output = np.array([outputs.index(key) for key in rounds])
-        seedings = surrogate.noises()[output]
-        means = [_weighted(of_one, noise) for of_one, noise in zip(rounds.values(), seedings)]
+        seeding_variances = surrogate.noises()[output]
+        means = [
+            _weighted_mean(one_stack, noise)
+            for one_stack, noise in zip(rounds.values(), seeding_variances)
+        ]
         values, variances = np.array(means).T
         scales = {
             name: np.mean(
@@ -282,7 +285,7 @@ class _Density:
             np.array([quantities.index(name) for name, _, _ in rounds]),
             values,
             variances,
-            seedings,
+            seeding_variances,
             np.array([scales[name] for name, _, _ in rounds]),
         )
 
@@ -299,27 +302,27 @@ class _Density:
     def _log_density(self, unit: Floats, discrepancy: Floats) -> Floats:
         means, variances = self.surrogate.predict(unit)
         model = discrepancy[:, self.quantity].T * self.scales[:, None]
-        shared = variances[self.output] - self.seedings[:, None] + model**2
+        shared = variances[self.output] - self.seeding_variances[:, None] + model**2
         variance = shared + self.variances[:, None]
         residuals = self.values[:, None] - means[self.output]
         likelihood = -0.5 * (residuals**2 / variance + np.log(variance)).sum(axis=0)
-        prior = -0.5 * ((discrepancy / DISCREPANCY) ** 2).sum(axis=1)
+        prior = -0.5 * ((discrepancy / DISCREPANCY_SCALE) ** 2).sum(axis=1)
         return np.asarray(likelihood + prior)
 
-    def starts(self, count: int, random: np.random.RandomState) -> Floats:
-        """Return points for the walkers: drawn from the prior, weighted by the likelihood."""
+    def walker_starts(self, count: int, random: np.random.RandomState) -> Floats:
+        """Return starts of the walkers, drawn from the prior with the likelihood as weight."""
         parameters = len(self.surrogate.parameters)
         unit = random.uniform(size=(PRIOR_POINTS, parameters))
         size = (PRIOR_POINTS, len(self.quantities))
-        discrepancy = np.minimum(np.abs(random.normal(0, DISCREPANCY, size)), MAX_DISCREPANCY)
+        discrepancy = np.minimum(np.abs(random.normal(0, DISCREPANCY_SCALE, size)), MAX_DISCREPANCY)
         points = np.hstack([unit, discrepancy])
         likelihood = self._log_density(unit, discrepancy)
-        likelihood += 0.5 * ((discrepancy / DISCREPANCY) ** 2).sum(axis=1)
+        likelihood += 0.5 * ((discrepancy / DISCREPANCY_SCALE) ** 2).sum(axis=1)
         best = np.argsort(likelihood + random.gumbel(size=PRIOR_POINTS))[-count:]
         return np.asarray(points[best])
 
 
-def _weighted(rounds: Sequence[Measurement], seeding: float) -> tuple[float, float]:
+def _weighted_mean(rounds: Sequence[Measurement], seeding: float) -> tuple[float, float]:
     """Return mean and variance of rounds, weighted by the inverse of their variances."""
     weights = 1 / (np.array([measurement.uncertainty for measurement in rounds]) ** 2 + seeding)
     mean = weights @ np.array([measurement.value for measurement in rounds]) / weights.sum()

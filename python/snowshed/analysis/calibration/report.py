@@ -79,7 +79,7 @@ def calibrate(
         From `read_simulated_stacks`.
     quantities
         Quantities that the posterior uses, if they were measured. Length is tail - head, so it must
-        not be used together with both of these.
+        not be used together with both of them.
     steps
         Steps of the Markov chains.
     seed

@@ -75,7 +75,7 @@ class Process:
         )
         standard = (values - mean) / deviation
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # that a length is at its bound: the input is no matter
+            warnings.simplefilter("ignore")  # a length at its bound: the input has no effect
             model.fit(points, standard)
         kernel, noise = model.kernel_.k1, float(model.kernel_.k2.noise_level)
         inverse = np.linalg.inv(kernel(points) + noise * np.eye(len(points)))
@@ -102,7 +102,7 @@ class Process:
 
 @dataclass(frozen=True)
 class Surrogate:
-    """Predictions of stacks for any parameters within the box of those that were run.
+    """Predictions of stacks for any parameters within the box of the simulated ones.
 
     Attributes
     ----------
@@ -164,7 +164,7 @@ class Surrogate:
         return np.array(means), np.array(variances)
 
     def noises(self) -> Floats:
-        """Return the part of these variances that the seeding causes, shape (outputs,)."""
+        """Return the variances of single runs by the seeding, shape (outputs,), m²."""
         return np.array([process.deviation**2 * process.noise for process in self.processes])
 
     def accuracy(self) -> pd.DataFrame:

@@ -1,8 +1,8 @@
 """The answer: the lowest height of the lower edge that shed snow does not reach.
 
 Every case (a winter with drawn values) is simulated at candidate heights, which bisection selects:
-a higher edge is never reached before a lower one. The runs are those of a study, kept in a store,
-so that an interrupted answer resumes to the same result.
+snow that reaches an edge also reaches all lower edges. The runs are those of a study, kept in a
+store, so that an interrupted answer resumes to the same result.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Optional
 import numpy as np
 
 from snowshed._core import InputError
-from snowshed.analysis.clearance.design import Design, Ranges
+from snowshed.analysis.clearance.panel_design import Design, Ranges
 from snowshed.analysis.clearance.seasons import SeasonCase, SeasonOutcome, cases_of
 from snowshed.analysis.clearance.statistics import CauseShare, Level, levels_of, shares_of
 from snowshed.analysis.clearance.winters import Winter
@@ -83,7 +83,7 @@ class ClearanceResult:
         Raises
         ------
         InputError
-            If the probability is another.
+            If the probability is none of these.
         """
         levels = {level.probability: level for level in self.levels}
         if probability not in levels:
@@ -153,7 +153,7 @@ def required_height(outcomes: Sequence[SeasonOutcome]) -> float:
     """Return the lowest height of the lower edge that the snow does not reach, m.
 
     The height is interpolated between the highest edge that the snow reaches and the next one.
-    Beyond the simulated heights, it follows from the margin at the nearest.
+    Beyond the simulated heights, it follows from the margin at the nearest of them.
 
     Examples
     --------
@@ -222,7 +222,7 @@ def required_clearance(
     candidates = sorted(set(heights))
     if not candidates or not 0.0 < candidates[0] <= candidates[-1] <= 100.0:
         raise InputError(f"heights: {candidates}; needed: at least one from 0 to 100 m")
-    values = (ranges or Ranges()).drawn(len(winters))
+    values = (ranges or Ranges()).draw(len(winters))
     cases = cases_of(design, winters, values, settings or SeasonSettings(), scene or {})
     search = _Search(cases, candidates)
     while search.undecided():
@@ -257,7 +257,7 @@ def forecast(
 
     The parameters are those of `required_clearance`.
     """
-    values = (ranges or Ranges()).drawn(len(winters))
+    values = (ranges or Ranges()).draw(len(winters))
     cases = cases_of(design, winters, values, settings or SeasonSettings(), scene or {})
     search = _Search(cases, sorted(set(heights)))
     scenes = [run.scene for run in search.runs().values()]
@@ -291,8 +291,8 @@ class _Search:
     def runs(self) -> dict[tuple[int, int], Any]:
         """Return all runs so far, and those that are needed next."""
         for number, index in self.undecided():
-            if self.cases[number].slides and (number, index) not in self._runs:
-                self._runs[number, index] = self.cases[number].run(self.heights[index])
+            if self.cases[number].has_releases and (number, index) not in self._runs:
+                self._runs[number, index] = self.cases[number].run_key(self.heights[index])
         return self._runs
 
     def record_outcomes(self, table: pd.DataFrame) -> None:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from snowshed.analysis.accuracy.mechanisms import Mechanisms
 from snowshed.analysis.accuracy.stack_errors import recorded_bias
 from snowshed.analysis.clearance.answer import ClearanceResult
-from snowshed.analysis.clearance.design import MEANING, Ranges
+from snowshed.analysis.clearance.panel_design import MEANING, Ranges
 from snowshed.base.formatting import plural
 from snowshed.season.season_record import whole_percent
 from snowshed.season.settings import SeasonSettings
@@ -56,7 +56,7 @@ def advice(answer: ClearanceResult) -> str:
 
 
 def warnings(answers: Sequence[ClearanceResult]) -> list[str]:
-    """Return where the answer is extrapolated or incomplete."""
+    """Return warnings that the answer is extrapolated or incomplete."""
     notes = [*_excluded_winters(answers[0]), _grid_error(answers[0])]
     for answer in answers:
         name = f"{answer.design.slope_length:g} m at {answer.design.tilt:g}°"
@@ -92,8 +92,8 @@ def _excluded_winters(answer: ClearanceResult) -> list[str]:
 
 
 def _grid_error(answer: ClearanceResult) -> str:
-    """Return what recorded runs say of the grid's error, which no interval contains."""
-    scene = answer.cases[0].panel(answer.heights[0]).data
+    """Return a sentence on the grid's error in recorded runs, which no interval contains."""
+    scene = answer.cases[0].panel_scene(answer.heights[0]).data
     bias = recorded_bias(2, TYPICAL_SLIDE_OFFS, Mechanisms.of_scene(scene))
     return f"the intervals leave out the error of the grid: {bias}"
 

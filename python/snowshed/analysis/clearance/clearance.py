@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Optional
 
 from snowshed.analysis.clearance.answer import ClearanceResult, required_clearance
-from snowshed.analysis.clearance.design import Design, Ranges
+from snowshed.analysis.clearance.panel_design import Design, Ranges
 from snowshed.analysis.clearance.winters import counted
 from snowshed.base.json_values import JsonValue
 from snowshed.base.notes import issue_note

@@ -9,7 +9,7 @@ from typing import Any, Optional
 
 from snowshed.analysis.clearance import answer_text
 from snowshed.analysis.clearance.answer import ClearanceResult
-from snowshed.analysis.clearance.design import Ranges
+from snowshed.analysis.clearance.panel_design import Ranges
 from snowshed.analysis.clearance.statistics import burial_interval
 from snowshed.io.atomic import write_text
 from snowshed.io.csv_table import write_csv
@@ -173,12 +173,12 @@ def _worst_picture(answer: ClearanceResult, view: Path) -> Optional[Picture]:
     from snowshed.season.driver import run_season
 
     case, outcomes = answer.cases[answer.worst_case_index], answer.outcomes[answer.worst_case_index]
-    if not case.slides:
+    if not case.has_releases:
         return None
     reached = [outcome.height for outcome in outcomes if outcome.contact] or [outcomes[0].height]
     with TemporaryDirectory() as folder:
         out = Path(folder) / "season"
-        run_season(case.winter.days, case.panel(reached[-1]), out, settings=case.settings)
+        run_season(case.winter.days, case.panel_scene(reached[-1]), out, settings=case.settings)
         write_view(out, view)
         return Picture.read(
             out / "season.png",

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Optional
 
 import numpy as np
 
-from snowshed.analysis.clearance.design import Design, scene_of, season_settings
+from snowshed.analysis.clearance.panel_design import Design, scene_of, season_settings
 from snowshed.analysis.clearance.winters import Winter
 from snowshed.scene.scene import ResolvedScene
 from snowshed.season.accumulation import WinterDay, accumulate, stack_ageing
@@ -82,17 +82,17 @@ class SeasonCase:
         return accumulate(self.winter.days, self.settings, self.design.tilt)
 
     @property
-    def slides(self) -> bool:
+    def has_releases(self) -> bool:
         """True if any snow is released."""
         return any(day.released for day in self.days)
 
-    def panel(self, height: float) -> ResolvedScene:
+    def panel_scene(self, height: float) -> ResolvedScene:
         """Return the scene of the panel at a height, without slabs."""
         return scene_of(self.design, height, self.values, self.seed, self.base)
 
-    def run(self, height: float) -> RunKey:
+    def run_key(self, height: float) -> RunKey:
         """Return the slide-offs of the season as a run of a study."""
-        scene = season_scene(self.panel(height), self.days, self.settings)
+        scene = season_scene(self.panel_scene(height), self.days, self.settings)
         return RunKey.of(scene, stack_ageing(self.days, self.settings))
 
     def outcome(self, height: float, events: pd.DataFrame) -> SeasonOutcome:
@@ -108,7 +108,9 @@ class SeasonCase:
         import pandas as pd
 
         outlines = pd.DataFrame({"event": [], "x": [], "z": []})
-        table = season_table(self.panel(height).data, self.days, self.settings, events, outlines)
+        table = season_table(
+            self.panel_scene(height).data, self.days, self.settings, events, outlines
+        )
         dx = self.design.dx
         contact = first_contact(table, dx)
         sunk = table["stack_height_m"] - table["settled_height_m"]

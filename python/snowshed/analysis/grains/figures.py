@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-MAX_RATIO = 1e4  # ratio that is still drawn
+MAX_RATIO = 1e4  # largest ratio that is drawn
 
 
 def sensitivity_figure(comparison: pd.DataFrame, title: str = "") -> Figure:

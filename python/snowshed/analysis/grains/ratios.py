@@ -135,7 +135,7 @@ def compare_variants(table: pd.DataFrame) -> pd.DataFrame:
 
 
 def paired_ratios(table: pd.DataFrame, variant: str, stress: str, base: str = BASE) -> Floats:
-    """Return a stress of a variant over that of another, for each sample that has both, (n,)."""
+    """Return a variant's stress over another variant's, for each sample that has both, (n,)."""
     first, other = (
         table[table["variant"] == name].set_index("sample")[stress].astype(float)
         for name in (variant, base)

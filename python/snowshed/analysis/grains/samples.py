@@ -85,7 +85,7 @@ class LabelledSample:
 
     @property
     def ice_fraction(self) -> float:
-        """Voxels of ice over all."""
+        """Voxels of ice over all voxels."""
         return float(np.count_nonzero(self.labels) / self.labels.size)
 
     @property
@@ -128,7 +128,7 @@ class LabelledSample:
         return LabelledSample(name, labels, image.voxel_size, self.source)
 
     def middle(self, part: float) -> LabelledSample:
-        """Return the middle of the sample, with edges that are a part of its edges.
+        """Return the middle of the sample, whose edges are a share of the sample's.
 
         Examples
         --------
@@ -181,7 +181,7 @@ class LabelledSample:
 
 
 def _checked_labels(file: Path, labels: AnyIntegers, split: bool) -> Labels:
-    """Return labels as the core takes them; tell where one lies in several places."""
+    """Return labels as the core takes them; a note reports labels in several pieces."""
     if int(labels.min()) < 0 or int(labels.max()) > MAX_LABEL:
         raise InputError(f"{file}: no labels; 0 is air, grains are 1 to {MAX_LABEL:,}")
     labelled = labels.astype(np.int32)

@@ -128,7 +128,7 @@ SETTINGS = (
     ("density of ice", ("density_scaling",), (0.1, 10.0)),
 )
 SPEEDS = (0.5, 2.0)
-HALF = 0.5  # of the edges: the smaller volume
+SMALLER_EDGE = 0.5  # edges of the smaller volume, relative to the sample's
 
 
 def sensitivity_variants(
@@ -194,7 +194,7 @@ def sensitivity_variants(
         variants.append(Variant(words, "speed", files, voxel, path))
     for times in ([coarser - 1] if finer else []) + [coarser + 1]:
         variants.append(other_spheres(samples, folder, times))
-    small = [sample.middle(HALF).write(folder) for sample in base]
+    small = [sample.middle(SMALLER_EDGE).write(folder) for sample in base]
     variants.append(Variant("volume / 8", "volume", small, voxel))
     return Comparison(scene, variants, "grains-sensitivity")
 
@@ -216,7 +216,7 @@ def other_spheres(samples: Sequence[LabelledSample], folder: Path, times: int) -
 
 
 def _scaled(value: float, factor: float) -> float:
-    """Return a product without the last digits' rounding."""
+    """Return a product without rounding errors in its last digits."""
     return float(f"{value * factor:.12g}")
 
 

@@ -25,7 +25,7 @@ from snowshed.analysis.hazard.maps import (
     LEVELS,
     PRESSURES,
     QUANTITIES,
-    REACHED,
+    REACHED_THICKNESS,
     HazardMaps,
     hazard_facts,
     hazard_maps,
@@ -59,7 +59,7 @@ def write_hazard(
     store: PathLike,
     study: str,
     *,
-    reached: float = REACHED,
+    reached: float = REACHED_THICKNESS,
     pressures: Sequence[float] = PRESSURES,
 ) -> HazardMaps:
     """Write the maps of a study of slides into a folder, and return them.
@@ -171,7 +171,7 @@ def _write(file: Path, maps: HazardMaps, values: Any) -> None:
 
 
 def _ends(table: pd.DataFrame, axes: Sequence[str]) -> dict[str, list[float]]:
-    """Return the smallest and the largest value of what varies."""
+    """Return the smallest and the largest value of each varied parameter."""
     return {path: [float(table[path].min()), float(table[path].max())] for path in axes}
 
 

@@ -1,4 +1,4 @@
-"""Maps of how likely a cell is reached, and how hard, from a study of many slides."""
+"""Maps of the probability that snow reaches a cell, and of its intensity, from many slides."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ QUANTITIES: Mapping[str, tuple[str, str]] = {
     "speed": ("m/s", "pfv"),
     "pressure": ("kPa", "ppr"),
 }
-REACHED = 0.1  # m of snow
+REACHED_THICKNESS = 0.1  # m of snow
 PRESSURES = (1.0, 3.0, 10.0)  # kPa
 PERCENTILES = (50, 95)
-LEVELS = (0.05, 0.5, 0.95)  # probabilities whose areas are told
+LEVELS = (0.05, 0.5, 0.95)  # probabilities whose areas are reported
 NORMAL_95 = 1.959963984540054  # two-sided 95 % quantile of the normal distribution
-BAND_BYTES = 100_000_000  # of the maps of all runs that are held at a time
+BAND_BYTES = 100_000_000  # memory for one band of the maps of all runs
 
 
 @dataclass(frozen=True)
@@ -86,7 +86,7 @@ class HazardMaps:
     percentiles: Mapping[tuple[str, int], Floats]
 
     def area(self, exceedance: Exceedance, probability: float) -> float:
-        """Return the area on the map where a probability is at least so large, m2."""
+        """Return the area on the map with at least this probability of exceedance, m2."""
         return float((exceedance.probability >= probability).sum()) * self.terrain.cell**2
 
     def raster(self, values: Floats) -> Raster:
@@ -99,11 +99,11 @@ def hazard_maps(
     folder: PathLike,
     study: Optional[str] = None,
     *,
-    reached: float = REACHED,
+    reached: float = REACHED_THICKNESS,
     pressures: Sequence[float] = PRESSURES,
     percentiles: Sequence[int] = PERCENTILES,
 ) -> HazardMaps:
-    """Return the maps of a study of slides, as far as its runs are computed.
+    """Return the maps of the computed runs of a study of slides.
 
     Maps are processed in row bands, so memory does not grow with the number of runs.
 
@@ -148,7 +148,7 @@ def wilson_interval(count: Any, runs: int) -> tuple[Floats, Floats]:
     Parameters
     ----------
     count
-        Number of runs in which it happened; a number or an array.
+        Number of runs in which the event occurred; a number or an array.
     runs
         Number of all runs.
 
@@ -267,7 +267,7 @@ def hazard_facts(maps: HazardMaps) -> dict[str, Any]:
 
 
 def uncertainty(runs: int) -> str:
-    """Return in a sentence how sure probabilities from a number of runs are.
+    """Return a sentence on the uncertainty of probabilities from a number of runs.
 
     Examples
     --------

@@ -11,7 +11,7 @@ from snowshed.analysis.regression.geometry import check_between
 from snowshed.analysis.regression.rows import StackRows, read_rows
 
 FOLDER = Path(__file__).with_name("data")
-#: Models of its rows, the default of ``snowshed predict``.
+#: Models of the data set's rows, the default of ``snowshed predict``.
 MODEL = FOLDER / "geometry-model.npz"
 #: Treatment of the stack between events in the models: the one nearest to Table 5.3.1.
 MODEL_BETWEEN = "carry"

@@ -1,7 +1,7 @@
 """Settings of a published study of panels that may take the place of ours, by name.
 
-The study is that of Frischholz (2023), whose data set has the same panels. All of them together are
-its settings.
+The study is that of Frischholz (2023), whose data set has the same panels. All deviations together
+are its settings.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ def deviations_named(names: Sequence[str]) -> list[str]:
     Raises
     ------
     InputError
-        If there is none of a name.
+        If a name is unknown.
 
     Examples
     --------
@@ -46,12 +46,12 @@ def deviations_named(names: Sequence[str]) -> list[str]:
 
 
 def deviating_settings(names: Sequence[str] = (ALL,)) -> dict[str, object]:
-    """Return what deviations set in a scene, as `snowshed.Scene.update` takes it.
+    """Return the settings of deviations, as `snowshed.Scene.update` takes them.
 
     Raises
     ------
     InputError
-        If there is none of a name.
+        If a name is unknown.
 
     Examples
     --------

@@ -14,12 +14,12 @@ from snowshed.analysis.regression.scaling import Scaling
 from snowshed.base.arrays import Floats
 from snowshed.plot.labels import label, settings
 
-#: A value just beyond a range must not read like its end.
+#: Digits of values in messages; a value just beyond a range must differ from its end.
 DIGITS = 7
 TOLERANCE = 1e-6  # of standardised inputs
-#: Part of the panels whose nearest neighbours are not farther than what counts as spacing: a few
-#: lonely panels do not make the data dense about them.
-SPACED = 0.9
+#: The spacing of the data is this quantile of the distances from panel to nearest panel, so that a
+#: few lonely panels do not increase it.
+SPACING_QUANTILE = 0.9
 
 
 @dataclass(frozen=True)
@@ -103,7 +103,7 @@ class DataDomain:
 
     @cached_property
     def _by_event(self) -> dict[float, Floats]:
-        """The panels that have each event, shape (m, k - 1)."""
+        """The panels of each event, shape (m, k - 1)."""
         events = self.inputs[:, 0]
         return {
             float(event): np.unique(self.inputs[events == event, 1:], axis=0)
@@ -124,13 +124,13 @@ def _in_hull(points: Floats, place: Floats) -> bool:
 
 
 def _widest_gap(points: Floats) -> float:
-    """Return how far from the nearest point a place between the points may be.
+    """Return the largest distance from the nearest point at which a place is in no gap.
 
-    In the middle of a cube the nearest corner is less than sqrt(dimension) of its edge away.
+    The middle of a cube is less than sqrt(dimension) of its edges away from the corners.
     """
     if len(points) < 2:
         return 0.0
     to_nearest = spatial.cKDTree(points).query(points, k=2)[0][:, 1]
-    spacing = float(np.quantile(to_nearest, SPACED, method="lower"))
+    spacing = float(np.quantile(to_nearest, SPACING_QUANTILE, method="lower"))
     dimension = int((np.ptp(points, axis=0) > 0).sum())
     return spacing * float(np.sqrt(dimension))

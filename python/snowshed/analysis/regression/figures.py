@@ -27,13 +27,13 @@ if TYPE_CHECKING:
 Elected = Mapping[str, Sequence[FoldResult]]
 Titles = Mapping[str, str]
 
-#: One for each kind of model.
+#: Colour of each kind of model.
 COLOURS = dict(
     zip(("rbf", "linear", "gaussian-process", "gradient-boosting"), figure_style.COLOURS)
 )
 REFERENCE_PANEL = (2.0, 2.0, 40.0)  # height and length in m, tilt in degrees; Table 5.1.1
-DIFFERENT = 12  # values of a hyper-parameter that get a bar each
-ALONG = 80  # points of a predicted curve
+MAX_BARS = 12  # values of a hyper-parameter that get a bar each
+CURVE_POINTS = 80  # points of a predicted curve
 
 
 def selection(elected: Elected, titles: Titles, target: str) -> Figure:
@@ -184,7 +184,7 @@ def cost(errors: pd.DataFrame, titles: Titles, target: str) -> Figure:
 
 
 def reference_panel(rows: StackRows) -> Floats:
-    """Return the panel about which inputs vary: the one nearest to the thesis's.
+    """Return the panel about which inputs vary: the panel nearest to the thesis's.
 
     Returns
     -------
@@ -218,8 +218,8 @@ def _vary(
     axes.plot(x, rows.targets[target][fits], "o", color=shade, markersize=3.5)
     if fits.sum() < 2:
         return
-    questions = np.tile(here, (ALONG, 1))
-    questions[:, number] = np.linspace(x.min(), x.max(), ALONG)
+    questions = np.tile(here, (CURVE_POINTS, 1))
+    questions[:, number] = np.linspace(x.min(), x.max(), CURVE_POINTS)
     scaled = Scaling.of(rows.inputs).scaled(questions)
     predicted = member.ensemble.predict(scaled) * member.deviation + member.mean
     mean, deviation = predicted.mean(axis=0), predicted.std(axis=0)
@@ -229,9 +229,9 @@ def _vary(
 
 
 def _count(axes: Axes, values: Floats, colour: str) -> None:
-    """Draw how often each value occurs; many different ones are gathered."""
+    """Draw how often each value occurs; many different values are binned."""
     different, counts = np.unique(values, return_counts=True)
-    if len(different) > min(DIFFERENT, 0.5 * len(values)):
+    if len(different) > min(MAX_BARS, 0.5 * len(values)):
         axes.hist(np.log10(values), bins=8, color=colour)
         axes.xaxis.set_major_locator(MaxNLocator(3))
         axes.xaxis.set_major_formatter(lambda power, _: f"{10**power:.3g}")

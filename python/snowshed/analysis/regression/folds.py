@@ -22,7 +22,7 @@ class ShuffledGroupKFold:
     """Folds of whole groups in random order, with the interface of scikit-learn's splitters.
 
     scikit-learn's own `KFold` and `GroupKFold` shuffle by NumPy's old random numbers and so cannot
-    give the folds of the published models; those fill folds by rows, these by groups.
+    give the folds of the published models. Published folds consist of rows, folds here of groups.
 
     Attributes
     ----------
@@ -121,7 +121,7 @@ class CrossValidation:
             )
 
     def groups(self, rows: StackRows) -> Integers:
-        """Return the group of each row, shape (n,): what no fold may tear apart."""
+        """Return the group of each row, shape (n,); no fold splits a group."""
         return np.arange(len(rows)) if self.by == "rows" else rows.panels
 
     def outer(self, round_: int) -> ShuffledGroupKFold:

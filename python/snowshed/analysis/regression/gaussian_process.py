@@ -76,7 +76,7 @@ class LikelihoodSearch(BaseEstimator):
         """Find the hyper-parameters of the rows, shapes (n, k) and (n,), and train with them."""
         model = GaussianProcessRegressor(_covariance(1.0, np.ones(X.shape[1]), 0.1), alpha=0.0)
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # that a length is at its bound: the input is no matter
+            warnings.simplefilter("ignore")  # a length at its bound: the input has no effect
             model.fit(X, y)
         signal, noise = model.kernel_.k1, model.kernel_.k2
         lengths = np.ravel(signal.k2.length_scale)

@@ -33,12 +33,12 @@ BETWEEN = ("carry", "reseed")
 #: The panel's friction, which the thesis does not print. Of 0.3 to 0.8, which were tried on some of
 #: the panels, it gives ratios of height to length nearest to Table 5.3.1.
 FRICTION = 0.8
-#: Damping by PIC, 1/s: that of the thesis's share of 0.01 in each step, for its cells of 1 cm and
-#: the calibrated snow (whose steps are 0.054 ms). As a rate it is the same for cells of any size.
+#: Damping rate of PIC, 1/s. It corresponds to the thesis's share of 0.01 in each step, with cells
+#: of 1 cm and the calibrated snow (steps of 0.054 ms). The rate holds for cells of any size.
 DAMPING_RATE = 190.0
-#: For how many seeds of the shortest panels those up to some length, m, have one: the stacks of
-#: short panels scatter most, and long panels take longest. What one more stack takes from the
-#: scatter of the rows for its time asks for about as many.
+#: Number of seeds of the shortest panels for each seed of panels up to some length, m. Stacks of
+#: short panels scatter most, and long panels take longest. With these shares, one more stack of
+#: any panel reduces the scatter of the rows by about as much per computing time.
 SHARES: Mapping[float, int] = {1.0: 1, 2.0: 3, 4.0: 6, inf: 16}
 DESCRIPTION = "The geometry data set: 122 panels, 5 events each, 610 rows (Tables 5.1.1 and 5.2.1)."
 
@@ -72,7 +72,7 @@ def geometry_study(
         the others a sixteenth, rounded up.
     deviations
         Names of `snowshed.analysis.regression.deviations`, or "all": settings of the published
-        study. They go before `between` and `dx`; the trial has none.
+        study. They override `between` and `dx`; the trial has none.
     trial
         Whether to return a trial: a few panels on a coarse grid, which take seconds; its numbers
         are meaningless.

@@ -19,9 +19,9 @@ MAX_STEPS = 80
 INTERIOR = 0.995  # largest share of the distance to the boundary in a step
 MIN_STEP = 1e-8  # smallest step that makes progress
 ROUNDING = 1e-12  # of the largest diagonal element of the kernel
-DIVERGED = 1e6  # times the smallest residual so far
-USELESS = 1e-2  # a residual that is no fit
-MIN_OBJECTIVE = 1e-3  # objectives below count as this, times the tolerance
+DIVERGENCE_RATIO = 1e6  # a residual above this many times the smallest one ends the fit
+MAX_RESIDUAL = 1e-2  # largest relative residual of a fit
+MIN_OBJECTIVE = 1e-3  # added to the objective in the relative gap
 
 
 @dataclass(frozen=True)
@@ -113,15 +113,15 @@ class _Iteration:
         self._intercept = float(np.median(y))
 
     def run(self, tolerance: float) -> SupportVectors:
-        """Iterate to the tolerance, or to where rounding lets it come no nearer."""
+        """Iterate to the tolerance, or until rounding prevents further progress."""
         best, solution = np.inf, self._function()
         for _ in range(MAX_STEPS):
             residual = self._residuals()
             if residual < best:
                 best, solution = residual, self._function()
-            if residual <= tolerance or residual > DIVERGED * best or not self._step():
+            if residual <= tolerance or residual > DIVERGENCE_RATIO * best or not self._step():
                 break
-        if not best <= USELESS:
+        if not best <= MAX_RESIDUAL:
             raise FloatingPointError(
                 f"the fit did not converge: C {self._c:g}, epsilon {self._epsilon:g}"
             )
@@ -131,7 +131,7 @@ class _Iteration:
         return SupportVectors(self._alpha.value - self._star.value, self._intercept)
 
     def _residuals(self) -> float:
-        """Evaluate the optimality conditions; return how far they are from holding, relative."""
+        """Evaluate the optimality conditions, and return their largest relative residual."""
         beta = self._alpha.value - self._star.value
         image = self._kernel @ beta
         error = image + self._intercept - self._y

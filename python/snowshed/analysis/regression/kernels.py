@@ -8,7 +8,7 @@ import numpy as np
 
 from snowshed.base.arrays import Floats
 
-#: Kernel values below are zero: arithmetic with numbers near the smallest ones is slow.
+#: Smaller kernel values are set to zero: arithmetic with denormal numbers is slow.
 UNDERFLOW = 1e-100
 
 

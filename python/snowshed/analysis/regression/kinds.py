@@ -41,15 +41,15 @@ class Kind(Protocol):
 
     @property
     def name(self) -> str:
-        """Its name in files and options."""
+        """Name of the kind in files and options."""
 
     @property
     def title(self) -> str:
-        """Its name in figures and tables."""
+        """Name of the kind in figures and tables."""
 
     @property
     def cost_s(self) -> float:
-        """Roughly how long one outer fold of 600 rows takes, s; for the time left."""
+        """Approximate time of one outer fold of 600 rows, s, to estimate the remaining time."""
 
     def searcher(self, cv: ShuffledGroupKFold) -> Searcher:
         """Return a search of hyper-parameters on these inner folds."""
@@ -83,7 +83,7 @@ def kinds() -> dict[str, Kind]:
 
 
 def kinds_named(names: Sequence[str]) -> dict[str, Kind]:
-    """Return some kinds by name; none named: all.
+    """Return the named kinds; all kinds if no name is given.
 
     Raises
     ------

@@ -17,7 +17,7 @@ from snowshed.analysis.regression.domain import DataDomain
 from snowshed.analysis.regression.ensemble import Ensemble
 from snowshed.analysis.regression.rows import INPUTS, TARGETS, is_input
 from snowshed.analysis.regression.scaling import Scaling
-from snowshed.analysis.regression.spread import INTERVAL, SPREAD, Spread
+from snowshed.analysis.regression.spread import INTERVAL_SHARE, SPREAD_SHARE, Spread
 from snowshed.base.arrays import Floats
 from snowshed.base.damage import DAMAGED
 from snowshed.base.paths import PathLike
@@ -31,9 +31,9 @@ from snowshed.study.table import FORMER_TRIMMING
 FORMAT = "snowshed stack model"
 VERSION = 1
 MAX_BYTES = 2**28  # bytes, unpacked
-MAX_VALUE = 1e50  # of anything in an array; its square is a number too
+MAX_VALUE = 1e50  # largest value in an array; its square is finite
 MAX_METADATA_LENGTH = 2**20  # characters
-#: Kinds of model that a file may hold: all are sums of kernels. The first there is answers.
+#: Kinds of model that a file may hold: all are sums of kernels. The first in a file answers.
 STORED_KINDS = ("rbf", "gaussian-process", "linear")
 ENSEMBLE_ARRAYS = ("coefficients", "intercepts", "rates")
 
@@ -97,7 +97,7 @@ class StackModel:
 
     @property
     def kinds(self) -> list[str]:
-        """The kinds of model there are, the one that answers first."""
+        """The kinds of model in the file; the first one answers."""
         return [name for name in STORED_KINDS if any(name == kind for _, kind in self.members)]
 
 
@@ -155,7 +155,7 @@ def load_model(file: PathLike) -> StackModel:
 
 
 class _ModelReader:
-    """Takes a model out of an archive, checking everything."""
+    """Reads a model from an archive, and checks everything."""
 
     def __init__(self, archive: Any) -> None:
         self._archive = archive
@@ -270,9 +270,12 @@ def _spread(facts: dict[str, Any], where: str) -> Spread:
         factors = {float(part): float(factor) for part, factor in listed}
     except (TypeError, ValueError):
         raise InputError(f"{where}.factors: not pairs of numbers") from None
-    if set(factors) != {SPREAD, INTERVAL} or not all(0 <= x < 1e12 for x in factors.values()):
+    if set(factors) != {SPREAD_SHARE, INTERVAL_SHARE} or not all(
+        0 <= x < 1e12 for x in factors.values()
+    ):
         raise InputError(
-            f"{where}.factors: must be given, and not negative, for the parts {SPREAD}, {INTERVAL}"
+            f"{where}.factors: must be given, and not negative, for the shares {SPREAD_SHARE}, "
+            f"{INTERVAL_SHARE}"
         )
     slope = _number(facts, "slope", where)
     if slope < 0:

@@ -24,7 +24,7 @@ from snowshed.io.folders import claim_folder
 from snowshed.study.locks import holding, is_held
 
 IDENTITY = "regression.json"
-FORMAT = 2  # of the results of folds; another one is computed again
+FORMAT = 2  # of stored folds; those of another format are computed again
 POLL_S = 0.25  # s between checks of interrupts
 
 
@@ -135,7 +135,7 @@ class _Tracker:
 def _claim(folder: Path, rows: StackRows, scheme: CrossValidation) -> None:
     """Record the subject of the folder's results, or refuse a folder with other results.
 
-    Each round splits the rows by itself, so that their number may grow.
+    The number of rounds may grow, because each round splits the rows by itself.
     """
     folds = asdict(scheme)
     del folds["rounds"]

@@ -24,7 +24,7 @@ class PathEstimator(Protocol):
 
     @property
     def path_parameters(self) -> tuple[str, ...]:
-        """Their names, the outermost loop first."""
+        """Names of these hyper-parameters, the outermost loop first."""
 
     def path_predictions(self, X: Floats, y: Floats, at: Floats, grid: Grid) -> Iterator[Floats]:
         """Train on X and y; yield the predictions at `at` for each point of the grid."""

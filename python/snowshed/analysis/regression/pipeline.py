@@ -17,7 +17,7 @@ from snowshed.analysis.regression.model_file import STORED_KINDS, Member, StackM
 from snowshed.analysis.regression.nested import Results, cross_validate
 from snowshed.analysis.regression.published import compare_with_published, published
 from snowshed.analysis.regression.rows import INPUTS, TARGETS, StackRows
-from snowshed.analysis.regression.spread import stack_spread, unseen_panels
+from snowshed.analysis.regression.spread import predict_unseen_panels, stack_spread
 from snowshed.base.arrays import Floats
 from snowshed.base.paths import PathLike
 from snowshed.base.pool.pool import available_cores
@@ -40,7 +40,7 @@ class TargetReport:
     Attributes
     ----------
     target
-        Its name.
+        Name of the target.
     quartiles, errors
         Tables 5.3.1 and 5.3.2; see `snowshed.analysis.regression.summary`.
     expression
@@ -169,13 +169,15 @@ class _Output:
         for task, result in self._results.items():
             if (task.target, task.kind) == (target, kind):
                 rounds.setdefault(task.round, []).append(result.parameters)
-        errors = unseen_panels(self._kinds[kind], list(rounds.values()), self._rows, target)
+        predictions = predict_unseen_panels(
+            self._kinds[kind], list(rounds.values()), self._rows, target
+        )
         ensemble = Ensemble.of(results)
         values = self._rows.targets[target]
         unit = float(values.std()) or 1.0
         deviation = ensemble.predict(ensemble.points).std(axis=0) * unit
-        spread = stack_spread(self._rows, target, errors, deviation)
-        return Member(ensemble, float(values.mean()), unit, spread), errors - values
+        spread = stack_spread(self._rows, target, predictions, deviation)
+        return Member(ensemble, float(values.mean()), unit, spread), predictions - values
 
     def _report(
         self,

@@ -14,7 +14,7 @@ from snowshed.analysis.regression.dataset import MODEL
 from snowshed.analysis.regression.model_file import StackModel, load_model
 from snowshed.analysis.regression.questions import Numbers, Questions
 from snowshed.analysis.regression.scaling import Scaling
-from snowshed.analysis.regression.spread import INTERVAL, SPREAD
+from snowshed.analysis.regression.spread import INTERVAL_SHARE, SPREAD_SHARE
 from snowshed.base.arrays import Floats
 from snowshed.base.paths import PathLike
 from snowshed.plot.labels import settings
@@ -22,7 +22,7 @@ from snowshed.plot.labels import settings
 if TYPE_CHECKING:
     import pandas as pd
 
-SHOWN = 5  # panels that a refusal names
+MAX_NAMED_PANELS = 5  # panels that a refusal names
 
 
 class OutsideDataError(InputError):
@@ -42,7 +42,7 @@ class Prediction:
         deviation of the models), in m, or 1 for the ratio; ``extrapolated``: whether the panel lies
         outside the data.
     kind, title
-        The kind of model, and what data it comes from.
+        The kind of model, and the title of its data.
     measure, settings
         Measure of the snow, and common settings of the data, as in `StackModel`.
     objections
@@ -116,8 +116,9 @@ def predict(
         One row for each panel, with the columns ``height``, ``length``, ``tilt`` and ``events``,
         or the other inputs of the model, in any order. Other columns are refused.
     height, length
-        Instead of a table: of the panel, its lower edge above the ground, and along the slope, m.
-        Each of the four is a number, or a sequence or array with one for each panel.
+        Instead of a table: height of the panel's lower edge above the ground, and length of the
+        panel along the slope, m. Each of height, length, tilt and events is a number, or a sequence
+        or array with a value for each panel.
     tilt
         Tilt of the panel from the horizontal, degrees.
     events
@@ -177,7 +178,7 @@ def _objections(model: StackModel, questions: Questions) -> dict[int, list[str]]
 
 
 def _reasons(outside: Mapping[int, list[str]], number: int, questions: Questions) -> list[str]:
-    """Return the objections to a panel, with its label if there are others."""
+    """Return the objections to a panel, with its label if there are other panels."""
     if len(questions.labels) == 1:
         return outside[number]
     return [f"panel {questions.labels[number]}: {text}" for text in outside[number]]
@@ -187,10 +188,12 @@ def _refusal(outside: Mapping[int, list[str]], questions: Questions) -> str:
     count = len(questions.labels)
     subject = "the question lies" if count == 1 else f"{len(outside)} of {count} panels lie"
     shown = [
-        text for number in list(outside)[:SHOWN] for text in _reasons(outside, number, questions)
+        text
+        for number in list(outside)[:MAX_NAMED_PANELS]
+        for text in _reasons(outside, number, questions)
     ]
-    if len(outside) > SHOWN:
-        shown.append(f"and {len(outside) - SHOWN} more panels")
+    if len(outside) > MAX_NAMED_PANELS:
+        shown.append(f"and {len(outside) - MAX_NAMED_PANELS} more panels")
     this = "this panel" if len(outside) == 1 else "these panels"
     return (
         f"{subject} outside the data: {'; '.join(shown)}; no model is reliable there. Simulate "
@@ -222,10 +225,10 @@ def _columns(model: StackModel, target: str, kind: str, scaled: Floats) -> dict[
     member = model.members[target, kind]
     predicted = member.ensemble.predict(scaled) * member.deviation + member.mean
     value, deviation = predicted.mean(axis=0), predicted.std(axis=0)
-    spread = member.spread.half_width(value, deviation, SPREAD)
-    reach = member.spread.half_width(value, deviation, INTERVAL)
+    spread = member.spread.half_width(value, deviation, SPREAD_SHARE)
+    reach = member.spread.half_width(value, deviation, INTERVAL_SHARE)
     return {
-        # Neither a length nor a ratio is negative; a linear model may be.
+        # Lengths and ratios are not negative, but a linear model may be.
         "value": np.maximum(value, 0.0),
         "spread": spread,
         "low": np.maximum(value - reach, 0.0),

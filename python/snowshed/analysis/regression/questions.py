@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 #: A number, or one for each panel.
 Numbers = Union[float, Sequence[float], Floats, Integers, "pd.Series[float]", "pd.Series[int]"]
 
-#: Short names of inputs, as tables and options have them; the others go by their paths.
+#: Short names of inputs in tables and options; the names of other inputs are their paths.
 SHORT: Mapping[str, str] = {
     "panel.height": "height", "panel.length": "length", "panel.tilt": "tilt"
 }  # fmt: skip
@@ -60,7 +60,7 @@ class Questions:
             One row for each panel, with a column for each input (by its short name, or its path)
             and ``events``, in any order and no other.
         columns
-            The same as numbers, or one value per panel; None beside a table.
+            The same columns, each a number or a value per panel; None if there is a table.
         inputs
             Inputs of the model; the event is the first.
 
@@ -81,7 +81,9 @@ class Questions:
         given = [name for name, value in columns.items() if value is not None]
         if table is not None:
             if given:
-                raise InputError(f"{given[0]}: not beside a table of panels, which has it")
+                raise InputError(
+                    f"{given[0]}: not allowed beside a table of panels, which has it as a column"
+                )
             columns = _table_columns(table, names)
         panels = _stacked(columns, names)
         labels = pd.RangeIndex(panels.shape[1]) if table is None else table.index

@@ -1,4 +1,4 @@
-"""The rows that are regressed: inputs and targets out of a study's table, checked."""
+"""Rows for a regression: checked inputs and targets from a study's table."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ class StackRows:
         """Values of each name of `TARGETS`, shape (n,).
 
         The mean stack: mean height, mean length, and the ratio of these. A mean of ratios would be
-        led by the few stacks that by chance are short.
+        dominated by the few stacks that are short by chance.
         """
         height, length = (np.nanmean(self.stacks[name], axis=1) for name in ("height", "length"))
         return {"ratio": height / length, "height": height, "length": length}

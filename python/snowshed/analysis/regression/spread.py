@@ -19,8 +19,8 @@ from snowshed.analysis.regression.rows import StackRows
 from snowshed.analysis.regression.scaling import Scaling
 from snowshed.base.arrays import Floats
 
-#: Part of the cases that lie within the spread, and within the interval.
-SPREAD, INTERVAL = 0.68, 0.90
+#: Shares of the cases that lie within the spread, and within the interval.
+SPREAD_SHARE, INTERVAL_SHARE = 0.68, 0.90
 MIN_SCALE = 1e-9  # smallest scale, relative to the standard deviation of the predictions
 
 
@@ -60,11 +60,13 @@ class Spread:
         floor = max(float(floor), MIN_SCALE * float(np.std(predictions)), 1e-12)
         scales = _scales(floor, float(slope), predictions, deviations)
         ratios = np.sort(np.abs(errors) / scales)
-        factors = {part: _quantile(ratios, part) for part in (SPREAD, INTERVAL)}
+        factors = {part: _quantile(ratios, part) for part in (SPREAD_SHARE, INTERVAL_SHARE)}
         return cls(floor, float(slope), factors)
 
-    def half_width(self, predictions: Floats, deviations: Floats, part: float = SPREAD) -> Floats:
-        """Return the half width around predictions that holds a part of the stacks."""
+    def half_width(
+        self, predictions: Floats, deviations: Floats, part: float = SPREAD_SHARE
+    ) -> Floats:
+        """Return the half width around predictions that contains a share of the stacks."""
         return self.factors[part] * _scales(self.floor, self.slope, predictions, deviations)
 
 
@@ -73,12 +75,12 @@ def _scales(floor: float, slope: float, predictions: Floats, deviations: Floats)
 
 
 def _quantile(ratios: Floats, part: float) -> float:
-    """Return the quantile of sorted ratios that holds for a new case, not only for these."""
+    """Return the quantile of sorted ratios that holds for a new case, not only for the given."""
     place = int(np.ceil(part * (len(ratios) + 1))) - 1
     return float(ratios[min(place, len(ratios) - 1)])
 
 
-def unseen_panels(
+def predict_unseen_panels(
     kind: Kind,
     elected: Sequence[Sequence[Parameters]],
     rows: StackRows,
@@ -118,15 +120,15 @@ def unseen_panels(
 
 
 def stack_spread(rows: StackRows, target: str, predictions: Floats, deviations: Floats) -> Spread:
-    """Return the spread of single stacks, each of one seed, about predictions of `unseen_panels`.
+    """Return the spread of single stacks, each of one seed, about predictions.
 
     Parameters
     ----------
     rows, target
         The data.
     predictions, deviations
-        Predictions of models that have not seen the row's panel, and standard deviation of the
-        models, for each row, shape (n,).
+        Predictions of models that have not seen the row's panel (`predict_unseen_panels`), and
+        standard deviation of the models, for each row, shape (n,).
     """
     stacks = rows.stacks[target]
     row, repetition = np.nonzero(np.isfinite(stacks))

@@ -66,7 +66,7 @@ def held_out_errors(results: Sequence[FoldResult], values: Floats) -> Floats:
 
 
 def quartile_table(elected: Elected, values: Floats, target: str) -> pd.DataFrame:
-    """Return quartiles of the mean predictions, of the data, and published ones of the ratio."""
+    """Return quartiles of the data and of mean predictions; for the ratio also published ones."""
     import pandas as pd
 
     printed = published().quartiles if target == "ratio" else {}
@@ -93,12 +93,12 @@ def quartiles(values: Floats) -> tuple[float, ...]:
 def error_table(
     elected: Elected, data: StackRows, target: str, unseen: Mapping[str, Floats]
 ) -> pd.DataFrame:
-    """Return the errors on all rows, beside published ones, and on rows and panels not trained on.
+    """Return the errors on all rows, the published errors, and errors on unseen rows and panels.
 
     Parameters
     ----------
     elected, data, target
-        The folds' results by kind of model, and their task.
+        The folds' results by kind of model, and the data and the target of the folds.
     unseen
         Errors on unseen panels, by kind of model.
     """

@@ -13,10 +13,10 @@ from snowshed._core import InputError
 from snowshed.analysis.regression.interior_point import SupportVectors, solve
 from snowshed.base.arrays import Floats
 
-#: Changes of multipliers that libsvm is allowed; beyond, the interior point method is faster.
+#: Largest number of iterations of libsvm; beyond it the interior point method is faster.
 LIBSVM_ITERATIONS = 2500
 LIBSVM_TOLERANCE = 1e-4  # of the targets' standard deviation; scikit-learn's default is 1e-3
-#: A multiplier closer than this part to its bound counts as at the bound.
+#: A multiplier closer to its bound than this share of it counts as at the bound.
 AT_BOUND = 1e-3
 
 
@@ -47,7 +47,7 @@ def fit_along_c(
     Yields
     ------
     SupportVectors
-        One for each C; one that did not converge has NaN for its numbers.
+        A fit for each C; the numbers of a fit that did not converge are NaN.
     """
     if np.ptp(y) <= 2 * epsilon:
         middle = SupportVectors(np.zeros(len(y)), float(y.min() + y.max()) / 2)
@@ -86,7 +86,7 @@ def _libsvm(kernel: Floats, y: Floats, c: float, epsilon: float) -> Optional[Sup
         cache_size=50,
     )
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # that it did not converge: asked for below
+        warnings.simplefilter("ignore")  # convergence is checked below
         model.fit(kernel, y)
     if model.fit_status_ != 0:
         return None

@@ -20,8 +20,8 @@ KERNELS = ("linear", "rbf")
 class EpsilonSVR(RegressorMixin, BaseEstimator):
     """Support vector regression with an epsilon-insensitive loss.
 
-    It solves the same problem as scikit-learn's `SVR`, and goes into its pipelines and searches
-    likewise. Where libsvm would need millions of iterations (large C, few inputs), an interior
+    It solves the same problem as scikit-learn's `SVR`, and can be used in its pipelines and
+    searches. Where libsvm would need millions of iterations (large C, few inputs), an interior
     point method takes over.
 
     Parameters

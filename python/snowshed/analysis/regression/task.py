@@ -15,7 +15,7 @@ from snowshed.analysis.regression.score import median_absolute_error
 
 @dataclass(frozen=True)
 class FoldTask:
-    """A fold of a task; `round` and `fold` count from 0."""
+    """An outer fold of a kind of model for a target; `round` and `fold` count from 0."""
 
     target: str
     kind: str

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Optional
 
 from snowshed._core import InputError
-from snowshed.analysis.sensitivity.parameter_ranges import GROUPS, PAIRS, VALUES
+from snowshed.analysis.sensitivity.parameter_values import GROUPS, PAIRS, VALUES
 from snowshed.analysis.sensitivity.sampling import SAMPLERS
 from snowshed.scene.components import Snow
 from snowshed.scene.scene import Scene

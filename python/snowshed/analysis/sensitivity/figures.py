@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from snowshed.analysis.sensitivity.single_parameter import CONFIDENT
+from snowshed.analysis.sensitivity.single_parameter import STANDARD_ERRORS_95
 from snowshed.analysis.sensitivity.stored import TARGETS
 from snowshed.base.arrays import Floats
 from snowshed.plot.figure_style import COLOURS, FAINT, INK, STYLE, blank_figure, headline
@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
 
-BARS = 0.8  # share of a group's width that its bars fill
-FIRST, LAST = 0.3, 0.85  # part of the colour map that is legible on white
+BARS_SHARE = 0.8  # share of a group's width that its bars fill
+FIRST_SHADE, LAST_SHADE = 0.3, 0.85  # part of the colour map that is legible on white
 
 
 def local_index_figure(table: pd.DataFrame) -> Figure:
@@ -60,14 +60,14 @@ def local_index_figure(table: pd.DataFrame) -> Figure:
 
 def _draw_indices(axes: Axes, rows: pd.DataFrame, number: int, events: int, colour: Any) -> None:
     """Draw the bars of one event, the `number`-th of `events`; hollow if noise could cause them."""
-    width = BARS / events
+    width = BARS_SHARE / events
     positions = _bar_positions(len(rows), events, number)
     for place, (_, row) in zip(positions, rows.iterrows()):
         doubtful = row["distinct"] is not None and not row["distinct"]
         fill = "white" if doubtful else colour
         axes.bar(place, row["s"], width, color=fill, edgecolor=colour, linewidth=1.2)
         if np.isfinite(row["standard_error"]):
-            half = CONFIDENT * row["standard_error"]
+            half = STANDARD_ERRORS_95 * row["standard_error"]
             axes.errorbar(place, row["s"], half, color=INK, linewidth=1, capsize=2)
 
 
@@ -158,7 +158,7 @@ def sobol_figure(table: pd.DataFrame) -> Figure:
 def _draw_shares(axes: Axes, rows: pd.DataFrame, parameters: Sequence[str]) -> None:
     for number, (kind, colour) in enumerate(zip(("first", "total"), COLOURS)):
         positions = _bar_positions(len(parameters), 2, number)
-        axes.bar(positions, rows[kind], BARS / 2, color=colour)
+        axes.bar(positions, rows[kind], BARS_SHARE / 2, color=colour)
         interval = rows[f"{kind}_interval"]
         axes.errorbar(
             positions, rows[kind], interval, fmt="none", ecolor=INK, linewidth=1, capsize=2
@@ -245,8 +245,8 @@ def _select(
 
 def _bar_positions(groups: int, bars: int, number: int) -> Floats:
     """Return where the bars of one kind stand, in groups around 0, 1, 2, ..."""
-    return np.asarray(np.arange(groups) + BARS * ((number + 0.5) / bars - 0.5), dtype=float)
+    return np.asarray(np.arange(groups) + BARS_SHARE * ((number + 0.5) / bars - 0.5), dtype=float)
 
 
 def _shades(count: int) -> list[Any]:
-    return list(colormaps["viridis"](np.linspace(FIRST, LAST, count)))
+    return list(colormaps["viridis"](np.linspace(FIRST_SHADE, LAST_SHADE, count)))

@@ -9,7 +9,7 @@ import numpy as np
 
 from snowshed._core import InputError
 from snowshed.analysis.sensitivity.noise import noise_of
-from snowshed.analysis.sensitivity.parameter_ranges import GROUPS
+from snowshed.analysis.sensitivity.parameter_values import GROUPS
 from snowshed.analysis.sensitivity.stored import TARGETS, StudyRuns
 from snowshed.base.arrays import Floats
 
@@ -30,7 +30,7 @@ def rescaled(values: Floats) -> Floats:
 
 
 def groups_of(stored: StudyRuns) -> dict[str, list[str]]:
-    """Return the groups of parameters that a study varies; "other" are those not in the thesis."""
+    """Return the groups of varied parameters; "other" holds the parameters not in the thesis."""
     groups = {
         name: [path for path in paths if path in stored.parameters]
         for name, paths in GROUPS.items()
@@ -112,7 +112,7 @@ def _group(
 
 
 def _with_others_kept(stored: StudyRuns, group: Sequence[str]) -> pd.DataFrame:
-    """Return the rows at the values of all other parameters at which there are most points."""
+    """Return the rows at those values of all other parameters that have the most points."""
     others = [path for path in stored.parameters if path not in group]
     if not others:
         return stored.rows

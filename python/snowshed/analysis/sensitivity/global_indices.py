@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 RESAMPLES = 500  # of the bootstrap
 CONFIDENCE = 0.95
-RANDOM = 1
+RESAMPLING_SEED = 1
 MIN_BLOCKS = 2  # blocks
 SAME_STEP = 1e-3  # relative difference of equal steps: files hold rounded numbers
 
@@ -58,7 +58,7 @@ def sobol_indices(stored: StudyRuns) -> pd.DataFrame:
             calc_second_order=False,
             num_resamples=RESAMPLES,
             conf_level=CONFIDENCE,
-            seed=RANDOM,
+            seed=RESAMPLING_SEED,
         )
         return {
             "first": indices["S1"],
@@ -74,8 +74,8 @@ def morris_effects(stored: StudyRuns) -> pd.DataFrame:
     """Return elementary effects after Morris per parameter and event.
 
     An effect is the change of the stack, relative to its mean over the sample, per sampled range of
-    the parameter, or of its logarithm if that has even steps. A seed has no range. Its steps are
-    given the mean size of the others, so that its strength is the part of noise in theirs.
+    the parameter, or of its logarithm if that has even steps. A seed has no range. Its steps count
+    as the mean step of the parameters, so that its strength is the noise in their strengths.
 
     Returns
     -------
@@ -94,7 +94,7 @@ def morris_effects(stored: StudyRuns) -> pd.DataFrame:
     analyzer = require("SALib.analyze.morris", EXTRA, "elementary effects")
     design = _Design.of(stored, 1, _is_trajectory, "trajectories after Morris")
     unit, steps = _even_steps(design.names, design.points)
-    scale = LEVELS / (2 * (LEVELS - 1)) / steps  # SALib takes steps to be those of its levels
+    scale = LEVELS / (2 * (LEVELS - 1)) / steps  # SALib assumes the steps of its own levels
 
     def analyze(chosen: Booleans, values: Floats) -> dict[str, Floats]:
         effects = analyzer.analyze(
@@ -104,7 +104,7 @@ def morris_effects(stored: StudyRuns) -> pd.DataFrame:
             num_levels=LEVELS,
             num_resamples=RESAMPLES,
             conf_level=CONFIDENCE,
-            seed=RANDOM,
+            seed=RESAMPLING_SEED,
         )
         return {
             "effect": effects["mu"] * scale,
@@ -147,8 +147,7 @@ class _Design:
         more
             Number of points of a block beyond the number of inputs.
         is_block
-            Function that tells from the changes between neighbouring points whether they are a
-            block.
+            Function that returns whether points are a block, from the changes between neighbours.
         unit
             Name of the design, for messages.
         """

@@ -46,7 +46,7 @@ def seeding_noise(stored: StudyRuns) -> pd.DataFrame:
             means = points[target].transform("mean")
             freedom = len(rows) - points.ngroups
             residuals = rows[target] - means
-            there = means > 0  # where all snow stays on the panel nothing is relative to it
+            there = means > 0  # without a stack there is no relative noise
             relative = (residuals / means)[there].to_numpy()
             groups = int((points[target].mean() > 0).sum())
             scatter.append(

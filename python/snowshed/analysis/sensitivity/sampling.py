@@ -12,14 +12,14 @@ from typing import Any
 import numpy as np
 
 from snowshed._core import InputError
-from snowshed.analysis.sensitivity.parameter_ranges import HARDENING, VALUES
+from snowshed.analysis.sensitivity.parameter_values import HARDENING, VALUES
 from snowshed.base.arrays import Floats
 from snowshed.base.extras import require
 from snowshed.study.factors import SEED, Span
 
 EXTRA = "sensitivity"
 LEVELS = 4  # of Morris's grid
-RANDOM = 1  # seed of the samples, so that they are reproducible
+SAMPLE_SEED = 1  # seed of the samples, so that they are reproducible
 #: Ranges of Table 3.2.1; the hardening factor spans a decade, and so is sampled by its logarithm.
 SPANS: Mapping[str, Span] = {
     path: Span(min(values), max(values), "log" if path == HARDENING else "linear")
@@ -57,7 +57,7 @@ def sobol_points(count: int) -> Columns:
         raise InputError(f"samples: {count} is not a power of two, which Sobol's sequence needs")
     sampler = require("SALib.sample.sobol", EXTRA, "sampling for Sobol indices")
     names = [*SPANS, SEED]
-    cube = sampler.sample(problem(names), count, calc_second_order=False, seed=RANDOM)
+    cube = sampler.sample(problem(names), count, calc_second_order=False, seed=SAMPLE_SEED)
     return _columns(cube, len(names) + 2)
 
 
@@ -80,7 +80,7 @@ def morris_points(count: int) -> Columns:
     """
     sampler = require("SALib.sample.morris", EXTRA, "sampling for elementary effects")
     names = [*SPANS, SEED]
-    cube = sampler.sample(problem(names), count, num_levels=LEVELS, seed=RANDOM)
+    cube = sampler.sample(problem(names), count, num_levels=LEVELS, seed=SAMPLE_SEED)
     return _columns(cube, len(names) + 1)
 
 
@@ -101,7 +101,7 @@ def _columns(cube: Floats, block: int) -> Columns:
 
 
 def _seeds(fractions: Floats, block: int) -> list[float]:
-    """Return two seeds for each block; it starts with the first.
+    """Return the seed of each point: one of two seeds of its block, which starts with the first.
 
     No two blocks have a seed in common, so that no point of the design occurs twice.
     """

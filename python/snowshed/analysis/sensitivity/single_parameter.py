@@ -9,13 +9,13 @@ import numpy as np
 
 from snowshed._core import InputError
 from snowshed.analysis.sensitivity.noise import noise_of
-from snowshed.analysis.sensitivity.parameter_ranges import PAIRS
+from snowshed.analysis.sensitivity.parameter_values import PAIRS
 from snowshed.analysis.sensitivity.stored import TARGETS, StudyRuns
 
 if TYPE_CHECKING:
     import pandas as pd
 
-CONFIDENT = 1.96  # standard errors on either side: 95 %
+STANDARD_ERRORS_95 = 1.96  # standard errors on either side: 95 %
 
 
 def local_index(stored: StudyRuns) -> pd.DataFrame:
@@ -112,5 +112,5 @@ def _index(
         "pairs": len(pairs),
         "s": score,
         "standard_error": error,
-        "distinct": abs(score) > CONFIDENT * error if np.isfinite(error) else None,
+        "distinct": abs(score) > STANDARD_ERRORS_95 * error if np.isfinite(error) else None,
     }

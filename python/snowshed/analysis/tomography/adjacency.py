@@ -68,7 +68,7 @@ class Adjacency:
         Parameters
         ----------
         new : (n + 1,)
-            The label from 1 that each gets; 0 stays 0.
+            The new label of each label, from 1; 0 stays 0.
         """
         air = np.asarray(np.bincount(new, self.air), dtype=np.float64)
         touching = _PairValues(len(air))
@@ -82,7 +82,7 @@ class Adjacency:
 
 
 def find_adjacency(labels: Labels, distance: Optional[SingleFloats] = None) -> Adjacency:
-    """Return which labels touch.
+    """Return the adjacency of labels.
 
     Labels touch where their voxels have a common face.
 
@@ -141,7 +141,7 @@ class _PairValues:
         self.values.append(values)
 
     def adjacency(self, air: Floats) -> Adjacency:
-        """Return the sums."""
+        """Return the adjacency of all added pairs."""
         keys, values = _reduced(np.concatenate(self.keys), np.concatenate(self.values))
         pairs = np.stack(np.divmod(keys, self.count), axis=1)
         return Adjacency(air, pairs, values[:, :3], values[:, 3].astype(np.int64), values[:, 4])

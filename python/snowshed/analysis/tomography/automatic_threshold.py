@@ -13,10 +13,11 @@ from snowshed._core import InputError
 from snowshed.base.extras import require
 from snowshed.base.formatting import number
 
-BINS = 1024  # of a histogram of anything but small whole numbers
+BINS = 1024  # of a histogram, except for small whole numbers
 MAX_VALUES = 1 << 16  # whole numbers with a bin each
-#: Labels of grains have at least so many numbers above 0, of which none has most of the ice, and
-#: this part of the neighbours in the ice have the same number. Of grey values, few have.
+#: Labels of grains have at least so many different numbers above 0, no number has more than this
+#: share of the ice, and at least this share of neighbouring ice voxels have equal numbers. Grey
+#: values of neighbours are rarely equal.
 MIN_LABELS, MAX_SHARE_OF_LABEL, SAME_NEIGHBOURS = 8, 0.5, 0.75
 
 Parts = Callable[[], Iterable[NDArray[Any]]]
@@ -61,9 +62,9 @@ def automatic_threshold(name: str, parts: Parts) -> tuple[float, str]:
         return 0.5 * lowest + 0.5 * highest, "two values"
     if neighbours.are_same and histogram.has_many_values:
         raise InputError(
-            f"{name}: labels of grains, not grey values: neighbouring voxels have the same of many "
-            "numbers; `snowshed grains compress` takes labels as they are, and --threshold 0.5 "
-            "takes all numbers above 0 for ice"
+            f"{name}: labels of grains, not grey values: there are many numbers, and neighbouring "
+            "voxels share them; `snowshed grains compress` takes labels as they are, and "
+            "--threshold 0.5 takes all numbers above 0 for ice"
         )
     return histogram.otsu(), "Otsu"
 
@@ -133,5 +134,5 @@ class _Neighbours:
 
     @property
     def are_same(self) -> bool:
-        """Whether most have the same number."""
+        """Whether most of the neighbours have the same value."""
         return self.same > SAME_NEIGHBOURS * max(self.pairs, 1)

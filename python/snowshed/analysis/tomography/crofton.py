@@ -1,4 +1,4 @@
-"""Surface of what voxels show, from its crossings by lines in 13 directions (Crofton's formula).
+"""Area of a surface on voxels, from its crossings by lines in 13 directions (Crofton's formula).
 
 A surface of area S is crossed by lines of random direction S/2 times per area across the lines. On
 voxels there are 13 directions to the 26 neighbours. Each has the weight of the part of the sphere
@@ -6,7 +6,7 @@ that is nearest to it (Ohser and Mücklich 2000, Statistical Analysis of Microst
 Materials Science).
 
 Surfaces of all directions come out right within a percent. A plane along two axes comes out 7 %
-too small, because no direction but one crosses it at a right angle.
+too small, because only one direction crosses it at a right angle.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ from snowshed.base.arrays import Booleans
 DIRECTIONS = tuple(
     (z, y, x) for z in (-1, 0, 1) for y in (-1, 0, 1) for x in (-1, 0, 1) if (z, y, x) > (0, 0, 0)
 )
-#: Part of all directions that is nearest to one along an edge, a face's diagonal, the cube's.
+#: Share of all directions that are nearest to an edge, a face diagonal, or a space diagonal.
 _NEAREST = (0.0915557824, 0.0739612558, 0.0703912796)
-SLAB = 32  # layers at a time, so that temporary arrays stay small
+LAYERS_AT_ONCE = 32  # layers at a time, so that temporary arrays stay small
 
 
 def weight(direction: tuple[int, int, int]) -> float:
@@ -49,8 +49,8 @@ def neighbours(
     here_y, there_y = _overlap(step_y, ny)
     here_x, there_x = _overlap(step_x, nx)
     last = len(voxels) - step_z
-    for low in range(0, last, SLAB):
-        high = min(low + SLAB, last)
+    for low in range(0, last, LAYERS_AT_ONCE):
+        high = min(low + LAYERS_AT_ONCE, last)
         yield (
             voxels[low:high, here_y, here_x],
             voxels[low + step_z : high + step_z, there_y, there_x],
@@ -72,7 +72,7 @@ def surface_area(phase: Booleans, voxel_size: float = 1.0) -> float:
     Parameters
     ----------
     phase : (nz, ny, nx)
-        One of the two.
+        Mask of one of the two phases.
     voxel_size
         Edge of a voxel, m.
 

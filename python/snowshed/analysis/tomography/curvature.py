@@ -2,8 +2,8 @@
 
 The image is smoothed; the surface is a level of the smooth image. Where the smaller principal
 curvature is negative the surface is concave in a direction, as around a neck. The rest of the
-surface falls apart into convex zones, a layer of voxels thick, whose voxels have common faces. Each
-labels the ice that is nearest to it.
+surface falls apart into convex zones, a layer of voxels thick, whose voxels have common faces. The
+ice is labelled by the nearest zone.
 
 The segmentation by curvature and contiguity is published (Hagenmuller, Chambon and Naaim 2015). The
 steps that find and extend the zones are inferred.
@@ -22,7 +22,7 @@ from snowshed.analysis.tomography.watershed import (
 )
 from snowshed.base.arrays import Booleans, Floats, Integers, SingleFloats
 
-CHUNK = 1 << 20  # voxels of the surface at a time
+VOXELS_AT_ONCE = 1 << 20  # voxels of the surface at a time
 
 
 def curvature_basins(
@@ -95,8 +95,8 @@ def principal_curvatures(
     count = len(at[0])
     smaller = np.empty(count, dtype=np.float32)
     larger = np.empty(count, dtype=np.float32)
-    for low in range(0, count, CHUNK):
-        part = slice(low, min(low + CHUNK, count))
+    for low in range(0, count, VOXELS_AT_ONCE):
+        part = slice(low, min(low + VOXELS_AT_ONCE, count))
         smaller[part], larger[part] = _curvatures(smooth, [axis[part] for axis in at])
     return smaller, larger
 

@@ -40,7 +40,7 @@ def downscaled(image: IceImage, factor: int) -> IceImage:
         return image
     counts = _block_counts(image, factor)
     target = round(int(counts.sum(dtype=np.int64)) / factor**3)
-    # Counts differ by at least one, means over neighbours within a block's count by less.
+    # Unequal counts differ by at least one, the second term by less: it only decides ties.
     around: SingleFloats = ndimage.uniform_filter(counts.astype(np.float32), 3, mode="nearest")
     rank = counts.astype(np.float32) + around / np.float32(2 * factor**3)
     order = np.argsort(-rank, axis=None, kind="stable")

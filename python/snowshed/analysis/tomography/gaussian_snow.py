@@ -1,10 +1,10 @@
 """Synthetic snow: a Gaussian random field, cut at a level.
 
 The field is a sum of plane waves of random phase whose wave numbers lie in a shell around 2π/L.
-Where it is above the cut there is ice (Berk 1987, doi:10.1103/PhysRevLett.58.2718). Of a field of
-unit variance whose derivative along a direction has the variance m, the level u has the surface
-2/π √m exp(-u²/2) per volume (Adler and Taylor 2007, Random Fields and Geometry, chapter 12), which
-is where the search for L begins.
+Where it is above the cut there is ice (Berk 1987, doi:10.1103/PhysRevLett.58.2718). If a field of
+unit variance has a derivative of variance m along a direction, the surface of its level u per
+volume is 2/π √m exp(-u²/2) (Adler and Taylor 2007, Random Fields and Geometry, chapter 12). The
+search for L begins there.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ def gaussian_snow(
         Fineness of the ice; give one of the two: the mean wavelength of the field in m, or the
         surface of the ice per mass in m2/kg, from which the wavelength is found.
     anisotropy
-        Wavelength along z over that along x and y, whose geometric mean stays.
+        Wavelength along z over the wavelength along x and y; the geometric mean of all stays.
     connected
         Whether to keep only the largest connected part of the ice. The ice fraction is that of this
         part.
@@ -130,8 +130,8 @@ def _search(
     noise: _Noise, fraction: float, surface: float, voxel_size: float, connected: bool
 ) -> tuple[Booleans, float]:
     """Return ice of a specific surface, and the wavelength of its field in voxels."""
-    # Mean square of the shell's wave numbers, whose number grows as k^2, relative to that of 2
-    # pi/L.
+    # Mean square of the wave numbers in the shell (their density grows as k^2), relative to
+    # (2 pi/L)^2.
     spread = (1 + 6 * SHELL_WIDTH**2 + 3 * SHELL_WIDTH**4) / (1 + SHELL_WIDTH**2)
     per_length = 2 / np.pi * np.sqrt(spread / 3) * np.exp(-0.5 * ndtri(fraction) ** 2)
     target = surface * ICE_DENSITY * fraction * voxel_size  # per volume, in voxels

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
-from snowshed.analysis.tomography.crofton import SLAB
+from snowshed.analysis.tomography.crofton import LAYERS_AT_ONCE
 from snowshed.analysis.tomography.segmentation import Segmentation
 from snowshed.base.arrays import Booleans, Floats, Integers, Labels
 
@@ -118,9 +118,9 @@ def _centres(labels: Labels) -> tuple[Integers, Floats]:
     count = int(labels.max(initial=0)) + 1
     voxels = np.zeros(count, dtype=np.int64)
     sums = np.zeros((count, 3))
-    for low in range(0, len(labels), SLAB):
-        z, y, x = np.nonzero(labels[low : low + SLAB])
-        inside = labels[low : low + SLAB][z, y, x]
+    for low in range(0, len(labels), LAYERS_AT_ONCE):
+        z, y, x = np.nonzero(labels[low : low + LAYERS_AT_ONCE])
+        inside = labels[low : low + LAYERS_AT_ONCE][z, y, x]
         voxels += np.bincount(inside, minlength=count)
         for axis, place in enumerate((x, y, z + low)):
             sums[:, axis] += np.bincount(inside, place + 0.5, minlength=count)

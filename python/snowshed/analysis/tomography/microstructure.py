@@ -8,7 +8,7 @@ import numpy as np
 
 import snowshed._core as _core
 from snowshed._core import InputError
-from snowshed.analysis.tomography.crofton import SLAB, surface_density
+from snowshed.analysis.tomography.crofton import LAYERS_AT_ONCE, surface_density
 from snowshed.analysis.tomography.ice_image import ICE_DENSITY, IceImage, check_phases
 from snowshed.base.arrays import Booleans, Floats
 
@@ -104,8 +104,10 @@ def two_point_correlation(ice: Booleans, axis: int, distance: int) -> float:
     rows = np.moveaxis(ice, axis, 0)
     first, second = rows[: len(rows) - distance], rows[distance:]
     both = sum(
-        int(np.count_nonzero(first[low : low + SLAB] & second[low : low + SLAB]))
-        for low in range(0, len(first), SLAB)
+        int(
+            np.count_nonzero(first[low : low + LAYERS_AT_ONCE] & second[low : low + LAYERS_AT_ONCE])
+        )
+        for low in range(0, len(first), LAYERS_AT_ONCE)
     )
     return both / first.size
 

@@ -11,7 +11,7 @@ from snowshed.base.arrays import Floats, Integers
 
 
 def merge_shallow(touching: Adjacency, peaks: Floats, depth: float) -> Integers:
-    """Return new labels without grains at maxima of the distance less deep than `depth`.
+    """Return new labels, in which shallow maxima of the distance are no grains of their own.
 
     The depth of a maximum is its height above the saddle towards a higher one, its dynamics. The
     merged basins are those of the maxima of the h-maxima transform (Soille 2004, Morphological
@@ -24,12 +24,12 @@ def merge_shallow(touching: Adjacency, peaks: Floats, depth: float) -> Integers:
     peaks : (n + 1,)
         Largest distance from the air in each basin.
     depth
-        In the unit of the distance.
+        Depth up to which a maximum is shallow, in the unit of the distance.
 
     Returns
     -------
     (n + 1,)
-        The label from 1 that each gets.
+        The new label of each label, from 1.
     """
     root = np.arange(len(peaks))
     height = peaks.copy()
@@ -65,7 +65,7 @@ def merge_contiguous(
     Returns
     -------
     (n + 1,)
-        The label from 1 that each gets.
+        The new label of each label, from 1.
     """
     graph = _Graph(touching, voxels)
     graph.merge_above(contiguity)

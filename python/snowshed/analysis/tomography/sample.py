@@ -57,7 +57,7 @@ class SampleNumbers:
     ice
         Numbers of the ice.
     grains
-        Numbers of the grains; None: they are not told apart.
+        Numbers of the grains; None if grains are not separated.
     """
 
     ice: Microstructure

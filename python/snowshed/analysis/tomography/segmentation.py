@@ -29,8 +29,8 @@ class SegmentationSettings:
         Method that cuts the ice: the watershed of the distance from the air, or the concave
         surface.
     depth
-        Height of a maximum of the distance above the neck towards a higher one, from which it is a
-        grain, voxels (watershed).
+        Smallest height of a grain's maximum of the distance above the neck towards a higher
+        maximum, voxels (watershed).
     smoothing
         Standard deviation of the Gaussian that smooths the surface, voxels (curvature).
     neck_curvature
@@ -42,7 +42,7 @@ class SegmentationSettings:
     smallest
         A grain of fewer voxels joins the neighbour with the largest contact.
     threads
-        For distances. The result does not depend on it.
+        Number of threads for distances. The result does not depend on it.
 
     Raises
     ------
@@ -160,7 +160,7 @@ def known_grains(image: IceImage) -> Segmentation:
     Raises
     ------
     InputError
-        If it does not.
+        If the image does not know its grains.
     """
     if image.labels is None:
         raise InputError(f"{image.source}: its grains are not known; they must be found")

@@ -17,7 +17,7 @@ from snowshed.analysis.tomography.threshold import (
     read_ice,
 )
 from snowshed.base.formatting import duration, number
-from snowshed.base.notes import recorded
+from snowshed.base.notes import record_notes
 from snowshed.base.paths import PathLike
 from snowshed.base.progress import Progress, Reporter
 from snowshed.io.voxels.voxel_file import VoxelFile
@@ -26,7 +26,7 @@ from snowshed.io.voxels.voxel_file import VoxelFile
 BYTES_READ, BYTES_SEGMENTED = 2, 45
 #: Time on one core of a desktop computer, s per voxel.
 SECONDS_PER_VOXEL = 1e-6
-READ, FOUND = 0.1, 0.85  # parts of the work
+READ_SHARE, FOUND_SHARE = 0.1, 0.85  # finished shares of the work after these steps
 
 
 def segmentation_plan(file: VoxelFile, settings: ImageSettings) -> tuple[int, float]:
@@ -89,13 +89,15 @@ def segment_image(
             progress(Progress(part, int(part), 1, "images", doing, expected_s=seconds))
 
     report(0.0, "reading")
-    with recorded() as notes:
+    with record_notes() as notes:
         read = read_ice(file, wanted)
     measure_microstructure(read.image)  # what cannot be snow is refused before the long part
     segmentation = segment(
-        read.image, settings, lambda part, doing: report(READ + (FOUND - READ) * part, doing)
+        read.image,
+        settings,
+        lambda part, doing: report(READ_SHARE + (FOUND_SHARE - READ_SHARE) * part, doing),
     )
-    report(FOUND, "writing")
+    report(FOUND_SHARE, "writing")
     facts: dict[str, Fact] = {
         "threshold": read.threshold,
         "threshold_from": read.chosen,

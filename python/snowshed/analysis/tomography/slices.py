@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 AIR = (1.0, 1.0, 1.0)
 LINE = (0.13, 0.19, 0.24)  # between grains
-HUES, TURN = 64, 0.381966  # of a circle: neighbours by number differ much
+HUES, TURN = 64, 0.381966  # number of hues; step in turns, so that successive hues differ much
 MAX_PIXELS = 1000  # along an edge of a slice
 
 

@@ -1,7 +1,7 @@
 """Synthetic snow: spheres that touch, joined by sintered necks.
 
-Spheres are added one after another at random. Each overlaps one that is there already, so that
-the two meet in a disc of the neck's radius; nearer to any other it never comes. So the ice is
+Spheres are added one after another at random. Each overlaps an earlier sphere, so that both meet
+in a disc of the neck's radius, and comes no nearer to any other one. The ice is therefore
 connected, and its grains are known.
 """
 
@@ -101,7 +101,7 @@ class _Pack:
         self.shape = np.array(shape)
         self.neck_ratio = neck_ratio
         self.labels: Labels = np.zeros(shape, dtype=np.int32)
-        #: Power of the voxels to the sphere that they belong to: negative inside.
+        #: Squared distance of each voxel from its sphere's centre, less the squared radius.
         self.power: SingleFloats = np.zeros(shape, dtype=np.float32)
         self.centres: Floats = np.empty((64, 3))
         self.radii: Floats = np.empty(64)
@@ -129,7 +129,7 @@ class _Pack:
         return True
 
     def _distance(self, radius: float, others: Floats) -> Floats:
-        """Return how far apart the centres of spheres are that meet in a disc of the neck."""
+        """Return the distance of the centres of spheres that meet in a disc of the neck."""
         neck = self.neck_ratio * np.minimum(radius, others)
         return np.asarray(np.sqrt(radius**2 - neck**2) + np.sqrt(others**2 - neck**2))
 

@@ -10,7 +10,7 @@ from snowshed.base.arrays import AnyIntegers, Floats, Labels, SingleFloats
 from snowshed.base.extras import require
 from snowshed.io.vtk.vtp import write_triangles
 
-SLAB = 64  # layers whose surface is found at a time
+LAYERS_AT_ONCE = 64  # layers whose surface is found at a time
 
 
 def write_surface(path: Path, labels: Labels, voxel_size: float) -> int:
@@ -33,8 +33,8 @@ def write_surface(path: Path, labels: Labels, voxel_size: float) -> int:
     triangles: list[AnyIntegers] = []
     grains: list[Labels] = []
     offset = 0
-    for low in range(0, len(labels) - 1, SLAB):
-        part = labels[low : low + SLAB + 1]
+    for low in range(0, len(labels) - 1, LAYERS_AT_ONCE):
+        part = labels[low : low + LAYERS_AT_ONCE + 1]
         ice = part > 0
         if not ice.any() or ice.all():
             continue

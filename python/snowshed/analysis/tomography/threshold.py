@@ -18,8 +18,8 @@ from snowshed.base.arrays import finite, positive
 from snowshed.base.notes import issue_note
 from snowshed.io.voxels.voxel_file import VoxelFile
 
-#: Difference of the voxel sizes of file and options that is told.
-OTHER_SIZE = 0.01
+#: Relative difference of the voxel sizes of file and options that a note reports.
+MAX_SIZE_DEVIATION = 0.01
 Crop = tuple[tuple[int, int], tuple[int, int], tuple[int, int]]
 
 
@@ -68,7 +68,7 @@ class ReadImage:
     chosen
         Who chose the threshold: "given", "two values" or "Otsu".
     lost
-        Part of the ice that was not connected to the largest part, and was left out.
+        Share of the ice that was left out, because it is not connected to the largest part.
     """
 
     image: IceImage
@@ -119,7 +119,7 @@ def read_ice(file: VoxelFile, settings: Optional[ImageSettings] = None) -> ReadI
         ice[low : low + len(part)] = ~above if wanted.dark_ice else above
     source = wanted.synthetic_source
     image = IceImage(ice, size, source or file.name, synthetic=bool(source))
-    check_phases(image)  # before it is rounded away
+    check_phases(image)  # before downscaling, which may round a phase away
     image = downscaled(image, wanted.downscale)
     check_phases(image)
     lost = 0.0
@@ -131,7 +131,7 @@ def read_ice(file: VoxelFile, settings: Optional[ImageSettings] = None) -> ReadI
 
 
 def _voxel_size(file: VoxelFile, given: Optional[float]) -> float:
-    """Return the edge of a voxel, m; tell where the file contradicts it."""
+    """Return the edge of a voxel, m; a note reports another size in the file."""
     if given is None:
         if file.voxel_size is None:
             hint = ""
@@ -143,7 +143,7 @@ def _voxel_size(file: VoxelFile, given: Optional[float]) -> float:
         return positive("voxel size", file.voxel_size)
     size = positive("voxel size", given)
     for stated, source in ((file.voxel_size, "the file"), (file.printed_size, "its resolution")):
-        if stated is not None and abs(stated - size) > OTHER_SIZE * size:
+        if stated is not None and abs(stated - size) > MAX_SIZE_DEVIATION * size:
             issue_note(f"{file.name}: voxels of {size:g} m, as given; {source} says {stated:.4g} m")
     return size
 
@@ -154,7 +154,7 @@ def cropped_shape(file: VoxelFile, crop: Optional[Crop]) -> tuple[int, int, int]
     Raises
     ------
     InputError
-        If it is not within the image.
+        If the crop is not within the image.
     """
     nz, ny, nx = (high - low for low, high in _checked_crop(file, crop))
     return nz, ny, nx

@@ -11,7 +11,7 @@ from snowshed.base.arrays import Booleans, Floats, Integers, Labels, SingleFloat
 from snowshed.base.extras import require
 
 EXTRA = "images"
-#: Distances are rounded to this part of a voxel, so that flat tops are one maximum.
+#: Distances are rounded to so many steps per voxel, so that flat tops are one maximum.
 STEPS_PER_VOXEL = 8
 NEIGHBOURS = np.ones((3, 3, 3), dtype=bool)
 
@@ -27,7 +27,7 @@ class Basins:
     distance : (nz, ny, nx)
         Distance from the air, in voxels.
     peaks : (n + 1,)
-        Largest distance in each.
+        Largest distance in each piece.
     """
 
     labels: Labels
@@ -36,9 +36,9 @@ class Basins:
 
 
 def distance_from(there: Booleans, threads: int) -> SingleFloats:
-    """Return the distance of each voxel to the nearest where `there` is false, in voxels.
+    """Return the distance of each voxel to the nearest one that is not `there`, in voxels.
 
-    The sides of the image count as nothing.
+    The sides of the image do not count.
     """
     edt = require("edt", EXTRA, "finding grains")
     return np.asarray(edt.edt(there, parallel=threads, black_border=False), dtype=np.float32)
@@ -64,7 +64,7 @@ def distance_basins(ice: Booleans, threads: int) -> Basins:
 
 
 def flooded(height: SingleFloats, seeds: Labels, ice: Booleans) -> Labels:
-    """Return the ice with each voxel in the label of that seed whose flood reaches it first.
+    """Return labels of the ice: a voxel gets the label of the seed whose flood comes first.
 
     Floods begin where `height` is largest, and stay in the ice.
     """

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
-class Ready:
+class ProcessReady:
     """The process has started and can compute."""
 
 
@@ -18,21 +18,21 @@ class Fraction:
 
 
 @dataclass(frozen=True)
-class Done:
+class TaskResult:
     """The task's result."""
 
     result: object
 
 
 @dataclass(frozen=True)
-class Raised:
+class TaskError:
     """The exception that the task raised."""
 
     error: Exception
 
 
 @dataclass(frozen=True)
-class Died:
-    """The fork that computed the task has ended with a code, negative for a signal's number."""
+class ForkDeath:
+    """The fork that computed the task has died; `code` is negative for a signal."""
 
     code: int

@@ -19,7 +19,7 @@ from dataclasses import dataclass, field
 from multiprocessing.connection import Connection, wait
 from typing import Generic, Optional, TypeVar, cast
 
-from snowshed.base.pool.messages import Died, Done, Fraction, Raised, Ready
+from snowshed.base.pool.messages import ForkDeath, Fraction, ProcessReady, TaskError, TaskResult
 
 STOP_S = 60.0  # time for a process to write its checkpoint, s
 END_S = 5.0  # time for a process to end after its socket is closed, s
@@ -151,7 +151,7 @@ class Pool(Generic[Task, Result]):
                 self._processes.append(idle)
             if idle.start(task):
                 return
-            self._discard(idle)  # it died while it was idle
+            self._discard(idle)  # the process died while it was idle
 
     def collect(self, timeout: float) -> list[TaskEnd[Task, Result]]:
         """Wait until a task ends, at most `timeout` s; return the ended tasks."""
@@ -180,7 +180,7 @@ class Pool(Generic[Task, Result]):
             self._discard(self._processes[-1])
 
     def _receive(self, timeout: float) -> list[TaskEnd[Task, Result]]:
-        """Take a message of each process that has one within `timeout`; end those that hang."""
+        """Receive messages that arrive within `timeout` s; end processes that hang."""
         busy = self._busy()
         left = min((process.left_s for process in busy), default=timeout)
         readable = wait([process.connection for process in busy], min(timeout, max(0.0, left)))
@@ -261,14 +261,14 @@ class _Process(Generic[Task, Result]):
             return self._death(self.task)
         if isinstance(message, Fraction):
             self.done = message.done
-        if isinstance(message, Ready):
+        if isinstance(message, ProcessReady):
             self._ready, self._began = True, time.monotonic()
-        if not isinstance(message, (Done, Raised, Died)):
+        if not isinstance(message, (TaskResult, TaskError, ForkDeath)):
             return None
         task, self.task = self.task, None
-        if isinstance(message, Died):
+        if isinstance(message, ForkDeath):
             return TaskEnd(task, death=_ending(message.code), last_words=self._last_error_line())
-        if isinstance(message, Raised):
+        if isinstance(message, TaskError):
             return TaskEnd(task, error=message.error)
         return TaskEnd(task, cast(Result, message.result))
 
@@ -284,7 +284,7 @@ class _Process(Generic[Task, Result]):
         return TaskEnd(task, death=f"took more than {self._limit_s:g} s", hung=True)
 
     def end(self) -> None:
-        """End the process, which its closed socket has told to end."""
+        """Close the socket, which tells the process to end, and wait until it has ended."""
         self._wait()
         self._errors.close()
 
@@ -311,7 +311,7 @@ class _Process(Generic[Task, Result]):
             os.killpg(self._process.pid, number)
 
     def _last_error_line(self) -> str:
-        """Return the last line that the process wrote to stderr since it was asked before."""
+        """Return the last line on stderr since the previous call; empty if there is none."""
         size = self._errors.seek(0, os.SEEK_END)
         self._errors.seek(max(0, size - STDERR_TAIL_BYTES))
         lines = self._errors.read().decode(errors="replace").strip().splitlines()

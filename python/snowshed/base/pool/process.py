@@ -17,13 +17,13 @@ from collections.abc import Callable
 from contextlib import suppress
 from multiprocessing.connection import Connection
 
-from snowshed.base.pool.messages import Died, Done, Fraction, Raised, Ready
+from snowshed.base.pool.messages import ForkDeath, Fraction, ProcessReady, TaskError, TaskResult
 
 Compute = Callable[[object, Callable[[float], None]], object]
 
 
 def main(handle: int, forked: bool) -> None:
-    """Compute the tasks that arrive on a socket, one after another, each in a fork if so asked."""
+    """Compute the tasks that arrive on a socket, one after another, each in a fork if `forked`."""
     connection = Connection(handle)
     with suppress(EOFError, OSError):  # the parent has closed the socket
         compute: Compute = connection.recv()
@@ -34,47 +34,47 @@ def _serve(compute: Compute, connection: Connection) -> None:
     tasks: queue.SimpleQueue[object] = queue.SimpleQueue()
     # The main thread must compute: only there a signal can ask a task to stop.
     threading.Thread(target=_listen, args=(connection, tasks), daemon=True).start()
-    connection.send(Ready())
+    connection.send(ProcessReady())
     while True:
-        connection.send(_computed(compute, tasks.get(), connection))
+        connection.send(_compute_message(compute, tasks.get(), connection))
 
 
 def _serve_in_forks(compute: Compute, connection: Connection) -> None:
     # A signal is meant for the fork that computes; without one there is nothing to stop.
     signal.signal(signal.SIGTERM, signal.SIG_IGN)
-    connection.send(Ready())
+    connection.send(ProcessReady())
     while True:
         try:
             task = connection.recv()
         except (EOFError, OSError):
             return
-        except Exception as error:  # the module that the task needs does not load
-            connection.send(Raised(_portable(error)))
+        except Exception as error:  # the module that the task needs cannot be loaded
+            connection.send(TaskError(_picklable_error(error)))
             continue
         child = os.fork()
         if child == 0:
             _compute_and_exit(compute, task, connection)
         code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
         if code != 0:
-            connection.send(Died(code))
+            connection.send(ForkDeath(code))
 
 
 def _compute_and_exit(compute: Compute, task: object, connection: Connection) -> None:
     code = 1
     try:
         signal.signal(signal.SIGTERM, signal.SIG_DFL)
-        threading.Thread(target=_end_with, args=(connection.fileno(),), daemon=True).start()
-        connection.send(_computed(compute, task, connection))
+        threading.Thread(target=_exit_on_hangup, args=(connection.fileno(),), daemon=True).start()
+        connection.send(_compute_message(compute, task, connection))
         code = 0
     finally:
         sys.stderr.flush()
         os._exit(code)
 
 
-def _end_with(handle: int) -> None:
+def _exit_on_hangup(handle: int) -> None:
     """End this process when the other end of the socket is closed."""
     poll = select.poll()
-    poll.register(handle, 0)  # a hang-up is reported without being asked for
+    poll.register(handle, 0)  # no event is requested: a hang-up is always reported
     poll.poll()
     os._exit(1)
 
@@ -84,15 +84,15 @@ def echo(task: object, report: Callable[[float], None]) -> object:
     return task
 
 
-def _computed(compute: Compute, task: object, connection: Connection) -> object:
+def _compute_message(compute: Compute, task: object, connection: Connection) -> object:
     try:
-        return Done(compute(task, lambda done: connection.send(Fraction(done))))
-    except Exception as error:  # it is the caller's to judge
-        return Raised(_portable(error))
+        return TaskResult(compute(task, lambda done: connection.send(Fraction(done))))
+    except Exception as error:  # the caller handles it
+        return TaskError(_picklable_error(error))
 
 
-def _portable(error: Exception) -> Exception:
-    """Return the error, or its text where it cannot be sent to another process."""
+def _picklable_error(error: Exception) -> Exception:
+    """Return the error, or a RuntimeError with its text if it cannot be pickled."""
     try:
         pickle.loads(pickle.dumps(error))
     except Exception:
@@ -104,7 +104,7 @@ def _listen(connection: Connection, tasks: queue.SimpleQueue[object]) -> None:
     try:
         while True:
             tasks.put(connection.recv())
-    finally:  # the other end is closed, or sends what cannot be read here
+    finally:  # the other end is closed, or its message cannot be read here
         os._exit(1)
 
 

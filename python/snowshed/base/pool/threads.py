@@ -14,7 +14,7 @@ from snowshed.base.extras import require
 def one_thread() -> Iterator[None]:
     """Limit libraries to one thread, because more threads only slow down small matrices."""
     threadpoolctl = require("threadpoolctl", "regression", "regression")
-    # Each brings threads of its own, and only those of loaded libraries can be limited.
+    # Each library has its own threads; only loaded libraries can be limited.
     require("sklearn.svm", "regression", "regression")
     with threadpoolctl.threadpool_limits(1):
         yield

@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 
     from snowshed.analysis.calibration.report import Calibration
 
-BEST_SETS = 5  # parameter sets that are printed
-POOR = 0.5  # share of the runs' variance that a surrogate should explain
+BEST_SETS = 5  # number of printed parameter sets
+MIN_EXPLAINED_VARIANCE = 0.5  # share of the runs' variance that a surrogate should explain
 OPEN_RANGES = {
     "below": "open below",
     "above": "open above",
@@ -72,7 +72,7 @@ def calibrate(
       snowshed calibrate stacks.csv --quick -o calibration
     """  # noqa: D301 - click wants the control character
     from snowshed.analysis.calibration import measurements as reading
-    from snowshed.analysis.calibration.design import calibration_study
+    from snowshed.analysis.calibration.grid_study import calibration_study
     from snowshed.analysis.calibration.misfit import RANKED
     from snowshed.analysis.calibration.report import check_libraries, evaluate_calibration
     from snowshed.io.atomic import write_text
@@ -110,7 +110,8 @@ def print_calibration(calibration: Calibration) -> None:
     console = wide_console()
     console.print(_ranking(calibration))
     console.print(_ranges(calibration))
-    diagnostics, sample_size = calibration.posterior.diagnostics, calibration.posterior.effective
+    posterior = calibration.posterior
+    diagnostics, sample_size = posterior.diagnostics, posterior.effective_samples
     largest_r_hat = diagnostics["r_hat"].max()
     console.print(f" chains: ESS {sample_size:.0f} or more, r_hat {largest_r_hat:.3f} or less")
     if any(calibration.ranges["open"]):
@@ -165,7 +166,7 @@ def warnings(calibration: Calibration) -> list[str]:
     if calibration.stacks.pending:
         notes.append(
             f"{calibration.stacks.pending} runs of the study are not computed yet: ranks and "
-            "ranges are those of the others (`snowshed study resume` computes them)"
+            "ranges omit them (`snowshed study resume` computes them)"
         )
     missing = len(calibration.stacks.sets) - len(calibration.ranked)
     if missing:
@@ -173,7 +174,7 @@ def warnings(calibration: Calibration) -> list[str]:
     if not calibration.posterior.converged:
         notes.append("the Markov chains have not converged: the ends of the ranges are uncertain")
     accuracy = calibration.posterior.surrogate.accuracy()
-    poor = accuracy[accuracy["explained"] < POOR]
+    poor = accuracy[accuracy["explained"] < MIN_EXPLAINED_VARIANCE]
     if len(poor):
         notes.append(
             f"the surrogate explains less than half of the variance of {len(poor)} of "

@@ -25,11 +25,11 @@ from snowshed.cli.winters_table import print_quality
 
 if TYPE_CHECKING:
     from snowshed.analysis.clearance.answer import ClearanceResult
-    from snowshed.analysis.clearance.design import Design, Ranges
+    from snowshed.analysis.clearance.panel_design import Design, Ranges
     from snowshed.analysis.clearance.winters import Winter
     from snowshed.season.season_record import SeasonRecord, WinterList
 
-EXAMPLE = "example"  # in place of a file: synthetic winters
+EXAMPLE = "example"  # this word instead of a file: synthetic winters
 
 
 @click.command()
@@ -94,7 +94,7 @@ def clearance(
       snowshed clearance winters.csv --slope-length 4 --tilt 60 --heights 1.5:4:0.5 -o answer
     """  # noqa: D301 - click wants the control character
     from snowshed.analysis.clearance.answer import forecast
-    from snowshed.analysis.clearance.design import DEFAULT_RANGES, Design, Ranges
+    from snowshed.analysis.clearance.panel_design import DEFAULT_RANGES, Design, Ranges
     from snowshed.analysis.clearance.report import write_report
     from snowshed.analysis.clearance.winters import counted
 

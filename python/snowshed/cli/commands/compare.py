@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 def compare(first: Path, second: Path) -> None:
     """Compare the stack heights of two results folders.
 
-    For a 3D and a 2D run, the thesis's rule of thumb stands beside the ratio.
+    For a 3D and a 2D run, the thesis's rule of thumb is printed beside the ratio.
     """
     from snowshed.results.dimension_ratio import compare_folders, height_ratio, same_dimension
 

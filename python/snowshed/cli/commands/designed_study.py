@@ -1,7 +1,7 @@
 """Studies that a command designs, computes and evaluates.
 
-The design is kept as a study file beside the results. Its runs are computed, stored and resumed as
-those of ``snowshed study run``. The evaluation needs only the store.
+The design is saved as a study file beside the results. Its runs are computed, stored and resumed
+like those of ``snowshed study run``. The evaluation needs only the store.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ USELESS: Mapping[str, Sequence[str]] = {
 
 
 def measure_help() -> str:
-    """Return the help on the values of ``--measure``."""
+    """Return the help text on the values of ``--measure``."""
     return " or ".join(f"{measure.name} ({measure.label})" for measure in MEASURES.values()) + "."
 
 
@@ -68,7 +68,7 @@ def design_options(command: Command) -> Command:
 
 
 def check_options(context: click.Context) -> Path:
-    """Return the results folder; refuse a command without it, or with options without effect.
+    """Return the results folder; refuse a missing folder and options without effect.
 
     Raises
     ------

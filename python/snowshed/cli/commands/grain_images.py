@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
-FEW_GRAINS = 1000  # fewer do not represent a snow
+FEW_GRAINS = 1000  # fewer grains do not represent the snow
 VOXEL = "Edge of a voxel [m]."
 HELP = {
     "depth": "Least difference between the distances from the air in a grain's middle and in its "
@@ -143,14 +143,14 @@ def synthetic(
     ]
     if wrong:
         kind = "a Gaussian random field" if spheres is None else "a pack of spheres"
-        raise InputError(f"{', '.join(wrong)}: no option of {kind}")
+        raise InputError(f"{', '.join(wrong)}: not an option of {kind}")
     facts = {"voxel": voxel, "seed": given["seed"]}
     if spheres is None:
         image = gaussian_snow((nz, ny, nx), voxel, **given)
         numbers = write_ice(folder, image, facts)
     else:
         if given.pop("anisotropy") != 1.0:
-            raise InputError("--anisotropy: no option of a pack of spheres")
+            raise InputError("--anisotropy: not an option of a pack of spheres")
         if "neck" in given:
             given["neck_ratio"] = given.pop("neck")
         image = sphere_snow((nz, ny, nx), voxel, diameter=spheres, **given)

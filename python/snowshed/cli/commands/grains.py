@@ -127,7 +127,7 @@ grains.add_command(segment_command)
 @run_options
 def example(folder: Path, resume: bool, dry_run: bool, quiet: bool) -> None:
     """Compress a small synthetic sample, in seconds."""
-    from snowshed.analysis.tomography.example import example_grains  # loads scipy's images
+    from snowshed.analysis.tomography.example import example_grains  # loads scipy.ndimage
 
     if dry_run:
         with TemporaryDirectory() as temporary:

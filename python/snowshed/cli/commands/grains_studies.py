@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 Command = TypeVar("Command", bound=Callable[..., Any])
 
 SAMPLES, RUNS = "samples", "runs"
-#: Default inertia of the tests of a study: the largest without an effect on stresses.
+#: Default inertia of the tests of a study: the largest that does not change stresses.
 DENSITY_SCALING = 10.0
 #: Parameters of a fitted snow: title, unit, and the unit in SI units.
 PARAMETERS = {

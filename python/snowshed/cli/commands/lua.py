@@ -26,7 +26,7 @@ from snowshed.scene.lua.loading import load_lua
     "--to-json",
     "file",
     type=PATH,
-    help="Write the scene to this file; if the scripts name runs, a file for each to this folder.",
+    help="Write the scene to this file; if the scripts name runs, write a folder with their files.",
 )
 @partial(run_options, required=False)
 def lua(

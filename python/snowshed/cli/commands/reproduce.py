@@ -35,7 +35,7 @@ class FromSource(Deferred):
     package
         Name of the package in ``reproductions``.
     short_help
-        Its line in the list of commands; empty: it is not in the list.
+        Its line in the list of commands; empty: not in the list.
     """
 
     def __init__(self, name: str, package: str, short_help: str = "") -> None:

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 DEFAULTS = SeasonSettings()
 
-#: Values that the season file determines, so that they need not be given.
+#: Placeholders for values that the season file determines.
 DETERMINED = {"slab.thickness": 0.1}
 
 SEASON_TABLE = {
@@ -56,7 +56,7 @@ SEASON_TABLE = {
     "clearance\nm": ("clearance_m", "{:.2f}"),
     "to crest\nm": ("crest_clearance_m", "{:.2f}"),
 }
-MAX_ROWS = 60  # a longer table shows its releases only
+MAX_ROWS = 60  # rows; a longer table shows releases only
 SETTLED = {"settled\nheight, m": ("settled_height_m", "{:.2f}")}
 
 
@@ -322,5 +322,5 @@ def _cell(value: Any, form: str) -> str:
 def _number(value: Any) -> float:
     try:
         return float(value)
-    except TypeError:  # pandas' mark for a missing integer
+    except TypeError:  # the value is pandas.NA, a missing integer
         return math.nan

@@ -20,7 +20,8 @@ from snowshed.cli.terminal import plain_table, say, wide_console
 if TYPE_CHECKING:
     import pandas as pd
 
-WIDE = 0.25  # half width of an interval that is too wide for an index between 0 and 1
+#: Half width beyond which the interval of an index between 0 and 1 is too wide.
+MAX_INTERVAL_HALF_WIDTH = 0.25
 
 
 @click.command()
@@ -100,8 +101,8 @@ CELLS: Mapping[str, tuple[str, Callable[[Any], str]]] = {
 NOTES = {
     "s": "? may be noise: zero lies within 1.96 standard errors",
     "fixation": "the seeding alone: see noise.csv",
-    "sobol": "the total index of the seeding is noise: smaller indices are no effects",
-    "morris": "the strength of the seeding is noise: smaller strengths are no effects",
+    "sobol": "the total index of the seeding is noise: smaller indices show no effect",
+    "morris": "the strength of the seeding is noise: smaller strengths show no effect",
 }
 
 
@@ -124,7 +125,7 @@ def print_indices(method: str, table: pd.DataFrame) -> None:
             indices.add_row(_name(key), *(by_event.get(event, "") for event in events))
         console.print(indices)
     console.print(f" {NOTES[method]}")
-    if method == "sobol" and table["total_interval"].median() > WIDE:
+    if method == "sobol" and table["total_interval"].median() > MAX_INTERVAL_HALF_WIDTH:
         blocks = int(table["blocks"].min())
         console.print(
             f" {blocks} blocks are too few: the 95 % intervals are wider than the indices"

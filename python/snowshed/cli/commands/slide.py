@@ -12,7 +12,7 @@ from typing import Any, Optional
 import click
 
 from snowshed._core import InputError
-from snowshed.base.notes import held_notes, issued_on_failure, recorded
+from snowshed.base.notes import held_notes, issue_notes_on_failure, record_notes
 from snowshed.cli.commands.slide_ranges import (
     RangeOptions,
     range_options,
@@ -80,7 +80,7 @@ def slide(
       snowshed slide --avaframe project -o slide
       snowshed slide --example --range mu=0.3:0.5 --range max_strain=0.1:0.4 --runs 50 -o maps
     """  # noqa: D301 - click wants the control character
-    files, ranges = SlideFiles.taken_from(others), RangeOptions.taken_from(others)
+    files, ranges = SlideFiles.pop_from(others), RangeOptions.pop_from(others)
     settings = given_values(others) | ({"mode": "compatible"} if compatible else {})
     options = SlideOptions(
         example, settings, max_time, ranges, _steps(particles_at), resume, dry_run, quiet
@@ -128,10 +128,10 @@ def _run_or_cost_files(
     """
     dry_run, quiet, sampled = options.dry_run, options.quiet, options.ranges.sample is not None
     in_summary: list[str] = []
-    if options.resume and not (files.any() or sampled or dry_run):
+    if options.resume and not (files.has_files() or sampled or dry_run):
         resolved = ResolvedScene.load(results / "scene.json")
     else:
-        with recorded() if dry_run or sampled else held_notes() as notes:
+        with record_notes() if dry_run or sampled else held_notes() as notes:
             scene = files.scene(results, example=options.example, settings=options.settings)
         if options.max_time is not None:
             scene.set("events.max_time", options.max_time)
@@ -140,9 +140,9 @@ def _run_or_cost_files(
             return None
         resolved = scene.resolve()
         if options.resume and not dry_run:
-            refuse_changed_areas(resolved, results, files.of_areas())
+            refuse_changed_areas(resolved, results, files.area_files())
         in_summary = [] if dry_run else notes_for_summary(notes, scene)
-    with issued_on_failure(in_summary):
+    with issue_notes_on_failure(in_summary):
         run_or_cost(resolved, results, resume=options.resume, dry_run=dry_run, quiet=quiet)
     return None if dry_run else resolved
 
@@ -158,7 +158,7 @@ def _results_folder(folder: Path, dry_run: bool) -> Iterator[Path]:
 
 
 def _check_project_files(files: SlideFiles, *, example: bool) -> None:
-    """Refuse files beside those of an AvaFrame project."""
+    """Refuse files besides those of an AvaFrame project."""
     if files.layers:
         raise InputError("--avaframe: keep one layer in each file of areas")
     if files.terrain or files.release or files.thickness_raster or example:

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 RUNS = "runs"
 STUDY = "slides"
 SAMPLINGS = {"latin-hypercube": latin_hypercube, "sobol": sobol}
-#: Symbols of the literature, and the settings that they stand for.
+#: Settings by their symbols in the literature.
 SYMBOLS = {"mu": "friction", "xi": "turbulence", "E": "bond_modulus"}
 #: The thickness of all release areas.
 THICKNESS = "thickness"
@@ -45,8 +45,8 @@ class RangeOptions:
     jobs: Optional[int]
 
     @classmethod
-    def taken_from(cls, options: dict[str, Any]) -> RangeOptions:
-        """Return the options of many slides, and remove them from the given ones.
+    def pop_from(cls, options: dict[str, Any]) -> RangeOptions:
+        """Return the options of many slides, and remove them from `options`.
 
         Raises
         ------
@@ -113,7 +113,7 @@ def run_ranges(
     failure: Optional[Failed] = None
     try:
         compute_study(study, folder / RUNS, quiet=quiet, jobs=options.jobs, keep_particles=True)
-    except Failed as failed:  # the maps show the other runs, with a note
+    except Failed as failed:  # maps of the other runs are written, with a note
         failure = failed
     except Stopped:
         raise Stopped("interrupted; resume with the same command") from None

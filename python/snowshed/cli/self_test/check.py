@@ -20,9 +20,9 @@ class Check:
     title
         Name of the check.
     tolerance
-        The largest allowed error; 0 demands the same bits.
+        Largest allowed error; 0 requires the same bits.
     measure
-        Solve the problem and return the error, relative to the answer.
+        Function that solves the problem and returns the error, relative to the answer.
     """
 
     title: str
@@ -41,7 +41,7 @@ class Result:
     error
         The result of `Check.measure`; NaN if it could not be measured.
     failure
-        Reason why the error could not be measured, if so.
+        Reason why the error could not be measured; empty if it was.
     """
 
     check: Check

@@ -45,11 +45,11 @@ class EventDriver:
         self.core.step(count)
 
     def damp(self, exponent: float) -> None:
-        """Let the velocities of all particles fall by the factor ``exp(-exponent)``."""
+        """Multiply the velocities of all particles by ``exp(-exponent)``."""
         self.core.add_velocity(math.expm1(-exponent) * self.core.velocities())
 
     def run_to(self, time_s: float) -> None:
-        """Take steps until a time of the event, s, and no further than the step that reaches it."""
+        """Take steps until the first one that reaches a time of the event, s."""
         while self.core.time_s < time_s:
             left = (time_s - self.core.time_s) / self.core.time_step_s if self.core.time_s else 1
             self.step(max(1, min(MAX_STEPS, int(left))))

@@ -35,7 +35,7 @@ class Incline(NamedTuple):
 
     @property
     def along(self) -> Floats:
-        """The slope as positions and velocities count it, always (x, y, z)."""
+        """The slope as a vector (x, y, z) in 2D and 3D, like positions and velocities."""
         slope = self.slope
         return np.array([slope[0], 0.0, slope[-1]])
 

@@ -12,13 +12,13 @@ from snowshed.scene.shape import Shape
 
 FALL_S = 0.1
 FRICTION, TILT, SLAB = 0.3, 40.0, (0.5, 0.05)  # m: length and thickness
-#: The time over which acceleration is averaged, s; before it, contact sets in.
+#: Beginning and end of the averaging of the acceleration, s; before, contact sets in.
 WINDOW = (0.1, 0.2)
 
 HEIGHT, WIDTH = 0.2, 0.08  # m, of the column
 DENSITY, YOUNGS_MODULUS, POISSONS_RATIO = 210.0, 1e5, 0.3  # kg/m3, Pa
-#: Duration of the column's damping, in radians of its slowest oscillation, and steps between
-#: dampings.
+#: Duration of the column's damping, in radians of its slowest oscillation, and number of steps
+#: between dampings.
 SETTLING, STEPS = 20.0, 4
 
 
@@ -53,12 +53,12 @@ def column_error() -> float:
     stretched = (1 + POISSONS_RATIO) * (1 - 2 * POISSONS_RATIO)
     vertical = YOUNGS_MODULUS * (1 - POISSONS_RATIO) / stretched  # lambda + 2 mu
     bulk = YOUNGS_MODULUS / (2 * stretched)  # K in the plane, lambda + mu
-    slowest = math.pi / (2 * HEIGHT) * math.sqrt(vertical / DENSITY)  # swing, rad/s
+    slowest = math.pi / (2 * HEIGHT) * math.sqrt(vertical / DENSITY)  # rad/s
     drive = EventDriver(column_scene())
     while slowest * drive.core.time_s < SETTLING:
         before = drive.core.time_s
         drive.step(STEPS)
-        drive.damp(2 * slowest * (drive.core.time_s - before))  # critical for that swing
+        drive.damp(2 * slowest * (drive.core.time_s - before))  # critical damping
     pressure = drive.masses @ drive.core.pressures() / drive.masses.sum()
     return float(pressure / (bulk / vertical * DENSITY * GRAVITY * HEIGHT / 2) - 1)
 

@@ -16,7 +16,7 @@ from snowshed.cli.self_test.drive import EventDriver
 from snowshed.io.vtk.vtp import read_particles
 from snowshed.scene.scene import Scene
 
-#: Cells, m: enough particles for two threads; few of them.
+#: Cell sizes, m: one with enough particles for two threads, and one with few particles.
 FINE, COARSE = 0.0025, 0.02
 STEPS = 200
 #: Limit on the run time of the executable, far beyond the usual time, s.

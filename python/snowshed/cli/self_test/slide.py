@@ -20,7 +20,7 @@ TILT, FRICTION, TURBULENCE = 35.0, 0.325, 300.0  # degrees, 1, m/s2
 CELL, THICKNESS = 2.0, 0.5  # m
 EAST, NORTH = 84.0, 48.0  # m, the terrain
 SLAB = ((9.0, 9.0), (39.0, 9.0), (39.0, 39.0), (9.0, 39.0))  # m
-MIDDLE = 3.0  # m, around the slab's middle; edges make themselves felt there only later
+MIDDLE = 3.0  # m, half width of the slab's middle, which the edges affect only later
 SLIDING = 2.0  # s
 
 Law = Literal["coulomb", "voellmy"]

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 
-from snowshed.base.limits import COORDINATE_SYSTEM
+from snowshed.base.limits import MAX_COORDINATE_SYSTEM_BYTES
 
 #: Codes of PROJ's own data base, such as EPSG:25833 or EPSG:25833+5941.
 CODE = re.compile(r"(EPSG:\d{1,9}(\+\d{1,9})?|ESRI:\d{1,9}|OGC:CRS(84|27|83)h?)", re.IGNORECASE)
@@ -29,7 +29,7 @@ NO_FILE = re.compile(r"\+?(nadgrids|geoidgrids)=@null", re.IGNORECASE)
 def plain_system(description: str) -> str:
     """Return the description of a coordinate system if it is accepted, else "".
 
-    Those are WKT, codes such as "EPSG:31287", and proj strings without names of files.
+    Accepted are WKT, codes such as "EPSG:31287", and proj strings without names of files.
 
     Examples
     --------
@@ -39,7 +39,7 @@ def plain_system(description: str) -> str:
     ('', '')
     """
     text = description.strip()
-    if len(text) > COORDINATE_SYSTEM or "\0" in text:
+    if len(text) > MAX_COORDINATE_SYSTEM_BYTES or "\0" in text:
         return ""
     if old := OLD_CODE.fullmatch(text):
         return old[1].upper()
@@ -52,7 +52,7 @@ def plain_system(description: str) -> str:
 
 
 def _names_no_file(proj: str) -> bool:
-    """Return whether a proj string has parameters only that name no file."""
+    """Return whether no parameter of a proj string names a file."""
     return all(
         NO_FILE.fullmatch(word)
         or (

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any, Optional
 
 from snowshed._core import InputError
-from snowshed.base.limits import COORDINATE_SYSTEM
+from snowshed.base.limits import MAX_COORDINATE_SYSTEM_BYTES
 from snowshed.io.atomic import write_text
 from snowshed.io.coordinates.plain_systems import first_part, plain_system
 from snowshed.io.input_file import read_input
@@ -47,36 +47,38 @@ def read_prj(raster: Path) -> str:
 
 
 def read_system(file: Path) -> str:
-    """Return the description in a .prj; empty where the file is.
+    """Return the description in a .prj; empty if the file is empty.
 
     Raises
     ------
     InputError
         If it holds anything else, such as an address or the name of a file.
     """
-    text = read_input(file, COORDINATE_SYSTEM).decode("utf-8-sig", errors="replace").strip()
+    text = (
+        read_input(file, MAX_COORDINATE_SYSTEM_BYTES).decode("utf-8-sig", errors="replace").strip()
+    )
     if text and not plain_system(text):
         raise InputError(f"{file}: not a coordinate system; {ALLOWED}")
     return text
 
 
 def write_prj(raster: Path, description: str) -> None:
-    """Write the .prj of a raster; nothing where its coordinate system is not known."""
+    """Write the .prj of a raster; nothing if its coordinate system is unknown."""
     system = horizontal_system(description)
     if system is not None:
         text = str(system.to_wkt(version="WKT1_ESRI"))
     elif plain_system(description).upper().startswith(("PROJCS", "PROJCRS", "COMPD")):
         text = first_part(description)
     else:
-        return  # a name that only rasterio can put into WKT
+        return  # only rasterio could turn this name into WKT
     write_text(raster.with_suffix(".prj"), text + "\n")
 
 
 def are_same(left: str, other: str) -> bool:
-    """Return whether two names are of the same coordinate system on the map.
+    """Return whether two descriptions mean the same coordinate system on the map.
 
-    Compound systems are compared without their heights. National realisations of ETRS89, which
-    lie within centimetres, are taken as one: compound systems of a country often name its own.
+    Compound systems are compared without their heights. National realisations of ETRS89 count as
+    the same system: they lie within centimetres, and compound systems of a country often name one.
 
     Examples
     --------
@@ -117,7 +119,7 @@ def is_in_feet(description: str) -> bool:
 
 
 def horizontal_system(description: str) -> Optional[Any]:
-    """Return rasterio's view of a coordinate system without its heights, as `system_of` does."""
+    """Return a coordinate system without its heights as rasterio's object; see `system_of`."""
     system = system_of(description)
     if system is None:
         return None
@@ -127,7 +129,7 @@ def horizontal_system(description: str) -> Optional[Any]:
 
 
 def system_of(description: str) -> Optional[Any]:
-    """Return rasterio's view of a coordinate system; None without rasterio, or if it knows none.
+    """Return rasterio's object for a coordinate system; None if rasterio is missing or knows none.
 
     Descriptions that are not plain are refused (`snowshed.io.coordinates.plain_systems`).
     """

@@ -1,7 +1,7 @@
 """Files of polygons: GeoPackage, ESRI Shapefile, GeoJSON, recognised by their content.
 
-No other format is read. GDAL knows dozens of formats, recognises them by content, and some are
-requests to other machines or names of other files. Therefore GeoPackage and GeoJSON are read
+No other format is read. GDAL recognises dozens of formats by their content; in some of them a file
+is a request to another machine or names other files. Therefore GeoPackage and GeoJSON are read
 without GDAL, and a shapefile reaches GDAL only after its head and index have been checked.
 """
 
@@ -21,7 +21,7 @@ FORMATS = "allowed: GeoPackage, ESRI Shapefile (its .shp), GeoJSON"
 
 
 def read_layer(path: Path, layer: Optional[str], option: str) -> PolygonLayer:
-    """Return the polygons of a file of a format that is read.
+    """Return the polygons of a file.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ def read_layer(path: Path, layer: Optional[str], option: str) -> PolygonLayer:
     Raises
     ------
     InputError
-        If it is not a regular file, of another format, damaged, or has several layers.
+        If the file is not regular, is of another format or damaged, or has several layers.
     OSError
         If there is no such file, or it cannot be read.
     """

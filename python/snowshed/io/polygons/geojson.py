@@ -1,6 +1,6 @@
 """Polygons of a GeoJSON file (RFC 7946, and the coordinate systems of the standard before it).
 
-A coordinate system that is a link is never followed.
+A link to a coordinate system is never followed.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import numpy as np
 from snowshed._core import InputError
 from snowshed.base.arrays import Floats, Integers
 from snowshed.base.extras import require
-from snowshed.base.limits import CORNERS, GEOJSON, POLYGONS
+from snowshed.base.limits import MAX_CORNERS, MAX_GEOJSON_BYTES, MAX_POLYGONS
 from snowshed.base.messages import quoted, shortened
 from snowshed.io.coordinates.plain_systems import plain_system
 from snowshed.io.input_file import read_input
@@ -27,8 +27,8 @@ GEOMETRIES = (
     *("Point", "MultiPoint", "LineString", "MultiLineString", "Polygon", "MultiPolygon"),
     "GeometryCollection",
 )
-#: Names of coordinate systems that stand for a code: URNs and the addresses of the standard, which
-#: are names and are not opened.
+#: Names of coordinate systems that stand for a code: URNs, and addresses of the standard, which are
+#: never opened.
 CODES = re.compile(
     r"(?:urn:(?:x-)?ogc:def:crs:|https?://www\.opengis\.net/(?:def/crs/|gml/srs/))"
     r"(EPSG|ESRI|OGC)(?:[:/][\w.]*[:/]|\.xml#)(CRS84|CRS27|CRS83|\d{1,9})",
@@ -46,8 +46,8 @@ def read_geojson(path: Path) -> PolygonLayer:
     """Return the polygons of a file; see `snowshed.io.polygons.read_layer`."""
     content = _content(path)
     features = _features(content, path)
-    if len(features) > POLYGONS:
-        raise InputError(f"{path}: more than {POLYGONS} polygons")
+    if len(features) > MAX_POLYGONS:
+        raise InputError(f"{path}: more than {MAX_POLYGONS} polygons")
     outlines = _Outlines(path)
     records = []
     fields: dict[str, None] = {}
@@ -69,7 +69,9 @@ def _content(path: Path) -> dict[str, Any]:
         raise ValueError(f"{word} is not a number")
 
     try:
-        content = json.loads(read_input(path, GEOJSON).decode("utf-8-sig"), parse_constant=refuse)
+        content = json.loads(
+            read_input(path, MAX_GEOJSON_BYTES).decode("utf-8-sig"), parse_constant=refuse
+        )
     except (ValueError, RecursionError) as error:
         raise InputError(f"{path}: not GeoJSON: {shortened(str(error), 200)}") from None
     if not isinstance(content, dict):
@@ -97,15 +99,15 @@ def _features(content: Mapping[str, Any], path: Path) -> list[Mapping[str, Any]]
 
 
 class _Outlines:
-    """Corners of rings, from which all polygons are made together."""
+    """Corners of the rings of all polygons, which are made together."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
         self.x: list[float] = []
         self.y: list[float] = []
         self.ring_sizes: list[int] = []
-        self.polygon_rings: list[int] = []  # how many rings each has
-        self.feature_parts: list[int] = []  # how many polygons each has; -1 without a geometry
+        self.polygon_rings: list[int] = []  # number of rings of each polygon
+        self.feature_parts: list[int] = []  # polygons of each feature; -1 without a geometry
 
     def add(self, geometry: object, where: str) -> None:
         """Collect the polygon, or polygons, of a feature."""
@@ -133,8 +135,8 @@ class _Outlines:
     def _add_ring(self, ring: object, where: str) -> None:
         if not isinstance(ring, list) or len(ring) < 3 or set(map(type, ring)) != {list}:
             raise InputError(f"{where}: a ring is not a list of at least three corners")
-        if len(self.x) + len(ring) > CORNERS:
-            raise InputError(f"{self.path}: more than {CORNERS} corners; simplify the outlines")
+        if len(self.x) + len(ring) > MAX_CORNERS:
+            raise InputError(f"{self.path}: more than {MAX_CORNERS} corners; simplify the outlines")
         if min(map(len, ring)) < 2 or not set(map(type, chain.from_iterable(ring))) <= NUMBERS:
             raise InputError(f"{where}: a corner is not a list of at least two numbers")
         self.x += [corner[0] for corner in ring]
@@ -152,7 +154,7 @@ class _Outlines:
         return corners
 
     def shapes(self, corners: Floats) -> list[Any]:
-        """Return the geometry of every feature; None where it has none."""
+        """Return the geometry of every feature; None for a feature without one."""
         shapely: Any = require("shapely", "terrain", "reading polygons")
         try:
             rings = shapely.linearrings(corners, indices=_numbers(self.ring_sizes))
@@ -170,7 +172,7 @@ class _Outlines:
 
 
 def _numbers(counts: Sequence[int]) -> Integers:
-    """Return the index of the whole for each part, from the number of parts of each whole."""
+    """Return for each part the index of its whole; `counts` are the parts of each whole."""
     numbers: Integers = np.repeat(np.arange(len(counts)), counts)
     return numbers
 
@@ -184,7 +186,7 @@ def _crs(content: Mapping[str, Any], farthest: Floats, path: Path) -> str:
             )
         return DEGREES
     system = content["crs"]
-    if system is None:  # known to be none
+    if system is None:  # explicitly no system
         return ""
     kind = system.get("type") if isinstance(system, dict) else None
     properties = system.get("properties") if isinstance(system, dict) else None

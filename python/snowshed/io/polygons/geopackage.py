@@ -1,6 +1,6 @@
-"""Polygons of a GeoPackage, read with SQLite only: plain tables, no computed ones.
+"""Polygons of a GeoPackage, read with SQLite from plain tables; computed tables are refused.
 
-Views, triggers, virtual tables and generated columns are programs in the file. None is run.
+Views, triggers, virtual tables and generated columns are programs in the file, and are never run.
 """
 
 from __future__ import annotations
@@ -16,13 +16,13 @@ from typing import Any, Optional
 from snowshed._core import InputError
 from snowshed.base.extras import require
 from snowshed.base.limits import (
-    CORNERS,
-    GEOPACKAGE_COPY,
-    GEOPACKAGE_VALUE,
-    LAYERS,
+    MAX_CORNERS,
+    MAX_GEOPACKAGE_COPY_BYTES,
+    MAX_GEOPACKAGE_VALUE_BYTES,
+    MAX_LAYERS,
+    MAX_POLYGONS,
+    MAX_SQL_STEPS,
     MB,
-    POLYGONS,
-    SQL_STEPS,
 )
 from snowshed.base.messages import quoted
 from snowshed.base.notes import issue_note
@@ -61,7 +61,7 @@ def read_geopackage(path: Path, layer: Optional[str], option: str) -> PolygonLay
 
 @contextmanager
 def _opened(path: Path) -> Iterator[sqlite3.Connection]:
-    """Open a file without writing beside it; changes in its log count."""
+    """Open a file, with the changes in its log, without writing beside it."""
     with TemporaryDirectory() as folder:
         log = _companion(path, "-wal", LOG)
         if _companion(path, "-journal", JOURNAL) is not None:
@@ -70,10 +70,10 @@ def _opened(path: Path) -> Iterator[sqlite3.Connection]:
                 "once in the program that wrote it"
             )
         file = path
-        if log is not None:  # another program has it open; SQLite would write beside it to read it
+        if log is not None:  # another program has it open: SQLite would have to write beside it
             file = Path(folder) / "copy.gpkg"
             for source, copy in ((path, file), (log, Path(f"{file}-wal"))):
-                if source.stat().st_size > GEOPACKAGE_COPY:
+                if source.stat().st_size > MAX_GEOPACKAGE_COPY_BYTES:
                     raise InputError(f"{path}: open in another program; close it there first")
                 with replacing(copy) as beside:
                     shutil.copyfile(source, beside)
@@ -99,7 +99,7 @@ def _restrict(connection: sqlite3.Connection) -> None:
     def too_long() -> int:
         nonlocal steps
         steps += batch
-        return int(steps > SQL_STEPS)
+        return int(steps > MAX_SQL_STEPS)
 
     def allows(action: int, first: Optional[str], second: Optional[str], *_: object) -> int:
         if action == sqlite3.SQLITE_FUNCTION:
@@ -109,7 +109,7 @@ def _restrict(connection: sqlite3.Connection) -> None:
     connection.text_factory = lambda text: text.decode("utf-8", errors="replace")
     connection.set_progress_handler(too_long, batch)
     if hasattr(connection, "setlimit"):  # from Python 3.11 on
-        connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, GEOPACKAGE_VALUE)
+        connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, MAX_GEOPACKAGE_VALUE_BYTES)
     for setting in ("trusted_schema = OFF", "cell_size_check = ON", "temp_store = MEMORY"):
         connection.execute(f"PRAGMA {setting}")
     connection.set_authorizer(allows)
@@ -134,7 +134,7 @@ class _Package:
         return PolygonLayer(shapes, [dict(zip(wanted, r)) for r in rows], names, self._crs(system))
 
     def _check_table(self, table: str) -> None:
-        """Refuse everything except tables in the file."""
+        """Refuse a name that is not a stored table of the file."""
         entry = self.connection.execute(
             "SELECT type, rootpage FROM sqlite_master WHERE lower(name) = lower(?)", (table,)
         ).fetchone()
@@ -152,10 +152,10 @@ class _Package:
             "SELECT c.table_name, g.column_name, g.geometry_type_name, g.srs_id FROM gpkg_contents "
             "AS c JOIN gpkg_geometry_columns AS g ON c.table_name = g.table_name "
             "COLLATE NOCASE WHERE c.data_type = 'features' LIMIT ?",
-            (LAYERS + 1,),
+            (MAX_LAYERS + 1,),
         ).fetchall()
-        if len(every) > LAYERS:
-            raise InputError(f"{self.path}: more than {LAYERS} layers")
+        if len(every) > MAX_LAYERS:
+            raise InputError(f"{self.path}: more than {MAX_LAYERS} layers")
         names = ", ".join(quoted(str(row[0])) for row in every[:20])
         if layer is not None:
             matching = [row for row in every if row[0] == layer]
@@ -173,13 +173,13 @@ class _Package:
             )
         if len(every) > 1:
             issue_note(
-                f"{self.path}: of its layers {names} the one that may hold polygons is read, "
+                f"{self.path}: of its layers {names} the only one that may hold polygons is read, "
                 f"{quoted(str(of_polygons[0][0]))}"
             )
         return str(of_polygons[0][0]), str(of_polygons[0][1]), of_polygons[0][3]
 
     def _fields(self, table: str) -> list[str]:
-        """Return the columns of a table that stand in the file."""
+        """Return the stored columns of a table."""
         columns = self.connection.execute(f"PRAGMA table_xinfo({_name(table)})").fetchall()
         return [str(name) for _, name, _, _, _, _, hidden in columns if not hidden]
 
@@ -187,22 +187,26 @@ class _Package:
         """Return the geometries, and the rows of the other columns."""
         shapely: Any = require("shapely", "terrain", "reading polygons")
         names = ", ".join(map(_name, columns))
-        # An index could be one of expressions, which would be evaluated.
+        # An index may contain expressions, which SQLite would evaluate.
         rows = self.connection.execute(f"SELECT {names} FROM {_name(table)} NOT INDEXED")
         geometries: list[Optional[bytes]] = []
-        others, corners, room = [], 0, GEOPACKAGE_VALUE
+        others, corners, room = [], 0, MAX_GEOPACKAGE_VALUE_BYTES
         for number, row in enumerate(rows, 1):
-            if number > POLYGONS:
-                raise InputError(f"{self.path}: more than {POLYGONS} polygons")
+            if number > MAX_POLYGONS:
+                raise InputError(f"{self.path}: more than {MAX_POLYGONS} polygons")
             where = f"{self.path}, feature {number}"
             wkb = _wkb(row[0], where)
             if wkb is not None:
                 corners += count_corners(wkb, where)
-            if corners > CORNERS:
-                raise InputError(f"{self.path}: more than {CORNERS} corners; simplify the outlines")
+            if corners > MAX_CORNERS:
+                raise InputError(
+                    f"{self.path}: more than {MAX_CORNERS} corners; simplify the outlines"
+                )
             room -= sum(len(value) for value in row if isinstance(value, (bytes, str)))
             if room < 0:
-                raise InputError(f"{self.path}: more than {GEOPACKAGE_VALUE // MB} MB of polygons")
+                raise InputError(
+                    f"{self.path}: more than {MAX_GEOPACKAGE_VALUE_BYTES // MB} MB of polygons"
+                )
             geometries.append(wkb)
             others.append(row[1:])
         try:
@@ -231,7 +235,7 @@ class _Package:
 
 
 def _name(text: str) -> str:
-    """Return a name as SQL quotes it."""
+    """Return a name in SQL's quotes."""
     return '"' + text.replace('"', '""') + '"'
 
 

@@ -1,4 +1,4 @@
-"""The polygons of a file, as every format gives them."""
+"""The polygons of a file, in one form for all formats."""
 
 from __future__ import annotations
 

@@ -10,14 +10,14 @@ import numpy as np
 
 from snowshed._core import InputError
 from snowshed.base.extras import require
-from snowshed.base.limits import CORNERS, POLYGONS, RINGS
+from snowshed.base.limits import MAX_CORNERS, MAX_POLYGONS, MAX_RINGS
 from snowshed.base.messages import shortened
 from snowshed.base.notes import issue_note
 from snowshed.io.coordinates.gdal_fence import fenced_pyogrio
 from snowshed.io.coordinates.systems import read_system
 from snowshed.io.polygons.layer import PolygonLayer, is_wanted
 
-#: The number of the format, and five that are not used.
+#: The number of the format, and five unused numbers.
 SHAPEFILE = b"\x00\x00\x27\x0a" + bytes(20)
 #: Kinds of shapes: plane, with z, with measures.
 OF_POLYGONS = (5, 15, 25)
@@ -41,7 +41,7 @@ def read_shapefile(path: Path) -> PolygonLayer:
                 fields = [str(field) for field in pyogrio.read_info(file)["fields"]]
                 wanted = [field for field in fields if is_wanted(field)]
                 meta, _, shapes, columns = pyogrio.raw.read(
-                    file, columns=wanted, max_features=POLYGONS, force_2d=True
+                    file, columns=wanted, max_features=MAX_POLYGONS, force_2d=True
                 )
             shapes = shapely.from_wkb(shapes)
         except (
@@ -92,8 +92,8 @@ def _check_sizes(path: Path, companions: dict[str, Path]) -> None:
         raise InputError(f"{path}: not a file of polygons: {KINDS.get(kind, 'other shapes')}")
     index = companions[".shx"]
     count = (index.stat().st_size - HEAD) // 8
-    if count > POLYGONS:
-        raise InputError(f"{path}: more than {POLYGONS} polygons")
+    if count > MAX_POLYGONS:
+        raise InputError(f"{path}: more than {MAX_POLYGONS} polygons")
     if count < 1:
         return
     entries = np.fromfile(index, dtype=">i4", count=2 * count, offset=HEAD)
@@ -104,7 +104,7 @@ def _check_sizes(path: Path, companions: dict[str, Path]) -> None:
     rings, corners = content[offsets].view("<i4").astype(np.int64).T if len(offsets) else ([0], [0])
     shapes = content[begins[complete, None] + np.arange(8, 12)].view("<i4").ravel()
     polygons = np.isin(shapes, OF_POLYGONS)
-    if np.sum(np.asarray(corners)[polygons]) > CORNERS:
-        raise InputError(f"{path}: more than {CORNERS} corners; simplify the outlines")
-    if np.any(np.asarray(rings)[polygons] > RINGS):
-        raise InputError(f"{path}: a polygon of more than {RINGS} rings; simplify it")
+    if np.sum(np.asarray(corners)[polygons]) > MAX_CORNERS:
+        raise InputError(f"{path}: more than {MAX_CORNERS} corners; simplify the outlines")
+    if np.any(np.asarray(rings)[polygons] > MAX_RINGS):
+        raise InputError(f"{path}: a polygon of more than {MAX_RINGS} rings; simplify it")

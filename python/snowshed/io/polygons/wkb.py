@@ -1,6 +1,6 @@
 """Well-known binary geometries, checked before a library reads them.
 
-GEOS follows geometries within geometries without an end, and a file can nest millions.
+GEOS follows geometries within geometries without a limit, and a file can nest millions of them.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ CURVED = (8, 9, 10, 11, 12)
 
 
 def count_corners(wkb: bytes, where: str) -> int:
-    r"""Return the number of corners of a polygon or several.
+    r"""Return the number of corners of a polygon or of several polygons.
 
     Raises
     ------
@@ -51,7 +51,7 @@ def count_corners(wkb: bytes, where: str) -> int:
 
 
 def _head(wkb: bytes, place: int) -> tuple[int, int, str, int]:
-    """Return the kind, the next offset, the byte order and the coordinates of a corner."""
+    """Return kind, next offset, byte order, and number of coordinates of a corner."""
     order = "<" if wkb[place : place + 1] == b"\1" else ">"
     (code,) = struct.unpack_from(f"{order}I", wkb, place + 1)
     place += 9 if code & 0x20000000 else 5  # an identifier of the coordinate system
@@ -62,7 +62,7 @@ def _head(wkb: bytes, place: int) -> tuple[int, int, str, int]:
 
 
 def _rings(wkb: bytes, place: int) -> tuple[int, int]:
-    """Return the corners of a polygon, and the place behind it."""
+    """Return the number of corners of a polygon, and the offset after it."""
     _, place, order, numbers = _head(wkb, place)
     (rings,) = struct.unpack_from(f"{order}I", wkb, place)
     place, corners = place + 4, 0

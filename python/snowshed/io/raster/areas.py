@@ -103,7 +103,7 @@ def read_areas(
 def _areas(
     layer: PolygonLayer, fields: Sequence[ThicknessField], path: Path, shapely: Any
 ) -> Iterator[MapArea]:
-    """Return the areas, the parts of each feature in its place."""
+    """Return the areas in the order of the features; each part of a feature is one."""
     named = next((field for field in layer.fields if field.strip().lower() == "name"), "")
     facts = [
         (
@@ -122,9 +122,9 @@ def _areas(
 
 
 def _rings(polygons: Any, shapely: Any) -> list[list[Ring]]:
-    """Return the rings of each polygon, the outline first; none where it is empty.
+    """Return the rings of each polygon, the outline first; none for an empty polygon.
 
-    Corners that repeat the one before are left out, as programs of maps pass over them.
+    Repeated corners are left out, because map programs ignore them.
     """
     rings, owners = shapely.get_rings(polygons, return_index=True)
     corners, of_ring = shapely.get_coordinates(rings, return_index=True)

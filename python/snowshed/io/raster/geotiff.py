@@ -20,7 +20,7 @@ import numpy as np
 from snowshed._core import InputError
 from snowshed.base.arrays import Booleans, Floats
 from snowshed.base.extras import require
-from snowshed.base.limits import RASTER_BLOCK, RASTER_CELLS
+from snowshed.base.limits import MAX_RASTER_BLOCK_BYTES, MAX_RASTER_CELLS
 from snowshed.base.messages import quoted
 from snowshed.base.notes import issue_note
 from snowshed.io.coordinates.gdal_fence import fenced_rasterio
@@ -34,7 +34,7 @@ WORLD_FILES = (".tfw", ".tifw", ".tiffw", ".wld")
 
 
 class BandFacts(NamedTuple):
-    """GDAL's metadata of a band."""
+    """Metadata of a band from GDAL."""
 
     scale: float
     offset: float
@@ -45,7 +45,7 @@ class BandFacts(NamedTuple):
 
 
 class PlacedHeights(NamedTuple):
-    """Heights (rows, columns) in m, the southernmost row first, and their place on the map."""
+    """Heights (rows, columns) in m, the southernmost row first, and their position on the map."""
 
     heights: Floats
     east: float
@@ -97,7 +97,9 @@ def read_geotiff(path: Path, band: Optional[int] = None) -> PlacedHeights:
 def _opened(path: Path, content: bytes, extra: dict[str, bytes]) -> Iterator[Any]:
     """Open the bytes of a GeoTIFF and of files beside it, by their suffixes."""
     rasterio: Any = require("rasterio", "terrain", "reading a GeoTIFF")
-    gdal: Any = require("rasterio._err", "terrain", "reading a GeoTIFF")  # not all are translated
+
+    # rasterio does not translate all errors of GDAL
+    gdal: Any = require("rasterio._err", "terrain", "reading a GeoTIFF")
     if not content:
         raise InputError(f"{path}: not a GeoTIFF: it is empty")
     folder = str(uuid.uuid4())
@@ -105,7 +107,7 @@ def _opened(path: Path, content: bytes, extra: dict[str, bytes]) -> Iterator[Any
         try:
             stack.enter_context(_without_words_of_gdal())
             stack.enter_context(warnings.catch_warnings())
-            # A raster without a place on the map is refused by its reader.
+            # The caller refuses a raster without a position on the map.
             warnings.simplefilter("ignore", rasterio.errors.NotGeoreferencedWarning)
             for name, data in extra.items():
                 stack.enter_context(rasterio.MemoryFile(data, dirname=folder, filename=name))
@@ -120,7 +122,7 @@ def _opened(path: Path, content: bytes, extra: dict[str, bytes]) -> Iterator[Any
 
 @contextmanager
 def _without_words_of_gdal() -> Iterator[None]:
-    """Prevent tracebacks of rasterio where GDAL quotes bytes that are not text."""
+    """Prevent tracebacks of rasterio if GDAL quotes bytes that are not text."""
     unraisable, uncaught = sys.unraisablehook, sys.excepthook
 
     def drop_or_report(event: Any) -> None:
@@ -155,7 +157,7 @@ def _sidecars(path: Path) -> dict[str, bytes]:
 
 
 def _checked_band(source: Any, path: Path, band: Optional[int]) -> int:
-    """Return the band to read; the only one where none is asked for."""
+    """Return the band to read; without `band`, the only band."""
     if source.subdatasets:
         raise InputError(
             f"{path}: holds {len(source.subdatasets)} images; take one out of it, for example "
@@ -191,17 +193,20 @@ def _named(source: Any, bands: list[int]) -> str:
 
 def _check_size(source: Any, path: Path, band: int) -> None:
     """Refuse rasters that would fill the memory, before reading them."""
-    if source.width * source.height > RASTER_CELLS:
+    if source.width * source.height > MAX_RASTER_CELLS:
         raise InputError(
-            f"{path}: {source.width} columns and {source.height} rows; at most {RASTER_CELLS} "
+            f"{path}: {source.width} columns and {source.height} rows; at most {MAX_RASTER_CELLS} "
             "cells are allowed; crop it first"
         )
     rows, columns = source.block_shapes[band - 1]
     together = source.count if source.interleaving.name == "pixel" else 1
-    if rows * columns * together * np.dtype(source.dtypes[band - 1]).itemsize > RASTER_BLOCK:
+    if (
+        rows * columns * together * np.dtype(source.dtypes[band - 1]).itemsize
+        > MAX_RASTER_BLOCK_BYTES
+    ):
         raise InputError(
             f"{path}: blocks of {columns} columns, {rows} rows and {together} bands take more than "
-            f"{RASTER_BLOCK >> 20} MB; convert it: gdal_translate -co TILED=YES"
+            f"{MAX_RASTER_BLOCK_BYTES >> 20} MB; convert it: gdal_translate -co TILED=YES"
         )
 
 
@@ -234,13 +239,13 @@ def _missing(source: Any, band: int) -> Booleans:
     """Return the cells that NODATA, an internal mask or an alpha band exclude."""
     missing: Booleans = source.read_masks(band) == 0
     for number, kind in enumerate(source.colorinterp, 1):
-        if kind.name == "alpha":  # which GDAL takes as a mask only where it holds whole numbers
+        if kind.name == "alpha":  # GDAL takes an alpha band as a mask only if it has whole numbers
             missing |= source.read(number) == 0
     return missing
 
 
 def _factor(facts: BandFacts, per_height: Optional[float], path: Path) -> float:
-    """Return the metres of a band's unit: its own, or that of the heights of its map."""
+    """Return the length in m of a band's unit, or, without one, of the map's unit of height."""
     own = metres_of(facts.unit, str(path)) if facts.unit.strip() else None
     if (
         own is not None
@@ -255,7 +260,7 @@ def _factor(facts: BandFacts, per_height: Optional[float], path: Path) -> float:
 
 
 def _in_metres(values: Any, facts: BandFacts, factor: float, path: Path) -> Floats:
-    """Return the values that a band's numbers stand for."""
+    """Return a band's values in metres, from its numbers."""
     scale, offset = facts.scale, facts.offset
     if not (math.isfinite(scale) and math.isfinite(offset)) or scale == 0:
         raise InputError(
@@ -276,7 +281,7 @@ def _in_metres(values: Any, facts: BandFacts, factor: float, path: Path) -> Floa
 def _placed(
     heights: Floats, transform: Any, system: str, numbers: str, path: Path, has_points: bool
 ) -> PlacedHeights:
-    """Return heights at their place on the map, the southernmost row first."""
+    """Return heights with their position on the map, the southernmost row first."""
     if transform.is_identity:
         how = "; gdalwarp makes a map of its control points" if has_points else ""
         raise InputError(f"{path}: has no position on the map{how}")

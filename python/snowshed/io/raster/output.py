@@ -15,14 +15,14 @@ from snowshed.io.raster.raster import Raster, write_ascii_grid
 
 
 def write_raster(path: PathLike, raster: Raster) -> None:
-    """Write a raster with its coordinate system: a GeoTIFF if the name ends so, else an ASCII grid.
+    """Write a raster with its coordinate system, as GeoTIFF or ASCII grid by the name's suffix.
 
     An ASCII grid has its coordinate system in a .prj beside it.
 
     Raises
     ------
     InputError
-        If a GeoTIFF is wanted and rasterio is missing.
+        If a GeoTIFF is requested and rasterio is missing.
     OSError
         If a file cannot be written.
     """

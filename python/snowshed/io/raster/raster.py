@@ -40,7 +40,7 @@ class Raster:
     crs
         Coordinate system of the map as text, such as "EPSG:31287"; empty if unknown.
     plain
-        Whether the file of this name is an ESRI ASCII grid that holds just these heights.
+        Whether the file `name` is an ESRI ASCII grid that holds exactly these heights.
     numbers
         Type of the numbers in the file, such as "int16"; empty for text.
     """
@@ -60,7 +60,7 @@ class Raster:
         Raises
         ------
         InputError
-            If a place lies outside the raster, or where it holds no height.
+            If a point lies outside the raster, or where the raster has no height.
 
         Examples
         --------
@@ -114,8 +114,8 @@ def read_raster(path: PathLike, band: Optional[int] = None) -> Raster:
     Raises
     ------
     InputError
-        If the file is not such a raster, with the position; for a GeoTIFF without the library that
-        reads it, with the package to install.
+        If the file is not such a raster; the message names the position. If the library for
+        GeoTIFF is missing, it names the package to install.
     OSError
         If the file cannot be read.
     """
@@ -159,8 +159,8 @@ def is_single(raster: Raster) -> bool:
 def write_ascii_grid(path: PathLike, raster: Raster, *, exact: bool = False) -> None:
     """Write a raster as an ESRI ASCII grid, whole or not at all; NaN becomes -9999.
 
-    Values have nine digits, enough to recover single precision; with `exact`, enough for double
-    precision. Single values need them, too, if a reader uses double precision.
+    Values have nine digits, enough to recover single precision; with `exact`, they have enough
+    digits for double precision. Single values need these, too, if a reader uses double precision.
 
     Examples
     --------

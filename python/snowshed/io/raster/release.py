@@ -13,13 +13,13 @@ import numpy as np
 from snowshed._core import InputError
 from snowshed.base.arrays import Booleans
 from snowshed.base.extras import require
-from snowshed.base.limits import CELLS_TIMES_CORNERS, RELEASE_CORNERS, SNOW_CELLS
+from snowshed.base.limits import MAX_CELLS_TIMES_CORNERS, MAX_RELEASE_CORNERS, MAX_SNOW_CELLS
 from snowshed.io.raster.areas import MapArea
 from snowshed.io.raster.raster import Raster
 
 #: Areas that touch at a corner are separated by this share of a cell.
 GAP = 1e-7
-#: Thicknesses that are codes and not snow, m.
+#: Thicknesses from here on are codes for missing values, m.
 MAX_THICKNESS = 100.0
 
 
@@ -37,10 +37,10 @@ def snow_part(depth: Raster) -> Raster:
     snow = values > 0
     if not snow.any():
         raise InputError(f"{depth.name}: holds no thickness above 0")
-    if np.count_nonzero(snow) > SNOW_CELLS:
+    if np.count_nonzero(snow) > MAX_SNOW_CELLS:
         raise InputError(
-            f"{depth.name}: holds snow in {np.count_nonzero(snow)} cells; at most {SNOW_CELLS} are "
-            "allowed; make its cells larger"
+            f"{depth.name}: holds snow in {np.count_nonzero(snow)} cells; at most "
+            f"{MAX_SNOW_CELLS} are allowed; make its cells larger"
         )
     rows, columns = (np.flatnonzero(snow.any(axis=axis)) for axis in (1, 0))
     south, west = max(rows[0] - 1, 0), max(columns[0] - 1, 0)
@@ -60,14 +60,14 @@ def areas_of_depth(depth: Raster) -> list[MapArea]:
     Raises
     ------
     InputError
-        If a value is negative or missing amid snow, no cell holds snow, or the areas are too many
-        or too ragged.
+        If a value is negative or missing amid snow, no cell holds snow, or the areas have too many
+        corners.
     """
     part = snow_part(depth)
     snow = part.heights > 0
     _refuse_gaps(part, snow)
     corners = _corner_count(snow)
-    most = min(RELEASE_CORNERS, max(CELLS_TIMES_CORNERS // snow.size, 4))
+    most = min(MAX_RELEASE_CORNERS, max(MAX_CELLS_TIMES_CORNERS // snow.size, 4))
     if corners > most:
         raise InputError(
             f"{depth.name}: the edge of its snow has {corners} corners; at most {most} are allowed "
@@ -120,7 +120,7 @@ def _refuse_gaps(depth: Raster, snow: Booleans) -> None:
 
     Areas that meet at a corner are separate there, so that their surroundings connect between them.
     """
-    from scipy import ndimage  # takes a tenth of a second, and most slides have polygons
+    from scipy import ndimage  # imported here: it takes 0.1 s, and most slides have polygons
 
     bare, _ = ndimage.label(np.pad(~snow, 1, constant_values=True), structure=np.ones((3, 3)))
     amid = (bare != bare[0, 0])[1:-1, 1:-1] & ~snow

@@ -9,19 +9,19 @@ import numpy as np
 
 from snowshed._core import InputError
 from snowshed.base.extras import require
-from snowshed.base.limits import RASTER_CELLS
+from snowshed.base.limits import MAX_RASTER_CELLS
 from snowshed.base.paths import PathLike
 from snowshed.io.raster.raster import Raster, read_raster
 
-#: Any map in metres: GDAL wants one to resample on.
+#: Any map in metres, because GDAL needs one for resampling.
 SOME_MAP = "EPSG:31287"
 
 
 def resampled_raster(path: PathLike, cell: float) -> Raster:
     """Return a file of elevations on other cells, as AvaFrame 2.1 resamples them.
 
-    The nodes begin at the same south-west node and go no further than those of the file. GDAL's
-    cubic resampling widens its kernel where the new cells are larger, so that it averages.
+    The new grid has the same south-west node and does not exceed the grid of the file. If the new
+    cells are larger, GDAL's cubic resampling widens its kernel, so that it averages.
 
     Parameters
     ----------
@@ -39,11 +39,13 @@ def resampled_raster(path: PathLike, cell: float) -> Raster:
     rows, columns = old.heights.shape
     new_columns = int((columns - 1) * old.cell / cell + 1)
     new_rows = int((rows - 1) * old.cell / cell + 1)
-    if new_columns * new_rows > RASTER_CELLS:
-        raise InputError(f"{path}: has more than {RASTER_CELLS} cells of {cell:g} m; crop it first")
+    if new_columns * new_rows > MAX_RASTER_CELLS:
+        raise InputError(
+            f"{path}: has more than {MAX_RASTER_CELLS} cells of {cell:g} m; crop it first"
+        )
     rasterio: Any = require("rasterio", "terrain", "resampling terrain")
     warp: Any = require("rasterio.warp", "terrain", "resampling terrain")
-    # GDAL reads the numbers of text files in single precision, AvaFrame the resampled ones, too.
+    # GDAL reads numbers of text files in single precision; so does AvaFrame with resampled ones.
     precision = np.float32 if Path(path).suffix.lower() not in (".tif", ".tiff") else np.float64
     values = np.full((new_rows, new_columns), np.nan)
     warp.reproject(

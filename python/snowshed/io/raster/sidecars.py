@@ -10,7 +10,7 @@ from typing import Optional
 from snowshed._core import InputError
 from snowshed.base.arrays import Floats
 from snowshed.base.formatting import number_in
-from snowshed.base.limits import SIDECAR
+from snowshed.base.limits import MAX_SIDECAR_BYTES
 from snowshed.base.messages import quoted
 from snowshed.io.input_file import read_regular
 from snowshed.io.raster.vertical_units import metres_of
@@ -35,8 +35,8 @@ def sidecar(raster: Path, ending: str = ENDING) -> Optional[bytes]:
 def small_file(file: Path) -> bytes:
     """Return the content of a metadata file; errors are those of `sidecar`."""
     content = read_regular(file)
-    if len(content) > SIDECAR:
-        raise InputError(f"{file}: {len(content)} bytes; at most {SIDECAR} are read")
+    if len(content) > MAX_SIDECAR_BYTES:
+        raise InputError(f"{file}: {len(content)} bytes; at most {MAX_SIDECAR_BYTES} are read")
     return content
 
 
@@ -71,7 +71,7 @@ def _facts(text: str) -> Iterator[tuple[str, str]]:
 
 
 def _changes(fact: str, value: str, values: Floats, name: str) -> bool:
-    """Return whether a fact makes other values of those of a file."""
+    """Return whether a fact would change the values of a file."""
     if fact == "UnitType":
         return value != "" and metres_of(value, name) != 1.0
     if fact == "NoDataValue":

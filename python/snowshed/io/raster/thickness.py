@@ -13,7 +13,7 @@ from snowshed.base.formatting import number_in
 from snowshed.base.messages import quoted
 from snowshed.base.notes import issue_note
 
-#: Names of the field; AvaFrame's first.
+#: Names of the field; the first is AvaFrame's.
 NAMES = ("thickness", "d0")
 #: The same with a unit: thickness_cm, d0 (mm), "Thickness [m]".
 WITH_UNIT = re.compile(r"(thickness|d0)[\s_.\-]*[(\[]?\s*([a-z]+\d?)\s*[)\]]?", re.IGNORECASE)
@@ -32,14 +32,14 @@ class ThicknessField:
     name
         Name of the field in the file.
     metres
-        Metres of a unit.
+        Length of its unit, m.
     """
 
     name: str
     metres: float
 
     def value(self, record: Mapping[str, Any], where: str) -> Optional[float]:
-        """Return the thickness that a feature gives, m; None where it gives none.
+        """Return the thickness of a feature, m; None if the feature has none.
 
         Raises
         ------
@@ -63,7 +63,7 @@ class ThicknessField:
 
 
 def thickness_fields(fields: Sequence[str], file: str) -> list[ThicknessField]:
-    """Return the fields of a file that hold a thickness, the first before the others.
+    """Return the fields of a file that hold a thickness, in order of preference.
 
     Notes report what the names do not show: another unit, and ignored fields.
 
@@ -120,7 +120,7 @@ def thickness_fields(fields: Sequence[str], file: str) -> list[ThicknessField]:
 def thickness_of(
     fields: Sequence[ThicknessField], record: Mapping[str, Any], where: str
 ) -> Optional[float]:
-    """Return the thickness of a feature, m; None where no field gives it.
+    """Return the thickness of a feature, m; None if no field holds it.
 
     Raises
     ------

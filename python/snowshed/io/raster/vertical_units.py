@@ -12,7 +12,7 @@ from snowshed._core import InputError
 from snowshed.base.messages import quoted
 
 FOOT, SURVEY_FOOT = 0.3048, 1200.0 / 3937.0  # m
-#: Metres of the units that rasters name; spelt without capitals, blanks, brackets and plural.
+#: Lengths, m, of units of rasters; their names without capitals, blanks, brackets and plural s.
 METRES = {
     **dict.fromkeys(("m", "metre", "meter", "mtr"), 1.0),
     **dict.fromkeys(("ft", "foot", "feet", "internationalfoot", "internationalfeet"), FOOT),
@@ -30,7 +30,7 @@ METRES = {
 
 
 def metres_of(unit: str, name: str) -> float:
-    """Return the metres of a unit of heights.
+    """Return the length of a unit of heights, m.
 
     Parameters
     ----------
@@ -59,7 +59,7 @@ def metres_of(unit: str, name: str) -> float:
 
 
 def split_system(system: Any, name: str) -> tuple[str, Optional[float]]:
-    """Return the horizontal part of a coordinate system, and the metres of its vertical unit.
+    """Return the horizontal part of a coordinate system, and the length of its vertical unit, m.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ def split_system(system: Any, name: str) -> tuple[str, Optional[float]]:
     Raises
     ------
     InputError
-        If it counts depths, downward.
+        If its vertical axis points downward (depths).
     """
     data: dict[str, Any] = system.to_dict(projjson=True)
     parts = data.get("components") or [data]
@@ -90,7 +90,7 @@ def split_system(system: Any, name: str) -> tuple[str, Optional[float]]:
 
 
 def split_vertical(description: str, name: str) -> tuple[str, Optional[float]]:
-    """Do the same for the text of a .prj, "EPSG:31287" or WKT; unchanged without rasterio."""
+    """Split a coordinate system given as text, as `split_system`; unchanged without rasterio."""
     try:
         rasterio = importlib.import_module("rasterio")
     except ImportError:

@@ -1,4 +1,4 @@
-"""The program snowshed-vdb, the only part that is built with OpenVDB."""
+"""The program snowshed-vdb, the only part of snowshed that needs OpenVDB."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ def vdb_available() -> bool:
 
 
 def run_writer(path: Path, request: bytes) -> bytes:
-    """Let the program write a file, and return its answer.
+    """Write a file with the program, and return its answer.
 
     Raises
     ------
     InputError
-        If it is not there or refuses.
+        If the program is missing or refuses the request.
     OSError
-        If it cannot be run or dies.
+        If the program cannot be run or dies.
     """
     if not vdb_available():
         raise InputError(

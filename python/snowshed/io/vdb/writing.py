@@ -17,12 +17,12 @@ from snowshed.base.arrays import Floats
 from snowshed.io.atomic import replacing
 from snowshed.io.vdb.program import run_writer
 
-STRIP_LAYERS = 9  # of grid cells that stand for the plane of a 2D scene
+STRIP_LAYERS = 9  # layers of grid cells that represent the plane of a 2D scene
 
 
 @dataclass(frozen=True)
 class WrittenVdb:
-    """The contents of an OpenVDB file that was written.
+    """The contents of a written OpenVDB file.
 
     Attributes
     ----------
@@ -74,8 +74,8 @@ def write_vdb(
     particles_per_voxel
         Seeding of the snow; decides the radius of a particle.
     width
-        In 2D, the width of the strip about y = 0 that solid and density are drawn out over, m;
-        rounded to an odd number of cells. Default: nine cells.
+        In 2D, the width of the strip about y = 0 that solid and density fill, m; rounded to an
+        odd number of cells. Default: nine cells.
     attributes
         Further quantities of the points, (n,) or (n, 3): floats or integers.
 
@@ -124,13 +124,13 @@ def write_vdb(
 
 
 def _plain(array: NDArray[np.generic]) -> NDArray[np.generic]:
-    """Return the array in a type that point data has."""
+    """Return the array in a type that OpenVDB's points can hold."""
     is_integer = np.issubdtype(array.dtype, np.integer)
     return array.astype(np.int32 if is_integer else np.float32)
 
 
 def _odd_cells(width: Optional[float], dx: float) -> int:
-    """Return how many cells a strip has: one in its middle, and as many on either side."""
+    """Return the number of cells across a strip: odd, with one cell in the middle."""
     if width is None:
         return STRIP_LAYERS
     if not 0 < width < np.inf:

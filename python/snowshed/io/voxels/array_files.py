@@ -78,7 +78,7 @@ def open_raw(path: Path, shape: tuple[int, int, int], kind: str, offset: int = 0
 
 
 def number_type(kind: str) -> np.dtype[Any]:
-    """Return the type of a name.
+    """Return the type with a name.
 
     Examples
     --------
@@ -96,7 +96,7 @@ def number_type(kind: str) -> np.dtype[Any]:
 def numbers_of(
     name: Path, data: Path, shape: tuple[int, ...], dtype: np.dtype[Any], start: int
 ) -> VoxelFile:
-    """Return an image whose numbers stand in a file one after another, the last axis fastest.
+    """Return an image whose numbers follow one another in a file, the last axis fastest.
 
     Parameters
     ----------
@@ -115,7 +115,7 @@ def numbers_of(
     Raises
     ------
     InputError
-        If the file is shorter, or longer without a header, or most of it is holes.
+        If the file is too short, too long for a file without a header, or mostly holes.
     OSError
         If it cannot be read.
     """
@@ -141,7 +141,7 @@ def numbers_of(
             numbers = np.fromfile(file, dtype, (high - low) * layer)
         if len(numbers) < (high - low) * layer:
             raise InputError(f"{data}: damaged: it has become shorter")
-        if dtype.kind == "b":  # a byte may hold anything
+        if dtype.kind == "b":  # a byte may hold any number
             numbers = numbers.view(np.uint8) != 0
         return numbers.reshape(high - low, ny, nx)
 

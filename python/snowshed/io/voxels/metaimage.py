@@ -36,15 +36,15 @@ ELEMENTS = {
     "MET_FLOAT": "float32",
     "MET_DOUBLE": "float64",
 }
-#: Units of ElementSpacing, m. Without DistanceUnits it is in mm, as ITK's programs take it.
+#: Units of ElementSpacing, m. Without DistanceUnits it is in mm, as in ITK's programs.
 UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "nm": 1e-9}
 MATRICES = ("TransformMatrix", "Rotation", "Orientation")
 SPACINGS = ("ElementSpacing", "ElementSize")
-CUBIC = 1.0001  # largest over smallest edge of what counts as a cube
+CUBIC = 1.0001  # ratio of edges up to which a voxel counts as a cube
 
 
 def open_metaimage(path: Path) -> VoxelFile:
-    """Return the image of a .mhd or .mha file; its ElementSpacing is in mm unless it says.
+    """Return the image of a .mhd or .mha file; ElementSpacing is in mm unless it names a unit.
 
     Raises
     ------
@@ -102,7 +102,7 @@ def _kind(fields: HeaderFields) -> str:
 
 
 def _numbers(fields: HeaderFields, shape: tuple[int, int, int], kind: str) -> VoxelFile:
-    """Return the image before it has a size or a place."""
+    """Return the image without voxel size and orientation."""
     path, dtype = fields.path, number_type(kind)
     packed = fields.flag("CompressedData", False)
     as_text = not fields.flag("BinaryData", True)
@@ -121,7 +121,7 @@ def _numbers(fields: HeaderFields, shape: tuple[int, int, int], kind: str) -> Vo
 
 
 def _data_file(fields: HeaderFields) -> Path:
-    """Return the file of the numbers, which is the same or beside it."""
+    """Return the file of the numbers: the same file, or a file in the same folder."""
     path, name = fields.path, fields.text("ElementDataFile", "")
     if name.upper() == "LOCAL":
         return path
@@ -188,9 +188,9 @@ def _spacing(fields: HeaderFields) -> Optional[float]:
 
 
 def _turn(fields: HeaderFields) -> Turn:
-    """Return the axes in terms of those of the file.
+    """Return the axes of the image by those of the file.
 
-    Three numbers are where an axis of the file points to, x first.
+    Every three numbers are the direction of an axis of the file; the axis x comes first.
     """
     name = fields.given(*MATRICES)
     if name is None:

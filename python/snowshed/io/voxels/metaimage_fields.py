@@ -68,11 +68,11 @@ class HeaderFields:
         return cls(path, fields, position)
 
     def has(self, name: str) -> bool:
-        """Return whether a field is there."""
+        """Return whether the header has a field."""
         return name in self.values
 
     def given(self, *names: str) -> Optional[str]:
-        """Return which of some names of the same thing is there, the first of several."""
+        """Return the first of several names of one field that the header has, if any."""
         return next((name for name in names if name in self.values), None)
 
     def text(self, name: str, default: str) -> str:

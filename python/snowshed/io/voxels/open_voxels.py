@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Optional
 
 from snowshed._core import InputError
-from snowshed.base.notes import recorded
+from snowshed.base.notes import record_notes
 from snowshed.base.paths import PathLike
 from snowshed.io.voxels.array_files import open_npy, open_raw
 from snowshed.io.voxels.metaimage import open_metaimage
@@ -27,7 +27,7 @@ RAW = ".raw"
 def open_voxels(
     path: PathLike, shape: Optional[tuple[int, int, int]] = None, kind: Optional[str] = None
 ) -> VoxelFile:
-    """Return an image, of which only the size and the type are read so far.
+    """Return an image; its size and type are read, its numbers on demand.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ def open_voxels(
     Raises
     ------
     InputError
-        If it is damaged, or no such file by its name.
+        If the file is damaged, or its name has none of these suffixes.
     OSError
         If it cannot be read.
 
@@ -54,7 +54,7 @@ def open_voxels(
     ...     open_voxels(folder + "/snow.npy").shape
     (2, 3, 4)
     """
-    with recorded() as notes:
+    with record_notes() as notes:
         opened = _opened(Path(path), shape, kind)
     return replace(opened, notes=tuple(notes))
 
@@ -64,7 +64,7 @@ def _opened(file: Path, shape: Optional[tuple[int, int, int]], kind: Optional[st
     if (ending == RAW) != (shape is not None and kind is not None):
         raise InputError(
             f"{file}: a .raw file needs the shape and the type of its numbers (or a .mhd header "
-            "beside it), and no other takes them"
+            "beside it), and no other file accepts them"
         )
     if file.is_dir():
         return open_slices(file)

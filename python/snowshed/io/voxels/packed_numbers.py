@@ -17,13 +17,13 @@ from snowshed.io.input_file import open_regular
 from snowshed.io.voxels.voxel_file import VoxelFile, check_unpacked
 
 PIECE = MB  # packed bytes in a chunk
-EITHER = 47  # of zlib: a stream of zlib or of gzip, told by its head
+EITHER = 47  # window bits of zlib: its or gzip's stream, recognised by its head
 
 
 def packed_numbers(
     name: Path, data: Path, shape: tuple[int, int, int], dtype: np.dtype[Any], start: int, size: int
 ) -> VoxelFile:
-    """Return an image whose numbers are one stream of zlib, unpacked only as far as needed.
+    """Return an image whose numbers are a stream of zlib, which is unpacked only as far as needed.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ def packed_numbers(
     Raises
     ------
     InputError
-        If it unpacks to more than any image of snow would.
+        If the numbers unpack to far more bytes than those of any image of snow.
     OSError
         If it cannot be read.
     """
@@ -56,7 +56,7 @@ def packed_numbers(
 
 
 class _PackedLayers:
-    """Reads layers; consecutive layers continue the unpacking."""
+    """Reader of layers; consecutive layers continue the unpacking."""
 
     def __init__(
         self, name: str, data: Path, shape: tuple[int, int, int], dtype: np.dtype[Any], start: int

@@ -14,8 +14,8 @@ from snowshed._core import InputError
 from snowshed.base.notes import issue_note
 from snowshed.io.voxels.voxel_file import VoxelFile, check_size, check_unpacked
 
-#: What the tag Orientation says: whether the stored picture is transposed, and then mirrored along
-#: y and x (TIFF 6.0, page 36; the same in Exif).
+#: By the tag Orientation: whether the stored picture is transposed, and then mirrored along y and x
+#: (TIFF 6.0, page 36; the same in Exif).
 ORIENTATIONS = {
     1: (False, False, False), 2: (False, False, True), 3: (False, True, True),
     4: (False, True, False), 5: (True, False, False), 6: (True, False, True),
@@ -38,12 +38,12 @@ class PixelPicture:
     kind
         Further properties that all pictures of a stack share, as text.
     read
-        Returns the numbers as stored.
+        Function that returns the numbers as stored.
     orientation
         Orientation of the stored rows and columns, one of `ORIENTATIONS`; None if the picture does
-        not state it, which means that of the first picture.
+        not state it and takes the orientation of the first picture.
     stored
-        Size in its file, bytes.
+        Size in the file, bytes.
     notes
         Assumptions made in reading.
     """
@@ -69,7 +69,7 @@ def stacked(
     Raises
     ------
     InputError
-        If they differ, or are larger than any image of snow.
+        If the pictures differ, or the image is larger than any image of snow.
     """
     first = pictures[0]
     for other in pictures[1:]:
@@ -99,7 +99,7 @@ def stacked(
 
 
 def oriented(pixels: NDArray[Any], orientation: int) -> NDArray[Any]:
-    """Return a picture as its tag Orientation says it is seen.
+    """Return a picture turned as its tag Orientation says.
 
     Examples
     --------

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Optional
 
 from snowshed._core import InputError
-from snowshed.base.limits import PAGES
+from snowshed.base.limits import MAX_PAGES
 from snowshed.base.notes import issue_note
 from snowshed.io.voxels.picture import PixelPicture, stacked
 from snowshed.io.voxels.plain_pictures import open_picture
@@ -41,7 +41,7 @@ def open_stack(path: Path) -> VoxelFile:
             pictures = contiguous_copies(pictures[0], description.slices or 0)
         else:
             issue_note(
-                f"{path}: its description speaks of {description.slices} slices; it has "
+                f"{path}: its description gives {description.slices} slices; it has "
                 f"{len(pictures)} pages, which are read"
             )
     for note in description.notes:
@@ -97,7 +97,7 @@ def _pages(path: Path) -> tuple[list[PixelPicture], Description, Optional[float]
 
 
 def _printed_size(tags: Tags) -> Optional[float]:
-    """Return the edge of a pixel from the tags of resolution, if it is meaningful."""
+    """Return the edge of a pixel, m, from the tags of resolution; None if they mean nothing."""
     unit, across, along = UNITS.get(tags.number(296, 2)), tags.ratio(282), tags.ratio(283)
     if unit is None or across is None or along is None:
         return None
@@ -115,8 +115,8 @@ def _numbered(folder: Path) -> list[Path]:
     for path in folder.iterdir():
         if path.suffix.lower() in FORMATS and not path.name.startswith("."):
             paths.append(path)
-        if len(paths) > PAGES:
-            raise InputError(f"{folder}: more than {PAGES:,} slices")
+        if len(paths) > MAX_PAGES:
+            raise InputError(f"{folder}: more than {MAX_PAGES:,} slices")
     if not paths:
         raise InputError(f"{folder}: no slices in it; {', '.join(FORMATS)} are read")
     kinds = {FORMATS[path.suffix.lower()] for path in paths}

@@ -31,7 +31,7 @@ ORIENTATION = 274  # tag of Exif
 
 
 def open_picture(path: Path, kind: str) -> PixelPicture:
-    """Return a picture of a kind, "PNG" or "BMP".
+    """Return the picture in a file of the kind "PNG" or "BMP".
 
     Raises
     ------
@@ -74,12 +74,12 @@ def _pixels(path: Path, kind: str) -> NDArray[Any]:
 
 @contextmanager
 def _opened(path: Path, kind: str) -> Iterator[Image]:
-    """Yield a picture of a kind, whose errors say that it is damaged."""
+    """Yield the picture in a file of some kind; errors say that it is damaged."""
     pillow = require("PIL.Image", "images", "reading pictures")
     with open_regular(path) as file:
         try:
             with warnings.catch_warnings():
-                warnings.simplefilter("ignore")  # sizes are checked, and damage is an error
+                warnings.simplefilter("ignore")  # our own checks replace Pillow's warnings
                 with pillow.open(file, formats=[kind]) as image:
                     yield image
         except InputError:

@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 
 from snowshed._core import InputError
-from snowshed.base.limits import MB, VOXELS_AS_TEXT
+from snowshed.base.limits import MAX_VOXEL_TEXT_BYTES, MB
 from snowshed.io.input_file import open_regular
 from snowshed.io.voxels.voxel_file import VoxelFile
 
-EXACT = 4  # bytes of the longest whole numbers that double holds exactly
+EXACT = 4  # bytes of the largest integer type that double holds exactly
 
 
 def text_numbers(
@@ -47,19 +47,20 @@ def text_numbers(
     count = prod(shape)
     with open_regular(data) as file:
         file.seek(start)
-        text = file.read(VOXELS_AS_TEXT + 1)
-    if len(text) > VOXELS_AS_TEXT:
+        text = file.read(MAX_VOXEL_TEXT_BYTES + 1)
+    if len(text) > MAX_VOXEL_TEXT_BYTES:
         raise InputError(
-            f"{name}: more than {VOXELS_AS_TEXT // MB} MB of numbers as text; save them as binary"
+            f"{name}: more than {MAX_VOXEL_TEXT_BYTES // MB} MB of numbers as text; save them as "
+            "binary"
         )
-    if 2 * count > len(text) + 1:  # a digit and a space each
+    if 2 * count > len(text) + 1:  # at least a digit and a space for each number
         raise InputError(f"{name}: damaged: {len(text):,} characters for {count:,} numbers")
     with warnings.catch_warnings():
         warnings.simplefilter("error", DeprecationWarning)  # the text is not a number
         try:
             numbers = np.fromstring(text.decode("ascii"), dtype=np.float64, sep=" ")
         except (ValueError, DeprecationWarning) as error:
-            raise InputError(f"{name}: damaged: its numbers are text, not all: {error}") from None
+            raise InputError(f"{name}: damaged: its text is not only numbers: {error}") from None
     if len(numbers) != count:
         raise InputError(
             f"{name}: damaged: {len(numbers):,} numbers as text; its header says {count:,}"

@@ -22,7 +22,7 @@ UNITS = {
     "nm": 1e-9, "micron": 1e-6, "microns": 1e-6, "um": 1e-6, "\N{MICRO SIGN}m": 1e-6,
     "\N{GREEK SMALL LETTER MU}m": 1e-6, "mm": 1e-3, "cm": 1e-2, "m": 1.0, "inch": 0.0254,
 }  # fmt: skip
-CUBIC = 1.001  # largest over smallest edge of what counts as a cube
+CUBIC = 1.001  # ratio of edges up to which a voxel counts as a cube
 #: Names in descriptions for the three dimensions along which pages may follow each other.
 KINDS = ("channels", "slices", "frames")
 
@@ -36,7 +36,7 @@ class Description:
     slices
         Number of slices, if the file states it.
     voxel_size
-        Edge of a voxel, m; None: it does not say.
+        Edge of a voxel, m; None: not stated.
     notes
         Assumptions made in reading.
     """
@@ -87,7 +87,7 @@ def _stack(name: str, counts: Mapping[str, int]) -> tuple[int, tuple[str, ...]]:
         )
     if more and "slices" not in more:
         ((kind, count),) = more.items()
-        return count, (f"its {count} {kind} are taken for slices, as it has no others",)
+        return count, (f"its {count} {kind} are taken for slices, because it has no others",)
     return math.prod(counts.values()), ()
 
 
@@ -150,7 +150,7 @@ def _by_ome(name: str, text: str) -> Description:
 
 
 def _by_tifffile(name: str, text: str) -> Description:
-    """Read the shape of an array, which tifffile writes unless it is told not to."""
+    """Read the shape of an array, which tifffile writes by default."""
     try:
         facts: Any = json.loads(text)
         shape = [int(count) for count in facts["shape"]]

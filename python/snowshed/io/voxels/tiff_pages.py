@@ -19,13 +19,13 @@ from snowshed.io.voxels.voxel_file import check_size
 
 WHITE_IS_ZERO, BLACK_IS_ZERO, PALETTE = 0, 1, 3
 WHITE_NOTE = (
-    "numbers are taken as they are stored; its tag PhotometricInterpretation (WhiteIsZero) has the "
-    "larger ones shown darker. If ice is the smaller ones, give --dark-ice"
+    "numbers are taken as they are stored; by its tag PhotometricInterpretation (WhiteIsZero), "
+    "larger numbers are darker. If ice has the smaller numbers, give --dark-ice"
 )
 #: The sample formats of TIFF, by NumPy's letter for the kind.
 KINDS = {1: "u", 2: "i", 3: "f", 4: "u"}
 UNDEFINED = 4
-MAX_TILE = 1 << 20  # pixels, of an image that is smaller
+MAX_TILE = 1 << 20  # pixels of a tile that may exceed its image
 
 
 @dataclass(frozen=True)
@@ -37,9 +37,9 @@ class Layout:
     size
         Pixels along y and x.
     piece
-        The same of a strip or tile.
+        Pixels of a strip or tile along y and x.
     tiled
-        Whether the segments are tiles, which all are complete; the last strip may have fewer rows.
+        Whether the segments are tiles, which are all complete; the last strip may have fewer rows.
     offsets, counts
         First byte, and number of bytes, of each strip or tile, row by row.
     coding
@@ -139,8 +139,8 @@ def _palette(tags: Tags, dtype: np.dtype[Any]) -> tuple[NDArray[Any], tuple[str,
     red, green, blue = colours.reshape(3, count)
     if (red != green).any() or (red != blue).any():
         raise InputError(
-            f"{tags.name}: has colours (a palette); convert it to shades of grey, or take the "
-            "look-up table away"
+            f"{tags.name}: has colours (a palette); convert it to shades of grey, or remove the "
+            "look-up table"
         )
     if (red < 0).any() or (red > 0xFFFF).any():
         raise InputError(f"{tags.name}: damaged: its palette is not of 16 bits")
@@ -223,7 +223,7 @@ def _coding(tags: Tags, big_endian: bool) -> Coding:
 
 @dataclass(frozen=True)
 class _PageReader:
-    """Reads the numbers of a page."""
+    """Reader of the numbers of a page."""
 
     path: Path
     name: str
@@ -253,13 +253,13 @@ class _PageReader:
 
 
 def is_big_endian(path: Path) -> bool:
-    """Return whether a TIFF file has the highest byte of its numbers first."""
+    """Return whether a TIFF file stores the highest byte of a number first."""
     with open_regular(path) as file:
         return file.read(2) == b"MM"
 
 
 def contiguous_copies(picture: PixelPicture, count: int) -> list[PixelPicture]:
-    """Return consecutive pictures of a file in which only the first is a page.
+    """Return pictures that follow one another in a file; only the first one is a page.
 
     Raises
     ------

@@ -66,7 +66,7 @@ class Coding:
         return (columns * self.bits + 7) // 8
 
     def longest(self, rows: int, columns: int) -> int:
-        """Return the largest number of bytes of packed rows; no kind makes them much longer."""
+        """Return the largest plausible number of bytes of packed rows."""
         return 2 * rows * self.row_bytes(columns) + (1 << 16)
 
 
@@ -150,7 +150,7 @@ def _from_bits(rows: NDArray[np.uint8], bits: int, columns: int) -> NDArray[Any]
 
 def _numbers(coding: Coding, rows: NDArray[np.uint8], columns: int) -> NDArray[Any]:
     dtype = coding.dtype
-    if coding.predictor == FLOAT_DIFFERENCES:  # bytes, the highest ones of all numbers first
+    if coding.predictor == FLOAT_DIFFERENCES:  # the highest bytes of all numbers come first
         planes = np.cumsum(rows, axis=1, dtype=np.uint8).reshape(len(rows), dtype.itemsize, -1)
         numbers = np.ascontiguousarray(planes.transpose(0, 2, 1)).view(f">f{dtype.itemsize}")
         return numbers.reshape(len(rows), columns)

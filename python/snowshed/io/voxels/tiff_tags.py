@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO, Optional, TypeVar
 from snowshed._core import InputError
 from snowshed.base.damage import DAMAGED
 from snowshed.base.extras import require
-from snowshed.base.limits import PAGES, TAG
+from snowshed.base.limits import MAX_PAGES, MAX_TAG_BYTES
 from snowshed.base.messages import shortened
 from snowshed.io.input_file import open_regular
 
@@ -64,7 +64,7 @@ class Tags:
         return tuple(map(int, many))
 
     def number(self, code: int, default: int) -> int:
-        """Return the whole number of a tag, the same in all of its values."""
+        """Return the whole number of a tag whose values are all the same."""
         numbers = set(self.numbers(code)) or {default}
         if len(numbers) > 1:
             raise InputError(f"{self.name}: tag {code} holds {shortened(str(sorted(numbers)))}")
@@ -111,7 +111,7 @@ def read_pages(path: Path, look: Callable[[Tags], Page]) -> list[Page]:
     Raises
     ------
     InputError
-        If it is damaged, or has more than `PAGES` pages.
+        If it is damaged, or has more than `MAX_PAGES` pages.
     OSError
         If it cannot be read.
     """
@@ -130,8 +130,8 @@ def _tags(tiff: TiffFile, path: Path) -> Iterator[Tags]:
             page = tiff.pages[len(offsets)]
         except IndexError:
             return
-        if len(offsets) == PAGES:
-            raise InputError(f"{path}: more than {PAGES:,} pages")
+        if len(offsets) == MAX_PAGES:
+            raise InputError(f"{path}: more than {MAX_PAGES:,} pages")
         tags = Tags(page, name)  # type: ignore[arg-type]
         if tags.offset in offsets:
             raise InputError(f"{name}: damaged: it is an earlier page again")
@@ -140,11 +140,11 @@ def _tags(tiff: TiffFile, path: Path) -> Iterator[Tags]:
 
 
 class _Bounded(io.RawIOBase):
-    """A file that limits the tags that are read (`TAG`), and the passes over its bytes."""
+    """A file that limits the size of tags (`MAX_TAG_BYTES`) and the passes over its bytes."""
 
     def __init__(self, file: BinaryIO) -> None:
         self._file = file
-        self._left = READ_OFTEN * os.fstat(file.fileno()).st_size + TAG
+        self._left = READ_OFTEN * os.fstat(file.fileno()).st_size + MAX_TAG_BYTES
 
     def readable(self) -> bool:
         return True
@@ -159,8 +159,8 @@ class _Bounded(io.RawIOBase):
         return self._file.seek(offset, whence)
 
     def read(self, size: Optional[int] = -1, /) -> bytes:
-        if size is None or not 0 <= size <= TAG:
-            raise InputError(f"a tag of {size} bytes; up to {TAG:,} are read")
+        if size is None or not 0 <= size <= MAX_TAG_BYTES:
+            raise InputError(f"a tag of {size} bytes; up to {MAX_TAG_BYTES:,} are read")
         self._left -= size
         if self._left < 0:
             raise InputError("its tags take more bytes than it has")

@@ -21,7 +21,7 @@ class Turn:
     axes
         The axis of the file (0, 1, 2) that each axis of the image is.
     mirrored
-        Whether it runs from the other end.
+        Whether each axis of the image runs in the opposite direction.
     """
 
     axes: tuple[int, int, int] = (0, 1, 2)
@@ -33,7 +33,7 @@ class Turn:
         return self == Turn()
 
     def of(self, array: NDArray[Any]) -> NDArray[Any]:
-        """Return an array turned so; a view.
+        """Return a view of an array, turned.
 
         Examples
         --------
@@ -45,7 +45,7 @@ class Turn:
 
 
 def turned(file: VoxelFile, turn: Turn) -> VoxelFile:
-    """Return an image turned; of its file no more is held than some layers.
+    """Return an image, turned; only some layers of its file are in memory at a time.
 
     If layers of the image are not layers of the file, each reading passes through the whole file.
     """
@@ -56,7 +56,7 @@ def turned(file: VoxelFile, turn: Turn) -> VoxelFile:
     read: Callable[[int, int], NDArray[Any]]
 
     def within(low: int, high: int) -> tuple[int, int]:
-        """Return the places in the file of some layers of the image."""
+        """Return the range of layers in the file for some layers of the image."""
         return (nz - high, nz - low) if turn.mirrored[0] else (low, high)
 
     def layers(low: int, high: int) -> NDArray[Any]:

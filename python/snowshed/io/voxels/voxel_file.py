@@ -12,7 +12,12 @@ from numpy.typing import NDArray
 
 from snowshed._core import InputError
 from snowshed.base.formatting import number
-from snowshed.base.limits import MB, UNPACKED_FREELY, UNPACKED_RATIO, VOXELS_AT_ONCE
+from snowshed.base.limits import (
+    MAX_UNPACKED_RATIO,
+    MAX_VOXELS_AT_ONCE,
+    MB,
+    UNCHECKED_UNPACKED_BYTES,
+)
 from snowshed.base.messages import shortened
 
 MAX_VOXELS = 1 << 32
@@ -34,12 +39,12 @@ class VoxelFile:
     dtype
         Type of the numbers.
     read_layers
-        Called with the first layer and the one after the last; returns (n, ny, nx).
+        Function of the first layer and the one after the last; returns numbers (n, ny, nx).
     voxel_size
-        Edge of a voxel as the file says, m; None: it does not say.
+        Edge of a voxel from the file, m; None: not stated.
     printed_size
-        Edge of a pixel from a resolution that may be meant for printers, m, if any. It is compared
-        with the given voxel size, and never used instead of it.
+        Edge of a pixel from a resolution that may be meant for printers, m, if any. It is only
+        compared with the given voxel size.
     notes
         Notes from opening the file.
     """
@@ -60,7 +65,7 @@ class VoxelFile:
     def layers_at_once(self) -> int:
         """Number of layers to read in one block, so that they occupy little memory."""
         _, ny, nx = self.shape
-        return max(1, VOXELS_AT_ONCE // (ny * nx))
+        return max(1, MAX_VOXELS_AT_ONCE // (ny * nx))
 
     def layers(self, low: int, high: int) -> NDArray[Any]:
         """Return some layers, in the byte order of this machine.
@@ -97,7 +102,7 @@ def check_type(name: str, dtype: np.dtype[Any]) -> None:
 
 
 def check_unpacked(name: str, unpacked: int, stored: int) -> None:
-    """Raise InputError where a file unpacks to far more than any image of snow would.
+    """Raise InputError if a file unpacks to far more bytes than any image of snow.
 
     Parameters
     ----------
@@ -115,10 +120,10 @@ def check_unpacked(name: str, unpacked: int, stored: int) -> None:
     ...
     snowshed._core.InputError: a.mha: 1.05 MB unpack to 1,070 MB, more than 200 times as much, ...
     """
-    if unpacked > UNPACKED_FREELY and unpacked > UNPACKED_RATIO * stored:
+    if unpacked > UNCHECKED_UNPACKED_BYTES and unpacked > MAX_UNPACKED_RATIO * stored:
         raise InputError(
             f"{name}: {number(stored / 1e6)} MB unpack to {number(unpacked / 1e6)} MB, more than "
-            f"{UNPACKED_RATIO} times as much, which is implausible for an image of snow; crop it, "
-            "or save it "
-            f"uncompressed (up to {UNPACKED_FREELY // MB} MB, any compression is read)"
+            f"{MAX_UNPACKED_RATIO} times as much, which is implausible for an image of snow; "
+            f"crop it, or save it uncompressed "
+            f"(up to {UNCHECKED_UNPACKED_BYTES // MB} MB, any compression is read)"
         )

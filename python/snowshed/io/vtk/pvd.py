@@ -1,4 +1,4 @@
-"""Reading the list that shows a folder of snapshots as a series in time (.pvd)."""
+"""Reading a list of snapshots as a series in time (.pvd)."""
 
 from __future__ import annotations
 

@@ -37,7 +37,7 @@ def write_image(
     arrays, offset = "", 0
     for name, array in values.items():
         components = 1 if array.ndim == 3 else array.shape[3]
-        # x goes fastest in these files.
+        # In these files, x varies fastest.
         blocks.append(array.swapaxes(0, 2).astype("<f4").ravel())
         arrays += (
             f'<DataArray type="Float32" Name="{name}" NumberOfComponents="{components}" '

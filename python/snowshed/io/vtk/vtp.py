@@ -72,7 +72,7 @@ def read_particles(path: Union[str, os.PathLike[str]]) -> dict[str, NDArray[Any]
 
 
 def _check_sum(content: bytes) -> None:
-    """Raise ValueError unless the checksum at the end is right; a version before wrote none."""
+    """Raise ValueError if the checksum at the end is wrong; an earlier version wrote none."""
     if content.endswith(OLD_END):
         return
     if not (end := END.search(content, max(0, len(content) - MAX_END_LENGTH))):
@@ -112,9 +112,9 @@ def write_triangles(
     points : (n, 3)
         Positions of the corners, m.
     triangles : (m, 3)
-        The points of each.
+        Indices of the corners of each triangle.
     values
-        A whole number (m,) of each triangle, by name.
+        Whole numbers of the triangles (m,), by name.
     """
     count = len(triangles)
     corners = triangles.astype("<i8").ravel()
@@ -143,7 +143,7 @@ def write_triangles(
 def write_appended(
     path: Union[str, os.PathLike[str]], head: str, blocks: Iterable[NDArray[Any]]
 ) -> None:
-    """Write a file of VTK whose arrays, `blocks`, follow as raw data after its XML, `head`."""
+    """Write a file of VTK: the XML `head`, then the arrays `blocks` as raw data."""
     with replacing(path) as beside, beside.open("wb") as file:
         file.write(head.encode("ascii") + APPENDED)
         for block in blocks:

@@ -39,8 +39,8 @@ _MEAN = ("TAVG", Quantity("temperature", "degrees F", *FAHRENHEIT))
 _WATER = ("PRCP", Quantity("precipitation", "inches", 1e3 * INCH))
 _NEW = ("SNOW", Quantity("snowfall", "inches", INCH))
 _DEPTH = ("SNWD", Quantity("snow_depth", "inches", INCH))
-#: ACIS columns, by their names in small letters without blanks: those of the
-#: service, of its data listings, and of the tables of NOWData.
+#: ACIS columns, by their names in lower case without blanks: names in the service, in its data
+#: listings, and in tables of NOWData.
 ACIS: Mapping[str, tuple[str, Quantity]] = {
     **dict.fromkeys(("maxt", "maxtemp", "maxtemperature", "temperaturemaximum"), _MAXIMUM),
     **dict.fromkeys(("mint", "mintemp", "mintemperature", "temperatureminimum"), _MINIMUM),
@@ -52,7 +52,7 @@ ACIS: Mapping[str, tuple[str, Quantity]] = {
 SUMMARIES = ("sum", "average", "normal")  # rows at the end of a month of NOWData
 BARE_TITLE = re.compile(r'"?[A-Za-z0-9 .&()/-]{1,60}"?')
 BARE_ROW = re.compile(r"\d{4}-\d{2}-\d{2}(,[MTS]?-?[0-9.]*A?){2,}")
-#: Flags of ACIS: a trace, missing values, an amount that is a part of a later one, and that one.
+#: Flags of ACIS: a trace; missing values; an amount that a later one contains, and that later one.
 TRACE, LACKING, PART, GATHERED = "T", ("M", "", "S"), "S", "A"
 
 
@@ -106,14 +106,14 @@ def ghcn(station: str, days: Days, *more: str) -> Station:
 
 
 def is_by_station(lines: Sequence[str]) -> bool:
-    """Return whether a file is GHCN-daily as of its folder by_station."""
+    """Return whether a file is GHCN-daily from the folder by_station."""
     return bool(BY_STATION.match(lines[0])) or _is_head(lines[0])
 
 
 def read_by_station(name: str, lines: Sequence[str]) -> Station:
     """Return a by_station file's observations; raises InputError naming line and column."""
     days = Days()
-    start = 1 if _is_head(lines[0]) else 0  # the copies of cloud services name the columns
+    start = 1 if _is_head(lines[0]) else 0  # copies from cloud services name the columns
     station = ""
     for number, line in enumerate(lines[start:], start + 1):
         if not line.strip():
@@ -136,7 +136,7 @@ def read_by_station(name: str, lines: Sequence[str]) -> Station:
 
 
 def is_acis(lines: Sequence[str]) -> bool:
-    """Return whether a file has the columns of ACIS, or its rows without their names."""
+    """Return whether a file has columns of ACIS, with or without their names."""
     return _acis_head(lines) is not None or _is_bare_acis(lines)
 
 
@@ -152,7 +152,7 @@ def read_acis(name: str, lines: Sequence[str]) -> Station:
     head = split_cells(lines[start], f"{name}, line {start + 1}", separator)
     columns = {i: ACIS[key] for i, key in enumerate(map(_key, head)) if key in ACIS}
     days = Days()
-    parts: Counter[str] = Counter()  # days whose amount is told later, by element
+    parts: Counter[str] = Counter()  # days whose amount follows on a later day, by element
     for number, line in enumerate(lines[start + 1 :], start + 2):
         if not line.strip() or line.startswith("#") or _key(line).startswith(SUMMARIES):
             continue
@@ -184,7 +184,7 @@ def _is_head(line: str) -> bool:
 
 
 def same_station(own: str, station: str, where: str) -> None:
-    """Raise InputError where a row is of another station than the rows before."""
+    """Raise InputError if a row is of another station than the rows before."""
     if own != station:
         raise InputError(
             f"{where}: {quoted(own)} is another station than {quoted(station)}; a file has the "
@@ -193,7 +193,7 @@ def same_station(own: str, station: str, where: str) -> None:
 
 
 def _acis_head(lines: Sequence[str]) -> tuple[int, str] | None:
-    """Return the line, from 0, that names ACIS columns, and what separates them."""
+    """Return the line, from 0, that names ACIS columns, and their separator."""
     for number, line in enumerate(lines[:3]):
         for separator in (",", "\t", ";"):
             keys = [_key(cell) for cell in line.split(separator)]

@@ -10,12 +10,12 @@ from snowshed._core import InputError
 from snowshed.io.weather.amounts import HOUR, usual_step
 from snowshed.io.weather.observation import DAY, Observation, Station, replace_values
 
-YEARS = (1700, 2200)  # older than any thermometer, later than any scenario
+YEARS = (1700, 2200)  # from before any thermometer to after any scenario
 SUNDAY = 6
 
 
 def on_one_clock(station: Station, source: str) -> Station:
-    """Return a station whose rows have increasing times of one clock, without offsets.
+    """Return a station whose rows have increasing times on one clock, without offsets.
 
     Times with offsets are converted to the smallest offset, which is standard time.
 

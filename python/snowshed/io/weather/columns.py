@@ -9,8 +9,8 @@ from typing import Any, NamedTuple, Optional
 from snowshed.io.weather.observation import Observation, Quantity
 
 HOURS = {"precipitation": "precipitation_hours", "snowfall": "snowfall_hours"}
-ENOUGH = 0.9  # of the values of the fullest column; then the earlier in the list is taken
-MAX_REMEMBERED = 50_000  # texts of a column that are remembered
+MIN_COLUMN_SHARE = 0.9  # of the values of the fullest column; a column with more is taken
+MAX_REMEMBERED = 50_000  # parsed texts of a column that are kept
 WORDS = {
     "temperature": "the temperature",
     "precipitation": "precipitation",
@@ -73,8 +73,8 @@ def observations(
     Parameters
     ----------
     columns
-        Columns by preference. Among several columns of a quantity, the first with at least nine
-        tenths of the values of the fullest is used.
+        Columns by preference. Among several columns of a quantity, the first one is used that
+        has at least nine tenths of the values of the fullest column.
     readings
         Values of the `columns`, row by row.
     """
@@ -86,7 +86,7 @@ def observations(
     for name in dict.fromkeys(column.quantity.name for column in columns):
         own = [i for i, column in enumerate(columns) if column.quantity.name == name]
         most = max(counts[i] for i in own)
-        taken[name] = next(i for i in own if counts[i] >= ENOUGH * most)
+        taken[name] = next(i for i in own if counts[i] >= MIN_COLUMN_SHARE * most)
         others = [
             f"{columns[i].title} ({counts[i]} values)"
             for i in own

@@ -16,12 +16,12 @@ from snowshed.io.weather.amounts import Total, without_overlap
 from snowshed.io.weather.observation import DAY, Observation, Quantity
 
 MISSING = ("", "-9999")
-PRESUMED = "P"  # the flag of a value that is missing and was presumed to be 0
-MAX_DAYS = 366  # of a total over several days
+PRESUMED = "P"  # flag of a missing value that is presumed to be 0
+MAX_DAYS = 366  # days of a total
 
 
 class _Several(NamedTuple):
-    """Elements of an amount: of a day, of several days, the number of these days; and its unit."""
+    """Elements of an amount (of a day, of several days, number of these days), and its unit."""
 
     day: str
     days: str
@@ -32,7 +32,7 @@ class _Several(NamedTuple):
 SNOW = _Several("SNOW", "MDSF", "DASF", "m of new snow")
 WATER = _Several("PRCP", "MDPR", "DAPR", "mm of precipitation")
 COUNTS = (SNOW.number, WATER.number)
-#: Elements of several days and of their number, by that of a day.
+#: Elements of an amount of several days and of their number, by the element of a day.
 TOTALS = {names.day: (names.days, names.number) for names in (SNOW, WATER)}
 #: Elements of each quantity, by their names in the files.
 COLUMNS: Mapping[str, str] = {
@@ -44,7 +44,7 @@ COLUMNS: Mapping[str, str] = {
 
 
 def with_totals(elements: Mapping[str, Quantity]) -> dict[str, Quantity]:
-    """Return elements with those of amounts over several days, in the units of their days'."""
+    """Return elements, and those of amounts over several days in the units of the daily amounts."""
     more = {names.days: elements[names.day] for names in (SNOW, WATER)}
     return {**elements, **more}
 
@@ -75,7 +75,7 @@ class Days:
         values[element] = value
 
     def passes(self, measurement: str, quality: str) -> bool:
-        """Return whether a value with these flags counts; if not, it is counted as left out."""
+        """Return whether a value with these flags is valid; invalid values are counted."""
         if quality.strip():
             self.left_out["failed a check of quality"] += 1
         elif measurement.strip() == PRESUMED:
@@ -85,7 +85,7 @@ class Days:
         return False
 
     def count(self, text: str, day: datetime, line: int, element: str, where: str) -> None:
-        """Enter the number of days of an amount over several."""
+        """Enter the number of days of an amount over several days."""
         cell = text.strip()
         if cell in MISSING:
             return
@@ -95,7 +95,7 @@ class Days:
         self.enter(day, line, element, int(number), where)
 
     def rows(self) -> tuple[list[Observation], list[str]]:
-        """Return the days on which anything was measured, in their order, and notes."""
+        """Return the days with any measurement, in order, and notes."""
         notes = [f"{count} values {why}, and are left out" for why, count in self.left_out.items()]
         snow, of_snow = self._amounts(SNOW)
         water, of_water = self._amounts(WATER)
@@ -113,7 +113,7 @@ class Days:
         return rows, [*notes, *of_snow, *of_water]
 
     def _amounts(self, names: _Several) -> tuple[dict[datetime, tuple[float, float]], list[str]]:
-        """Return the amount and the hours of each day on which one was measured, and notes."""
+        """Return the amount and its hours on each day with a measured amount, and notes."""
         totals: list[Total] = []
         days: list[datetime] = []
         several, counted = 0, 0

@@ -1,7 +1,7 @@
 """Years of building and solar energy, hour after hour: EPW and TMY3.
 
-Most are typical years, whose months come from different years. Precipitation is told as totals of
-one or more hours, which may contain one another.
+Most are typical years, whose months come from different years. Precipitation is given as totals
+over one or more hours, which may contain one another.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ EPW_HEAD = (
     "aerosol optical depth", "snow depth", "days since snow", "albedo",
     "liquid precipitation depth", "liquid precipitation quantity",
 )  # fmt: skip
-EPW_OLDER = 32  # columns of files from before albedo and rain were added
+EPW_OLDER = 32  # columns of older files, without albedo and rain
 EPW_COLUMNS = (
     ("dry bulb temperature", Quantity("temperature", "degrees C"), "99.9"),
     ("snow depth", Quantity("snow_depth", "cm", 0.01), "999"),
@@ -68,7 +68,7 @@ class _Place(NamedTuple):
 
     @classmethod
     def of(cls, line: str, name: str, columns: Sequence[int]) -> _Place:
-        """Return the station of the first line, whose name and numbers stand in given columns."""
+        """Return the station in the first line; its name and numbers are in the given columns."""
         cells = [*split_cells(line, f"{name}, line 1"), *[""] * 10]
         numbers = [
             coordinate(cells[i], f"{name}, line 1, column {title}", largest)
@@ -112,7 +112,7 @@ def read_epw(name: str, lines: Sequence[str]) -> Station:
 
 
 def _epw_time(cells: dict[str, str], place: str) -> tuple[datetime, datetime]:
-    """Return the time of a row, a minute before the end of its hour or part of it, and the end."""
+    """Return the time of a row, a minute before the end of its period, and that end."""
     year, month, day, minute = (
         _integer(cells[title], f"{place}, column {title}", 0, 9999)
         for title in ("year", "month", "day", "minute")
@@ -203,10 +203,10 @@ def _station(
 def _with_amounts(
     rows: Sequence[Observation], periods: Sequence[Optional[float]]
 ) -> tuple[list[Observation], list[str]]:
-    """Return the rows with amounts that do not overlap, and notes on those that did."""
+    """Return the rows with amounts that do not overlap, and notes on overlapping ones."""
     step = usual_step([row.time for row in rows])
     if not any(period for row, period in zip(rows, periods) if row.precipitation is not None):
-        periods = [step] * len(rows)  # no row tells its period
+        periods = [step] * len(rows)  # no row states its period
     totals = {
         i: Total(row.end or row.time, period, row.precipitation)
         for i, (row, period) in enumerate(zip(rows, periods))

@@ -16,18 +16,18 @@ AMOUNTS = (
     ("precipitation", "precipitation_hours", "mm", "precipitation"),
     ("snowfall", "snowfall_hours", "m", "new snow"),
 )
-MIN_RISES = 8  # of a counter; a storm may grow from row to row some times
-#: A counter's noise, relative to its value; its value after emptying; rises per reset.
-NOISE, EMPTIED, RISES = 0.02, 0.2, 10
-FILLED = 0.5  # part of the rows, from the first amount on, in which a counter is above 0
+MIN_RISES = 8  # rises of a counter; snow or rain of a storm has fewer
+#: Noise of a counter and its value after emptying, relative to its value; rises per reset.
+COUNTER_NOISE, EMPTIED_SHARE, MIN_RISES_PER_RESET = 0.02, 0.2, 10
+MIN_FILLED_SHARE = 0.5  # share of the rows, from the first amount on, in which a counter is above 0
 MINUTE = 1.0 / 60.0
 
 
 def with_hours(station: Station) -> Station:
     """Return a station whose amounts all have a duration.
 
-    Counters become increments. Overlapping sums of precipitation over the last hours are thinned
-    out; overlapping sums of new snow are named by `rolling`.
+    Counters become increments. Of overlapping sums of precipitation over the last hours, only those
+    are kept that do not overlap; overlapping sums of new snow are named by `rolling`.
     """
     rows, notes, rolling = list(station.rows), [*station.notes], set(station.rolling)
     for name, hours, unit, label in AMOUNTS:
@@ -89,8 +89,8 @@ def _fill_in(
 def added_to_counter(times: Sequence[datetime], values: Sequence[float]) -> Optional[list[float]]:
     """Return the increments of a counter, mm or m; None if the values are not a counter.
 
-    A counter rises or stands still, except when it is emptied: seldom, or at the same time of the
-    day.
+    A counter rises or stands still, except when it is emptied, which happens seldom or at the same
+    time of the day.
 
     Examples
     --------
@@ -100,18 +100,18 @@ def added_to_counter(times: Sequence[datetime], values: Sequence[float]) -> Opti
     >>> added_to_counter(hours, [0, 1, 3, 2, 0, 0, 4, 0, 0, 0])
     """
     rises = sum(later > earlier for earlier, later in zip(values, values[1:]))
-    falls = [i for i in range(1, len(values)) if values[i] < (1.0 - NOISE) * values[i - 1]]
-    if rises < MIN_RISES or any(values[i] > EMPTIED * values[i - 1] for i in falls):
+    falls = [i for i in range(1, len(values)) if values[i] < (1.0 - COUNTER_NOISE) * values[i - 1]]
+    if rises < MIN_RISES or any(values[i] > EMPTIED_SHARE * values[i - 1] for i in falls):
         return None
     daily = len(falls) >= 3 and len({times[i].time() for i in falls}) == 1
-    if rises < RISES * len(falls) and not daily:
+    if rises < MIN_RISES_PER_RESET * len(falls) and not daily:
         return None
     begin = next(i for i, value in enumerate(values) if value > 0.0)
-    if sum(value > 0.0 for value in values[begin:]) < FILLED * (len(values) - begin):
+    if sum(value > 0.0 for value in values[begin:]) < MIN_FILLED_SHARE * (len(values) - begin):
         return None
     added, highest = [0.0], values[0]
     for i in range(1, len(values)):
-        if values[i] < (1.0 - NOISE) * values[i - 1]:
+        if values[i] < (1.0 - COUNTER_NOISE) * values[i - 1]:
             highest = 0.0
         added.append(max(values[i] - highest, 0.0))
         highest = max(highest, values[i])
@@ -119,7 +119,7 @@ def added_to_counter(times: Sequence[datetime], values: Sequence[float]) -> Opti
 
 
 def _overlap(times: Sequence[datetime], hours: Sequence[float]) -> bool:
-    """Return whether most rows follow one another faster than their amounts gather."""
+    """Return whether most rows are closer together than the hours of their amounts."""
     steps = [
         (later - earlier) / HOUR / own for earlier, later, own in zip(times, times[1:], hours[1:])
     ]

@@ -1,4 +1,4 @@
-"""Several files of one station: its snow in one and its temperature in another, or year by year."""
+"""Several files of one station, which hold different quantities or different years."""
 
 from __future__ import annotations
 
@@ -17,10 +17,8 @@ from snowshed.io.weather.plain import read_plain
 from snowshed.io.weather.recognise import read_station
 
 MAX_FILES = 200
-MAX_STATION_DISTANCE_KM, MAX_STATION_HEIGHT_M = (
-    2.0,
-    100.0,
-)  # km and m between the positions of what should be one station
+#: Largest distance and difference of altitude between the files of one station, km and m.
+MAX_STATION_DISTANCE_KM, MAX_STATION_HEIGHT_M = 2.0, 100.0
 DEGREE = 111.2  # km of latitude
 TEMPERATURE, DEPTH = "temperature", "snow_depth"
 
@@ -31,7 +29,7 @@ class _File(NamedTuple):
 
 
 class _Value(NamedTuple):
-    """Contribution of a row of a file."""
+    """Value of a quantity in a row of a file."""
 
     file: int
     row: Observation
@@ -41,15 +39,15 @@ class _Value(NamedTuple):
 def read_stations(paths: Sequence[Path], temperature: Optional[Path] = None) -> Station:
     """Return the observations of one station from several files.
 
-    Every quantity is taken, day by day, from the first file that has it on that day. So the files
-    may complete one another, as snow by hand and an automatic thermometer do, or follow one
-    another, as years do. A file may also be a table with the columns ``date`` and one or more of
+    Every quantity is taken, day by day, from the first file that has it on that day. Files may
+    complete one another, such as snow by hand and an automatic thermometer, or follow one another,
+    such as years. A file may also be a table with the columns ``date`` and one or more of
     ``temperature_c``, ``precipitation_mm``, ``snowfall_m`` and ``snow_depth_m``.
 
     Parameters
     ----------
     paths
-        The files, the better ones first.
+        The files, in order of preference.
     temperature
         Another file, whose temperatures are preferred to those of `paths`.
 
@@ -91,7 +89,7 @@ def _read(path: Path) -> _File:
 
 
 def _alike(files: Sequence[_File]) -> tuple[list[_File], list[str]]:
-    """Return the files on the clock of the first, and notes on what tells them apart."""
+    """Return the files on the clock of the first, and notes on their differences."""
     first, *others = files
     clocked, notes = [first], []
     for name, station in others:
@@ -129,7 +127,7 @@ def _apart(first: _File, other: _File) -> Iterator[str]:
 
 
 def _on_clock(station: Station, offset: Optional[float]) -> Station:
-    """Return a station on another clock, if that is known and its rows are shorter than days."""
+    """Return a station on another clock, if its own is known and its rows are shorter than days."""
     if offset is None or station.utc_offset in (None, offset):
         return station
     if usual_step([row.time for row in station.rows]) > 12.0:
@@ -145,7 +143,7 @@ def _on_clock(station: Station, offset: Optional[float]) -> Station:
 def _quantity_values(files: Sequence[_File], name: str, own: Optional[int]) -> list[_Value]:
     """Return the values of a quantity; each day uses the first file with a value."""
     order = list(range(len(files)))
-    if own is not None:  # the file of the temperature, which is for nothing else
+    if own is not None:  # `own` is the file of the temperature, which serves nothing else
         order = [order[own], *order[:own]] if name == TEMPERATURE else order[:own]
     taken: set[date] = set()
     values = []
@@ -170,7 +168,7 @@ def _days(row: Observation, name: str) -> set[date]:
 def _series_of_depth(files: Sequence[_File]) -> list[int]:
     """Return for each file the first of the same series of depths: one sensor, year by year.
 
-    It has the same station and column, and the same values wherever both have one.
+    Files of one series have the same station and column, and equal values at common times.
     """
     by_time = [
         {row.time: row.snow_depth for row in file.station.rows if row.snow_depth is not None}
@@ -193,7 +191,7 @@ def _series_of_depth(files: Sequence[_File]) -> list[int]:
 
 
 def _rows(values: Sequence[_Value], series: Sequence[int]) -> list[Observation]:
-    """Return one row for each time; it is a seam where the depth is of another series."""
+    """Return one row for each time; a row whose depth begins another series is a seam."""
     by_time: dict[datetime, list[_Value]] = {}
     for value in values:
         by_time.setdefault(value.row.time, []).append(value)

@@ -1,8 +1,8 @@
 """NOAA's daily summaries: a row for each day, a column for each element of GHCN-daily.
 
 Files of the archive's folder `access` hold the units of GHCN-daily (tenths of mm and of degrees C).
-Those of an order or of the data service may be metric or in inches and degrees F, and do not say
-so anywhere. Only the decimals that NOAA writes tell it:
+Files from an order or from the data service are metric or in inches and degrees F, and do not
+state which. Only the number of decimals shows the units:
 
 =========================== ==================== ===================== =================
 units                       temperature          precipitation         new snow
@@ -13,8 +13,8 @@ inches and degrees F        whole                two decimals, 0.20    one decim
 =========================== ==================== ===================== =================
 
 Units are never guessed: they are accepted only if the whole content of the file matches exactly one
-row of this table. Precipitation with one decimal fits two rows, so temperatures are needed beside
-it; a file without decimals is accepted only in the form of the archive.
+row of this table. Precipitation with one decimal fits two rows, so temperatures are needed,
+too; a file without decimals is accepted only in the form of the archive.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ STANDARD: Mapping[str, Quantity] = with_totals(
 )
 STATION, DATE, PLACE = "STATION", "DATE", "LATITUDE"
 FLAGS = "_ATTRIBUTES"  # of measurement, of quality, of the source, and the time of observation
-ARCHIVE = [STATION, DATE, PLACE]  # the order of columns that only the archive has
+ARCHIVE = [STATION, DATE, PLACE]  # first columns of a file of the archive, and of no other
 
 
 def is_summaries(lines: Sequence[str]) -> bool:
@@ -130,6 +130,6 @@ def _unknown(name: str, head: Sequence[str], contents: str) -> InputError:
 
 
 def _decimals(rows: Sequence[Mapping[str, str]], *elements: str) -> int:
-    """Return the most decimals of some elements' values; -1 without any value."""
+    """Return the largest number of decimals among values of some elements; -1 without values."""
     cells = [row.get(element, "").strip() for row in rows for element in elements]
     return max((len(cell.partition(".")[2]) for cell in cells if cell), default=-1)

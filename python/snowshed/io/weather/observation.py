@@ -17,7 +17,7 @@ from snowshed.base.messages import quoted
 
 ZERO_CELSIUS = 273.15  # K
 DAY = 24.0  # hours
-#: Parts of times in formats, by their signs: names of arguments of `datetime`, and digits.
+#: Parts of time formats: for each sign, the argument of `datetime` and the pattern of its digits.
 PARTS = {
     "%Y": ("year", "{4}"),
     "%m": ("month", "{1,2}"),
@@ -50,7 +50,7 @@ class Observation:
         except those of `Station.rolling`. Amounts of whole days end with the day of `time`, amounts
         of hours with `end`.
     seam
-        Whether the row continues another series (another source year, sensor or file), so that the
+        Whether the row begins another series (another source year, sensor or file), so that the
         change of snow depth since the row before means nothing.
     end
         End of the hours of the amounts. [default: `time`]
@@ -104,7 +104,7 @@ class Observation:
 
 
 def replace_values(row: Observation, **values: Any) -> Observation:
-    """Return a row with other values, as `dataclasses.replace`, but many times as fast.
+    """Return a row with other values; many times as fast as `dataclasses.replace`.
 
     Examples
     --------
@@ -142,10 +142,10 @@ class Station:
     utc_offset
         Hours of the rows' clock ahead of universal time, if the file states them.
     columns
-        Source of each quantity: names of fields of `Observation`, and of columns in the file.
+        Column of the file that holds each quantity, by the fields of `Observation`.
     rolling
-        Quantities whose rows all hold sums over the last hours, so that rows overlap; overlapping
-        sums of precipitation are never passed on.
+        Quantities whose rows all hold sums over the last hours, so that rows overlap. This never
+        includes precipitation.
     """
 
     format: str
@@ -162,7 +162,7 @@ class Station:
 
     @property
     def quantities(self) -> frozenset[str]:
-        """Names of the fields of `Observation` that any row has."""
+        """Fields of `Observation` that at least one row has."""
         return frozenset(
             name for name in RANGES if any(getattr(row, name) is not None for row in self.rows)
         )
@@ -296,7 +296,7 @@ def _pattern(form: str) -> re.Pattern[str]:
 
 
 def _iso(cell: str) -> str:
-    """Return a time of ISO 8601 in the form that Python 3.9 reads."""
+    """Return a time of ISO 8601 in a form that Python 3.9 can read."""
     if cell[-1:] in ("Z", "z"):
         return cell[:-1] + "+00:00"
     if cell[-5:-4] in ("+", "-") and ":" in cell[:-5]:
@@ -307,7 +307,7 @@ def _iso(cell: str) -> str:
 
 
 def coordinate(text: str, where: str, largest: float) -> Optional[float]:
-    """Return a number of a station, such as its latitude; None: missing.
+    """Return a number of a station, such as its latitude; None if the text is empty.
 
     Raises
     ------
@@ -333,11 +333,11 @@ def split_cells(line: str, where: str, separator: Optional[str] = ",") -> list[s
     Raises
     ------
     InputError
-        If it has a cell without end.
+        If a quoted cell does not end.
     """
     if separator is None:
         return line.split()
-    if '"' not in line and "\r" not in line:  # as the reader would, in a fifth of the time
+    if '"' not in line and "\r" not in line:  # same result as csv.reader, in a fifth of the time
         return [cell.strip() for cell in line.split(separator)] if line else []
     try:
         cells = next(csv.reader([line], delimiter=separator), [])

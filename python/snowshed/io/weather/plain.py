@@ -1,4 +1,4 @@
-"""Plain tables of one or more quantities, which complete the file of a station."""
+"""Plain tables of one or more quantities, which complete a station's file."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ COLUMNS: Mapping[str, Quantity] = {
 def read_plain(path: Path) -> Station:
     """Return the observations of a CSV table with the columns `date` and some of `COLUMNS`.
 
-    Amounts gathered since the row before.
+    An amount is the sum since the row before.
 
     Raises
     ------

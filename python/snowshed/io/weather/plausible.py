@@ -1,7 +1,7 @@
 """Plausibility of a station's units, judged from all its numbers together.
 
 Single numbers beyond every record are refused during reading. Here the median of many numbers
-reveals a column in another unit, so that a faulty sensor does not count.
+reveals a column in another unit; single faults of a sensor hardly change it.
 """
 
 from __future__ import annotations
@@ -15,29 +15,30 @@ from snowshed._core import InputError
 from snowshed.io.weather.columns import WORDS
 from snowshed.io.weather.observation import DAY, Observation, Station
 
-MIN_VALUES = 5  # values by whose middle a unit is judged
-#: Half of the changes of the snow depth from day to day are smaller, m, as is half of the new snow.
-CHANGE, NEW_SNOW = 0.5, 0.7
-#: Temperatures of the air, degrees C, between which snow falls.
-COLDEST, WARMEST = -40.0, 12.0
-MIN_SNOWFALL, MIN_RISE = 0.01, 0.1  # m, of snowfalls by which temperatures are judged
-#: Half of the amounts of a wet day, and of any shorter time, are smaller, mm.
-WET_DAY, WET_HOURS = 100.0, 50.0
-#: The most rain that was measured in D hours is 491 D^0.452 mm (WMO 2009, Manual on Estimation of
-#: Probable Maximum Precipitation, WMO-No. 1045).
+MIN_VALUES = 5  # number of values whose median can reveal a unit
+#: Largest plausible medians of the daily change of the snow depth and of new snow, m.
+MAX_MEDIAN_CHANGE, MAX_MEDIAN_NEW_SNOW = 0.5, 0.7
+#: Smallest and largest plausible median of the air's temperature during snowfall, degrees C.
+MIN_MEDIAN_TEMPERATURE, MAX_MEDIAN_TEMPERATURE = -40.0, 12.0
+#: Smallest snowfall and smallest rise of the depth that are compared with temperatures, m.
+MIN_SNOWFALL, MIN_RISE = 0.01, 0.1
+#: Largest plausible medians of the amounts of a wet day, and of a shorter time, mm.
+MAX_MEDIAN_WET_DAY, MAX_MEDIAN_WET_HOURS = 100.0, 50.0
+#: The largest amount of rain measured in D hours is 491 D^0.452 mm (WMO 2009, Manual on Estimation
+#: of Probable Maximum Precipitation, WMO-No. 1045).
 MAX_RAIN, EXPONENT = 491.0, 0.452
-#: New snow of a cold day is lighter than this, kg/m3; a day is cold below a temperature, degrees C.
-MAX_DENSITY, COLD = 600.0, -2.0
+#: Largest plausible density of new snow on cold days, kg/m3, and their limit, degrees C.
+MAX_DENSITY, COLD_DAY_LIMIT = 600.0, -2.0
 SHALLOW = 0.15  # m
 
 
 def with_plausible_units(station: Station, source: str) -> Station:
-    """Return a station, with notes on units that may be others.
+    """Return a station, with notes on doubtful units.
 
     Raises
     ------
     InputError
-        If a column cannot be in the unit that its format prescribes, with the likely one.
+        If a column cannot be in the unit of its format; the message names the likely unit.
     """
     for check in (_check_depths, _check_new_snow, _check_rain, _check_temperatures, _check_density):
         check(station, source)
@@ -69,20 +70,20 @@ def _changes(rows: Sequence[Observation]) -> list[tuple[date, float]]:
 
 def _check_depths(station: Station, source: str) -> None:
     changes = [abs(change) for _, change in _changes(station.rows) if abs(change) > 1e-6]
-    if len(changes) >= MIN_VALUES and median(changes) > CHANGE:
+    if len(changes) >= MIN_VALUES and median(changes) > MAX_MEDIAN_CHANGE:
         raise _refused(
             station, source, "snow_depth",
-            f"half of the changes of the snow depth from day to day are of {median(changes):g} m "
+            f"half of the changes of the snow depth from day to day are {median(changes):g} m "
             "and more; is it in cm, mm or inches?",
         )  # fmt: skip
 
 
 def _check_new_snow(station: Station, source: str) -> None:
     falls = [row.snowfall for row in station.rows if row.snowfall]
-    if len(falls) >= MIN_VALUES and median(falls) > NEW_SNOW:
+    if len(falls) >= MIN_VALUES and median(falls) > MAX_MEDIAN_NEW_SNOW:
         raise _refused(
             station, source, "snowfall",
-            f"half of the snowfalls are of {median(falls):g} m and more; is it in cm, mm or "
+            f"half of the snowfalls are {median(falls):g} m and more; is it in cm, mm or "
             "inches?",
         )  # fmt: skip
 
@@ -102,11 +103,11 @@ def _check_rain(station: Station, source: str) -> None:
                 "tenths of mm, or a counter?"
             )
         amounts[hours >= DAY].append(row.precipitation)
-    for long, most in ((True, WET_DAY), (False, WET_HOURS)):
+    for long, most in ((True, MAX_MEDIAN_WET_DAY), (False, MAX_MEDIAN_WET_HOURS)):
         if len(amounts[long]) >= MIN_VALUES and median(amounts[long]) > most:
             raise _refused(
                 station, source, "precipitation",
-                f"half of the amounts are of {median(amounts[long]):g} mm and more; is it in "
+                f"half of the amounts are {median(amounts[long]):g} mm and more; is it in "
                 "tenths or hundredths of mm, or the sum of many hours?",
             )  # fmt: skip
 
@@ -123,13 +124,13 @@ def _check_temperatures(station: Station, source: str) -> None:
         elif (row.snowfall or 0.0) >= MIN_SNOWFALL:
             snowy.append(row.temperature)
     snowy += [fmean(own) for own in by_day.values()]
-    if len(snowy) < MIN_VALUES or COLDEST <= median(snowy) <= WARMEST:
+    if len(snowy) < MIN_VALUES or MIN_MEDIAN_TEMPERATURE <= median(snowy) <= MAX_MEDIAN_TEMPERATURE:
         return
-    unit = "degrees F" if median(snowy) > WARMEST else "tenths of degrees C"
+    unit = "degrees F" if median(snowy) > MAX_MEDIAN_TEMPERATURE else "tenths of degrees C"
     raise _refused(
         station, source, "temperature",
         f"half of the snow fell at {median(snowy):.3g} °C and "
-        f"{'more' if median(snowy) > WARMEST else 'less'}; is it in {unit}?",
+        f"{'more' if median(snowy) > MAX_MEDIAN_TEMPERATURE else 'less'}; is it in {unit}?",
     )  # fmt: skip
 
 
@@ -141,14 +142,15 @@ def _check_density(station: Station, source: str) -> None:
         and row.precipitation
         and row.snowfall_hours == row.precipitation_hours
         and row.temperature is not None
-        and row.temperature < COLD
+        and row.temperature < COLD_DAY_LIMIT
     ]
     water = sum(row.precipitation or 0.0 for row in cold)
     snow = sum(row.snowfall or 0.0 for row in cold)
     if len(cold) >= MIN_VALUES and water > MAX_DENSITY * snow:
         raise _refused(
             station, source, "precipitation",
-            f"{water:.4g} mm of water fell as {snow:.3g} m of new snow below {COLD:g} °C, of "
+            f"{water:.4g} mm of water fell as {snow:.3g} m of new snow below "
+            f"{COLD_DAY_LIMIT:g} °C, of "
             f"{water / snow:.0f} kg/m3; is the water in mm, the snow in cm, or one of them wrong?",
         )  # fmt: skip
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import NamedTuple, Optional
 
 from snowshed._core import InputError
-from snowshed.base.limits import KB, WEATHER_LINE, WEATHER_LINES
+from snowshed.base.limits import KB, MAX_WEATHER_LINE_BYTES, MAX_WEATHER_LINES
 from snowshed.io.input_file import read_input
 from snowshed.io.packed import unpacked
 from snowshed.io.weather import american, energy, ncei, smet, swiss
@@ -20,14 +20,14 @@ from snowshed.io.weather.plausible import with_plausible_units
 
 
 class Format(NamedTuple):
-    """A format: how its lines are recognised, and read.
+    """A format, with the functions that recognise and read its lines.
 
     Attributes
     ----------
     recognises, read
         Called with the lines.
     logged
-        Whether every row is a reading of a logger, whose amounts may overlap or be a counter's.
+        Whether rows are readings of a logger: amounts may overlap, or come from a counter.
     """
 
     recognises: Callable[[Sequence[str]], bool]
@@ -52,8 +52,8 @@ FORMATS: Mapping[str, Format] = {
 def read_station(path: Path) -> Optional[Station]:
     """Return the observations of a weather file; None if it matches none of `FORMATS`.
 
-    A file packed with gzip or xz, as GHCN-daily is published, is unpacked. Its
-    times are on one clock, its amounts do not overlap, and its numbers can be in their units.
+    Files packed with gzip or xz, such as those of GHCN-daily, are unpacked. The times of the
+    observations are on one clock, their amounts do not overlap, and their units are plausible.
 
     Raises
     ------
@@ -89,12 +89,14 @@ def _lines(content: bytes, path: Path) -> list[str]:
     if b"\0" in content:
         line = content[: content.index(b"\0")].count(b"\n") + 1
         raise InputError(f"{path}, line {line}: not text: it holds bytes that are 0")
-    if max(content.count(b"\n"), content.count(b"\r")) > WEATHER_LINES:
-        raise InputError(f"{path}: more than {WEATHER_LINES} lines; cut it into parts")
+    if max(content.count(b"\n"), content.count(b"\r")) > MAX_WEATHER_LINES:
+        raise InputError(f"{path}: more than {MAX_WEATHER_LINES} lines; cut it into parts")
     lines = re.split("\r\n|\n|\r", _decoded(content).rstrip("\r\n"))
     longest = max(range(len(lines)), key=lambda i: len(lines[i]))
-    if len(lines[longest]) > WEATHER_LINE:
-        raise InputError(f"{path}, line {longest + 1}: longer than {WEATHER_LINE // KB} KB")
+    if len(lines[longest]) > MAX_WEATHER_LINE_BYTES:
+        raise InputError(
+            f"{path}, line {longest + 1}: longer than {MAX_WEATHER_LINE_BYTES // KB} KB"
+        )
     return lines
 
 

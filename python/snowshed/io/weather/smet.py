@@ -1,8 +1,8 @@
 """SMET and its successor iCSV, the formats of MeteoIO and snow models.
 
-Both name their fields and their value for missing ones in a header. Their units are SI (K, m, mm),
-or become SI with the offsets and factors that the header gives; iCSV may name its units instead.
-Amounts gathered since the row before, except HN24, which is the new snow of the last 24 hours.
+Both name their fields and the mark of missing values in a header. Their units are SI (K, m, mm),
+or become SI with the offsets and factors in the header; iCSV may name its units instead. Amounts
+are sums since the row before, except HN24, the new snow of the last 24 hours.
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ from snowshed.io.weather.observation import (
     time_of,
 )
 
-#: Fields of MeteoIO, the better ones first: which quantity, its SI unit, and the hours over which
-#: an amount gathers (None: since the row before). HNW is the former name of PSUM.
+#: Fields of MeteoIO, in order of preference: their quantity, SI unit, and the hours over which an
+#: amount gathers (None: since the row before). HNW is the former name of PSUM.
 FIELDS: Mapping[str, tuple[str, str, Optional[float]]] = {
     "TA": ("temperature", "K", None),
     "PSUM": ("precipitation", "mm", None),
@@ -38,7 +38,7 @@ FIELDS: Mapping[str, tuple[str, str, Optional[float]]] = {
     "HN": ("snowfall", "m", None),
     "HN24": ("snowfall", "m", DAY),
 }
-#: Units of each quantity, and how they become those of an observation: factor and offset.
+#: Units of each quantity, with the factor and the offset to the unit of an observation.
 KELVIN, CELSIUS, FAHRENHEIT = (1.0, -ZERO_CELSIUS), (1.0, 0.0), (5.0 / 9.0, -160.0 / 9.0)
 INCH = 0.0254  # m
 DEPTHS = {
@@ -70,7 +70,7 @@ POINT = re.compile(rf"POINTZ? *\( *{NUMBER} +{NUMBER}(?: +{NUMBER})? *\)", re.IG
 
 @dataclass(frozen=True)
 class _Header:
-    """The keys of a header, where each stands, and where the data begins."""
+    """The keys of a header with their lines, and the first line of data."""
 
     name: str
     start: int
@@ -78,7 +78,7 @@ class _Header:
     lines: Mapping[str, int]
 
     def where(self, key: str) -> str:
-        """Return the place of a key for messages; of one that lacks, the line below the header."""
+        """Return the line of a key for messages; for a missing key, the line below the header."""
         return f"{self.name}, line {self.lines.get(key, self.start + 1)}, column {key}"
 
 
@@ -122,7 +122,7 @@ def read_icsv(name: str, lines: Sequence[str]) -> Station:
 def _by_factors(
     header: _Header, fields: Sequence[str], separator: str | None
 ) -> dict[int, Quantity]:
-    """Return the fields to read in SI units, by the factors and offsets of the header to them."""
+    """Return the fields to read, with the header's factors and offsets to SI units."""
     offsets, factors = (
         _numbers(header, field, fields, separator) for field in ("units_offset", "units_multiplier")
     )
@@ -142,9 +142,9 @@ def _by_factors(
 
 
 def _by_units(header: _Header, fields: Sequence[str], separator: str) -> dict[int, Quantity]:
-    """Return the fields to read in the units that the header names; none if it names none.
+    """Return the fields to read in the units of the header; none if the header names no units.
 
-    Factors beside the units must be 1, or those of the units to SI.
+    Factors besides units must be 1, or convert the units to SI.
     """
     units = _listed(header, "units", separator)
     if not units:
@@ -204,7 +204,7 @@ def _station(
             continue
         place = f"{header.name}, line {number}"
         cells = cells_of(line, fields, place, separator)
-        if cells == fields:  # some writers of iCSV name the columns once more
+        if cells == fields:  # some writers of iCSV repeat the names of the columns
             continue
         values = of_columns.read(cells, place)
         readings.append(Reading(number, _time(cells[when], place, clock), values))
@@ -240,7 +240,7 @@ def _time(cell: str, place: str, clock: str) -> datetime:
     where = f"{place}, column {clock}"
     if clock == "timestamp":
         return time_of(cell, where)
-    try:  # to the second: a Julian date in double precision has 40 microseconds
+    try:  # rounded to seconds: a Julian date in double precision has steps of 40 microseconds
         seconds = round(86400 * (number_in(cell) - JULIAN_NOON))
         return NOON + timedelta(seconds=seconds)
     except (ValueError, OverflowError):
@@ -277,7 +277,7 @@ def _listed(header: _Header, key: str, separator: str | None) -> list[str]:
 def _numbers(
     header: _Header, key: str, fields: Sequence[str], separator: str | None
 ) -> list[float]:
-    """Return a number for each field; none if the header lacks the key, or its plural of iCSV."""
+    """Return a number for each field; none if the header has neither the key nor its plural."""
     key = next((candidate for candidate in (key, f"{key}s") if candidate in header.values), key)
     if key not in header.values:
         return []

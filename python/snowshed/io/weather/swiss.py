@@ -9,11 +9,12 @@ from snowshed.base.messages import quoted
 from snowshed.io.weather.columns import Cells, Column, Reading, observations
 from snowshed.io.weather.observation import Quantity, Station, cells_of, time_of
 
-TEN_MINUTES, HOURLY, DAILY = 1.0 / 6.0, 1.0, 24.0  # over which amounts gather
+TEN_MINUTES, HOURLY, DAILY = 1.0 / 6.0, 1.0, 24.0  # hours over which amounts gather
 TEMPERATURE = Quantity("temperature", "degrees C")
 DEPTH = Quantity("snow_depth", "cm", 0.01)
-#: Parameters of MeteoSwiss, daily, hourly and of ten minutes, the better ones first: depths in cm.
-#: Hours and ten minutes end at their time; days begin there, those of water and snow at 6 UTC.
+#: Daily, hourly and ten-minute parameters of MeteoSwiss, in order of preference; depths in cm. The
+#: time is the end of hours and of ten minutes, but the beginning of days, which for water and snow
+#: begin at 6 UTC.
 METEOSWISS: Mapping[str, Quantity] = {
     **dict.fromkeys(("tre200d0", "tre200h0", "tre200s0"), TEMPERATURE),
     "rre150d0": Quantity("precipitation", "mm", hours=DAILY),
@@ -27,8 +28,8 @@ METEOSWISS: Mapping[str, Quantity] = {
     "hns000d0": Quantity("snowfall", "cm", 0.01, hours=DAILY),
     **dict.fromkeys(("hto000d0", "htoautd0", "htoauths", "htoauts0"), DEPTH),
 }
-SNOWY = ("rre", "rka", "hns", "hto")  # what names of such parameters begin with
-#: Names in the open data, its predecessor, and IDAWEB; in lower case.
+SNOWY = ("rre", "rka", "hns", "hto")  # beginnings of the names of parameters of water and snow
+#: Column names in the open data, in its predecessor, and in IDAWEB, in lower case.
 STATIONS = ("station_abbr", "station/location", "stn")
 TIMES = ("reference_timestamp", "date", "time")
 MISSING = ("", "-", "NA", "NaN", "null")
@@ -62,7 +63,7 @@ def read_imis(name: str, lines: Sequence[str]) -> Station:
 
 
 def _head(lines: Sequence[str], separator: str, stations: Sequence[str]) -> int | None:
-    """Return the index of the line whose first cell is that of a station."""
+    """Return the index of the first line that begins with the name of the station's column."""
     for number, line in enumerate(lines[:5]):
         if _title(line.split(separator)[0]).lower() in stations:
             return number
@@ -102,7 +103,7 @@ def _read(
         if not line.strip():
             continue
         if line.startswith(begin) and [_title(cell) for cell in line.split(separator)] == head:
-            continue  # orders of IDAWEB name the columns again above every part
+            continue  # files ordered from IDAWEB repeat the names of the columns above every part
         cells = cells_of(line, head, place, separator)
         if station and cells[0] != station:
             raise InputError(

@@ -1,7 +1,7 @@
 """Typical years and actual years of building and solar energy.
 
-A typical year has months of different years. It is assembled as a year that begins in the station's
-summer. Files of the same formats may hold actual years.
+A typical year has months from different years. Here it begins in the station's summer. Files of
+the same formats may hold actual years.
 """
 
 from __future__ import annotations
@@ -14,20 +14,20 @@ from typing import Optional
 from snowshed._core import InputError
 from snowshed.io.weather.observation import Observation
 
-TYPICAL_YEAR_START = 2001  # the year in which a typical year begins, once it is put together
-MAX_ROW_GAP = timedelta(days=1)  # between rows that follow one another in one series
+TYPICAL_YEAR_START = 2001  # the year in which an assembled typical year begins
+MAX_ROW_GAP = timedelta(days=1)  # between successive rows of one series
 YEAR = timedelta(days=365)
 
 
 def arranged(
     rows: Sequence[Observation], latitude: Optional[float], source: str
 ) -> tuple[list[Observation], bool, list[str]]:
-    """Return the rows in the order of a winter, whether they are a typical year, and notes.
+    """Return the rows in the order of winters, whether they are a typical year, and notes.
 
     Parameters
     ----------
     rows
-        In the order of the file, with their own years.
+        Rows in the order of the file, with the years of the file.
     latitude
         Latitude of the station, degrees; None counts as north.
     source
@@ -36,7 +36,7 @@ def arranged(
     Raises
     ------
     InputError
-        If an hour of the year occurs twice, and the rows are not in the order of time.
+        If an hour of the year occurs twice in rows that are not in the order of time.
     """
     rising = all(earlier.time < later.time for earlier, later in zip(rows, rows[1:]))
     years = sorted({row.time.year for row in rows})
@@ -55,7 +55,7 @@ def _are_actual(rows: Sequence[Observation]) -> bool:
 
 
 def _is_calendar_year(rows: Sequence[Observation]) -> bool:
-    """Return whether rows span 1 January to 31 December, so that a winter must be put together."""
+    """Return whether rows span 1 January to 31 December, so that a winter must be assembled."""
     first, last = rows[0].time, rows[-1].time
     begin = datetime((first + MAX_ROW_GAP).year, 1, 1)
     return abs(first - begin) <= MAX_ROW_GAP and abs(last - begin - YEAR) <= 2 * MAX_ROW_GAP
@@ -78,7 +78,7 @@ def _typical(
             first, second = sorted((before.line, row.line))
             raise InputError(
                 f"{source}, line {second}, column date: {time:%m-%d %H:%M} occurs twice, also in "
-                f"line {first}; allowed: a typical year, or actual years in their order"
+                f"line {first}; allowed: a typical year, or actual years in order of time"
             )
         seam = before is not None and not timedelta(0) < row.time - before.time <= MAX_ROW_GAP
         end = row.end and time + (row.end - row.time)

@@ -39,8 +39,8 @@ COLUMNS = (
     "coordination",
     "solid_fraction",
 )
-#: Columns with a second value, named `PEAK` and the name: that of the step since the row before in
-#: which the sample carried most. Curves of earlier versions lack it.
+#: Columns with a second column, named `PEAK` and the name. It holds the value in the step since the
+#: row before in which the sample carried most. Curves of earlier versions lack it.
 PEAKED = (
     "axial_strain",
     "shear_strain",
@@ -63,8 +63,8 @@ class LoadingCurve:
     ----------
     columns
         Arrays of equal length by name: `COLUMNS`, `PEAKED` of the peaks between rows, and energies
-        in joules if they were recorded. Stages count from 1; a row where a stage ends belongs to
-        it. Stresses are positive in compression.
+        in joules if they were recorded. Stages count from 1; a row at the end of a
+        stage belongs to that stage. Stresses are positive in compression.
     """
 
     columns: Mapping[str, Floats]
@@ -100,14 +100,14 @@ class LoadingCurve:
         columns = {name: values[rows] for name, values in self.columns.items()}
         for name in PEAKED:
             if own.size and own[0] > 0 and PEAK + name in columns:
-                columns[PEAK + name][0] = columns[name][0]  # its peak was in the stage before
+                columns[PEAK + name][0] = columns[name][0]  # from the stage before
         return LoadingCurve(columns)
 
     @property
     def peaks(self) -> LoadingCurve:
-        """The same rows with the strains and stresses of the peaks that they end with.
+        """The same rows with the strains and stresses of the peaks since the row before.
 
-        Rows of earlier versions have no peaks and stay as they are.
+        Rows of earlier versions have no peaks and are unchanged.
 
         Examples
         --------
@@ -137,7 +137,7 @@ class LoadingCurve:
 
     @classmethod
     def parse(cls, text: str, where: str) -> LoadingCurve:
-        """Return the curve of the text of a ``curve.csv``; errors name its place, `where`.
+        """Return the curve from the text of a ``curve.csv``; errors name `where`.
 
         Raises
         ------
@@ -159,7 +159,7 @@ class LoadingCurve:
             raise InputError(f"{where}: {error}") from None
 
     def text(self) -> str:
-        """Return the table as CSV; every number reads back to the same bits."""
+        """Return the table as CSV; a number that is read back has the same bits."""
         is_count = [name in COUNTS for name in self.columns]
         lines = [",".join(self.columns)]
         for row in zip(*(values.tolist() for values in self.columns.values())):
@@ -209,7 +209,7 @@ def read_curve(folder: Path) -> pd.DataFrame:
 
 
 def stage_stress(curve: LoadingCurve, kind: str) -> Floats:
-    """Return the stress that a stage of some kind builds up, positive as it grows, Pa."""
+    """Return the stress that a stage of some kind builds up, Pa; a growing stress is positive."""
     if kind == "shear":
         return np.asarray(np.abs(curve["shear_stress_pa"]))
     stress = curve["top_stress_pa"]
@@ -220,7 +220,7 @@ def carried_stress(curve: LoadingCurve, kind: str) -> Floats:
     """Return the stress that a sample carries from plate to plate, Pa.
 
     Between plates it is the smaller of the two stresses: a plate that starts fast hits the grains
-    next to it, which says nothing of the sample's strength.
+    next to it, and that stress is not the sample's strength.
     """
     stress = stage_stress(curve, kind)
     if kind in ("shear", "penetrate"):
@@ -229,13 +229,13 @@ def carried_stress(curve: LoadingCurve, kind: str) -> Floats:
     return np.asarray(np.minimum(stress, -other if kind == "stretch" else other))
 
 
-def untouched(curve: LoadingCurve, kind: str) -> str:
-    """Return why a stage says nothing of the snow: its load never touched the snow; else "".
+def no_contact_text(curve: LoadingCurve, kind: str) -> str:
+    """Return a phrase if the load of a stage never touched the snow; else "".
 
     Examples
     --------
     >>> curve = LoadingCurve({name: np.zeros(3) for name in COLUMNS})
-    >>> untouched(curve, "compress")
+    >>> no_contact_text(curve, "compress")
     'the plates never touched the snow'
     """
 

@@ -18,25 +18,28 @@ from snowshed.base.arrays import Floats
 from snowshed.methods.grains.curve import (
     LoadingCurve,
     carried_stress,
+    no_contact_text,
     stage_strain,
     stage_stress,
-    untouched,
 )
 
-BIN = 0.01  # of strain, over which stresses are averaged before hardening is looked for
-DOUBLED = math.log(2.0)  # the rise by which hardening counts as such
-EXPLAINED = 0.5  # part of the scatter of the stress that hardening explains at least
-#: Rows that the elastic phase needs for a modulus.
+STRAIN_BIN = 0.01  # strain over which stresses are averaged to find hardening
+#: Smallest rise of the logarithm of the stress that counts as hardening.
+MIN_HARDENING = math.log(2.0)
+#: Smallest share of the logarithm's variance that hardening must explain.
+MIN_EXPLAINED_VARIANCE = 0.5
+#: Smallest number of rows in the elastic phase for a modulus.
 MIN_ROWS = 4
 #: R2 of the line through the elastic phase, below which the phase does not count as linear.
-LINEAR = 0.95
-PEAK_BELOW = 0.05  # strain below which the peak of the brittle phase is looked for
-MEANS = ((0.05, 0.10), (0.10, 0.15), (0.25, 0.30))  # strains between which the stress is averaged
+MIN_LINEARITY = 0.95
+MAX_PEAK_STRAIN = 0.05  # strain below which the peak of the brittle phase lies
+#: Strains between which the stress is averaged.
+MEAN_STRAIN_RANGES = ((0.05, 0.10), (0.10, 0.15), (0.25, 0.30))
 
 
 @dataclass(frozen=True)
 class Phases:
-    """The phases of a stage; quantities that the stage does not show are None.
+    """The phases of a stage; a quantity is None if the stage does not show it.
 
     Attributes
     ----------
@@ -47,16 +50,16 @@ class Phases:
     linearity
         Coefficient of determination R2 of this line.
     hardening_onset
-        Strain at which the stress begins to grow like an exponential.
+        Strain at which the stress begins to grow exponentially.
     hardening_rate
-        Its growth: stress ~ exp(rate * strain).
+        Rate of this growth: stress ~ exp(rate * strain).
     strength
-        Largest stress of all time steps that the sample carries from plate to plate, Pa: in
-        compression that below a strain of 5 %.
+        Largest stress of all time steps that the sample carries from plate to plate, Pa; in
+        compression, the largest below a strain of 5 %.
     touched_from
-        Strain up to which nothing touched the snow.
+        Strain up to which no plate touched the snow.
     unknown
-        Reason why nothing is known; else empty.
+        Reason why no quantity is known; else empty.
     """
 
     elastic_limit: Optional[float]
@@ -96,7 +99,7 @@ def find_phases(curve: LoadingCurve, kind: str = "compress") -> Phases:
     nothing = Phases(None, None, None, None, None, None)
     if len(curve) < 2:
         return nothing
-    if reason := untouched(curve, kind):
+    if reason := no_contact_text(curve, kind):
         return replace(nothing, unknown=reason)
     strain, stress = stage_strain(curve, kind), stage_stress(curve, kind)
     felt = np.flatnonzero(stress != 0.0)
@@ -105,14 +108,14 @@ def find_phases(curve: LoadingCurve, kind: str = "compress") -> Phases:
     hardens = kind in ("compress", "isotropic")
     onset, rate = _hardening(strain, stress, limit or 0.0) if hardens else (None, None)
     peaks = curve.peaks
-    below = stage_strain(peaks, kind) <= (PEAK_BELOW if hardens else math.inf)
+    below = stage_strain(peaks, kind) <= (MAX_PEAK_STRAIN if hardens else math.inf)
     strength = float(carried_stress(peaks, kind)[below].max())
     known = strength if strength > 0.0 else None
     return Phases(limit, modulus, linearity, onset, rate, known, float(strain[first]))
 
 
 def mean_stress(strain: Floats, stress: Floats, low: float, high: float) -> Optional[float]:
-    """Return the mean of the stress over a range of strain; None where the curve ends before it.
+    """Return the mean of the stress over a range of strain; None if the curve ends before `high`.
 
     Parameters
     ----------
@@ -155,22 +158,24 @@ def _hardening(
 ) -> tuple[Optional[float], Optional[float]]:
     """Return onset and rate of hardening.
 
-    The logarithm of the stress, averaged over bins of `BIN`, is fitted by a constant and a rising
-    line that meet at the onset, with least squares. A rise to less than twice the constant does not
-    count, nor does one that explains less than half of the logarithm's scatter.
+    A constant and a rising line that meet at the onset are fitted to the logarithm of the stress,
+    averaged over bins of `STRAIN_BIN`, by least squares. The rise counts only if it doubles the
+    stress and explains at least half of the logarithm's variance.
     """
-    edges = np.arange(limit, strain[-1] + 1e-9, BIN)
+    edges = np.arange(limit, strain[-1] + 1e-9, STRAIN_BIN)
     if len(edges) < 6:
         return None, None
     means = [mean_stress(strain, stress, a, b) for a, b in zip(edges, edges[1:])]
-    pairs = [(a + BIN / 2, math.log(mean)) for a, mean in zip(edges, means) if mean and mean > 0]
+    pairs = [
+        (a + STRAIN_BIN / 2, math.log(mean)) for a, mean in zip(edges, means) if mean and mean > 0
+    ]
     if len(pairs) < 5:
         return None, None
     x, y = np.array(pairs).T
     best = min((_hinge(x, y, float(onset)) for onset in edges[:-2]), key=lambda fit: fit[0])
     misfit, onset, rate = best
     scatter = float(np.sum((y - y.mean()) ** 2))
-    if rate * (x[-1] - onset) < DOUBLED or misfit > (1 - EXPLAINED) * scatter:
+    if rate * (x[-1] - onset) < MIN_HARDENING or misfit > (1 - MIN_EXPLAINED_VARIANCE) * scatter:
         return None, None
     return onset, rate
 

@@ -1,6 +1,6 @@
 """Loading tests of grains: the results folder with its curve and its figures.
 
-Beside what every run writes (``snowshed.results.folder``), the folder holds
+Besides the files of every run (``snowshed.results.folder``), the folder holds
 
 ================== ==========================================================================
 curve.csv          stresses, strains, bonds and contacts at 300 strains of each stage, and the
@@ -41,7 +41,7 @@ class GrainsRun(MethodRun):
     COLUMNS: ClassVar[Mapping[str, type]] = {"steps": int, **GrainsSummary.columns()}
 
     def begin(self) -> None:
-        """Give the notes on the sample."""
+        """Issue the notes on the sample."""
         self.stages = self.scene.data["loading"]
         self.sample_notes = [note] if (note := self.simulation.label_note()) else []
         for note in self.sample_notes:
@@ -61,12 +61,12 @@ class GrainsRun(MethodRun):
             self._write_curve()
 
     def before_checkpoint(self) -> None:
-        """Write the curve, so that run.json knows it as the checkpoint does."""
+        """Write the curve, so that run.json and the checkpoint hold the same rows."""
         self._write_curve()
         seal_files(self.sequence, self.folder, CURVE)
 
     def interrupted(self) -> None:
-        """Write the curve as far as it goes."""
+        """Write the curve so far."""
         self._write_curve()
 
     def finish(self) -> None:
@@ -82,7 +82,7 @@ class GrainsRun(MethodRun):
         )  # fmt: skip
         summary.write(self.folder)
         write_text(self.folder / CONTACTS, self.contacts.text())
-        self.write_energies(facts, history=False)  # the curve has them over time
+        self.write_energies(facts, history=False)  # the curve has the energies over time
         seal_files(self.sequence, self.folder, CURVE, GrainsSummary.FILE, CONTACTS)
         self.sequence.rewrite_record()
 
@@ -123,7 +123,7 @@ def _reading(kind: str, row: Mapping[str, float]) -> str:
 
 
 def _synthetic(scene: Mapping[str, Any]) -> str:
-    """Return the origin of the sample, if its folder or the scene's title says it is synthetic."""
+    """Return the origin of a sample that its folder or the scene's title declares synthetic."""
     title = str(scene.get("title", ""))
     known = find_sample(scene["sample"]["file"], LABELS).source
     return known or (title if title.startswith(SYNTHETIC) else "")

@@ -13,7 +13,7 @@ from snowshed.io.json_file import read_object
 SNOW = "snow.npy"
 LABELS = "labels.npy"
 NUMBERS = "microstructure.json"
-SYNTHETIC = "synthetic"  # begins the source of what no image shows
+SYNTHETIC = "synthetic"  # beginning of the source of a synthetic sample
 
 
 @dataclass(frozen=True)

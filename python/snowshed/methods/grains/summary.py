@@ -9,13 +9,19 @@ from typing import Any, ClassVar, Optional
 import numpy as np
 
 from snowshed.base.formatting import percent
-from snowshed.methods.grains.curve import LoadingCurve, stage_strain, stage_stress, untouched
-from snowshed.methods.grains.phases import LINEAR, MEANS, Phases, find_phases, mean_stress
+from snowshed.methods.grains.curve import LoadingCurve, no_contact_text, stage_strain, stage_stress
+from snowshed.methods.grains.phases import (
+    MEAN_STRAIN_RANGES,
+    MIN_LINEARITY,
+    Phases,
+    find_phases,
+    mean_stress,
+)
 from snowshed.methods.summary import Summary
 
 #: Number of grains below which a sample hardly represents its snow.
 FEW_GRAINS = 1000
-#: Largest mean difference of the stresses on the two plates, over their mean, due to inertia.
+#: Largest mean difference of the stresses on the plates in a quasi-static test, over their mean.
 UNBALANCED = 0.2
 #: density_scaling times speed squared, m2/s2, up to which inertia did not raise stresses in tests.
 INERTIA = 0.004
@@ -23,12 +29,12 @@ INERTIA = 0.004
 
 @dataclass(frozen=True)
 class GrainsSummary(Summary):
-    """The figures of a loading test. Stresses of the first stage are those that it builds up.
+    """The figures of a loading test. Stresses of the first stage exclude the stress before it.
 
     Attributes
     ----------
     ended
-        "rest" where all stages were done, else "time_limit".
+        "rest" after all stages, else "time_limit".
     sim_time_s
         Simulated time of the test, s.
     final_particles, spheres
@@ -36,11 +42,11 @@ class GrainsSummary(Summary):
     density_kg_m3
         Density of the snow at the beginning.
     solid_fraction, solid_fraction_at_end
-        Volume of ice over that between the plates.
+        Volume of ice over the volume between the plates.
     axial_strain, shear_strain
         Strains at the end.
     bonds, broken_in_tension, broken_in_shear
-        Pairs of spheres that were bonded, and how many of them broke.
+        Numbers of bonds between spheres, and of those that broke.
     coordination_at_end
         Mean number of grains that a grain touches.
     elastic_limit_strain, tangent_modulus_pa, linearity
@@ -53,7 +59,7 @@ class GrainsSummary(Summary):
     hardening_onset_strain, hardening_rate
         Strain at which its stress begins to grow like exp(rate * strain), and this rate.
     largest_cone_force_n
-        Largest force on the cone of all time steps; None where it never touched the snow.
+        Largest force on the cone of all time steps; None if it never touched the snow.
     synthetic
         Origin of a sample that is known as synthetic; else None.
     notes
@@ -95,7 +101,7 @@ class GrainsSummary(Summary):
     REMARKS: ClassVar[tuple[str, ...]] = ("synthetic", "notes", "sample_notes")
 
     def lines(self) -> Mapping[str, str]:
-        """Return the lines that people read, by name, without figures that are unknown."""
+        """Return the lines that people read, by name, without unknown figures."""
         broken = self.broken_in_tension + self.broken_in_shear
         force = self.largest_cone_force_n
         lines = {
@@ -147,7 +153,10 @@ def summarise(
     first = curve.of_stage(1)
     phases = find_phases(first, kind) if kind != "penetrate" else NO_PHASES
     strain, stress = stage_strain(first, kind), stage_stress(first, kind)
-    means = [None if phases.unknown else mean_stress(strain, stress, *ends) for ends in MEANS]
+    means = [
+        None if phases.unknown else mean_stress(strain, stress, *ends)
+        for ends in MEAN_STRAIN_RANGES
+    ]
     density = float(scene["numerics"]["density"])
     return GrainsSummary(
         ended=ended,
@@ -182,7 +191,7 @@ def summarise(
 def _cone_force(curve: LoadingCurve, scene: Mapping[str, Any]) -> Optional[float]:
     """Return the largest force on the cone; None if one moved and never touched the snow."""
     kinds = [str(stage["kind"]) for stage in scene["loading"]]
-    if "penetrate" in kinds and untouched(curve, "penetrate"):
+    if "penetrate" in kinds and no_contact_text(curve, "penetrate"):
         return None
     return float(max(np.abs(rows["cone_force_n"]).max() for rows in (curve, curve.peaks)))
 
@@ -208,7 +217,7 @@ def _notes(
                 "mean: the test is not quasi-static; load more slowly, or reduce density_scaling"
             )
     kinds = [str(stage["kind"]) for stage in scene["loading"]]
-    if "penetrate" in kinds and (reason := untouched(curve, "penetrate")):
+    if "penetrate" in kinds and (reason := no_contact_text(curve, "penetrate")):
         notes.append(f"{reason}: no force acts on it")
     phases = find_phases(first, kind) if kind != "penetrate" else NO_PHASES
     if phases.unknown:
@@ -219,7 +228,7 @@ def _notes(
             "modulus is fitted from there on; all strains count from the beginning"
         )
     linearity = phases.linearity
-    if linearity is not None and linearity < LINEAR:
+    if linearity is not None and linearity < MIN_LINEARITY:
         notes.append(
             f"the stress is not linear before the first bond breaks (R2 {linearity:.2f}), "
             "because waves run through the sample; load more slowly to find the modulus"

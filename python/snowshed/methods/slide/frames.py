@@ -14,7 +14,7 @@ from snowshed.io.raster.raster import Raster
 
 Singles = NDArray[np.float32]
 MAX_FRAMES = 64
-MIN_PARTICLES = 1.5  # on average, in a square that holds any
+MIN_PARTICLES = 1.5  # mean number of particles in a square with snow
 
 
 @dataclass(frozen=True)
@@ -100,7 +100,7 @@ def slide_frames(film: Film, ground: Raster, most: int = MAX_FRAMES) -> list[Fra
 
 
 def _edge(film: Film, frame: FilmFrame, ground: Raster) -> int:
-    """Return the edge of the squares that a film has enough particles for, in cells."""
+    """Return the smallest edge, in cells, of squares that hold enough particles of a film."""
     edge = 1
     cells = np.floor(frame.positions[:, :2] / ground.cell).astype(int)
     while film.share < 1.0 and edge < max(ground.heights.shape):
@@ -114,7 +114,7 @@ def _edge(film: Film, frame: FilmFrame, ground: Raster) -> int:
 def _map(frame: FilmFrame, thickness: Singles, ground: Raster, edge: int) -> Frame:
     rows, columns = (-(-size // edge) + 1 for size in ground.heights.shape)
     weight, sums = np.zeros((rows, columns)), np.zeros((rows, columns))
-    # The middle of a square of several cells stands for it.
+    # A square of several cells is represented by its middle.
     x, y = frame.positions[:, :2].T / (ground.cell * edge) - 0.5 * (1.0 - 1.0 / edge)
     west, south = (np.clip(np.floor(values).astype(int), 0, None) for values in (x, y))
     for row, column, share in _corners(x - west, y - south):

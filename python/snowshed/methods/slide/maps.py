@@ -78,7 +78,7 @@ class SlideMaps:
         return pressure
 
     def raster(self, values: Floats, crs: str = "") -> Raster:
-        """Return a map with its place and the text of its coordinate system."""
+        """Return a map with its position and its coordinate system."""
         return Raster(values, self.west, self.south, self.cell, crs=crs)
 
 
@@ -189,7 +189,7 @@ class PeakMaps:
         return cls(h, v, p, int(rows[0]), int(columns[0]), (height, width))
 
     def window(self, name: str, begin: int, end: int) -> Singles:
-        """Return the rows from `begin` to before `end` of a whole map, zero where no snow was."""
+        """Return rows `begin` to before `end` of a whole map, zero where there was no snow."""
         window: Singles = np.zeros((end - begin, self.shape[1]), dtype=np.float32)
         stored: Singles = getattr(self, name)
         rows, columns = stored.shape
@@ -214,7 +214,7 @@ class PeakMaps:
 
     @classmethod
     def unpacked(cls, data: bytes) -> PeakMaps:
-        """Return the maps that `packed` has packed.
+        """Return the maps in bytes that `packed` returned.
 
         Raises
         ------

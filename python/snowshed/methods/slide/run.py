@@ -1,6 +1,6 @@
 """Runs of a snow slide: the results folder with its maps and its figures.
 
-Beside what every run writes (``snowshed.results.folder``), the folder holds
+Besides the files of every run (``snowshed.results.folder``), the folder holds
 
 ================== ==========================================================================
 peaks/             largest values over time: thickness (pft, m), speed (pfv, m/s) and pressure
@@ -100,7 +100,7 @@ def _frames(folder: Path, maps: SlideMaps) -> list[Frame]:
     try:
         return slide_frames(Film(folder / FILM), maps.raster(maps.terrain))
     except (_core.InputError, OSError):
-        return []  # not wanted, lost or damaged; the page does without
+        return []  # the film is not wanted, lost or damaged: the page has no moving picture
 
 
 def _summary(

@@ -24,9 +24,9 @@ class SlideSummary(Summary):
     released_kg, entrained_kg
         Mass that was released and taken up.
     left_terrain_kg, on_terrain_kg
-        Mass that left the terrain or fell into its holes, and mass that is on it at the end.
+        Mass that left the terrain or fell into its holes, and mass on the terrain at the end.
     bonds_made, bonds_broken
-        Bonds between particles, and those of them that broke or left the terrain.
+        Numbers of bonds between particles, and of bonds that broke or left the terrain.
     peak_speed_m_s, peak_thickness_m, peak_pressure_kpa
         Largest values anywhere.
     reached_m2

@@ -1,8 +1,7 @@
 """Warnings where a slide violates the method's assumptions.
 
-com5SnowSlide is stated to be for releases on slopes of 28 to 50 degrees between 500 and 1500 m of
-altitude, drops of 30 to 80 m, and snow that moves as one slab (AvaFrame's documentation of
-com5SnowSlide).
+AvaFrame's documentation states the range of com5SnowSlide: releases on slopes of 28 to 50 degrees
+between 500 and 1500 m of altitude, drops of 30 to 80 m, and snow that moves as one slab.
 """
 
 from __future__ import annotations
@@ -21,7 +20,7 @@ SLOPES = (28.0, 50.0)  # degrees
 ALTITUDES = (500.0, 1500.0)  # m
 DROPS = (30.0, 80.0)  # m
 MAX_BROKEN_SHARE = 0.1  # share of the bonds that may break
-MAX_OUTSIDE_SHARE = 0.1  # share of a release that may lie outside the range of slopes
+MAX_OUTSIDE_SHARE = 0.1  # largest share of a release outside the range of slopes
 
 
 @dataclass(frozen=True)
@@ -33,7 +32,7 @@ class ReleaseArea:
     name
         Name of the area.
     thickness
-        Thickness of its snow, m; the mean where a raster gives it.
+        Thickness of its snow, m; the mean thickness if a raster gives it.
     area, sloping_area
         Area on the map, and along the ground, m2.
     lowest, highest

@@ -119,7 +119,7 @@ class Painter {
     return { program, at };
   }
 
-  /** Adds a solid: its corners (Float32, three each) and triangles, and what it is. */
+  /** Adds a solid: its corners (Float32, three each) and triangles, and its kind. */
   addMesh(corners, triangles, facts) {
     const gl = this.gl, array = gl.createVertexArray();
     gl.bindVertexArray(array);

@@ -119,7 +119,7 @@ class Film {
     frame.radii = this.header.radius ? numbers.list(frame.count, Int32Array) : null;
   }
 
-  /** A position is foretold from the two before it. */
+  /** A position is predicted from the two before it. */
   readPositions(frame, before, numbers) {
     const { count } = frame, axes = this.header.axes, quantum = this.header.quantum_m;
     frame.positions = new Uint16Array(3 * count);

@@ -26,7 +26,7 @@ from snowshed.snow.relations.relation import choose
 from snowshed.snow.relations.settling import SETTLING_LAWS, settled_densities
 from snowshed.snow.relations.sintering import SINTERING_LAWS
 
-# Loosened snow has a volume without meaning; the laws hold for connected snow.
+# The volume of loosened snow has no meaning; the laws hold for connected snow only.
 MIN_DENSITY = 50.0  # kg/m3
 
 
@@ -50,7 +50,7 @@ class Ageing:
     sintering
         A name in `SINTERING_LAWS`; None: broken bonds stay broken.
     strength_age
-        Age of bonds, hours, that have the strength of the slab's snow.
+        Age at which bonds have the strength of the slab's snow, hours.
 
     Raises
     ------
@@ -79,19 +79,19 @@ class Ageing:
 
     @classmethod
     def from_data(cls, data: object, where: str) -> Ageing:
-        """Return the ageing that `data` gave.
+        """Return the ageing for the output of the property `data`.
 
         Parameters
         ----------
         data
-            JSON data; it may come from anywhere.
+            JSON data from any source; the data are checked.
         where
-            Its place, for errors.
+            Place of the data, for messages.
 
         Raises
         ------
         InputError
-            If it is not sound.
+            If the data are invalid.
 
         Examples
         --------
@@ -116,7 +116,7 @@ class Ageing:
 
     @property
     def data(self) -> JsonObject:
-        """The same in the form of JSON."""
+        """The ageing as JSON data."""
         data: JsonObject = json.loads(json.dumps(asdict(self)))
         return data
 
@@ -156,9 +156,9 @@ class Ageing:
         }
 
     def _strains(self, snow: _AgeingSnow, event: int) -> Floats:
-        """Return the shortening of the nodes of the columns, as logarithms."""
+        """Return the logarithmic shortening at the nodes of the columns."""
         nodes = snow.columns
-        if self.settling is None or not snow.yields.any():  # elastic snow has no density to gain
+        if self.settling is None or not snow.yields.any():  # elastic snow does not compact
             return np.zeros(nodes.densities.shape)
         before = np.maximum(nodes.densities, MIN_DENSITY)
         stress, after = nodes.stresses(snow.gravity), before
@@ -230,7 +230,7 @@ class _AgeingSnow:
         self._densities = densities
 
     def strengths(self, plastic_strains: Floats) -> Floats:
-        """Return p0 over that of undisturbed snow; 1 for snow that does not yield."""
+        """Return p0 relative to undisturbed snow; 1 for snow that does not yield."""
         strengths = np.ones(len(plastic_strains))
         for law, own in self._kinds_that_yield():
             strengths[own] = law.preconsolidation(plastic_strains[own]) / self._p0[own]
@@ -249,27 +249,27 @@ class _AgeingSnow:
                 yield law, self._kinds == kind
 
     def intact(self, plastic_strains: Floats) -> float:
-        """Return the mean strength of the stack, for each particle at most that of intact snow."""
+        """Return the mean strength of the stack; no particle counts as more than intact snow."""
         if not self.stack.any():
             return 1.0
         strength = np.minimum(self.strengths(plastic_strains), 1.0)
         return float(np.average(strength[self.stack], weights=self.masses[self.stack]))
 
     def mean_density(self, plastic_changes: Union[Floats, float]) -> float:
-        """Return the mean density of the stack, its mass over its volume, once it has changed."""
+        """Return the mean density of the stack, its mass over its volume, after plastic changes."""
         masses = self.masses[self.stack]
         volumes = self.masses / self._densities * np.exp(plastic_changes)
         volume = float(volumes[self.stack].sum())
         return float(masses.sum()) / volume if volume else 0.0
 
     def crest(self, drops: Union[Floats, float]) -> float:
-        """Return the height of the highest particle of the stack once they have sunk, m."""
+        """Return the height of the highest particle of the stack after the drops, m."""
         heights = (self.positions[:, 2] - drops)[self.stack]
         return float(heights.max()) if len(heights) else 0.0
 
 
 def _law(snow: Mapping[str, Any]) -> Optional[_core.CamClay]:
-    """Return the law of snow that yields."""
+    """Return the law of snow; None if the snow does not yield."""
     if snow["model"] != "cam_clay":
         return None
     return _core.CamClay(

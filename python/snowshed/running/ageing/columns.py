@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 from snowshed._core import InputError
 from snowshed.base.arrays import Floats
 
-EMPTY = 0.05  # of the mass of a cell full of snow
-MAX_NODES = 1.5e8  # as between particles and solids
-MIN_COVER = 0.25  # part of its base that a column covers at least
+MIN_FILLED = 0.05  # a node with a smaller share of a full cell's mass is empty
+MAX_NODES = 1.5e8  # the limit that also holds between particles and solids
+MIN_COVER = 0.25  # smallest share of its base that a column covers
 
 
 class SnowColumns:
@@ -59,7 +59,7 @@ class SnowColumns:
         full = volumes > 0
         self.densities = np.divide(self.masses, volumes, out=np.ones(self._shape), where=full)
         filled = volumes / dx**dimension
-        self._snow = self.masses > EMPTY * self.densities * dx**dimension
+        self._snow = self.masses > MIN_FILLED * self.densities * dx**dimension
         # The columns along a wall of snow cover only a part of their base.
         cover = np.clip(filled.max(axis=-1, keepdims=True), MIN_COVER, 1.0)
         self._base = cover[..., 0] * dx ** (dimension - 1)
@@ -109,7 +109,7 @@ class SnowColumns:
         return total.reshape(self._shape)
 
     def _corners(self) -> Iterator[tuple[NDArray[np.int64], Floats]]:
-        """Yield the node and its share of each particle, for each corner of the cells."""
+        """Yield, for each corner of the cells, the node of each particle and its share."""
         cell = np.floor(self._place).astype(np.int64)
         part = self._place - cell
         for corner in product((0, 1), repeat=len(self._shape)):

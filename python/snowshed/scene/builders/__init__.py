@@ -1,5 +1,5 @@
 """Structures: scenes of panels, tables, roofs, meshes, terrain and trackers, ready to run.
 
-Every builder returns a `Scene` to change further, run or save; `snowshed.plot.scene_picture` draws
-it.
+Every builder returns a `Scene`, which can be changed, run or saved. `snowshed.plot.scene_picture`
+draws it.
 """

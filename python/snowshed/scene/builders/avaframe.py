@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Optional
 
 from snowshed._core import InputError
-from snowshed.base.limits import RASTER_CELLS, RESAMPLED_CELLS, SAVED_CELLS
+from snowshed.base.limits import MAX_RASTER_CELLS, MAX_RESAMPLED_CELLS, MAX_SAVED_CELLS
 from snowshed.base.messages import quoted
 from snowshed.base.paths import PathLike
 from snowshed.io.raster.areas import read_areas
@@ -22,7 +22,7 @@ from snowshed.scene.scene import Scene
 
 POLYGONS = ("*.shp", "*.gpkg", "*.geojson")
 RASTERS = ("*.asc", "*.tif", "*.tiff")
-#: Cells whose sizes differ by less are the same, m.
+#: Largest difference of equal cell sizes, m.
 SAME_CELL = 1e-3
 
 
@@ -43,7 +43,7 @@ class AvaFrameSimulation:
     folder
         The project folder.
     files
-        Files of the areas, by the part of a scene's terrain that they make; None without such.
+        Files of the areas, by the part of a scene's terrain; None for parts without a file.
     inputs
         Files in the project's folder Inputs, which belong to the results.
     terrain
@@ -69,8 +69,8 @@ def avaframe_simulations(
 ) -> list[AvaFrameSimulation]:
     """Return the simulations of an AvaFrame project folder, in the compatible mode.
 
-    Every combination of a release file and a type of simulation gives one; the first has all
-    requested areas.
+    Every combination of a release file and a type of simulation gives a simulation; the first one
+    has all requested areas.
 
     Parameters
     ----------
@@ -89,7 +89,7 @@ def avaframe_simulations(
     Raises
     ------
     InputError
-        If the folder is not such a project, asks for unsupported features of com5SnowSlide, or has
+        If the folder is not such a project, requests unsupported features of com5SnowSlide, or has
         links to files outside.
     OSError
         If a file cannot be read.
@@ -167,13 +167,13 @@ def _scene(
         settings=SlideSettings.from_data(project.values),
         ascii_copy=ascii_copy,
         title=f"{root.resolve().name} (AvaFrame)",
-        max_cells=RASTER_CELLS,
+        max_cells=MAX_RASTER_CELLS,
     )
     if scene.terrain is not None:
         for area in (*(scene.terrain.release or ()), *(scene.terrain.entrainment or ())):
             if area.holes:
                 raise InputError(f"{area.name}: has a hole, which AvaFrame does not allow")
-        # AvaFrame reads GeoTIFF in double precision, also one that it has resampled.
+        # AvaFrame reads GeoTIFF in double precision, also its own resampled files.
         if raster.suffix.lower() in GEOTIFF:
             scene.terrain.single_precision = False
     return scene.set("events.max_time", project.max_time)
@@ -197,15 +197,15 @@ def _terrain(file: Path, project: ProjectSettings, ascii_copy: Optional[PathLike
         project.values["cell"] = original.cell
         return file
     cells = original.heights.size * (original.cell / cell) * (original.cell / cell)
-    if cells > RESAMPLED_CELLS:
+    if cells > MAX_RESAMPLED_CELLS:
         raise project.located(
             InputError(
                 f"/numerics/cell: {cell:g} m makes {cells:.3g} cells of {file}; at most "
-                f"{RESAMPLED_CELLS} are allowed"
+                f"{MAX_RESAMPLED_CELLS} are allowed"
             )
         )
     if ascii_copy is None:
-        raise InputError(f"{file}: say where its copy on cells of {cell:g} m shall go (ascii_copy)")
+        raise InputError(f"{file}: give the file for its copy on cells of {cell:g} m (ascii_copy)")
     write_ascii_grid(ascii_copy, resampled_raster(file, cell), exact=True)
     return Path(ascii_copy)
 
@@ -216,10 +216,10 @@ def _check_saved_maps(terrain: Path, project: ProjectSettings) -> None:
         return
     maps = len(project.saved_times) * len(project.result_types)
     cells = maps * read_raster(terrain).heights.size
-    if cells > SAVED_CELLS:
+    if cells > MAX_SAVED_CELLS:
         raise InputError(
             f"{project.positions['saved_times']}: {maps} maps have {cells:.3g} cells; at most "
-            f"{SAVED_CELLS:.0e} are allowed"
+            f"{MAX_SAVED_CELLS:.0e} are allowed"
         )
 
 
@@ -243,7 +243,7 @@ def _releases(folder: Path, project: ProjectSettings) -> list[Path]:
 def _sim_types(
     project: ProjectSettings, areas: Mapping[str, Optional[Path]], inputs: Path
 ) -> list[str]:
-    """Return the types to simulate, that with the most areas first."""
+    """Return the types to simulate; the type with the most areas comes first."""
     wanted = set(project.sim_types)
     if "available" in wanted:
         available = "".join(kind for kind, file in areas.items() if file is not None)

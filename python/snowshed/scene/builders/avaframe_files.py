@@ -14,12 +14,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from snowshed._core import InputError
-from snowshed.base.limits import GB, PROJECT_BYTES, PROJECT_DEPTH, PROJECT_FILES
+from snowshed.base.limits import GB, MAX_PROJECT_BYTES, MAX_PROJECT_DEPTH, MAX_PROJECT_FILES
 from snowshed.base.messages import printable, quoted
 from snowshed.base.notes import issue_note
 from snowshed.io.atomic import replacing
 
-#: Endings of files that projects are made of: rasters, polygons and lines, settings, tables.
+#: Endings of a project's files: rasters, polygons and lines, settings, tables.
 KNOWN = (
     *(".asc", ".tif", ".tiff", ".tfw", ".prj", ".xml"),
     *(".shp", ".shx", ".dbf", ".cpg", ".qpj", ".qix", ".sbn", ".sbx", ".gpkg", ".geojson"),
@@ -59,13 +59,13 @@ def project_inputs(root: Path) -> list[InputFile]:
     inputs = root / "Inputs"
     _check_own(inputs, root, folder=True)
     files = [InputFile(file, file.relative_to(inputs)) for file in _files(inputs, root, 0)]
-    if len(files) > PROJECT_FILES:
-        raise InputError(f"{inputs}: more than {PROJECT_FILES} files")
+    if len(files) > MAX_PROJECT_FILES:
+        raise InputError(f"{inputs}: more than {MAX_PROJECT_FILES} files")
     size = sum(each.file.stat().st_size for each in files)
-    if size > PROJECT_BYTES:
+    if size > MAX_PROJECT_BYTES:
         raise InputError(
-            f"{inputs}: {size / GB:.3g} GB of files; at most {PROJECT_BYTES // GB} GB are copied "
-            "to the results"
+            f"{inputs}: {size / GB:.3g} GB of files; at most {MAX_PROJECT_BYTES // GB} GB are "
+            "copied to the results"
         )
     supported = [each for each in files if each.file.suffix.lower() in KNOWN]
     others = [str(each.place) for each in files if each.file.suffix.lower() not in KNOWN]
@@ -85,19 +85,19 @@ def copy_inputs(inputs: Sequence[InputFile], folder: Path) -> None:
         with open(each.file, "rb", opener=_open_at_once) as source:
             if not stat.S_ISREG(os.fstat(source.fileno()).st_mode):
                 raise OSError(None, "not a regular file any more", str(each.file))
-            target.unlink(missing_ok=True)  # which may be a link to something else
+            target.unlink(missing_ok=True)  # the target may be a link to another file
             with replacing(target) as beside, beside.open("wb") as copy:
                 shutil.copyfileobj(source, copy)
 
 
 def check_own_file(file: Path, root: Path) -> None:
-    """Refuse a file of a project that is not its own; see `project_inputs`."""
+    """Refuse a file that is not the project's own; see `project_inputs`."""
     _check_own(file, root, folder=False)
 
 
 def _files(folder: Path, root: Path, depth: int) -> Iterator[Path]:
-    if depth > PROJECT_DEPTH:
-        raise InputError(f"{folder}: folders are nested more than {PROJECT_DEPTH} deep")
+    if depth > MAX_PROJECT_DEPTH:
+        raise InputError(f"{folder}: folders are nested more than {MAX_PROJECT_DEPTH} deep")
     for entry in sorted(_entries(folder), key=lambda each: each.name):
         path = folder / entry.name
         if not entry.name.isprintable() or printable(entry.name) != entry.name:
@@ -115,8 +115,8 @@ def _entries(folder: Path) -> list[os.DirEntry[str]]:
         files = []
         for entry in entries:
             files.append(entry)
-            if len(files) > PROJECT_FILES:
-                raise InputError(f"{folder}: more than {PROJECT_FILES} files")
+            if len(files) > MAX_PROJECT_FILES:
+                raise InputError(f"{folder}: more than {MAX_PROJECT_FILES} files")
         return files
 
 
@@ -124,11 +124,11 @@ def _check_own(path: Path, root: Path, *, folder: bool) -> None:
     """Refuse files outside the project, and everything except regular files and folders."""
     try:
         inside = path.resolve(strict=True).is_relative_to(root.resolve())
-    except (OSError, RuntimeError):  # there is nothing, or links lead in a circle
+    except (OSError, RuntimeError):  # the target is missing, or links form a circle
         raise InputError(f"{path}: a link that leads to no file") from None
     if not inside:
         raise InputError(
-            f"{path}: a link that leads out of the project; copy into the project what it needs"
+            f"{path}: a link that leads out of the project; copy the file into the project"
         )
     mode = path.stat().st_mode
     if not (stat.S_ISDIR(mode) if folder else stat.S_ISREG(mode)):
@@ -136,5 +136,5 @@ def _check_own(path: Path, root: Path, *, folder: bool) -> None:
 
 
 def _open_at_once(path: str, flags: int) -> int:
-    """Open a file without waiting, as for the writer of a pipe."""
+    """Open a file without waiting, for example for the writer of a pipe."""
     return os.open(path, flags | os.O_NONBLOCK)

@@ -1,4 +1,4 @@
-"""The settings of an ini of AvaFrame's com5SnowSlide: honoured or refused, never ignored.
+"""The settings of an ini file of AvaFrame's com5SnowSlide: applied or refused, never ignored.
 
 com5SnowSlide runs com1DFA with other defaults; its ini may set any parameter of com1DFA.
 """
@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any, Optional
 
 from snowshed._core import InputError
-from snowshed.base.limits import INI, SAVED_TIMES
+from snowshed.base.limits import MAX_INI_BYTES, MAX_SAVED_TIMES
 from snowshed.base.messages import printable, quoted, shortened, suggestion
 from snowshed.io.input_file import read_input
 from snowshed.scene.builders.avaframe_keys import (
@@ -28,7 +28,7 @@ from snowshed.scene.builders.avaframe_keys import (
 from snowshed.scene.schema import schema_of_method
 
 MAX_TIME = 400.0  # s
-MIN_STEP = 1e-6  # s; in shorter ones snow moves by less than numbers can tell
+MIN_STEP = 1e-6  # s; in shorter steps, rounding exceeds the motion
 MAX_THICKNESS = 100.0  # m, of snow
 SIM_TYPES = ("entres", "ent", "res", "null")
 RESULT_TYPES = ("ppr", "pft", "pfv", "P", "FT", "FV")
@@ -47,15 +47,15 @@ class ProjectSettings:
     sim_types
         "entres", "ent", "res" and "null", or "available".
     release_thickness, entrained_thickness
-        Thickness of all areas [m]; None: that of the files.
+        Thickness of all areas [m]; None: from the files.
     default_entrained_thickness
-        Entrainment thickness where the file of the areas has none, m.
+        Entrainment thickness if the file of the areas has none, m.
     release_scenario
         Name of the only release file to take; empty: all of them.
     result_types, saved_times
         Maps to write, and their times before the end, s.
     with_dam, with_secondary_release
-        Whether to take dams and secondary release areas where there are any.
+        Whether to take dams and secondary release areas, if there are any.
     positions
         Positions of the values in the ini, by their names.
     """
@@ -153,7 +153,7 @@ class _Keys:
         above: float = -math.inf,
         most: float = math.inf,
     ) -> float:
-        """Return a number of a range; the default where it is not given."""
+        """Return a number in a range; the default if it is not given."""
         if key not in self:
             return default
         text = self.text(key)
@@ -172,7 +172,7 @@ class _Keys:
         return value
 
     def setting(self, key: str, name: str, default: float = math.nan) -> float:
-        """Return a number of the range that a setting of the method has."""
+        """Return a number in the range of a setting of the method."""
         schema: Any = schema_of_method("slide")
         (settings,) = schema["properties"]["numerics"]["anyOf"]
         range_ = settings["properties"][name]
@@ -237,14 +237,14 @@ class _Keys:
 
 
 def _read_keys(file: Optional[Path]) -> tuple[dict[str, str], dict[str, int]]:
-    """Return the values of the keys, and the lines that they stand in."""
+    """Return the values of the keys, and the lines of the keys."""
     if file is None:
         return {}, {}
     if not file.is_file():
         raise InputError(f"{file}: not a regular file")
     parser = configparser.ConfigParser(interpolation=None)
     try:
-        text = read_input(file, INI).decode("utf-8-sig")
+        text = read_input(file, MAX_INI_BYTES).decode("utf-8-sig")
         parser.read_string(text, str(file))
     except (configparser.Error, UnicodeDecodeError) as error:
         why = shortened(" ".join(printable(error).split()), 300)
@@ -261,7 +261,7 @@ def _read_keys(file: Optional[Path]) -> tuple[dict[str, str], dict[str, int]]:
 
 
 def _key_lines(text: str) -> dict[str, int]:
-    """Return the line of each key, from 1; the last one counts, as for its value."""
+    """Return the line of each key, from 1; of a repeated key the last line, as for its value."""
     lines: dict[str, int] = {}
     for number, line in enumerate(text.splitlines(), 1):
         if key := re.match(r"([^\s#;\[=:][^=:]*?)\s*[=:]", line):
@@ -282,7 +282,7 @@ def _friction(given: _Keys) -> dict[str, object]:
 
 
 def _forced_thickness(given: _Keys, key: str) -> Optional[float]:
-    """Return the thickness that goes in place of the files'; None where they say it."""
+    """Return the thickness that replaces that of the files; None if the files give it."""
     from_file = given.switch(f"{key}fromfile", True)
     if from_file:
         if key in given:
@@ -299,7 +299,7 @@ def _forced_thickness(given: _Keys, key: str) -> Optional[float]:
 
 
 def _result_types(given: _Keys) -> tuple[str, ...]:
-    # The map of when snow first came is one of com1DFA's defaults; it is not made here.
+    # com1DFA also writes a map of the first arrival of snow by default; it is not made here.
     types = given.words("restype", (*RESULT_TYPES, "timeInfo"), ("ppr", "pft", "pfv"))
     return tuple(kind for kind in types if kind != "timeInfo") or ("pfv",)
 
@@ -315,22 +315,24 @@ def _saved_times(given: _Keys, end: float) -> tuple[float, ...]:
             if not interval > 0:
                 raise ValueError
             count = max(0.0, (end - start) / interval + 1e-9 + 1)
-            if count <= SAVED_TIMES:
+            if count <= MAX_SAVED_TIMES:
                 times = [start + k * interval for k in range(math.floor(count))]
         else:
             count = text.count("|") + 1
             times = (
-                sorted(_finite(part) for part in text.split("|")) if count <= SAVED_TIMES else []
+                sorted(_finite(part) for part in text.split("|"))
+                if count <= MAX_SAVED_TIMES
+                else []
             )
     except ValueError:
         raise InputError(
             f"{given.where('tsteps')}: {quoted(text)} is neither start:interval nor times such as "
             "1|5"
         ) from None
-    if count > SAVED_TIMES:
+    if count > MAX_SAVED_TIMES:
         raise InputError(
             f"{given.where('tsteps')}: {quoted(text)} are {count:.3g} times until {end:g} s; "
-            f"allowed: {SAVED_TIMES}"
+            f"allowed: {MAX_SAVED_TIMES}"
         )
     if times and times[0] < 0:
         raise InputError(f"{given.where('tsteps')}: {times[0]:g} s is before the start")

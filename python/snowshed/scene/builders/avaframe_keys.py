@@ -23,12 +23,12 @@ SETTINGS: Mapping[str, str] = {
     "thresholdmasssplit": "split_ratio",
     "stopcrit": "stop_ratio",
 }
-#: The key of the Coulomb coefficient of each law of friction, and com5SnowSlide's default of it.
+#: The key of the Coulomb coefficient in each law of friction, and its default in com5SnowSlide.
 FRICTION: Mapping[str, tuple[str, float]] = {
     "voellmy": ("muvoellmy", 0.325),
     "coulomb": ("mucoulomb", 0.155),
 }
-#: Keys that may only have the value with which com5SnowSlide works here.
+#: Keys that may only have the one value that is supported here.
 FIXED: Mapping[str, str] = {
     "adaptsfcdetrainment": "0",
     "adaptsfcentrainment": "0",
@@ -75,8 +75,8 @@ VARIATIONS = tuple(
     for area in ("rel", "ent", "secondaryrel")
     for kind in ("percent", "range", "rangefromci", "dist")
 )
-#: Keys that change nothing with the values above: of pictures, of random numbers, of what is
-#: switched off.
+#: Keys that change nothing with the values above: they belong to pictures, random numbers, and
+#: features that are switched off.
 WITHOUT_EFFECT = (
     "adaptdemplot", "additionallyfixedfactor", "appk", "bufferzonefactor", "centertrackpartpoint",
     "cleanremeshedrasters", "cmax", "cmaxnmass", "cmaxnppk", "cminmass", "cminnppk",
@@ -92,7 +92,7 @@ WITHOUT_EFFECT = (
     "uflowingthreshold", "usecompression", "visuparticleproperties", "volclassmedium",
     "volclasssmall",
 )  # fmt: skip
-#: Ends of keys that belong to laws of friction which no simulation here has chosen.
+#: Endings of keys of laws of friction that no simulation here uses.
 OTHER_FRICTION = (
     "samosat", "samosatsmall", "samosatmedium", "voellmyminshear", "coulombminshear", "wetsnow",
     "obrienandjulien", "herschelandbulkley", "bingham",

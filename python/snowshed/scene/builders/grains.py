@@ -34,10 +34,10 @@ def grains_scene(
     Parameters
     ----------
     labels
-        An NPY file of integers (nz, ny, nx): 0 air, any other number a grain; or the folder of
-        ``snowshed grains segment`` or ``synthetic`` that holds it.
+        An NPY file of integers (nz, ny, nx): 0 air, any other number a grain; or a folder from
+        ``snowshed grains segment`` or ``synthetic`` with such a file.
     voxel_size
-        Edge of a voxel, m; None: as the folder says.
+        Edge of a voxel, m; None: from the folder.
     loading
         The stages, one after another.
     cone
@@ -49,7 +49,7 @@ def grains_scene(
     title
         Title of the scene. [default: the source of a synthetic sample]
     split_labels
-        Whether each piece of a label that lies in several places is a grain; None: it is not.
+        Whether each connected piece of a label is a grain; None: all its pieces are one grain.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""A hillside that is made of formulas, for examples of slides."""
+"""A hillside defined by formulas, for examples of slides."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def hillside() -> Raster:
     cell, columns, rows = 2.0, 106, 66
     x, y = np.meshgrid(np.arange(columns) * cell, np.arange(rows) * cell)
     steep, gentle = math.tan(math.radians(38.0)), math.tan(math.radians(6.0))
-    begin, end = 70.0, 150.0  # of the bend between slope and meadow
+    begin, end = 70.0, 150.0  # ends of the bend between slope and meadow
     bend = np.clip(x, begin, end) - begin
     eased = (steep - gentle) * (np.minimum(x, begin) + bend - bend**2 / (2.0 * (end - begin)))
     upper = np.exp(-((np.maximum(x - 60.0, 0.0) / 70.0) ** 2))  # fades out towards the meadow

@@ -20,7 +20,7 @@ from snowshed.scene.panel_edge import panel_edge
 from snowshed.scene.scene import Scene
 from snowshed.scene.shape import Shape
 
-SNOW_OF_PANEL = 2.0 / 3.0  # width of the slab over that of the panel, as in a scene
+SNOW_OF_PANEL = 2.0 / 3.0  # width of the slab over width of the panel, the default of a scene
 
 
 def single_panel(
@@ -85,8 +85,8 @@ def panel_rows(
     """Return several panels in a row, all with snow, on level or tilted ground.
 
     The first is the scene's panel, about which the stack is measured; the others stand down the
-    slide direction. Snow on them counts as part of the stack, so read the columns of the largest
-    connected body. A new slab lies on remaining snow on the first panel only.
+    slide direction. Snow on them counts as part of the stack; therefore read the columns of the
+    largest connected body. Only on the first panel is a new slab laid on top of remaining snow.
 
     Parameters
     ----------
@@ -149,7 +149,7 @@ def panel_table(
     """Return a table of modules on posts, with gaps between them, under one slab.
 
     The lowest module is the scene's panel: x is 0 at its centre, and the height of the table is
-    that of its lower edge.
+    the height of its lower edge.
 
     Parameters
     ----------
@@ -225,7 +225,7 @@ def snow_layer(
 
 
 def separate_part(name: str, shape: Shape) -> Obstacle:
-    """Return an obstacle that snow may leave, such as a post, a rail or a wall."""
+    """Return an obstacle from which snow may separate, such as a post, a rail or a wall."""
     return Obstacle(name=name, shape=shape, condition="separate", friction=0.3)
 
 

@@ -9,8 +9,8 @@ from typing import Optional
 import numpy as np
 
 from snowshed._core import InputError
-from snowshed.base.limits import TERRAIN_CELLS
-from snowshed.base.notes import recorded
+from snowshed.base.limits import MAX_TERRAIN_CELLS
+from snowshed.base.notes import record_notes
 from snowshed.base.paths import PathLike
 from snowshed.io.raster.areas import MapArea, read_areas
 from snowshed.io.raster.raster import Raster, is_single, read_raster, write_ascii_grid
@@ -27,9 +27,9 @@ from snowshed.scene.builders.terrain_checks import (
 from snowshed.scene.components import Area, Events, Hole, ResistanceArea, Terrain
 from snowshed.scene.scene import Scene
 
-MAX_TIME = 400.0  # s, as AvaFrame has it
-MIN_THICKNESS = 0.01  # m, of snow that is worth a slide
-MAX_THICKNESS = 10.0  # m, of snow that is believed; as of the core
+MAX_TIME = 400.0  # s, as in AvaFrame
+MIN_THICKNESS = 0.01  # m, smallest thickness of snow for a slide
+MAX_THICKNESS = 10.0  # m, largest plausible thickness of snow, as in the core
 #: Options that name the layer of a file.
 LAYER_OPTIONS = {
     "release": "--layer",
@@ -64,23 +64,23 @@ def slide_scene(
     raster
         Elevations, m: an ESRI ASCII grid or a GeoTIFF, on a projected map.
     release
-        Polygons of the release areas; a field "thickness" holds that of the snow, m. None: all
-        cells with snow in `thickness_raster`.
+        Polygons of the release areas; a field "thickness" holds the thickness of the snow, m.
+        None: all cells with snow in `thickness_raster`.
     thickness
-        Thickness of the snow, normal to the ground [m], instead of that of the file.
+        Thickness of the snow, normal to the ground [m], instead of the thickness in the file.
     thickness_raster
         Raster of the thickness, m, with a value everywhere in the release.
     entrainment, resistance
         Polygons of entrainment areas, and of forest.
     entrained_thickness
-        Thickness of the erodible snow [m], instead of that of the file.
+        Thickness of the erodible snow [m], instead of the thickness in the file.
     layers
         Layers of GeoPackages with several, by purpose: "release", "entrainment", "resistance".
     settings
         Settings of the method; None: its defaults.
     ascii_copy
-        File for a copy of the terrain as an ASCII grid in metres, which the scene names, if the
-        terrain is in another format; a copy of a raster of thickness goes beside it.
+        File for a copy of the terrain as an ASCII grid in metres, if the terrain has another
+        format; the scene then names the copy. A copy of a raster of thickness goes beside it.
     title
         Title of the scene.
     band, thickness_band
@@ -101,9 +101,9 @@ def slide_scene(
     OSError
         If a file cannot be read, or the copy not be written.
     """
-    with recorded() as notes:
+    with record_notes() as notes:
         steepest = MAX_SLOPE if max_slope is None else max_slope
-        terrain = read_terrain(raster, band, steepest, max_cells or TERRAIN_CELLS)
+        terrain = read_terrain(raster, band, steepest, max_cells or MAX_TERRAIN_CELLS)
         depth = None
         if thickness_raster is not None:
             depth = read_raster(thickness_raster, thickness_band)
@@ -128,7 +128,7 @@ def slide_scene(
         terrain=Terrain(
             file=file.resolve(),
             crs=crs,
-            # GeoTIFF keeps double precision, AvaFrame reads text in single.
+            # GeoTIFF keeps double precision; AvaFrame reads text in single precision.
             single_precision=None if terrain.plain or is_single(terrain) else False,
             thickness_file=map_file,
             max_thickness=max_thickness,
@@ -178,7 +178,7 @@ def _ascii_grid(file: Path, raster: Raster, copy: Optional[PathLike]) -> Path:
     if raster.plain:
         return file
     if copy is None:
-        raise InputError(f"{file}: say where its copy as an ASCII grid shall go (ascii_copy)")
+        raise InputError(f"{file}: give the file for its copy as an ASCII grid (ascii_copy)")
     write_ascii_grid(copy, raster, exact=True)
     return Path(copy)
 
@@ -192,7 +192,7 @@ def _thickness_file(depth: Raster, ascii_copy: Optional[PathLike]) -> Path:
 
 
 class _Polygons:
-    """Reads files of polygons, of each the layer that is named for it."""
+    """Reader of files of polygons, and of the named layer of each."""
 
     def __init__(self, layers: Optional[Mapping[str, str]]) -> None:
         self.layers = layers or {}
@@ -201,7 +201,7 @@ class _Polygons:
                 raise InputError(f"layers: {part!r} is none of {', '.join(LAYER_OPTIONS)}")
 
     def areas(self, file: Optional[PathLike], part: str) -> list[MapArea]:
-        """Return the areas of a file; none without one. Forest has no thickness."""
+        """Return the areas of a file; none without a file. Forest has no thickness."""
         if file is None:
             return []
         return read_areas(
@@ -221,7 +221,7 @@ def _release_areas(
     if depth is not None:
         if thickness is not None:
             raise InputError("give one of a thickness and a raster of thickness")
-        snow_part(depth)  # refuses values that are not a thickness
+        snow_part(depth)  # checks the values of the raster
         return areas_of_depth(depth) if release is None else polygons.areas(release, "release")
     if release is None:
         raise InputError("give the release: polygons or a raster of thickness")
@@ -232,7 +232,7 @@ def _snow_area(
     area: MapArea, thickness: Optional[float], most: float, depth: Optional[Raster] = None
 ) -> Area:
     snow = thickness if thickness is not None else area.thickness
-    if depth is not None:  # the scene's raster goes before it
+    if depth is not None:  # the scene's raster has priority
         snow = float(np.nanmax(depth.heights))
     if snow is None:
         raise InputError(f"{area.name}: the file gives no thickness; give one (--thickness)")
@@ -240,7 +240,7 @@ def _snow_area(
         raise InputError(
             f"{area.name}: {snow:g} m of snow; at least {MIN_THICKNESS:g} m are needed"
         )
-    if snow > most and depth is None:  # of a raster the core knows which cells count
+    if snow > most and depth is None:  # the core checks the cells of a raster
         raise InputError(
             f"{area.name}: {snow:g} m of snow; at most {most:g} m are plausible; is it in "
             "centimetres? If not, raise --max-thickness"

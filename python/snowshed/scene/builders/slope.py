@@ -11,7 +11,7 @@ from snowshed.scene.shape import Shape
 
 Point = tuple[float, float]
 
-BOARD_CELLS = 3  # least thickness of a board, as of the core's panel
+BOARD_CELLS = 3  # smallest thickness of a board, as for the core's panel
 
 
 @dataclass(frozen=True)
@@ -95,7 +95,7 @@ def upright_box(x: Point, z: Point, dimension: int, y: Point = (-0.5, 0.5)) -> S
 def check_resolved(name: str, size: float, dx: float, cells: int = 2) -> None:
     """Raise InputError if a part is too small for the grid.
 
-    Obstacles thinner than two cells are thickened to that, and gaps as narrow are closed.
+    Obstacles thinner than two cells are thickened to two cells, and narrower gaps are closed.
     """
     if size < cells * dx * (1.0 - 1e-9):
         raise InputError(

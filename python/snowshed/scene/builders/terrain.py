@@ -1,7 +1,7 @@
 """Terrain as ground: elevations of a raster, converted to a grid of signed distances.
 
 The elevations become a closed body of triangles. The core computes its exact distances on a regular
-grid, a shape whose cost per step does not depend on the roughness of the terrain.
+grid. The cost of this shape per step does not depend on the roughness of the terrain.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from snowshed.scene.panel_edge import panel_edge
 from snowshed.scene.scene import Scene
 from snowshed.scene.shape import Shape
 
-DEEP, HIGH = 6, 3  # cells of the grid below the lowest and above the highest ground
+CELLS_BELOW, CELLS_ABOVE = 6, 3  # cells of the grid below the lowest and above the highest ground
 MAX_SAMPLES = 20_000_000
 
 Span = tuple[float, float]
@@ -51,14 +51,14 @@ def on_terrain(
 ) -> Scene:
     """Return a scene whose ground is terrain.
 
-    An obstacle "terrain" replaces the plane ground. Its elevation is shifted: the terrain below the
+    An obstacle "terrain" replaces the plane ground. Elevations are shifted: the terrain below the
     lower edge of the panel (or at x = 0, without a panel) is at z = 0, so that the panel's height
-    is that above the terrain there. The stack's height is measured from the terrain below it.
+    is measured from the terrain there. The stack's height is measured from the terrain below it.
 
     Parameters
     ----------
     scene
-        Any scene; it stays as it is.
+        Any scene; it is not changed.
     raster
         Terrain, or its file, which `read_terrain` reads.
     file
@@ -135,7 +135,7 @@ def signed_distances(
     Parameters
     ----------
     heights : (nx, ny)
-        Elevations of the terrain at `xs` and `ys`, m; with one y, terrain is the same along y.
+        Elevations of the terrain at `xs` and `ys`, m; with a single y, it is constant along y.
     xs, ys
         Coordinates of the samples, `spacing` apart, m.
     spacing
@@ -146,8 +146,8 @@ def signed_distances(
     (nx, ny, nz), float
         Distances for a shape of the type "grid", and the z of the lowest samples, m.
     """
-    bottom = float(heights.min()) - DEEP * spacing
-    count = math.ceil((float(heights.max()) - bottom) / spacing) + HIGH + 1
+    bottom = float(heights.min()) - CELLS_BELOW * spacing
+    count = math.ceil((float(heights.max()) - bottom) / spacing) + CELLS_ABOVE + 1
     if len(xs) * len(ys) * count > MAX_SAMPLES:
         raise InputError(
             f"spacing: {spacing:g} m makes a grid of {len(xs)} x {len(ys)} x {count} samples; at "
@@ -155,7 +155,7 @@ def signed_distances(
         )
     zs = bottom + spacing * np.arange(count)
     points = np.stack(np.meshgrid(xs, ys, zs, indexing="ij"), axis=-1).reshape(-1, 3)
-    reach = spacing * (count + DEEP)  # the sides are farther away than the bottom
+    reach = spacing * (count + CELLS_BELOW)  # sides beyond the depth of the bottom
     distances = _distances(_solid(heights, xs, ys, bottom - reach, reach), points, spacing)
     return distances.reshape(len(xs), len(ys), count), bottom
 

@@ -11,16 +11,16 @@ import numpy as np
 
 from snowshed._core import InputError, impossible_cliff
 from snowshed.base.extras import require
-from snowshed.base.limits import PACKED, PACKED_CELLS, RASTER_CELLS
+from snowshed.base.limits import MAX_CELLS_PER_BYTE, MAX_RASTER_CELLS, UNCHECKED_RASTER_CELLS
 from snowshed.base.paths import PathLike
 from snowshed.io.coordinates.systems import are_same, is_in_feet
 from snowshed.io.raster.areas import MapArea
 from snowshed.io.raster.raster import Raster, read_raster
 
-MIN_ELEVATION, MAX_ELEVATION = -430.0, 8850.0  # m, of the Earth's land
-MIN_CELL, MAX_CELL = 0.05, 100.0  # m, of terrain that a slide can be seen on
-MAX_MEDIAN_SLOPE = 65.0  # degrees, the median of terrain that is in metres
-MAX_SLOPE = 70.0  # degrees, of cliffs that are accepted under a release and beside elevations of 0
+MIN_ELEVATION, MAX_ELEVATION = -430.0, 8850.0  # m, elevations of land on Earth
+MIN_CELL, MAX_CELL = 0.05, 100.0  # m, cells that can resolve a slide
+MAX_MEDIAN_SLOPE = 65.0  # degrees, largest median slope of terrain in metres
+MAX_SLOPE = 70.0  # degrees, steepest cliff under a release and beside elevations of 0
 FOOT = 0.3048  # m
 METRE_CELLS = (0.5, 1.0, 2.0, 3.0, 5.0, 10.0, 20.0, 25.0, 30.0)  # m, of usual rasters
 SAMPLE = 1_000_000  # cells for the median slope
@@ -30,7 +30,7 @@ def read_terrain(
     path: PathLike,
     band: Optional[int] = None,
     max_slope: float = MAX_SLOPE,
-    max_cells: int = RASTER_CELLS,
+    max_cells: int = MAX_RASTER_CELLS,
 ) -> Raster:
     """Read elevations, and refuse those that cannot be in metres.
 
@@ -57,12 +57,12 @@ def read_terrain(
     if cells > max_cells:
         raise InputError(
             f"{path}: has {cells} cells; at most {max_cells} are allowed, because a slide takes "
-            "400 bytes and more for each; crop it, make them larger, or allow more (--max-cells)"
+            "400 bytes or more for each; crop it, make cells larger, or allow more (--max-cells)"
         )
-    if cells > PACKED_CELLS and cells > PACKED * size:
+    if cells > UNCHECKED_RASTER_CELLS and cells > MAX_CELLS_PER_BYTE * size:
         raise InputError(
-            f"{path}: {size} bytes hold {cells} cells, closer than elevations can be packed; crop "
-            f"it to at most {PACKED_CELLS} cells"
+            f"{path}: {size} bytes hold {cells} cells, more than can be packed into them; crop "
+            f"it to at most {UNCHECKED_RASTER_CELLS} cells"
         )
     check_terrain(terrain, max_slope)
     return terrain
@@ -71,8 +71,9 @@ def read_terrain(
 def check_terrain(terrain: Raster, max_slope: float = MAX_SLOPE) -> None:
     """Refuse elevations and cells that cannot be in metres, and undeclared missing values.
 
-    Neighbouring elevations may differ by 100 m where the ground between is no steeper than 80
-    degrees, or than `max_slope`; beside exactly 0 m by 10 m where it is no steeper than that.
+    Neighbouring elevations may differ by more than 100 m only if the slope between them is at most
+    80 degrees, or `max_slope` if that is steeper. Beside an elevation of exactly 0 m, they may
+    differ by more than 10 m only if the slope is at most `max_slope`.
     """
     _check_elevations(terrain)
     _check_cells(terrain)

@@ -1,4 +1,4 @@
-"""Copies of terrain that stand beside a results folder, because a scene names a text raster."""
+"""Copies of terrain beside a results folder, because a scene needs a text raster."""
 
 from __future__ import annotations
 

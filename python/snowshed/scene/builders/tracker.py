@@ -98,7 +98,7 @@ def tracker(
         obstacles=[board],
         bodies=[snow_layer(slope, 0.0, length, snow)],
         numerics=MpmSettings(dx=dx),
-        # Snow that rests on a slowly moving board must not end the event: rest has to last for
+        # Snow that rests on a slowly moving board must not end the event: rest must last for
         # longer than the board moves.
         events=Events(count=1, rest_time=seconds, max_time=2.0 * seconds + settle),
     )

@@ -12,7 +12,7 @@ from snowshed._core import InputError
 from snowshed.base.messages import quoted
 from snowshed.base.paths import PathLike
 from snowshed.scene.lua.origins import Origins
-from snowshed.scene.lua.sandbox import Place
+from snowshed.scene.lua.sandbox import ScriptLine
 from snowshed.scene.scene import ResolvedScene, Scene
 
 
@@ -38,7 +38,7 @@ class Builder:
     Parameters
     ----------
     folder
-        The folder of the scripts, in which the files that they name must be.
+        The folder of the scripts, which must contain all files that they name.
     """
 
     def __init__(self, folder: PathLike) -> None:
@@ -54,48 +54,50 @@ class Builder:
         self._origins = Origins()
         self._names = {}
 
-    def set(self, path: str, value: Any, place: Place) -> None:
+    def set(self, path: str, value: Any, script_line: ScriptLine) -> None:
         """Set the value at a dotted path."""
         self._scene.set(path, value)
         if isinstance(value, list):
             self._names[path] = [_item_name(item) for item in value]
         else:
             self._names.pop(path, None)
-        self._origins.note(_pointer(path), value, place)
+        self._origins.note(_pointer(path), value, script_line)
 
-    def update(self, section: str, values: Mapping[str, Any], place: Place) -> None:
+    def update(self, section: str, values: Mapping[str, Any], script_line: ScriptLine) -> None:
         """Set values of a section of the scene, such as the panel; the others stay."""
         if getattr(self._scene, section) is None:
-            self.set(section, {}, place)
+            self.set(section, {}, script_line)
         for key, value in values.items():
-            self.set(f"{section}.{key}", value, place)
+            self.set(f"{section}.{key}", value, script_line)
 
-    def append(self, path: str, value: Any, place: Place) -> None:
+    def append(self, path: str, value: Any, script_line: ScriptLine) -> None:
         """Append to the list at a dotted path."""
         self._scene.append(path, value)
         names = self._names.setdefault(path, [])
-        self._origins.note(f"{_pointer(path)}/{len(names)}", value, place)
+        self._origins.note(f"{_pointer(path)}/{len(names)}", value, script_line)
         names.append(_item_name(value))
 
-    def put(self, path: str, name: str, values: Mapping[str, Any], place: Place) -> None:
-        """Append an item to a list, or change the item that was put there under the same name."""
+    def append_or_change(
+        self, path: str, name: str, values: Mapping[str, Any], script_line: ScriptLine
+    ) -> None:
+        """Append an item to a list, or change the earlier item of the same name."""
         names = self._names.setdefault(path, [])
         if name and name in names:
             for key, value in values.items():
-                self.set(f"{path}.{names.index(name)}.{key}", value, place)
+                self.set(f"{path}.{names.index(name)}.{key}", value, script_line)
         else:
-            self.append(path, values, place)
+            self.append(path, values, script_line)
             names[-1] = name
 
-    def ask(self, name: str, place: Place) -> None:
+    def request_run(self, name: str, script_line: ScriptLine) -> None:
         """Request a run of the scene with its present values.
 
         Parameters
         ----------
         name
             Name of the run.
-        place
-            The line that requests the run, for errors that no other line has caused.
+        script_line
+            The line that requests the run, for errors without another line.
 
         Raises
         ------
@@ -109,7 +111,7 @@ class Builder:
             scene = ResolvedScene.parse(json.dumps(data), self._folder)
         except InputError as error:
             where = str(error).partition(":")[0]
-            raise InputError(f"{self._origins.of(where) or place}: {error}") from None
+            raise InputError(f"{self._origins.of(where) or script_line}: {error}") from None
         self.runs.append(LuaRun(name, scene))
 
     def _check_file(self, where: str, file: Any) -> None:

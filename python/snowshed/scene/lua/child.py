@@ -17,8 +17,8 @@ from pathlib import Path
 from typing import Any
 
 ADDRESS_SPACE = 512 << 20  # bytes; the Lua state's own limit is far below
-BYTES = "latin-1"  # a character for every byte: texts of a script need not be valid UTF-8
-SPARE_BYTES = 1 << 20  # for reporting, when a script has used up all it may
+BYTES = "latin-1"  # one character per byte: texts of a script need not be UTF-8
+SPARE_BYTES = 1 << 20  # memory for the error message after a script has reached its limit
 REDUCED_LIMITS = (
     (resource.RLIMIT_NOFILE, 0),
     (resource.RLIMIT_NPROC, 0),

@@ -1,13 +1,13 @@
--- Runs scripts that can do nothing but compute and call the vocabulary.
+-- Runs scripts that can only compute and call the vocabulary.
 --
--- A script sees the tables made here and nothing else. Left out on purpose:
---   io, os, debug, package, require, load, dofile, collectgarbage: reach out of the sandbox;
---   pcall, coroutine: could catch the error of an exhausted limit, or leave its hook behind;
---   setmetatable, getmetatable: finalisers and __close run where no hook does;
---   string.find, match, gmatch, gsub, table.move: one call may take for ever, and hooks do not
---   run inside a call.
+-- A script sees only the tables made here. These functions are left out on purpose:
+--   io, os, debug, package, require, load, dofile, collectgarbage: they reach out of the sandbox;
+--   pcall, coroutine: they could catch the error of an exceeded limit, or run without its hook;
+--   setmetatable, getmetatable: finalisers and __close run without the hook;
+--   string.find, match, gmatch, gsub, table.move: one call may take forever, and hooks do not run
+--   inside a call.
 --
--- Arguments: what plain_data.lua returns, the words, the shapes and the limits.
+-- Arguments: the result of plain_data.lua, the words, the shapes and the limits.
 
 local encode_list, words, shapes, limits = ...
 
@@ -26,8 +26,8 @@ local main -- the coroutine that runs the scripts
 local current = 1 -- the number of the script that runs
 local env = {}
 
--- The number of the script and the line in it that runs, or did when `main` failed. The line is 0
--- if it is not known: a call in the script's own `return` has taken its place.
+-- Returns the number of the script and its current line, or the line at which `main` failed. The
+-- line is 0 if it is unknown, because a call in the script's own `return` has replaced it.
 local function place()
   for level = 0, 200 do
     local info = getinfo(main, level, "Sl")
@@ -42,7 +42,7 @@ local function place()
   return current, 0
 end
 
--- --- what a script may call ------------------------------------------------------------------
+-- --- functions for scripts -------------------------------------------------------------------
 
 local function ordered(one, other)
   local a, b = type(one), type(other)
@@ -52,7 +52,7 @@ local function ordered(one, other)
   return a < b
 end
 
--- Lua visits keys in an order that differs from run to run; a scene must not.
+-- Lua visits keys in an order that differs from run to run; here the order is fixed.
 local function sorted_keys(caller, values)
   if type(values) ~= "table" then
     error(format("%s needs a table, not a %s", caller, type(values)), 0)
@@ -105,7 +105,7 @@ local function sorted_next(values, key)
   return key or nil, values[key]
 end
 
--- Of what has an address, the library shows it; it differs from run to run, and a scene must not.
+-- The library prints addresses, which differ from run to run; here they are left out.
 local function without_address(value)
   local kind = type(value)
   return (kind == "table" or kind == "function") and kind or value
@@ -131,7 +131,7 @@ local function format_without_addresses(form, ...)
   return format(form, unpack(values, 1, count))
 end
 
--- The library's own repeats nothing for ever when asked to.
+-- The library's function may repeat an empty text forever.
 local function bounded_rep(text, count, separator)
   local size = #tostring(text) + #tostring(separator or "")
   if size == 0 then
@@ -144,7 +144,7 @@ local function bounded_rep(text, count, separator)
   return rep(text, count, separator)
 end
 
--- A table with gaps may claim any length, and the library would walk all of it in one call.
+-- A table with gaps may claim any length, all of which the library would visit in one call.
 local function bounded_list(name, work)
   return function(list, ...)
     if type(list) == "table" and #list * 16 > limits.memory_bytes then
@@ -164,7 +164,7 @@ local function print_later(...)
   end
 end
 
--- Without a number the library would take the time of day.
+-- Without a number the library would use the time of day as seed.
 local function seed_random(seed)
   randomseed(seed)
 end
@@ -180,7 +180,7 @@ local function recorder(word)
   end
 end
 
--- Named values are the shape's own, list items the shapes it is made of.
+-- Named values are properties of the shape; list items are its parts.
 local function shape_maker(name, kind)
   return function(values)
     if type(values) ~= "table" then
@@ -206,7 +206,7 @@ local function refusal(name)
   end
 end
 
--- A library of which every function that is left out says so when it is called.
+-- A library in which a call of a left-out function is an error that says so.
 local function restricted(library_name, library, names)
   local chosen = {}
   for name in next, library do
@@ -280,8 +280,8 @@ local function watch_limits()
   end
 end
 
--- Runs the texts one after the other in the same environment. Returns nothing, or the message of
--- what went wrong; `place` then says where.
+-- Runs the texts one after the other in the same environment. Returns nothing, or an error message;
+-- `place` then returns the position of the error.
 local function run(texts)
   main = create(function()
     for i = 1, #texts do

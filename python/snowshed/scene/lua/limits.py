@@ -10,8 +10,8 @@ class LuaLimits:
     """The resources that the scripts of one scene may use together.
 
     A script that exceeds one of the first three is stopped with an error that names the line. The
-    next two end the process, in case a single operation does not return. Processor time is counted,
-    because a busy machine hardly changes it; a script cannot wait for anything.
+    next two end the process, in case a single operation does not return. Processor time is limited,
+    because it hardly depends on other load of the machine; a script cannot wait for anything.
 
     Attributes
     ----------
@@ -26,7 +26,7 @@ class LuaLimits:
     wall_seconds
         Time by the clock, s, after which the operating system ends the process in any case.
     calls
-        Calls of the vocabulary.
+        Calls of functions of the vocabulary.
     printed_lines
         Printed lines; further lines are dropped.
     line_length

@@ -11,7 +11,7 @@ from snowshed.base.paths import PathLike
 from snowshed.io.input_file import read_input
 from snowshed.scene.lua.builder import Builder, LuaRun
 from snowshed.scene.lua.limits import LuaLimits
-from snowshed.scene.lua.sandbox import Place, Script, run_sandboxed
+from snowshed.scene.lua.sandbox import Script, ScriptLine, run_sandboxed
 from snowshed.scene.lua.vocabulary import SHAPES, WORDS, apply
 
 
@@ -66,7 +66,7 @@ def load_lua(
     for call in calls:
         apply(call, builder)
     if not builder.runs:
-        builder.ask("", Place(scripts[-1].name, 0))
+        builder.request_run("", ScriptLine(scripts[-1].name, 0))
     return builder.runs
 
 

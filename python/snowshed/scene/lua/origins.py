@@ -5,43 +5,45 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, Optional
 
-from snowshed.scene.lua.sandbox import Place
+from snowshed.scene.lua.sandbox import ScriptLine
 
 
 class Origins:
-    """The places that set values, by JSON path.
+    """The lines that set values, by JSON path.
 
     Examples
     --------
     >>> origins = Origins()
-    >>> origins.note("/panel", {"tilt": 40}, Place("init.lua", 3))
-    >>> origins.note("/panel/tilt", 95, Place("update.lua", 1))
+    >>> origins.note("/panel", {"tilt": 40}, ScriptLine("init.lua", 3))
+    >>> origins.note("/panel/tilt", 95, ScriptLine("update.lua", 1))
     >>> str(origins.of("/panel/tilt")), str(origins.of("/panel/height"))
     ('update.lua:1', 'init.lua:3')
     """
 
     def __init__(self) -> None:
-        self._places: dict[str, Place] = {}
+        self._lines: dict[str, ScriptLine] = {}
 
-    def note(self, path: str, value: Any, place: Place) -> None:
-        """Note that `place` set `value` at `path`, and all values inside it."""
-        self._places.pop(path, None)  # so that the order is that of the last setting
-        self._places[path] = place
+    def note(self, path: str, value: Any, script_line: ScriptLine) -> None:
+        """Store `script_line` as the origin of `value` at `path`, and of all values inside."""
+        self._lines.pop(path, None)  # moves the path to the end of the order
+        self._lines[path] = script_line
         if isinstance(value, Mapping):
             for key, inner in value.items():
-                self.note(f"{path}/{key}", inner, place)
+                self.note(f"{path}/{key}", inner, script_line)
         elif isinstance(value, list):
             for i, inner in enumerate(value):
-                self.note(f"{path}/{i}", inner, place)
+                self.note(f"{path}/{i}", inner, script_line)
 
-    def of(self, path: str) -> Optional[Place]:
-        """Return the place that set the value at `path`, or what contains it, or its last part."""
+    def of(self, path: str) -> Optional[ScriptLine]:
+        """Return the line that set the value at `path`, or an object around it, or a part of it."""
         around = path
         while around:
-            if around in self._places:
-                return self._places[around]
+            if around in self._lines:
+                return self._lines[around]
             around = around.rpartition("/")[0]
         inside = [
-            place for set_path, place in self._places.items() if set_path.startswith(f"{path}/")
+            script_line
+            for set_path, script_line in self._lines.items()
+            if set_path.startswith(f"{path}/")
         ]
         return inside[-1] if inside and path else None

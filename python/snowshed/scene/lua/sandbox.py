@@ -17,7 +17,7 @@ from snowshed.base.extras import require
 from snowshed.scene.lua.limits import LuaLimits
 
 PROGRAM = Path(__file__).with_name("child.py")
-START_SECONDS = 60.0  # for the process to start and answer, on a machine that is very busy
+START_SECONDS = 60.0  # time to start and answer on a very busy machine, s
 MAX_MESSAGE = 500
 OUR_OWN_PLACE = re.compile(r"^(?:host|plain_data):\d+: ")
 SCRIPT_PLACE = re.compile(r"^script(\d+):(\d+): ")
@@ -25,14 +25,14 @@ SCRIPT_PLACE = re.compile(r"^script(\d+):(\d+): ")
 
 @dataclass(frozen=True)
 class Script:
-    """A script to run: the name it has in errors, and its text."""
+    """A script to run: its name in errors, and its text."""
 
     name: str
     text: str
 
 
 @dataclass(frozen=True)
-class Place:
+class ScriptLine:
     """A line of a script; 0 if it is not known."""
 
     script: str
@@ -48,7 +48,7 @@ class Call:
 
     word: str
     arguments: list[Any]
-    place: Place
+    script_line: ScriptLine
 
 
 def run_sandboxed(
@@ -76,7 +76,7 @@ def run_sandboxed(
     Returns
     -------
     list of Call
-        The calls of `words`, in their order.
+        The calls of `functions`, in their order.
 
     Raises
     ------
@@ -86,7 +86,7 @@ def run_sandboxed(
     Examples
     --------
     >>> run_sandboxed([Script("a.lua", "x = 2 gravity(9.81 * x)")], ["gravity"], {})
-    [Call(word='gravity', arguments=[19.62], place=Place(script='a.lua', line=1))]
+    [Call(word='gravity', arguments=[19.62], script_line=ScriptLine(script='a.lua', line=1))]
     """
     lupa = require("lupa.lua54", "lua", "running Lua scripts")
     limits = limits or LuaLimits()
@@ -105,14 +105,14 @@ def run_sandboxed(
     if "error" in answer:
         raise _failure(answer["error"], names, limits)
     return [
-        Call(word, arguments, Place(names[script - 1], line))
+        Call(word, arguments, ScriptLine(names[script - 1], line))
         for word, script, line, arguments in answer["calls"]
     ]
 
 
 def _ask(request: str, names: list[str], limits: LuaLimits) -> dict[str, Any]:
     """Return the answer of the process that runs Lua."""
-    # -I and -S: nothing but the standard library; the request says where lupa is.
+    # -I and -S: only the standard library is found; the request names the folder of lupa.
     command: list[Union[str, Path]] = [sys.executable, "-I", "-S", PROGRAM]
     both = " with ".join(names)
     try:
@@ -136,7 +136,7 @@ def _ask(request: str, names: list[str], limits: LuaLimits) -> dict[str, Any]:
 
 
 def _failure(error: dict[str, Any], names: list[str], limits: LuaLimits) -> InputError:
-    """Return the error with its place in front, once."""
+    """Return the error with its script line in front, once."""
     message = OUR_OWN_PLACE.sub("", error["message"])
     script, line = error["script"], error["line"]
     own_place = SCRIPT_PLACE.match(message)
@@ -145,7 +145,7 @@ def _failure(error: dict[str, Any], names: list[str], limits: LuaLimits) -> Inpu
         message = message[own_place.end() :]
     if message == "not enough memory":
         message = f"stopped: more than {limits.memory_bytes / 2**20:g} MB of memory"
-    return InputError(f"{Place(names[script - 1], line)}: {_printable(message)}")
+    return InputError(f"{ScriptLine(names[script - 1], line)}: {_printable(message)}")
 
 
 def _printable(text: str) -> str:

@@ -16,10 +16,10 @@ from snowshed._core import InputError
 from snowshed.base.messages import shortened
 from snowshed.scene.components import Snow
 from snowshed.scene.lua.builder import Builder
-from snowshed.scene.lua.sandbox import Call, Place
+from snowshed.scene.lua.sandbox import Call, ScriptLine
 from snowshed.scene.scene import Scene
 
-Word = Callable[[Builder, Place, Any], None]
+Word = Callable[[Builder, ScriptLine, Any], None]
 
 # The thesis's symbols, equations (1.2.5) to (1.2.7).
 SYMBOLS = MappingProxyType(
@@ -74,26 +74,26 @@ def apply(call: Call, builder: Builder) -> None:
     Examples
     --------
     >>> builder = Builder(".")
-    >>> apply(Call("preset", ["lab-50"], Place("init.lua", 1)), builder)
-    >>> apply(Call("gravity", [1.62], Place("init.lua", 2)), builder)
-    >>> apply(Call("run", ["moon"], Place("init.lua", 3)), builder)
+    >>> apply(Call("preset", ["lab-50"], ScriptLine("init.lua", 1)), builder)
+    >>> apply(Call("gravity", [1.62], ScriptLine("init.lua", 2)), builder)
+    >>> apply(Call("run", ["moon"], ScriptLine("init.lua", 3)), builder)
     >>> builder.runs[0].scene.data["gravity"]
     1.62
     """
     if call.word == "run":
-        _run(builder, call)  # its errors name the line that set the value
+        _run(builder, call)  # its errors already name a line
         return
     try:
         if call.word in PATH_WORDS:
             path, value = _arguments(call, 2)
             if not isinstance(path, str):
                 raise InputError(f"{call.word} needs a path such as 'snow.density', not {path!r}")
-            PATH_WORDS[call.word](builder, path, value, call.place)
+            PATH_WORDS[call.word](builder, path, value, call.script_line)
         else:
             (argument,) = _arguments(call, 1)
-            SIMPLE_WORDS[call.word](builder, call.place, argument)
+            SIMPLE_WORDS[call.word](builder, call.script_line, argument)
     except InputError as error:
-        raise InputError(f"{call.place}: {error}") from None
+        raise InputError(f"{call.script_line}: {error}") from None
 
 
 def _arguments(call: Call, count: int) -> list[Any]:
@@ -117,22 +117,22 @@ def _name(word: str, value: Any) -> str:
     return value
 
 
-def _preset(builder: Builder, place: Place, value: Any) -> None:
+def _preset(builder: Builder, script_line: ScriptLine, value: Any) -> None:
     builder.replace(Scene.preset(_name("preset", value)))
 
 
-def _value(path: str, builder: Builder, place: Place, value: Any) -> None:
-    builder.set(path, value, place)
+def _value(path: str, builder: Builder, script_line: ScriptLine, value: Any) -> None:
+    builder.set(path, value, script_line)
 
 
-def _section(section: str, builder: Builder, place: Place, value: Any) -> None:
-    builder.update(section, _table(section, value), place)
+def _section(section: str, builder: Builder, script_line: ScriptLine, value: Any) -> None:
+    builder.update(section, _table(section, value), script_line)
 
 
-def _material(builder: Builder, place: Place, value: Any) -> None:
-    """Set the snow: a preset by its name, or values, which override those before."""
+def _material(builder: Builder, script_line: ScriptLine, value: Any) -> None:
+    """Set the snow: a preset by its name, or values, which override earlier ones."""
     if isinstance(value, str):
-        builder.set("snow", Snow.preset(value).to_data(), place)
+        builder.set("snow", Snow.preset(value).to_data(), script_line)
         return
     values: dict[str, Any] = {}
     for key, inner in _table("material", value).items():
@@ -140,37 +140,39 @@ def _material(builder: Builder, place: Place, value: Any) -> None:
         if full in values:
             raise InputError(f"material has {full} twice, by its name and by its symbol")
         values[full] = inner
-    builder.update("snow", values, place)
+    builder.update("snow", values, script_line)
 
 
-def _frames(builder: Builder, place: Place, value: Any) -> None:
+def _frames(builder: Builder, script_line: ScriptLine, value: Any) -> None:
     """Write a frame every `interval` seconds, and end an event after `count` of them."""
     values = _table("frames", value)
     interval, count = values.get("interval"), values.get("count")
     if set(values) - {"interval", "count"} or not _positive(interval):
         raise InputError("frames needs an interval in s (more than 0), and may have a count")
-    builder.set("output.snapshot_interval", interval, place)
+    builder.set("output.snapshot_interval", interval, script_line)
     if count is not None:
         if not _positive(count):
             raise InputError(f"frames: count is {count!r}, and must be a number more than 0")
-        builder.set("events.max_time", interval * count, place)
+        builder.set("events.max_time", interval * count, script_line)
 
 
 def _positive(value: Any) -> bool:
     return isinstance(value, (int, float)) and not isinstance(value, bool) and value > 0
 
 
-def _levelset(builder: Builder, place: Place, value: Any) -> None:
+def _levelset(builder: Builder, script_line: ScriptLine, value: Any) -> None:
     """Add an obstacle, or change the one of the same name."""
     values = _table("levelset", value)
-    builder.put("obstacles", _name("levelset: name", values.get("name", "")), values, place)
+    builder.append_or_change(
+        "obstacles", _name("levelset: name", values.get("name", "")), values, script_line
+    )
 
 
-def _body(builder: Builder, place: Place, value: Any) -> None:
+def _body(builder: Builder, script_line: ScriptLine, value: Any) -> None:
     """Add a body of snow, or change the one of the same name, which only scripts know."""
     values = dict(_table("body", value))
     name = _name("body: name", values.pop("name", ""))
-    builder.put("bodies", name, values, place)
+    builder.append_or_change("bodies", name, values, script_line)
 
 
 def _run(builder: Builder, call: Call) -> None:
@@ -178,14 +180,14 @@ def _run(builder: Builder, call: Call) -> None:
     name = call.arguments[0] if len(call.arguments) == 1 else None
     if not (isinstance(name, str) and RUN_NAME.fullmatch(name)):
         raise InputError(
-            f"{call.place}: run needs a name for its folder: up to 100 letters, digits and "
+            f"{call.script_line}: run needs a name for its folder: up to 100 letters, digits and "
             f"._+=- after a letter or digit, not {shortened(repr(name))}"
         )
     if any(name == run.name for run in builder.runs):
-        raise InputError(f"{call.place}: there is already a run {name!r}")
+        raise InputError(f"{call.script_line}: there is already a run {name!r}")
     if len(builder.runs) == MAX_RUNS:
-        raise InputError(f"{call.place}: more than {MAX_RUNS} runs; use a study for so many")
-    builder.ask(name, call.place)
+        raise InputError(f"{call.script_line}: more than {MAX_RUNS} runs; use a study for so many")
+    builder.request_run(name, call.script_line)
 
 
 PATH_WORDS = MappingProxyType({"set": Builder.set, "append": Builder.append})

@@ -1,7 +1,7 @@
 """Published relations between measured properties of snow and those that a simulation needs.
 
 Each is a named function with its source, range and scatter (`Relation`). Relations without a second
-source are left out, or say so.
+source are left out, or their description says that they have none.
 
 Examples
 --------

@@ -38,7 +38,7 @@ class Relation:
     function
         The formula itself.
     range_verified
-        Whether the range is known from the publication, or only assumed from its data.
+        Whether the publication states the range; else it is assumed from the data.
 
     Examples
     --------
@@ -64,14 +64,14 @@ class Relation:
         Raises
         ------
         InputError
-            If an argument is not a number snow can have.
+            If an argument is not a value that snow can have.
         """
         for name, value in zip(self.ranges, arguments):
             _check(name, value, self.name)
         return self.function(*arguments)
 
     def outside(self, *arguments: float) -> list[str]:
-        """Return which arguments lie outside the relation's range, with that range."""
+        """Return a text for each argument outside the relation's range, with this range."""
         return [
             f"{name} {value:g} {UNITS[name]} ({low:g} to {high:g})"
             for (name, (low, high)), value in zip(self.ranges.items(), arguments)
@@ -80,12 +80,12 @@ class Relation:
 
 
 def choose(name: str, relations: Mapping[str, Chosen], where: str) -> Chosen:
-    """Return the relation, or law, of a name.
+    """Return the relation, or law, with a name.
 
     Raises
     ------
     InputError
-        With the known names; `where` begins the message.
+        If the name is unknown; the message begins with `where` and lists the known names.
     """
     if name not in relations:
         raise InputError(f"{where}: {name!r} is unknown; allowed: {', '.join(relations)}")
@@ -93,7 +93,7 @@ def choose(name: str, relations: Mapping[str, Chosen], where: str) -> Chosen:
 
 
 def by_name(*relations: Relation) -> dict[str, Relation]:
-    """Return relations under their names."""
+    """Return relations by their names."""
     return {relation.name: relation for relation in relations}
 
 

@@ -25,7 +25,7 @@ SettlingLaw = Callable[[Floats, Floats, float], Floats]
 
 
 def vionnet_2012(density: Floats, stress: Floats, temperature: float) -> Floats:
-    """Return the strain rate in the snow model Crocus, dry and of rounded grains.
+    """Return the strain rate, 1/s, in the snow model Crocus, for dry snow with rounded grains.
 
     Stress over the viscosity 7.62237e6 Pa s (rho / 250) exp(0.023 rho - 0.1 T) of Vionnet et al.
     2012, Geosci. Model Dev. 5, 773-791. With angular grains the viscosity is up to 4 times as high.
@@ -43,11 +43,11 @@ def vionnet_2012(density: Floats, stress: Floats, temperature: float) -> Floats:
 
 
 def essery_2013(density: Floats, stress: Floats, temperature: float) -> Floats:
-    """Return the strain rate after Anderson 1976 with the constants of Essery et al. 2013.
+    """Return the strain rate, 1/s, of Anderson 1976 with the constants of Essery et al. 2013.
 
     Stress over the viscosity 3.7e7 Pa s exp(0.018 rho - 0.081 T), plus the metamorphism of new snow
     under no load, 2.8e-6/s exp(0.042 T - 0.046 max(rho - 150, 0)) (Adv. Water Resour. 55, 131-148).
-    Published values of the viscosity's factor go from 3.6e6 to 3.7e7 Pa s.
+    Published values of the viscosity's factor range from 3.6e6 to 3.7e7 Pa s.
 
     Examples
     --------

@@ -29,14 +29,14 @@ class SinteringLaw:
     source: str
 
     def strengthen(self, strength: Floats, age: float) -> Floats:
-        """Return the strengths that bonds have after some more time.
+        """Return the strengths of bonds after some more time.
 
         Parameters
         ----------
         strength : (n,)
-            In units of that which the law gives to bonds of age 1; those of 1 or more stay.
+            Strengths relative to bonds of age 1; strengths of 1 or more do not change.
         age
-            The time that passes, in the same unit.
+            Time that passes, in units of this age.
 
         Examples
         --------

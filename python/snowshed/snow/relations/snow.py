@@ -28,14 +28,13 @@ def snow_from_density(
     youngs_modulus
         A name in `YOUNGS_MODULUS`; None keeps that of the base.
     tensile_strength
-        A name in `TENSILE_STRENGTH`; None keeps the preconsolidation pressure of the base.
-        Otherwise that becomes the strength over the cohesion, p0 = sigma / beta, as in the thesis
-        (3.2).
+        A name in `TENSILE_STRENGTH`. Then the preconsolidation pressure is the strength over the
+        cohesion, p0 = sigma / beta, as in the thesis (3.2). None keeps that of the base.
     strength_factor
         Factor on the strength. The thesis took the smallest measured values for its loose, sieved
-        snow; the calibrated snow is at 0.21 of sigrist-2006.
+        snow; the calibrated snow has 0.21 times the strength of sigrist-2006.
     base
-        The snow that gives everything else: "calibrated" or "reference".
+        The snow with all other parameters: "calibrated" or "reference".
 
     Raises
     ------

@@ -2,8 +2,8 @@
 
 The relations differ by an order of magnitude, because they mean different things: computed on the
 microstructure (no creep at all), fitted to a bending slab, or measured slowly in a press. The
-calibrated snow of the thesis has 1 MPa at 210 kg/m3, below all of them; stacks hardly depend on it
-there, and the time step shrinks with its square root.
+calibrated snow of the thesis has 1 MPa at 210 kg/m3, less than all relations give. Stacks hardly
+depend on the modulus there, and the time step is inversely proportional to its square root.
 """
 
 from __future__ import annotations

@@ -10,7 +10,7 @@ from snowshed.base.arrays import Booleans, Floats, Integers
 
 
 def largest_body(positions: Floats, masses: Floats, voxel: float) -> Booleans:
-    """Return which particles make up the connected body with the most mass.
+    """Return the mask of the particles in the connected body with the largest mass.
 
     Parameters
     ----------
@@ -46,11 +46,11 @@ def connected_bodies(positions: Floats, voxel: float) -> Integers:
     (n,)
         Body of each particle, numbered from 0.
     """
-    from scipy.sparse import coo_matrix  # here: it takes longer to load than all of snowshed
+    from scipy.sparse import coo_matrix  # loads more slowly than snowshed
     from scipy.sparse.csgraph import connected_components
 
     index = np.floor((positions - positions.min(axis=0)) / voxel).astype(np.int64)
-    extent = index.max(axis=0) + 2  # an empty layer, so that rows do not touch each other's ends
+    extent = index.max(axis=0) + 2  # an empty layer separates the ends of rows
     stride = np.array([extent[1] * extent[2], extent[2], 1])
     keys, voxel_of = np.unique(index @ stride, return_inverse=True)
     first, second = _touching(keys, stride)
@@ -63,7 +63,7 @@ def connected_bodies(positions: Floats, voxel: float) -> Integers:
 def _touching(keys: Integers, stride: Integers) -> tuple[Integers, Integers]:
     """Return the pairs of occupied voxels that touch, as indices into the sorted `keys`."""
     pairs = []
-    for offset in list(product((-1, 0, 1), repeat=3))[14:]:  # half of the 26: pairs once
+    for offset in list(product((-1, 0, 1), repeat=3))[14:]:  # half of the 26: each pair once
         other = keys + np.dot(offset, stride)
         indices = np.minimum(np.searchsorted(keys, other), len(keys) - 1)
         hit = np.flatnonzero(keys[indices] == other)

@@ -2,22 +2,22 @@
 
 The steps, in this order:
 
-1. The ground is turned level (A.4.4). Heights are those above the ground below.
-2. Snow that has not come down is set aside and reported: what lies on the panel or hangs over its
-   edge, what lies on a structure, and what still falls (module ``support``).
+1. The ground is turned level (A.4.4). Heights are measured from the ground below.
+2. Snow that has not come down is excluded and reported: snow that lies on the panel, hangs over its
+   edge, lies on a structure, or still falls (module ``support``).
 3. The outermost 3 % are dropped (A.4.1, A.4.2; module ``trimming``). In 2D the thesis can be read
-   in two ways: a stack is measured by one, which has a name, and its extent is given by both.
+   in two ways. A stack is measured by one rule, named `trimming`; its extent is given by both.
 4. The surface is extracted (A.4.3; module ``surface``); height, length, head, tail and width are
-   those of the surface, as in the thesis.
+   measured on the surface, as in the thesis.
 
 Steps 3 and 4 are repeated on the largest connected body alone (module ``connected_components``),
-because the lab measured a continuous body and left out what had rolled away. Mass and volume are
-those of all snow off the panel, outliers included; a particle that has flown apart counts with at
-most a voxel, for any deformation. In 2D the snow is a strip one metre wide.
+because the lab measured a continuous body and left out what had rolled away. Mass and volume
+include all snow off the panel, also outliers; the volume of a particle counts as at most a voxel,
+for any deformation. In 2D the snow is a strip one metre wide.
 
-The height of the centre of mass and the spread along the slope are those of all snow of the stack,
-outliers included. They are sums over all particles and not positions of a few, so that they scatter
-less between seeds and converge more regularly with the grid than height and length.
+The height of the centre of mass and the spread along the slope include all snow of the stack, also
+outliers. They are sums over all particles instead of positions of a few. Therefore they scatter
+less between seeds, and converge more regularly with the grid, than height and length.
 """
 
 from __future__ import annotations
@@ -36,8 +36,8 @@ from snowshed.snow.stack.support import supports
 from snowshed.snow.stack.surface import outline_particles, surface_particles
 from snowshed.snow.stack.trimming import DEFAULT_TRIMMING, TRIMMINGS, check_trimming, inliers
 
-#: Edge of the voxels that connect snow, m. It is the same on every grid, because what counts as
-#: one body must not depend on the grid; coarser grids connect snow over a cell.
+#: Edge of the voxels that connect snow, m. It is the same on all finer grids, because the division
+#: of snow into bodies must not depend on the grid; coarser grids connect snow over a cell.
 CONNECTION_VOXEL = 0.01
 
 
@@ -65,7 +65,7 @@ class Extent:
 
 @dataclass(frozen=True, repr=False)
 class StackMeasure(Extent):
-    """A measured stack; its own extent is that of all snow off the panel, without outliers.
+    """A measured stack; its own extent covers all snow off the panel, without outliers.
 
     Attributes
     ----------
@@ -90,7 +90,7 @@ class StackMeasure(Extent):
     joined
         Whether the stack and the snow on the panel touch.
     members : (n,)
-        Mask of the given particles that belong to the stack.
+        Mask of the particles that belong to the stack.
     """
 
     trimming: str = DEFAULT_TRIMMING
@@ -194,7 +194,7 @@ def measure_stack(
     Returns
     -------
     StackMeasure
-        A stack of zeros, with NaN positions, if no snow is off the panel.
+        The stack; without snow off the panel, its sizes are 0 and its positions NaN.
 
     Raises
     ------
@@ -261,7 +261,7 @@ def measure_stack(
 def _held(
     snow: Floats, on_panel: Booleans, touching: Booleans, dx: float
 ) -> tuple[Booleans, Booleans, Booleans, bool]:
-    """Return masks of snow held by panel and structures, and falling, and if the stack joins it."""
+    """Return masks of snow held by panel and structures, of falling snow, and the flag `joined`."""
     off = ~on_panel
     support = supports(snow[off], snow[on_panel], touching[off], snow[off, 2], dx)
     at_panel = on_panel.copy()

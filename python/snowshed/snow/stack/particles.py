@@ -13,8 +13,8 @@ from snowshed.base.arrays import Booleans, Floats
 from snowshed.snow.stack.measure import StackMeasure, measure_stack
 from snowshed.snow.stack.trimming import DEFAULT_TRIMMING
 
-TOUCHES = 1.5  # cells between a structure and snow that lies on it
-NEAR_ENOUGH = 0.01  # cells from the ground at which the search for it ends
+MAX_CONTACT_GAP = 1.5  # largest distance between a structure and snow that lies on it, cells
+GROUND_TOLERANCE = 0.01  # distance from the ground at which the search ends, cells
 MAX_STEPS = 200
 
 
@@ -27,7 +27,7 @@ class Surroundings:
     structures : (n,)
         Mask of particles that touch the panel's board or an obstacle other than the ground.
     ground : (n,)
-        z of the ground below each particle, m, where it is not the scene's plane.
+        z of the ground below each particle, m, if the ground is not the scene's plane.
     """
 
     structures: Optional[Booleans] = None
@@ -39,8 +39,8 @@ def surroundings(
 ) -> Surroundings:
     """Return the structures and the ground around particles.
 
-    Obstacles of a scene with a plane ground are structures. Without one, obstacles are the ground,
-    as is terrain.
+    Obstacles of a scene with a plane ground are structures. In a scene without a plane, obstacles
+    and terrain are the ground.
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ def surroundings(
             gap = np.minimum(gap, simulation.resolved_distance(positions))
         else:
             ground = _ground_below(simulation, positions)
-    return Surroundings(gap < TOUCHES * simulation.resolution, ground)
+    return Surroundings(gap < MAX_CONTACT_GAP * simulation.resolution, ground)
 
 
 def measure_particles(
@@ -97,7 +97,7 @@ def measure_particles(
 
 
 def _board_distance(simulation: _core.Simulation, positions: Floats) -> Floats:
-    """Return the distances of particles outside the panel's board from it, m; infinite without."""
+    """Return the distances of particles from the panel's board, m; infinite without a panel."""
     frame = simulation.panel_frame()
     if frame is None:
         return np.full(len(positions), np.inf)
@@ -115,7 +115,7 @@ def _board_distance(simulation: _core.Simulation, positions: Floats) -> Floats:
 def _ground_below(simulation: _core.Simulation, positions: Floats) -> Floats:
     """Return z of the first solid below each particle, m; its own z if there is no solid.
 
-    A point goes down by its distance to the solid until it is there (sphere tracing, Hart 1996).
+    A point moves down by its distance to the solid until it arrives (sphere tracing, Hart 1996).
     """
     dx = simulation.resolution
     points = np.array(positions, dtype=float)
@@ -123,8 +123,8 @@ def _ground_below(simulation: _core.Simulation, positions: Floats) -> Floats:
     lowest = float(points[:, 2].min()) - np.ptp(points, axis=0).max() - 100.0 * dx
     for _ in range(MAX_STEPS):
         distance = simulation.resolved_distance(points[left])
-        points[left, 2] -= distance  # upward where a particle lies a little inside
-        left = left[(np.abs(distance) > NEAR_ENOUGH * dx) & (points[left, 2] > lowest)]
+        points[left, 2] -= distance  # upward if a particle lies slightly inside the solid
+        left = left[(np.abs(distance) > GROUND_TOLERANCE * dx) & (points[left, 2] > lowest)]
         if len(left) == 0:
             break
     points[left, 2] = positions[left, 2]

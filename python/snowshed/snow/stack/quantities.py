@@ -9,7 +9,7 @@ from typing import Optional
 from snowshed._core import InputError
 from snowshed.snow.stack.trimming import TRIMMINGS
 
-#: Lengths of a stack that are compared, calibrated on and drawn, m.
+#: Lengths of a stack for comparisons, calibrations and figures, m.
 QUANTITIES = ("height", "length", "head", "tail")
 
 

@@ -1,7 +1,7 @@
 """The support of snow: the ground, the panel, or a structure.
 
 A stack is the snow below the panel. Snow that hangs over the panel's edge, or lies on a roof, a
-guard or another panel, does not belong to it: the support of its connected body decides.
+guard or another panel, is excluded according to the support of its connected body.
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ import numpy as np
 from snowshed.base.arrays import Booleans, Floats, Integers
 from snowshed.snow.stack.connected_components import connected_bodies
 
-AGROUND = 2.0  # cells between the ground and the lowest snow of a body that lies on it
-ALOFT = 4.0  # cells between the snow on the ground and a body that falls
+MAX_GROUND_GAP = 2.0  # largest height of the lowest snow of a body on the ground, cells
+MIN_FALLING_GAP = 4.0  # smallest distance of a falling body from the snow on the ground, cells
 
 
 @dataclass(frozen=True)
@@ -24,7 +24,7 @@ class Support:
     Attributes
     ----------
     at_panel, on_structure, falling : (n,)
-        Mask of particles of bodies that do not reach the ground, because the panel's snow or a
+        Masks of particles in bodies that do not reach the ground, because snow on the panel or a
         structure holds them, or because they still fall.
     joined
         Whether a body that lies on the ground touches the snow on the panel.
@@ -69,28 +69,28 @@ def supports(
     bodies = connected_bodies(snow, dx)
     lowest = np.full(bodies.max() + 1, np.inf)
     np.minimum.at(lowest, bodies, heights)
-    aground = lowest <= AGROUND * dx
+    aground = lowest <= MAX_GROUND_GAP * dx
     by_panel = _has(bodies, at_panel) & ~aground
     by_structure = _has(bodies, touches_structure) & ~aground & ~by_panel
     rest = ~(aground | by_panel | by_structure)
     aloft = np.zeros(len(aground), dtype=bool)
     if rest.any():
         loose = rest[bodies]
-        near = _near(snow[loose], snow[aground[bodies]], ALOFT * dx)
+        near = _near(snow[loose], snow[aground[bodies]], MIN_FALLING_GAP * dx)
         aloft = rest & ~np.isin(np.arange(len(rest)), bodies[loose][near])
     joined = bool((aground[bodies] & at_panel).any())
     return Support(by_panel[bodies], by_structure[bodies], aloft[bodies], joined)
 
 
 def _has(bodies: Integers, marked: Booleans) -> Booleans:
-    """Return which bodies have a marked particle."""
+    """Return a flag for each body: whether it has a marked particle."""
     has: Booleans = np.bincount(bodies, weights=marked) > 0
     return has
 
 
 def _near(snow: Floats, others: Floats, distance: float) -> Booleans:
-    """Return which particles are nearer than a distance to any of the others."""
-    from scipy.spatial import cKDTree  # here: it takes longer to load than all of snowshed
+    """Return the mask of particles that are nearer than a distance to any of the others."""
+    from scipy.spatial import cKDTree  # loads more slowly than snowshed
 
     if len(snow) == 0 or len(others) == 0:
         return np.zeros(len(snow), dtype=bool)

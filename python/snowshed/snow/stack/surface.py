@@ -6,7 +6,7 @@ import numpy as np
 
 from snowshed.base.arrays import Floats, Integers
 
-CELLS = 30  # across the range of x, and of y
+CELLS = 30  # cells across the range of x, and of y
 
 
 def surface_particles(positions: Floats) -> Integers:
@@ -15,8 +15,8 @@ def surface_particles(positions: Floats) -> Integers:
     Parameters
     ----------
     positions : (n, 3)
-        Levelled positions of the particles that are left after trimming, m. In 2D,
-        where y is zero throughout, 30 columns remain of the 900 cells.
+        Levelled positions of the particles after trimming, m. In 2D, y is zero throughout, and 30
+        columns remain of the 900 cells.
 
     Examples
     --------
@@ -28,7 +28,7 @@ def surface_particles(positions: Floats) -> Integers:
 
 
 def outline_particles(positions: Floats) -> Integers:
-    """Return which particles are the profile from the side: the highest of each x column.
+    """Return the particles of the profile from the side: the highest one in each x column.
 
     Returns
     -------

@@ -1,18 +1,19 @@
 """Trimming of a stack's edge: the outermost 3 % are dropped (thesis A.4.1, A.4.2).
 
-The thesis counts particles, because they all carry the same mass there; here their mass is summed,
-which is the same where masses are equal and still right where they are not. The last step inward
-gives up only its outermost particles, so that never more than 3 % go.
+The thesis counts particles, which all have the same mass there. Here their mass is summed, which is
+the same for equal masses and also right for different ones. The last step inward drops only its
+outermost particles, so that never more than 3 % are dropped.
 
-For 2D the text can be read in two ways (A.4.2: "the same principle as the 3D one, but doesn't need
-to rotate. Instead, it starts from the 2 ends of the stack and starts to integrate by a increment dx
-towards the center of mass"). Both are here by name; `docs/methods/stack.md` explains the default.
+The thesis's text on 2D can be read in two ways (A.4.2: "the same principle as the 3D one, but
+doesn't need to rotate. Instead, it starts from the 2 ends of the stack and starts to integrate by a
+increment dx towards the center of mass"). Both are available by name; `docs/methods/stack.md`
+explains the default.
 
 ``outermost_first``
     As in 3D: the snow farthest from the centre of mass is dropped first, at either end.
 ``equal_pace``
-    Both ends step inward together. When a chunk has rolled far off on one side, the steps from the
-    other end take most of the 3 % from the stack.
+    Both ends step inward together. If a chunk has rolled far off on one side, the steps from the
+    other end drop most of the 3 % from the stack.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ from snowshed._core import InputError
 from snowshed.base.arrays import Booleans, Floats, Integers
 
 DROPPED_FRACTION = 0.03
-DIVISIONS = 30  # of radius and angle, as of the grid of the surface (A.4.3)
+DIVISIONS = 30  # increments of radius and angle, as many as cells of the surface (A.4.3)
 #: Default trimming rule.
 DEFAULT_TRIMMING = "outermost_first"
 
@@ -33,7 +34,7 @@ DEFAULT_TRIMMING = "outermost_first"
 def inliers(
     positions: Floats, masses: Floats, dimension: int, trimming: str = DEFAULT_TRIMMING
 ) -> Booleans:
-    """Return which particles remain when the outermost 3 % of the mass is dropped.
+    """Return the mask of the particles that remain after the outermost 3 % of the mass is dropped.
 
     Parameters
     ----------
@@ -86,8 +87,8 @@ def outermost_first_order(x: Floats, masses: Floats) -> Integers:
 def equal_pace_order(x: Floats, masses: Floats) -> Integers:
     """Return the order of particles in steps inward from both ends at once.
 
-    Since the last increment gives up only its outermost particles, the size of the increments
-    does not matter: it is the order of the distance to the nearer end. The masses do not either.
+    Because the last increment drops only its outermost particles, the size of the increments does
+    not matter: the order is that of the distance to the nearer end. Masses do not matter, either.
 
     Examples
     --------
@@ -97,8 +98,8 @@ def equal_pace_order(x: Floats, masses: Floats) -> Integers:
     return np.argsort(np.minimum(x - x.min(), x.max() - x), kind="stable")
 
 
-#: Trimming rules of A.4.2 by name: functions from x (m) and masses to the order of dropped
-#: particles.
+#: Trimming rules of A.4.2 by name: functions of x (m) and masses that return the order in which
+#: particles are dropped.
 TRIMMINGS: Mapping[str, Callable[[Floats, Floats], Integers]] = {
     "outermost_first": outermost_first_order,
     "equal_pace": equal_pace_order,
@@ -114,10 +115,10 @@ def check_trimming(name: str) -> None:
 def circular_order(x: Floats, y: Floats, masses: Floats) -> Integers:
     """Return the order in which a circling arc window meets the particles.
 
-    Around the centre of mass, from R_ini = sqrt(max|X|^2 + max|Y|^2), one radius increment
-    R_ini / 30 closer each lap; in a lap one angle increment of 12 degrees after the other,
-    counted from the x axis towards y. The window reaches one increment to either side of its
-    centre: it is two wide and two deep. Within a window the outermost particle comes first.
+    The window circles around the centre of mass, from the radius R_ini = sqrt(max|X|^2 + max|Y|^2).
+    Each lap is one radius increment R_ini / 30 closer. Within a lap, the window moves by angle
+    increments of 12 degrees, from the x axis towards y. It reaches one increment to either side of
+    its centre: it is two wide and two deep. Within a window the outermost particle comes first.
     """
     x = x - np.average(x, weights=masses)
     y = y - np.average(y, weights=masses)

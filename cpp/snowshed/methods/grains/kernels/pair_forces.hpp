@@ -16,7 +16,7 @@ SNOWSHED_INLINE QuadVec load_vec(const double* x, const double* y, const double*
                                  std::size_t at) {
   return {load_row(x + at), load_row(y + at), load_row(z + at)};
 }
-/// A point of a body's frame as seen from its centre, in space.
+/// The separation of a point from its body's centre in space, from that in the body's frame.
 SNOWSHED_INLINE QuadVec rotated(const double* r, const QuadVec& p) {
   return {r[0] * p.x + r[1] * p.y + r[2] * p.z, r[3] * p.x + r[4] * p.y + r[5] * p.z,
           r[6] * p.x + r[7] * p.y + r[8] * p.z};
@@ -43,7 +43,7 @@ SNOWSHED_INLINE void store_mask(std::uint8_t* flags, const QuadMask& mask) {
 /// Motion of the second of two bodies relative to the first.
 struct PairedBodies {
   const BodyFrame &a, &b;
-  double apart[3], parting[3];  // m, m/s, of their centres, or the second's image
+  double apart[3], parting[3];  // m, m/s, of the centres; of the second's periodic image
 
   SNOWSHED_INLINE PairedBodies(const View& s, const PairGroup& g)
       : a(s.bodies[g.first]), b(s.bodies[g.second]) {
@@ -91,7 +91,7 @@ SNOWSHED_INLINE void group_forces(const View& s, std::size_t group) {
                                      Quad(0.5 * dt * dot(normal, spin_a + spin_b))};
     const ContactForce<Quad, QuadMask> f = law(motion, u, bonded);
 
-    const QuadVec on_a = f.drag - f.push * normal;
+    const QuadVec on_a = f.shear_force - f.normal_force * normal;
     force = force + on_a;
     torque_a = torque_a + cross(arm_a, on_a);
     torque_b = torque_b - cross(arm_b, on_a);

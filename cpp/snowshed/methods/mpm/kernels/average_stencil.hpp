@@ -1,5 +1,5 @@
-// The nodes of a coarse grid around a chunk's particles, over which velocities are averaged: with
-// quadratic splines, independent of the spline of the grid.
+// The nodes of a coarse grid around a chunk's particles, over which velocities are averaged. Its
+// splines are quadratic, whatever the basis of the grid.
 #pragma once
 
 #include <algorithm>
@@ -21,11 +21,11 @@ class AverageStencil {
     V index = broadcast<V>(T(0));
     SNOWSHED_UNROLL
     for (int d = 0; d < D; ++d) {
-      const V place = (cell[d] + T(base_offset(basis))) * tile.cell + (tile.origin[d] - T(0.5));
+      const V position = (cell[d] + T(base_offset(basis))) * tile.cell + (tile.origin[d] - T(0.5));
       // Rounding may place the outermost particles beyond the tile.
-      const V base = clamp(floor(place), broadcast<V>(T(0)), broadcast<V>(T(edge_ - nodes)));
+      const V base = clamp(floor(position), broadcast<V>(T(0)), broadcast<V>(T(edge_ - nodes)));
       V w[nodes], slopes[nodes];
-      BSpline<Basis::quadratic>::evaluate(V(place - base), w, slopes);
+      BSpline<Basis::quadratic>::evaluate(V(position - base), w, slopes);
       for (int k = 0; k < nodes; ++k) weights_.set(d, k, w[k]);
       index = index * T(edge_) + base;
     }
@@ -39,7 +39,7 @@ class AverageStencil {
     });
   }
 
-  /// The weighted sum of the nodes' values.
+  /// Returns the weighted sum of the nodes' values.
   SNOWSHED_INLINE Half sum(int lane) const {
     Half total{};
     for_each_node(lane, [&](const T* node, T weight)
@@ -70,7 +70,7 @@ class AverageStencil {
   T* values_;
   int edge_;
   LaneWeights<T, D, nodes> weights_;
-  alignas(64) std::int32_t first_[simd_width<T>];  // place of the lowest node's values
+  alignas(64) std::int32_t first_[simd_width<T>];  // index of the lowest node's values
 };
 
 /// Adds mass and momentum of a block's particles to the coarse grid.

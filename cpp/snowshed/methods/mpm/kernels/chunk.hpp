@@ -7,7 +7,7 @@
 
 SNOWSHED_METHOD_VARIANT_BEGIN(mpm)
 
-/// Where the nodes of a chunk's particles lie in the tile.
+/// Positions of the nodes of a chunk's particles in the tile.
 template <class T, int D, Basis basis>
 struct Stencil {
   using V = SimdPack<T>;
@@ -15,7 +15,7 @@ struct Stencil {
   static constexpr int W = simd_width<T>;
   V fraction[D];                        // in cells, past the lowest node plus base_offset
   alignas(64) std::int32_t address[W];  // address of the lowest node, in values
-  bool inside;                          // every particle's nodes lie in the tile
+  bool inside;                          // whether all nodes of all particles lie in the tile
   SimdMask<T> reach;                    // in each lane, the bits of BlockStats::reach
 
   /// Lanes beyond the last particle must repeat the first one, as `load` does.
@@ -40,8 +40,8 @@ struct Stencil {
   }
 };
 
-/// A weight for each direction, each of `count` nodes along it (or of the steps between them), and
-/// each particle of a chunk.
+/// The weight of each particle of a chunk for each of `count` nodes (or steps between nodes) along
+/// each direction.
 template <class T, int D, int count>
 struct LaneWeights {
   static constexpr int W = simd_width<T>;

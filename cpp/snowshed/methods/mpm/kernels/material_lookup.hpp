@@ -1,5 +1,5 @@
-// The snow of the particles in a chunk: one for all of them, whose constants are scalars, or each
-// particle's own, whose constants are SIMD packs.
+// The snow of the particles in a chunk. If all particles have the same snow, its constants are
+// scalars. If each particle has its own, the constants are SIMD packs.
 #pragma once
 
 #include "snowshed/material/cam_clay.hpp"
@@ -42,15 +42,16 @@ struct SingleMaterial {
   Chunk snow;
 };
 
-/// Several snows, of Cam-Clay or elastic: an elastic one has Cam-Clay constants that never yield
-/// (see material_constants).
+/// Several snows, Cam-Clay or elastic. Elastic snow has Cam-Clay constants with which it never
+/// yields (see material_constants).
 template <class T, template <class> class Law>
 struct MaterialPerParticle {
   using Chunk = ChunkMaterial<Law, SimdPack<T>>;
 
   explicit MaterialPerParticle(const MaterialConstants<T>* snows) : snows(snows) {}
 
-  /// Constants of `n` particles from `first`; as in `load`, lanes beyond repeat the first.
+  /// Returns the constants of `n` particles from `first`. Further lanes repeat the first, as in
+  /// `load`.
   SNOWSHED_INLINE Chunk of(const ParticleView<T>& p, int first, int n) const {
     const MaterialConstants<T>* own[simd_width<T>];
     for (int l = 0; l < simd_width<T>; ++l) own[l] = &snows[p.material_id[first + (l < n ? l : 0)]];

@@ -1,6 +1,6 @@
-// The eight values of a grid node, in as few registers as hold them, and in halves of four: a
-// carried half (mass and momentum, or the velocity), and an acting half (force, or the change of
-// velocity).
+// The eight values of a grid node, in as few registers as possible. They form two halves of four
+// values: a carried half (mass and momentum, or the velocity), and an acting half (force, or the
+// change of velocity).
 #pragma once
 
 #include "snowshed/core/simd_pack.hpp"
@@ -37,7 +37,8 @@ SNOWSHED_INLINE void store_half(T* values, const NodeHalf<T>& half) {
   std::memcpy(values, &half, sizeof half);
 }
 
-/// Halves of a node whose values a register holds. A register that holds both belongs to both.
+/// Halves of a node to which an operation applies. A register that holds both halves belongs to
+/// both.
 enum class Halves { both, first, second };
 
 /// A node's values, or a factor for each of them.
@@ -46,7 +47,7 @@ struct Node {
   using Part = typename NodeTypes<T>::part;
   static constexpr int parts = node_values * int(sizeof(T)) / int(sizeof(Part));
   static constexpr int part_values = node_values / parts;
-  // Number of registers that hold the first half.
+  // Number of the registers that hold the first half.
   static constexpr int first_parts = parts == 1 ? 1 : parts / 2;
   Part part[parts];
 
@@ -70,7 +71,7 @@ struct Node {
         std::memcpy(values + i * part_values, &part[i], sizeof(Part));
   }
 
-  /// The first half all `low`, the second all `high`.
+  /// Returns a node whose first half is filled with `low`, and the second half with `high`.
   static SNOWSHED_INLINE Node of_halves(T low, T high) {
     Node n;
     if constexpr (parts == 1)
@@ -79,7 +80,7 @@ struct Node {
       for (int i = 0; i < parts; ++i) n.part[i] = (i < parts / 2 ? low : high) - Part{};
     return n;
   }
-  /// Each half from memory, or zero for a null pointer.
+  /// Returns a node with each half from memory, or zero for a null pointer.
   static SNOWSHED_INLINE Node of_halves(const T* low, const T* high) {
     Node n{};
     if constexpr (parts == 1) {
@@ -102,8 +103,8 @@ inline constexpr int first_part =
 template <class T, Halves halves>
 inline constexpr int end_part = halves == Halves::first ? Node<T>::first_parts : Node<T>::parts;
 
-/// sum += weight * node, in the registers of some halves; the weight is a number, or one for each
-/// value.
+/// sum += weight * node, in the registers of some halves; the weight is a number, or a number for
+/// each value.
 template <Halves halves = Halves::both, class T>
 SNOWSHED_INLINE void add_scaled(Node<T>& sum, T weight, const Node<T>& node) {
   for (int i = first_part<T, halves>; i < end_part<T, halves>; ++i)
@@ -114,8 +115,8 @@ SNOWSHED_INLINE void add_scaled(Node<T>& sum, const Node<T>& weight, const Node<
   for (int i = first_part<T, halves>; i < end_part<T, halves>; ++i)
     sum.part[i] += weight.part[i] * node.part[i];
 }
-/// The node with its first half in both, where one register holds both halves. Otherwise
-/// `add_scaled_first` takes the first half's registers anyway.
+/// Returns the node with its first half in both halves if one register holds both. Otherwise
+/// returns the node itself, because `add_scaled_first` reads the first half's registers anyway.
 template <class T>
 SNOWSHED_INLINE Node<T> first_twice(const Node<T>& node) {
   if constexpr (Node<T>::parts == 1) {
@@ -126,13 +127,13 @@ SNOWSHED_INLINE Node<T> first_twice(const Node<T>& node) {
     return node;
   }
 }
-/// sum += weight * node, where either half of the node is its first one.
+/// sum += weight * node, with the first half of the node in place of its second half.
 template <class T>
 SNOWSHED_INLINE void add_scaled_first(Node<T>& sum, const Node<T>& weight, const Node<T>& node) {
   for (int i = 0; i < Node<T>::parts; ++i)
     sum.part[i] += weight.part[i] * node.part[i % Node<T>::first_parts];
 }
-/// a - b, in the registers of some halves; the others are undefined.
+/// Returns a - b, in the registers of some halves; the others are undefined.
 template <Halves halves = Halves::both, class T>
 SNOWSHED_INLINE Node<T> difference(const Node<T>& a, const Node<T>& b) {
   Node<T> r;
@@ -140,7 +141,7 @@ SNOWSHED_INLINE Node<T> difference(const Node<T>& a, const Node<T>& b) {
     r.part[i] = a.part[i] - b.part[i];
   return r;
 }
-/// weight * node, in the registers of some halves; zero in the others.
+/// Returns weight * node, in the registers of some halves; the others are zero.
 template <Halves halves = Halves::both, class T>
 SNOWSHED_INLINE Node<T> scaled(T weight, const Node<T>& node) {
   Node<T> r{};

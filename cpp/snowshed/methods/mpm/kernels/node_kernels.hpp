@@ -11,7 +11,7 @@ SNOWSHED_METHOD_VARIANT_BEGIN(mpm)
 template <class T, int D, Basis basis, bool takes_change, bool energy>
 struct NodeKernels {
   using Half = NodeHalf<T>;
-  /// kg. A node that a particle barely touches may have a mass whose inverse overflows.
+  /// Smallest mass of a node with snow, kg. The inverse of a smaller mass may overflow.
   static constexpr T min_mass = T(1e-30);
 
   static void gather(const T* const* tiles, T* sums) {
@@ -76,7 +76,7 @@ struct NodeKernels {
   }
 
  private:
-  /// The least box that holds some velocities.
+  /// The smallest box that holds some velocities.
   struct Range {
     Half low = std::numeric_limits<T>::max() - Half{}, high = -low;
 
@@ -156,12 +156,13 @@ struct NodeKernels {
     }
   }
 
-  /// Energy lost in a contact that set the velocity of a node, or of one of its directions. Over
-  /// the step the node's velocity went from `before` to `after`; without the contact it would have
-  /// been `free`. Particles move with `after`, so that stresses and gravity did the work m (free -
-  /// before) . after; the contact took the part of this that is not kinetic energy now.
-  static double taken_by_holding(T mass, const T (&before)[D], const T (&free)[D],
-                                 const T (&after)[D]) {
+  /// Returns the energy lost in a contact that set the velocity of a node, or one component of it.
+  /// Over the step the node's velocity went from `before` to `after`; without the contact it would
+  /// have been `free`. Particles move with `after`, so that stresses and gravity did the work m
+  /// (free - before) . after. The contact took the part of this work that did not become kinetic
+  /// energy.
+  static double loss_by_holding(T mass, const T (&before)[D], const T (&free)[D],
+                                const T (&after)[D]) {
     double sum = 0;
     for (int d = 0; d < D; ++d) {
       const double b = before[d], f = free[d], a = after[d];
@@ -170,23 +171,23 @@ struct NodeKernels {
     return double(mass) * sum;
   }
 
-  /// The same for a bounded impulse, after which the node still reacts to the stresses: minus its
-  /// work at the mean velocity.
-  static double taken_by_impulse(T mass, const T (&before)[D], const T (&free)[D],
-                                 const T (&after)[D]) {
+  /// The same for a contact with a bounded impulse, in which the node still reacts to the stresses.
+  /// The energy lost is minus the work of the impulse at the mean velocity.
+  static double loss_by_impulse(T mass, const T (&before)[D], const T (&free)[D],
+                                const T (&after)[D]) {
     double work = 0;
     for (int d = 0; d < D; ++d)
       work += 0.5 * (double(after[d]) - double(free[d])) * (double(before[d]) + double(after[d]));
     return -double(mass) * work;
   }
 
-  static double taken(bool held, T mass, const T (&before)[D], const T (&free)[D],
-                      const T (&after)[D]) {
-    return held ? taken_by_holding(mass, before, free, after)
-                : taken_by_impulse(mass, before, free, after);
+  static double energy_loss(bool held, T mass, const T (&before)[D], const T (&free)[D],
+                            const T (&after)[D]) {
+    return held ? loss_by_holding(mass, before, free, after)
+                : loss_by_impulse(mass, before, free, after);
   }
 
-  /// Work of a node's stresses at the change of a velocity.
+  /// Returns the work of a node's stresses in the change of a velocity.
   static double work(const StepParameters<T>& step, const T* sum, const T (&from)[D],
                      const T (&to)[D]) {
     double w = 0;
@@ -207,7 +208,7 @@ struct NodeKernels {
     }
   };
 
-  /// The speed at which snow slides along a contact.
+  /// Returns the speed at which snow slides along a contact.
   static T sliding_speed(const Contact<T>& c, T normal_speed, const T (&free)[D]) {
     T squared = 0;
     for (int d = 0; d < D; ++d) {
@@ -217,14 +218,14 @@ struct NodeKernels {
     return std::sqrt(squared);
   }
 
-  /// The share of its stored impulse that acts as friction in a step: all of it once the snow has
-  /// left.
+  /// Returns the share of its stored impulse that a contact exerts as friction in a step. It is 1
+  /// after the snow has left.
   static T drained_share(const StepParameters<T>& step, const Contact<T>& c, T sliding_speed) {
     return c.acts ? drain_rate(step, sliding_speed) : T(1);
   }
 
-  /// The pull that a contact cancels in a step, as a negative push (N s); a larger pull is
-  /// released. `stored` is the rest of the push before.
+  /// Returns the largest pull that a contact can cancel in a step, as a negative push (N s). A
+  /// larger pull releases the snow. `stored` is what remains of earlier pushes.
   static T min_push(const Contact<T>& c, T stored) {
     if (c.release == Release::never) return std::numeric_limits<T>::lowest();
     return c.release == Release::after_push ? -stored : T(0);
@@ -232,16 +233,17 @@ struct NodeKernels {
 
   /// Sticky, slip, separate (thesis 1.2.3), with Coulomb friction on the running mean of the net
   /// normal impulse. Each contact has a store of normal impulse: pushes on the obstacle fill it,
-  /// pulls empty it, and it drains at the rate 1/(friction memory). Friction is charged for the
-  /// impulse that drains. Over time every newton-second of net push is charged once. Charging each
-  /// step's push as it comes, the usual rule, overestimates the friction of a slab that vibrates on
-  /// its panel (slip cancels the pulls but forgets them), up to holding it where it should slide.
-  /// Slip cancels any pull: its store may become a debt, which draws no friction and which later
-  /// pushes must pay back. Separate releases snow when the pull exceeds the store.
+  /// pulls empty it, and it drains at the rate 1/(friction memory). The friction of a step follows
+  /// from the impulse that drains in it, so that every newton-second of net push counts once. The
+  /// usual rule takes each step's push at once. It overestimates the friction of a slab that
+  /// vibrates on its panel, because slip cancels the pulls but forgets them. The slab may even be
+  /// held where it should slide. Slip cancels any pull: its store may become negative. A negative
+  /// store causes no friction, and later pushes must first fill it. Separate releases snow when the
+  /// pull exceeds the store.
   ///
-  /// The store stays at the node while the snow moves on, so fast snow must be charged before it
-  /// has left: the store drains at least in the time that the snow takes to slide over a given part
-  /// of a cell, and at once where snow comes off that was touching.
+  /// The store stays at the node while the snow moves on, so friction must act on fast snow before
+  /// it has left. The store therefore drains within the time in which the snow slides over a given
+  /// part of a cell, or sooner. It drains at once if the snow separates.
   static void apply(const StepParameters<T>& step, Contact<T>& c, const ContactLaw& law,
                     const T* sum, Half& node, NodeStats& stats) {
     const T mass = sum[0];
@@ -255,7 +257,7 @@ struct NodeKernels {
     if (law.condition == Condition::sticky) {
       for (int d = 0; d < D; ++d) node[d] = after[d] = c.velocity[d];
       if constexpr (energy) {
-        stats.sticking += taken_by_holding(mass, before, free, after);
+        stats.sticking += loss_by_holding(mass, before, free, after);
         stats.stress_work += work(step, sum, before, after);
       }
       return;
@@ -282,11 +284,15 @@ struct NodeKernels {
     const T lost = slip_impulse > friction ? friction / slip_impulse : T(1);
     for (int d = 0; d < D; ++d) node[d] = after[d] = pushed[d] - lost * slip[d];
     if constexpr (energy) {
-      const NormalSplit was(before, c.normal), would(free, c.normal), is(after, c.normal);
-      stats.impact += taken(!lets_go, mass, was.normal, would.normal, is.normal);
-      if (!lets_go) stats.stress_work += work(step, sum, was.normal, is.normal);
-      if (lost == T(1)) stats.stress_work += work(step, sum, was.tangential, is.tangential);
-      stats.friction += taken(lost == T(1), mass, was.tangential, would.tangential, is.tangential);
+      const NormalSplit split_before(before, c.normal), split_free(free, c.normal),
+          split_after(after, c.normal);
+      stats.impact +=
+          energy_loss(!lets_go, mass, split_before.normal, split_free.normal, split_after.normal);
+      if (!lets_go) stats.stress_work += work(step, sum, split_before.normal, split_after.normal);
+      if (lost == T(1))
+        stats.stress_work += work(step, sum, split_before.tangential, split_after.tangential);
+      stats.friction += energy_loss(lost == T(1), mass, split_before.tangential,
+                                    split_free.tangential, split_after.tangential);
     }
   }
 };

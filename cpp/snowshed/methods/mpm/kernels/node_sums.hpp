@@ -6,23 +6,24 @@
 
 SNOWSHED_METHOD_VARIANT_BEGIN(mpm)
 
-/// The same address, kept in a register: nodes are then addressed by constants from it.
+/// Returns the same address, kept in a register. Nodes are then addressed by constant offsets from
+/// it.
 template <class P>
 SNOWSHED_INLINE P* in_register(P* address) {
   asm("" : "+r"(address));
   return address;
 }
 
-/// Sums over a particle's nodes: of the values with the weights, and with their derivative along
-/// each direction.
+/// Sums of node values over a particle's nodes, with the weights (`value`) and with their
+/// derivatives along each direction (`along`).
 template <class T, int D>
 struct NodeSums {
   Node<T> value, along[D];
 };
 
-/// The nodes along a line, as the second one and the steps from each node to the next. Weights add
-/// up to one, and their derivatives to nothing: sums over steps are exact for constant values, and
-/// take fewer multiplications. Only `halves` of the values count.
+/// The nodes along a line, stored as the second node and the steps from each node to the next.
+/// Weights add up to one, and their derivatives to zero. Sums over steps are therefore exact for
+/// constant values, and take fewer multiplications. Only `halves` of the values count.
 template <class T, int S, Halves halves>
 struct Line {
   Node<T> second, step[S - 1];
@@ -41,7 +42,7 @@ struct Line {
   }
 };
 
-/// The sums of the particle in a lane, whose lowest node stands at `nodes`.
+/// Returns the sums of the particle in a lane, whose lowest node is at `nodes`.
 template <class Rule, class T, int D, Basis basis>
 SNOWSHED_INLINE NodeSums<T, D> interpolate_nodes(const typename Rule::Interpolation& weights,
                                                  int lane, const T* nodes) {
@@ -49,7 +50,7 @@ SNOWSHED_INLINE NodeSums<T, D> interpolate_nodes(const typename Rule::Interpolat
   using Values = Line<T, S, Rule::taken>;
   using Derivatives = Line<T, S, Rule::interpolated>;
   nodes = in_register(nodes);
-  // Weights of the lines and planes beyond each node along the first direction.
+  // Sums over the line or plane of nodes at each node along the first direction.
   Node<T> value[S], along[D][S];
   const auto along_last = [&](const T* row, Node<T>& a, Node<T>& b) SNOWSHED_INLINE_LAMBDA {
     Node<T> node[S];
@@ -80,8 +81,8 @@ SNOWSHED_INLINE NodeSums<T, D> interpolate_nodes(const typename Rule::Interpolat
 }
 
 /// Adds to each node of the particle in a lane its share of `sums`: the value times the weight, and
-/// the value along a direction times the weight's derivative there. Outside the halves that the
-/// rule scatters, along[d] is zero.
+/// the values of `along` times the weight's derivatives. Outside the halves that the rule scatters,
+/// along[d] is zero.
 template <class Rule, class T, int D, Basis basis>
 SNOWSHED_INLINE void scatter_nodes(const typename Rule::Scattering& weights, int lane,
                                    const NodeSums<T, D>& sums, T* nodes) {

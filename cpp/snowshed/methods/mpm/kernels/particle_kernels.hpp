@@ -1,8 +1,8 @@
 // The particle side of a step. Thesis 1.2.2: transfer to the grid (1.2.10, 1.2.23), forces (1.2.13
 // in Kirchhoff form), elastic trial (1.2.14), return mapping, transfer back (1.2.24-1.2.26).
 //
-// `g2p2g` takes a particle through a whole step and straight on to the sums of the next one, so
-// that its state is read and written once.
+// `g2p2g` takes a particle through a whole step and adds it to the sums of the next step, so that
+// the particle's state is read and written only once.
 #pragma once
 
 #include "snowshed/material/sym_tensor.hpp"
@@ -66,10 +66,10 @@ struct ParticleKernels {
 
   // --- grid to particles ------------------------------------------------------------------
 
-  /// The least multiple of a pack's lanes that holds n values.
+  /// Returns the smallest multiple of a pack's lanes that is at least n.
   static constexpr int whole_packs(int n) { return (n + W - 1) / W * W; }
 
-  /// From a row of values for each particle to a pack for each value.
+  /// Turns a row of values for each particle into a pack for each value.
   template <int count>
   SNOWSHED_INLINE static void transpose_rows(const T (&rows)[W][count], V (&columns)[count]) {
     SNOWSHED_UNROLL
@@ -95,7 +95,7 @@ struct ParticleKernels {
     }
   }
 
-  /// Everything the grid tells a chunk.
+  /// All values that a chunk takes from the grid.
   struct Motion {
     V pic[D], gradient[D][D];  // gradient[i][j] = dt d v_i / d x_j
     typename Rule::Taken taken;
@@ -140,9 +140,8 @@ struct ParticleKernels {
     m.taken.move(s.velocity, s.carried, m.pic, step.flip_ratio);
   }
 
-  /// The velocities at the coarse grid's nodes, averaged where the particles are: the change of
-  /// velocity towards them. Particles have not moved yet. (The sum of mass times change is zero, as
-  /// the average is with the same weights.)
+  /// Finds the change of velocity towards the average over the coarse grid, before the particles
+  /// move. (The sum of mass times change is zero, because the average has the same weights.)
   SNOWSHED_INLINE void damp(const State& s, const AverageTile<T>& average, int n,
                             V (&change)[D]) const {
     const AverageStencil<T, D, basis> stencil(average, s.cell);
@@ -157,7 +156,7 @@ struct ParticleKernels {
     for (int d = 0; d < D; ++d) change[d] = average.share * (change[d] - s.velocity[d]);
   }
 
-  /// Adds a change of velocity; the energy it takes is noted.
+  /// Adds a change of velocity, and records the energy that it takes.
   SNOWSHED_INLINE void add_velocity(State& s, const V (&change)[D], int n) const {
     for (int d = 0; d < D; ++d) {
       if constexpr (energy)
@@ -191,8 +190,8 @@ struct ParticleKernels {
     V strain_squared;  // |e|^2 of the Hencky strain that goes with it
   };
 
-  /// Stress of the present elastic strain; for plastic laws after bringing the strain back to the
-  /// yield surface, unless `committed` says that this is done.
+  /// Returns the stress of the present elastic strain. With plastic laws the strain is first
+  /// returned to the yield surface, unless this has been done (`committed`).
   SNOWSHED_INLINE Stress stress(State& s, const Snow& snow, int n, bool committed) const {
     const auto& el = snow.law.elastic;
     Tensor e = hencky_strain(s.be_minus_identity);
@@ -227,9 +226,9 @@ struct ParticleKernels {
     return r;
   }
 
-  /// Elastic energy p^2/(2 K_d) + q^2/(6 mu) per initial volume, and the plastic work of the
-  /// return, stress times plastic strain. (The trial's elastic energy less the present one would
-  /// count the square of each step's plastic strain on top, an error that does not fade with time.)
+  /// Records the elastic energy p^2/(2 K_d) + q^2/(6 mu) per initial volume, and the plastic work
+  /// of the return, stress times plastic strain. (The loss of elastic energy from the trial would
+  /// also contain the square of each step's plastic strain. This error adds up over the steps.)
   void record_energy(const PQ<V>& trial, const PQ<V>& now, const V& mass, const Snow& snow,
                      int n) const {
     const auto& el = snow.law.elastic;
@@ -242,7 +241,7 @@ struct ParticleKernels {
     }
   }
 
-  /// Adds the power of the new stresses along the motion just made.
+  /// Adds the power of the new stresses in the motion of this step.
   void record_stress_power(const State& s, const Motion& m, const Tensor& tau, const Snow& snow,
                            int n) const {
     V work = broadcast<V>(T(0));
@@ -290,7 +289,7 @@ struct ParticleKernels {
     }
   }
 
-  /// Notes a particle whose strain is not finite or beyond the limit.
+  /// Records a particle whose strain is not finite or beyond the limit.
   SNOWSHED_INLINE void check(const V& strain_squared, int at, int n) const {
     const auto sound = strain_squared <= T(elastic_strain_limit * elastic_strain_limit);
     if (!any(sound == 0)) return;
@@ -310,7 +309,7 @@ struct ParticleKernels {
       f(at, first + count - at < W ? first + count - at : W);
   }
 
-  /// Clears the part of the tile that a chunk needs; true if its nodes lie in the tile.
+  /// Clears the part of the tile that a chunk needs. Returns whether its nodes lie in the tile.
   SNOWSHED_INLINE bool make_room(const Stencil<T, D, basis>& stencil, SimdMask<T>& reach,
                                  Tile& tile) const {
     reach |= stencil.reach;
@@ -343,12 +342,12 @@ struct ParticleKernels {
       read(s, at, n);
       Motion m;
       interpolate(Stencil<T, D, basis>(s.cell), velocities, n, m);
-      V damped[D];
+      V velocity_change[D];
       if constexpr (Rule::averages)
-        if (average) damp(s, *average, n, damped);
+        if (average) damp(s, *average, n, velocity_change);
       move(s, m);
       if constexpr (Rule::averages)
-        if (average) add_velocity(s, damped, n);
+        if (average) add_velocity(s, velocity_change, n);
       update_left_cauchy_green(s, m);
       const Snow& snow = snows.of(p, at, n);
       const auto [tau, strain_squared] = stress(s, snow, n, false);

@@ -1,5 +1,5 @@
-// Origin of the nodes of a block's tile: the ranges that a tile shares with each of the 3^D blocks
-// around it. Written once for two and three dimensions.
+// The ranges of nodes that a block's tile shares with each of the 3^D blocks around it, in two and
+// three dimensions.
 #pragma once
 
 #include <cstring>
@@ -10,8 +10,8 @@
 
 SNOWSHED_METHOD_VARIANT_BEGIN(mpm)
 
-/// Along one direction: the nodes [begin, end) of the block at `offset` (-1, 0, 1) that the tile
-/// covers; node n is the tile's node n + shift.
+/// The nodes [begin, end) along one direction that the tile covers of the block at `offset` (-1, 0,
+/// 1). Node n of the block is node n + shift of the tile.
 template <int D, Basis basis>
 struct Overlap {
   int begin, end, shift;
@@ -27,8 +27,8 @@ struct Overlap {
 };
 
 /// Calls row(neighbour, block_node, tile_node, length) for each run of consecutive nodes that the
-/// tile shares with the neighbours for which wanted(neighbour) holds; the length is a compile-time
-/// constant, so that copying a row is a few vector moves.
+/// tile shares with the neighbours for which wanted(neighbour) is true. The length is a
+/// compile-time constant, so that copying a row takes a few vector moves.
 template <int D, Basis basis, class Wanted, class Row>
 SNOWSHED_INLINE void for_each_shared_row(Wanted wanted, Row row) {
   using Range = Overlap<D, basis>;
@@ -57,7 +57,8 @@ SNOWSHED_INLINE void for_each_shared_row(Wanted wanted, Row row) {
       along_last(Range(x), Range::none());
 }
 
-/// The neighbours whose nodes are touched by particles with these bits of `BlockStats::reach`.
+/// Returns a function of a neighbour: whether particles with these bits of `BlockStats::reach`
+/// touch its nodes.
 template <int D>
 SNOWSHED_INLINE auto touched_by(int reach) {
   return [reach](int neighbour) { return reaches<D>(reach, neighbour); };
@@ -75,10 +76,10 @@ class TileSums {
   }
 
   T* values() const { return values_; }
-  /// The bits of `BlockStats::reach` of the nodes that are cleared.
+  /// Returns the bits of `BlockStats::reach` for which nodes are cleared.
   int cleared() const { return cleared_; }
 
-  /// Clears the nodes that particles with these bits touch, too.
+  /// Also clears the nodes that particles with these bits touch.
   void extend(int reach) {
     const auto before = touched_by<D>(cleared_), after = touched_by<D>(cleared_ | reach);
     clear([&](int neighbour) { return after(neighbour) && !before(neighbour); });

@@ -1,11 +1,12 @@
-// Differences between FLIP and APIC. A rule says how a transfer weights the nodes, what particles
-// carry beside their velocity, what they take from the sums over their nodes, and what they give.
+// Differences between FLIP and APIC. A rule defines the weights of the nodes, the values that
+// particles carry beside their velocity, the values that they take from the sums over their nodes,
+// and the values that they give to the nodes.
 //
 // FLIP: a node holds its velocity and the change of it; particles take the change, and a share of
 // the velocity (thesis 1.2.26). APIC: both halves of a node hold the velocity; particles take an
 // affine velocity C too, from the sums weighted with the distance of a node (Jiang et al. 2015).
-// Affine FLIP: nodes as FLIP's; particles take the change of velocity as in FLIP, and C of the
-// velocity as in APIC.
+// Affine FLIP: nodes hold the same as with FLIP; particles take the change of velocity as in FLIP,
+// and C of the velocity as in APIC.
 #pragma once
 
 #include "snowshed/methods/mpm/kernels/bspline.hpp"
@@ -25,7 +26,7 @@ struct FlipRule {
   static constexpr bool averages = false;
   /// The halves of nodes that particles take.
   static constexpr Halves taken = Halves::both;
-  /// The halves that count of the sums with a weight's derivative.
+  /// The halves that count in sums with the derivatives of weights.
   static constexpr Halves interpolated = Halves::first;  // the gradient of the velocity
   static constexpr Halves scattered = Halves::second;    // force
   static constexpr int derived_values = half_node;
@@ -82,9 +83,10 @@ struct FlipRule {
   struct Carried {
     SNOWSHED_INLINE void read(const ParticleView<T>&, int, int) {}
     SNOWSHED_INLINE void write(const ParticleView<T>&, int, int) const {}
-    /// The square of a velocity (m2/s2) that holds as much energy.
+    /// Returns the square of the velocity (m2/s2) that has the kinetic energy of the carried
+    /// values.
     double squared(double, int) const { return 0; }
-    /// Momentum that varies within the particle's nodes, per cell.
+    /// Writes the change of momentum per cell over the particle's nodes.
     SNOWSHED_INLINE void give(V*, const V&, T) const {}
   };
 
@@ -103,7 +105,7 @@ struct FlipRule {
     }
   };
 
-  /// Values given to the nodes with the derivative along j, from the halves of a row.
+  /// Returns the values that the nodes get with the derivative along j, from the halves of a row.
   SNOWSHED_INLINE static Node<T> given(const T* row, int j) {
     const T* nothing = nullptr;
     return Node<T>::of_halves(nothing, row + half_node * (1 + j));
@@ -148,7 +150,8 @@ struct ApicRule {
       SNOWSHED_UNROLL
       for (int k = 0; k < S - 1; ++k) weights.set(d, k, r[k]);
     }
-    /// The gradient in the first half, the moment in the second: of either weights the sum is zero.
+    /// Returns the gradient in the first half and the moment in the second. The weights of both sum
+    /// to zero.
     template <class Nodes>
     SNOWSHED_INLINE Node<T> derivative(const Nodes& line, int d, int lane) const {
       Node<T> sum{};
@@ -176,7 +179,8 @@ struct ApicRule {
         }
       }
     }
-    /// Momentum, in the first half, meets the moment; force meets the derivative.
+    /// Returns the moment for the first half, momentum, and the derivative for the second half,
+    /// force.
     SNOWSHED_INLINE Node<T> derived(int d, int k, int lane) const {
       return Node<T>::of_halves(moment(d, k, lane), slope(d, k, lane));
     }
@@ -242,7 +246,7 @@ struct AffineFlipRule : ApicRule<T, D, basis> {
 
   struct Interpolation : Apic::Interpolation {
     using Apic::Interpolation::Interpolation;
-    /// The gradient in the first half, the moment in the second, both of the velocity.
+    /// Returns the gradient of the velocity in the first half and its moment in the second.
     template <class Nodes>
     SNOWSHED_INLINE Node<T> derivative(const Nodes& line, int d, int lane) const {
       Node<T> sum{};

@@ -5,8 +5,8 @@
 
 SNOWSHED_METHOD_VARIANT_BEGIN(mps)
 
-/// The sum of weight x over the neighbours of a row. Rows are short and unknowns far apart:
-/// gathering lanes costs more than some independent sums side by side.
+/// The sum of weight x over the neighbours of a row. Rows are short and their unknowns far apart in
+/// memory, so gathering lanes costs more than four independent sums.
 template <class T>
 SNOWSHED_INLINE T sum_row(const PairRows& rows, const float* weight, const T* x, std::size_t row) {
   const std::size_t end = rows.first[row + 1];

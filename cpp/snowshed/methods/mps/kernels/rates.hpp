@@ -74,7 +74,7 @@ SNOWSHED_INLINE void sum_row_approaches(const PairRows& rows, const float* const
       square += pair.separation[d] * pair.separation[d];
       along -= pair.change[d] * pair.separation[d];
     }
-    // Lanes beyond the row have no separation, and approach no one.
+    // Lanes beyond the row have no separation, and add nothing.
     const V none{}, approaching = select(square < limit * limit, max(along, none), none);
     const V factor = gather<V>(share, pair.index) * approaching / max(square, broadcast<V>(1e-30));
     SNOWSHED_UNROLL

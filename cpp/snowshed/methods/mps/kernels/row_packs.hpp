@@ -15,18 +15,18 @@ struct IndexOf {
 template <class V>
 using IndexPack = typename IndexOf<V>::type;
 
-/// Some pairs of a row: those from `entry` on, `count` of them, at most as many as V has lanes.
+/// The `count` pairs of a row from `entry` on, at most as many as V has lanes.
 template <class V>
 struct RowPack {
   std::size_t entry;
   int count;
 
-  /// Their neighbours, and the first particle beyond.
+  /// The neighbours of the pairs, and particle 0 in the lanes beyond.
   SNOWSHED_INLINE IndexPack<V> load_index(const std::uint32_t* p) const {
     using Bits = typename IndexOf<V>::bits;
     return (IndexPack<V>)load_some<Bits>(reinterpret_cast<const float*>(p + entry));
   }
-  /// Their values, and zero beyond.
+  /// The values of the pairs, and zero in the lanes beyond.
   SNOWSHED_INLINE V load(const float* p) const {
     using Bits = typename IndexOf<V>::bits;
     if constexpr (sizeof(Scalar<V>) == 4)

@@ -19,8 +19,8 @@ SNOWSHED_INLINE unsigned lane_bits(const SimdMask<double>& mask) {
 #endif
 }
 
-/// Writes `from` plus the places of set bits, in order; returns how many. Values behind the written
-/// ones may change.
+/// Writes `from` plus the position of each set bit, in order; returns their number. Values after
+/// the written ones may change.
 SNOWSHED_INLINE std::size_t write_places(unsigned bits, std::uint32_t from, std::uint32_t* to) {
 #if defined(__AVX512VL__)
   const __m256i all =

@@ -18,7 +18,7 @@ SNOWSHED_INLINE void weigh_row(const PairRows& rows, const float* const* offset,
       const V r = pack.load(offset[d]);
       square += r * r;
     }
-    square = max(square, broadcast<V>(1e-4f * reach * reach));  // particles in the same place
+    square = max(square, broadcast<V>(1e-4f * reach * reach));  // particles at the same position
     const V distance = sqrt(square);
     const V w = max(V(reach / distance - 1.0f), V{});
     pack.store(weight, w);

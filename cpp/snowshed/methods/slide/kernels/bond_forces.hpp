@@ -11,7 +11,7 @@ SNOWSHED_INLINE PackMask stretch_lanes(const View& s, const Lanes& l) {
     const std::ptrdiff_t b = l.first + (i < l.count ? i : 0);
     const Quad first = load_row(s.predicted + 4 * std::ptrdiff_t(s.bond_first[b]));
     const Quad second = load_row(s.predicted + 4 * std::ptrdiff_t(s.bond_second[b]));
-    return Quad(second - Quad{1, 1, 1, -1} * first);  // the way, and both thicknesses
+    return Quad(second - Quad{1, 1, 1, -1} * first);  // separation, and the sum of the thicknesses
   });
   const PackVec d{r.a, r.b, r.c};
   const Pack length = length_from(dot(d, d)), strain = length / l.load(s.rest_length) - 1.0;
@@ -24,7 +24,7 @@ SNOWSHED_INLINE PackMask stretch_lanes(const View& s, const Lanes& l) {
   return breaks;
 }
 
-/// The force by all bonds of a particle, N.
+/// The force of all bonds on a particle, N.
 SNOWSHED_INLINE Quad pull_on(const View& s, std::ptrdiff_t i) {
   static constexpr double signs[2] = {1, -1};
   Quad sum{};

@@ -23,7 +23,7 @@ SNOWSHED_INLINE void map_pressure_on(const View& s, double factor, std::uint32_t
   const Quad sums = factor * sums_of(gx[0], gy[0], gx[1], gy[1]);
   for (int k = 0; k < count; ++k) {
     const double mass = s.sorted_mass[first + k];
-    store_row(s.pushed + 4 * std::ptrdiff_t(s.sorted_particle[first + k]),
+    store_row(s.pressure_force + 4 * std::ptrdiff_t(s.sorted_particle[first + k]),
               Quad{mass * sums[2 * k], mass * sums[2 * k + 1], 0, 0});
   }
 }

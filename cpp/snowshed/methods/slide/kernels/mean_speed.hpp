@@ -1,14 +1,14 @@
 // The speed of the snow around a node, for the peaks of the default mode.
 //
-// Where snow is thin, the velocity that a node gets from few particles depends on their places in
-// its cells, and beyond the last particle it falls to zero from one node to the next. On another
-// grid they lie elsewhere. The speed that is kept is therefore a mean over the nodes around, with
+// Where snow is thin, the velocity at a node comes from few particles. It depends on their places
+// in the node's cells, which differ on another grid, and beyond the last particle it falls to zero
+// from one node to the next. The peak is therefore that of a mean over the nodes around, with
 // binomial weights (1 4 6 4 1)/16 along both axes: nearly a Gaussian as wide as a cell, which has
-// no direction. It fades where the mean mass m around falls below a share of a particle's, m_0:
-// with the mean momentum q it is |q| m / (m^2 + m_0^2). A node beside the snow has such a fading
-// speed, too. When only nodes with snow of their own had one, the choice of nodes at the rim
+// no direction. This speed fades where the mean mass m around falls below a share m_0 of a
+// particle's mass: with the mean momentum q it is |q| m / (m^2 + m_0^2). A node beside the snow has
+// such a fading speed, too. When only nodes with snow had one, the choice of nodes at the rim
 // depended on the direction of the grid: a turned slide changed its peak speeds by up to 1.2 (L1)
-// and 1.8 (L2) times the error of interpolation, more than the case allows.
+// and 1.8 (L2) times the error of interpolation, more than the verification case allows.
 #pragma once
 
 #include "snowshed/methods/slide/kernels/node_sums.hpp"

@@ -15,7 +15,8 @@ struct PackSlowed {
 };
 
 /// Coulomb friction as a set-valued law: it stops snow, and holds it while the driving force is
-/// less. The part that grows with the square of the speed is implicit: s' + drag dt s'^2 = s.
+/// smaller than friction. The part that grows with the square of the speed is implicit: s' + drag
+/// dt s'^2 = s.
 SNOWSHED_INLINE PackSlowed slowed(const View& s, const PackVec& u, const Pack& yield,
                                   const Pack& drag) {
   const Pack dt = broadcast<Pack>(s.time_step);
@@ -53,7 +54,7 @@ SNOWSHED_INLINE PackSlowed slowed_by(const View& s, const Lanes& l, const PackVe
                                                        : slowed_explicitly(s, u, stress, speed);
 }
 
-/// The velocity along the ground, with its earlier speed.
+/// The velocity turned along the ground, with the speed that it had.
 SNOWSHED_INLINE PackVec along_ground(const PackVec& u, const PackVec& normal, double added_speed) {
   const PackVec tangential = u - dot(u, normal) * normal;
   const Pack speed = length_from(dot(tangential, tangential));
@@ -72,7 +73,7 @@ struct PackMotion {
 SNOWSHED_INLINE PackVec acceleration(const View& s, const Lanes& l) {
   const PackRecord force = taken_apart([&](int k) SNOWSHED_INLINE_LAMBDA {
     const std::ptrdiff_t i = l.first + (k < l.count ? k : 0);
-    return Quad(load_row(s.pushed + 4 * i) + pull_on(s, i));
+    return Quad(load_row(s.pressure_force + 4 * i) + pull_on(s, i));
   });
   const PackVec a =
       l.load(s.ax, s.ay, s.az) + Pack(1.0 / l.load(s.mass)) * PackVec{force.a, force.b, force.c};

@@ -45,7 +45,7 @@ struct Separation {
   SNOWSHED_INLINE V square() const { return x * x + y * y + z * z; }
 };
 
-/// The values of those of the entries from e on that belong to a run up to `end`; 0 for others.
+/// The values of entries from e on; 0 for entries beyond the run, which goes up to `end`.
 template <class V>
 SNOWSHED_INLINE V within(const V& values, std::uint32_t e, std::uint32_t end) {
   return select(lane_numbers<V>() < double(end - e), values, V{});
@@ -89,9 +89,8 @@ struct EntryRun {
 /// The runs that hold the neighbours of a cell's particles.
 using Neighbourhood = EntryRun[3];
 
-/// Calls visit(e, n) for the particles of a cell with their neighbourhood: the entry e, and where n
-/// is Two the next one, too. Two particles that are treated together share the values that are
-/// read.
+/// Calls visit(e, n, neighbourhood) for the particles of each cell in a row: for the entry e, and
+/// for the next one, too, if n is Two. Two particles together share the values that are read.
 using One = std::integral_constant<int, 1>;
 using Two = std::integral_constant<int, 2>;
 template <class Visit>

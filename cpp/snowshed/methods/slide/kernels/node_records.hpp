@@ -1,4 +1,4 @@
-// Packs of particles, and records of four values that nodes hold: read for a pack of places at
+// Packs of particles, and the nodes' records of four values, which are read for a pack of places at
 // once.
 #pragma once
 
@@ -6,8 +6,8 @@
 
 SNOWSHED_METHOD_VARIANT_BEGIN(slide)
 
-/// A pack holds one value of four particles, or of eight where a register has room for them: at
-/// least as many as the values of a record, which are taken apart into packs.
+/// A pack holds one value of four particles, or of eight if a register has room for them. It has at
+/// least as many lanes as a record has values, because records are taken apart into packs.
 inline constexpr int pack_bytes = simd_bytes > 32 ? simd_bytes : 32;
 inline constexpr int pack_lanes = pack_bytes / int(sizeof(double));
 typedef double Pack __attribute__((vector_size(pack_bytes), may_alias));
@@ -24,7 +24,7 @@ SNOWSHED_INLINE bool any_lane(const PackMask& mask) {
 #endif
 }
 
-// The compiler would take eight lanes apart into halves for these.
+// The compiler would split eight lanes into halves for these conversions.
 SNOWSHED_INLINE Pack as_doubles(const PackIndex& v) {
 #ifdef __AVX512F__
   return (Pack)_mm512_cvtepi32_pd((__m256i)v);
@@ -50,14 +50,15 @@ struct PackRecord {
   Pack a, b, c, d;
 };
 
-/// Exchanges rows and columns of four packs, within each half of a pack where it has eight lanes.
+/// Exchanges rows and columns of four packs, within each half of a pack if it has eight lanes.
 SNOWSHED_INLINE PackRecord transposed(const PackRecord& r) {
   Pack rows[4] = {r.a, r.b, r.c, r.d};
   transpose(rows);
   return {rows[0], rows[1], rows[2], rows[3]};
 }
 
-/// A record of each lane, taken apart into its four values; record(i) is that of lane i.
+/// The records of all lanes, taken apart into packs of their values; record(i) is the record of
+/// lane i.
 template <class RecordOf>
 SNOWSHED_INLINE PackRecord taken_apart(const RecordOf& record) {
 #ifdef __AVX512F__
@@ -87,7 +88,7 @@ SNOWSHED_INLINE PackRows put_together(const PackRecord& r) {
 
 SNOWSHED_INLINE Pack load_whole_pack(const double* p) { return load_pack<Pack>(p, pack_lanes); }
 
-/// Part of the records of the four nodes around a place that is read.
+/// Values that are made of the records of the four nodes around a place.
 enum class NodeRecord {
   mean,             // the bilinear mean
   mean_and_known,   // the same, but the last value is NaN if the first one of node 0 is
@@ -104,7 +105,7 @@ struct NodeWeights {
 template <NodeRecord record>
 SNOWSHED_INLINE Pack node_record(const Pack& south, const Pack& north, const Pack& south_weights,
                                  const Pack& north_weights) {
-  // The height is the same to the last bit with any other values: snow at rest must not creep.
+  // The height has the same bits for every NodeRecord, so that snow at rest does not creep.
   const Pack parts = (Pack)_mm512_fmadd_pd((__m512d)south_weights, (__m512d)south,
                                            _mm512_mul_pd((__m512d)north_weights, (__m512d)north));
   if constexpr (record == NodeRecord::mean) return parts;

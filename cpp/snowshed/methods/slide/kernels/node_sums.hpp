@@ -1,5 +1,5 @@
-// The snow on the nodes of the grid, from the masses and momenta of particles, which go to the four
-// nodes around them.
+// The snow on the nodes of the grid, from the masses and momenta of particles, which add to the
+// four nodes around them.
 #pragma once
 
 #include "snowshed/methods/slide/kernels/places.hpp"

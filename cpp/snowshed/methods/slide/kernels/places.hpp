@@ -16,13 +16,13 @@ SNOWSHED_INLINE Pack length_from(const Pack& square) {
   return s * inverse_sqrt(s);
 }
 
-/// Up to a pack of neighbouring entries of an array; where there are fewer the first is repeated.
+/// Consecutive entries of an array, at most a pack; if there are fewer, the first one is repeated.
 struct Lanes {
   std::ptrdiff_t first;
   int count;
 
   SNOWSHED_INLINE Pack load(const double* p) const { return load_pack<Pack>(p + first, count); }
-  /// Those that hold an entry of their own.
+  /// The lanes that hold an entry of their own.
   SNOWSHED_INLINE PackMask filled() const { return first_lanes<Pack>(count); }
   SNOWSHED_INLINE PackIndex load(const std::int32_t* p) const {
     return load_pack<PackIndex>(p + first, count);
@@ -80,7 +80,7 @@ SNOWSHED_INLINE void for_each_batch(std::ptrdiff_t begin, std::ptrdiff_t end, co
   }
 }
 
-/// Places in a grid. Those outside are given the first cell, so that reading there does no harm.
+/// Places in a grid. Places outside get the first cell, so that reading there does no harm.
 struct PackPlace {
   PackIndex column, row;
   Pack east, north;
@@ -125,7 +125,8 @@ SNOWSHED_INLINE PackVec upward(const Pack& slope_x, const Pack& slope_y) {
   return {slope_x * z, slope_y * z, z};
 }
 
-/// The height of the ground and a normal. It is known if the south-west node of the cell is.
+/// The height of the ground and a normal. The ground is known if the south-west node of the cell
+/// is.
 struct PackGround {
   Pack height;
   PackVec normal;

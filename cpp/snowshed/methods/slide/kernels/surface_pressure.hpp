@@ -16,13 +16,13 @@ SNOWSHED_METHOD_VARIANT_BEGIN(slide)
 
 /// See `few_neighbours` in kernel_api.hpp.
 template <class V>
-SNOWSHED_INLINE V raised_pressure(const V& seen) {
-  const V log_seen = log1p(V(max(seen, broadcast<V>(1e-3)) - 1.0));
-  const V more = 1.0 + expm1(V(-few_neighbours.power * log_seen));
+SNOWSHED_INLINE V raised_pressure(const V& neighbours) {
+  const V log_neighbours = log1p(V(max(neighbours, broadcast<V>(1e-3)) - 1.0));
+  const V more = 1.0 + expm1(V(-few_neighbours.power * log_neighbours));
   return min(broadcast<V>(2.0), V(1.0 + few_neighbours.factor * more));
 }
 
-/// Finds how many particles each of some particles sees, by mass, within its kernel.
+/// Finds the number of neighbours, by mass, within the kernel of each of `count` particles.
 template <int count>
 SNOWSHED_INLINE void count_neighbours_of(const View& s, std::uint32_t first,
                                          const Neighbourhood& around) {
@@ -40,7 +40,8 @@ SNOWSHED_INLINE void count_neighbours_of(const View& s, std::uint32_t first,
   // Constant of the kernel, over a disc's area.
   const double constant = 10 / (s.cell * s.cell * s.cell);
   const Quad sums = constant * sums_of(sum[0], sum[1], V{}, V{});
-  for (int k = 0; k < count; ++k) s.sorted_pressing[first + k] = sums[k] / s.sorted_mass[first + k];
+  for (int k = 0; k < count; ++k)
+    s.sorted_pressure_factor[first + k] = sums[k] / s.sorted_mass[first + k];
 }
 
 /// Finds the factor on the pressure for the particles of a row.
@@ -57,8 +58,8 @@ SNOWSHED_INLINE void weigh_row(const View& s, int row) {
     V nz;
     for (int lane = 0; lane < width; ++lane)
       nz[lane] = s.nz[s.sorted_particle[e + (lane < count ? lane : 0)]];
-    store(s.sorted_pressing + e, V(nz * raised_pressure(load(s.sorted_pressing + e, count))),
-          count);
+    store(s.sorted_pressure_factor + e,
+          V(nz * raised_pressure(load(s.sorted_pressure_factor + e, count))), count);
   }
 }
 
@@ -70,10 +71,10 @@ SNOWSHED_INLINE void surface_pressure_on(const View& s, double factor, std::uint
   for_each_neighbour(around, [&](std::uint32_t e, std::uint32_t end) SNOWSHED_INLINE_LAMBDA {
     const Neighbours<V> sources(s, e);
     const V mass = within(load_beyond<V>(s.sorted_mass + e), e, end);
-    const V theirs = mass * load_beyond<V>(s.sorted_pressing + e);
+    const V theirs = mass * load_beyond<V>(s.sorted_pressure_factor + e);
     for (int k = 0; k < count; ++k) {
       const Separation<V> separation(s, first + k, sources);
-      const V pressing = theirs + mass * s.sorted_pressing[first + k];
+      const V pressing = theirs + mass * s.sorted_pressure_factor[first + k];
       const V w = spiky_gradient(pressing, separation.square(), s.cell);
       sx[k] += w * separation.x;
       sy[k] += w * separation.y;
@@ -86,7 +87,7 @@ SNOWSHED_INLINE void surface_pressure_on(const View& s, double factor, std::uint
     const Quad p = (factor * mass) * sums_of(sx[k], sy[k], sz[k], V{});
     const Quad normal{s.nx[i], s.ny[i], s.nz[i], 0};
     const double lift = p[0] * normal[0] + p[1] * normal[1] + p[2] * normal[2];
-    store_row(s.pushed + 4 * std::ptrdiff_t(i), p - lift * normal);
+    store_row(s.pressure_force + 4 * std::ptrdiff_t(i), p - lift * normal);
   }
 }
 

@@ -25,7 +25,7 @@ class NodeSumsOfChunk : public testing::Test {
   using T = typename C::Scalar;
   static constexpr int D = C::D, S = support(C::basis), N = tile_edge<D>(C::basis);
   static constexpr int W = simd_width<T>;
-  /// Values of a node that particles take; the others repeat them.
+  /// Number of a node's values that particles take. Further values repeat these.
   static constexpr int taken = C::Rule::taken == Halves::first ? half_node : node_values;
   static constexpr double epsilon = std::numeric_limits<T>::epsilon();
 

@@ -17,7 +17,7 @@ from snowshed.analysis.grains.material.loading_tests import (
     Curves,
 )
 from snowshed.analysis.grains.material.readings import (
-    PEAK_FROM,
+    PEAK_FROM_STRAIN,
     axial_stress,
     invariants,
     shear_strength,
@@ -110,6 +110,6 @@ def _point(test: str, curve: LoadingCurve) -> tuple[float, float]:
     if test in (SHEAR, TENSION):
         return shear_strength(curve) if test == SHEAR else tension(curve)
     p, q = invariants(curve, isotropic=test == ISOTROPIC)
-    counted = curve["axial_strain"] >= PEAK_FROM
+    counted = curve["axial_strain"] >= PEAK_FROM_STRAIN
     row = int(np.argmax(np.where(counted, axial_stress(curve), -np.inf)))
     return float(p[row]), float(q[row])

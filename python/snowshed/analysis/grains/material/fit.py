@@ -24,7 +24,7 @@ from snowshed.analysis.grains.material.yield_surface import fit_yield_surface
 from snowshed.analysis.grains.ratios import LogMean
 from snowshed.base.formatting import percent
 from snowshed.methods.grains.curve import LoadingCurve
-from snowshed.methods.grains.phases import LINEAR
+from snowshed.methods.grains.phases import MIN_LINEARITY
 from snowshed.methods.grains.summary import FEW_GRAINS
 from snowshed.scene.components import Snow
 
@@ -98,9 +98,9 @@ class FittedSnow:
 
     @property
     def step_count_ratio(self) -> float:
-        """Number of MPM time steps over that with the calibrated snow.
+        """Number of MPM time steps, relative to the calibrated snow.
 
-        Their number is proportional to the speed of elastic waves.
+        The number is proportional to the speed of elastic waves.
         """
         return self.law.wave_speed / CamClayFit.of(Snow.preset("calibrated")).wave_speed
 
@@ -146,7 +146,7 @@ def fit_material(
     nu = min(max(ranges["poissons_ratio"].value, 0.0), readings.MAX_POISSON)
     elastic = Elasticity(modulus or ranges["youngs_modulus"].value, nu)
     linearity = min(share for _, share in elasticities)
-    if linearity < LINEAR:
+    if linearity < MIN_LINEARITY:
         notes.append(f"the elastic phase is not linear (R2 {linearity:.2f}): E is doubtful")
     strengths = _read(curves, ISOTROPIC, readings.isotropic_yield, notes)
     ranges["preconsolidation_pressure"] = Range.of(list(strengths.values()))
@@ -177,7 +177,7 @@ def fit_material(
 def _read(
     curves: Curves, test: str, read: Callable[[LoadingCurve], Reading], notes: list[str]
 ) -> dict[tuple[str, int], Reading]:
-    """Return a reading of each sample, by test and sample; those that have none are noted."""
+    """Return a reading of each sample, by test and sample; a note reports failed readings."""
     values, failures = {}, []
     for (name, sample), curve in sorted(curves.items(), key=lambda item: item[0]):
         if name.partition(" ")[0] == test:
@@ -196,7 +196,7 @@ def _read_strengths(
 ) -> None:
     """Read M and beta: the yield surface through the strengths in tension and shear.
 
-    Each sample's strengths are taken over its own p0.
+    Each sample's strengths are relative to its own p0.
     """
     tensions = _read(curves, TENSION, readings.tension, notes)
     strengths = {**_read(curves, SHEAR, readings.shear_strength, notes), **tensions}
@@ -248,7 +248,7 @@ def _read_hardening(
 def _check_confined(
     curves: Curves, ranges: dict[str, Range], law: CamClayFit, notes: list[str]
 ) -> None:
-    """Compare the peak of confined compression, to which nothing is fitted."""
+    """Compare the peaks of confined compression, which are not fitted, with the law."""
     stress = law.confined_yield()
     peaks = _read(curves, CONFINED, readings.confined_peak, notes)
     ranges["confined_yield_over_law"] = ratio = Range.of([peak / stress for peak in peaks.values()])

@@ -34,10 +34,10 @@ SHEARING: Mapping[str, Any] = {
 }  # fmt: skip
 #: Normal stresses of the shear tests, as shares of p0.
 NORMAL_STRESSES = (0.1, 0.3)
-SPEED = 0.02  # speed of the plates in compaction, m/s
+COMPACTION_SPEED = 0.02  # speed of the plates in compaction, m/s
 #: Volume fraction of ice up to which snow is compacted: loose grains carry almost no stress below
 #: it.
-COMPACTED = 0.51
+COMPACTED_FRACTION = 0.51
 MIN_COMPACTION = 0.12  # smallest strain of the compaction along each axis
 
 Curves = Mapping[tuple[str, int], LoadingCurve]
@@ -66,7 +66,10 @@ class MaterialTests:
         self.ice_fraction = sum(sample.ice_fraction for sample in samples) / len(samples)
         self.density = density * self.ice_fraction
         self.scene = grains_scene(
-            self.files[0], self.voxel_size, [LoadingStage(speed=SPEED)], settings=settings
+            self.files[0],
+            self.voxel_size,
+            [LoadingStage(speed=COMPACTION_SPEED)],
+            settings=settings,
         )
 
     @property
@@ -107,7 +110,7 @@ def compaction_strain(ice_fraction: float) -> float:
     >>> compaction_strain(0.35), compaction_strain(0.23)
     (0.12, 0.233)
     """
-    strain = 1 - (ice_fraction / COMPACTED) ** (1 / 3)
+    strain = 1 - (ice_fraction / COMPACTED_FRACTION) ** (1 / 3)
     return max(round(float(strain), 3), MIN_COMPACTION)
 
 

@@ -15,15 +15,15 @@ import numpy as np
 from snowshed._core import InputError
 from snowshed.analysis.grains.material.law import Elasticity
 from snowshed.base.arrays import Floats
-from snowshed.methods.grains.curve import LoadingCurve, untouched
-from snowshed.methods.grains.phases import MIN_ROWS, PEAK_BELOW
+from snowshed.methods.grains.curve import LoadingCurve, no_contact_text
+from snowshed.methods.grains.phases import MAX_PEAK_STRAIN, MIN_ROWS
 
 #: Strain from which a peak counts: earlier peaks come from the plate's impact.
-PEAK_FROM = 5e-4
+PEAK_FROM_STRAIN = 5e-4
 #: Width of the intervals of plastic compaction over which stresses are averaged before hardening is
 #: fitted.
 HARDENING_BIN = 0.02
-#: Ranges of the law's parameters as scenes take them (`snowshed.Snow`).
+#: Largest values of the law's parameters in scenes (`snowshed.Snow`).
 MAX_POISSON, MAX_HARDENING = 0.49, 1000.0
 
 
@@ -115,8 +115,8 @@ def elasticity(curve: LoadingCurve) -> tuple[Elasticity, float]:
 
 
 def _unknown(curve: LoadingCurve, kind: str, what: str) -> str:
-    """Return the error that something cannot be read, with its reason if known."""
-    return f"{what}: {untouched(curve, kind) or 'nothing to be read'}"
+    """Return the message that a reading is impossible, with the reason if known."""
+    return f"{what}: {no_contact_text(curve, kind) or 'nothing to be read'}"
 
 
 def isotropic_yield(curve: LoadingCurve) -> float:
@@ -130,7 +130,7 @@ def isotropic_yield(curve: LoadingCurve) -> float:
     peak = 0.0
     for rows in (curve, curve.peaks):
         strain = rows["axial_strain"]
-        counted = (strain >= PEAK_FROM) & (strain <= PEAK_BELOW)
+        counted = (strain >= PEAK_FROM_STRAIN) & (strain <= MAX_PEAK_STRAIN)
         pressure = invariants(rows, isotropic=True)[0][counted]
         peak = max(peak, float(pressure.max(initial=0.0)))
     if not peak > 0:
@@ -148,7 +148,7 @@ def confined_peak(curve: LoadingCurve) -> float:
     """
     peak = 0.0
     for rows in (curve, curve.peaks):
-        counted = rows["axial_strain"] >= PEAK_FROM
+        counted = rows["axial_strain"] >= PEAK_FROM_STRAIN
         peak = max(peak, float(axial_stress(rows)[counted].max(initial=0.0)))
     if not peak > 0:
         raise InputError(_unknown(curve, "compress", "no stress in confined compression"))
@@ -167,7 +167,7 @@ def shear_strength(curve: LoadingCurve) -> tuple[float, float]:
         If there is no shear stress.
     """
     curve = curve.peaks
-    shear = np.where(curve["shear_strain"] >= PEAK_FROM, curve["shear_stress_pa"], -np.inf)
+    shear = np.where(curve["shear_strain"] >= PEAK_FROM_STRAIN, curve["shear_stress_pa"], -np.inf)
     row = int(np.argmax(shear))
     if not shear[row] > 0:
         raise InputError("no shear stress: is the snow frozen to the plates (bonded_plates)?")
@@ -184,7 +184,7 @@ def tension(curve: LoadingCurve) -> tuple[float, float]:
         If there is no tension.
     """
     curve = curve.peaks
-    along = np.where(curve["axial_strain"] <= -PEAK_FROM, axial_stress(curve), np.inf)
+    along = np.where(curve["axial_strain"] <= -PEAK_FROM_STRAIN, axial_stress(curve), np.inf)
     row = int(np.argmin(along))
     if not along[row] < 0:
         raise InputError("no tension: is the snow frozen to the plates (bonded_plates)?")

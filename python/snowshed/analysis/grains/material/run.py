@@ -15,8 +15,8 @@ from snowshed.analysis.grains.samples import LabelledSample
 from snowshed.analysis.grains.variants import Comparison
 from snowshed.methods.grains.settings import GrainsSettings
 
-#: Ratio of the densities from which two samples are of different snow.
-APART = 1.1
+#: Ratio of densities from which two samples count as different snow.
+MIN_DENSITY_RATIO = 1.1
 
 
 @dataclass(frozen=True)
@@ -107,7 +107,7 @@ def by_density(samples: Sequence[LabelledSample]) -> list[list[LabelledSample]]:
     """
     groups: list[list[LabelledSample]] = []
     for candidate in sorted(samples, key=lambda sample: sample.ice_fraction):
-        if groups and candidate.ice_fraction < APART * groups[-1][0].ice_fraction:
+        if groups and candidate.ice_fraction < MIN_DENSITY_RATIO * groups[-1][0].ice_fraction:
             groups[-1].append(candidate)
         else:
             groups.append([candidate])

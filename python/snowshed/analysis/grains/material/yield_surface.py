@@ -12,7 +12,7 @@ import numpy as np
 from snowshed._core import InputError
 from snowshed.base.arrays import Floats
 
-COHESIONS = np.linspace(0.0, 1.0, 201)  # that a scene takes (`snowshed.Snow`)
+COHESIONS = np.linspace(0.0, 1.0, 201)  # values in scenes (`snowshed.Snow`)
 
 
 @dataclass(frozen=True)

@@ -84,7 +84,7 @@ class Ranges:
     Examples
     --------
     >>> ranges = Ranges({"friction": (0.4, 0.4), "adhesion": (0.0, 0.0)}, draws=1)
-    >>> ranges.drawn(2)[0]["friction"], len(ranges.drawn(3))
+    >>> ranges.draw(2)[0]["friction"], len(ranges.draw(3))
     (0.4, 3)
     """
 
@@ -105,7 +105,7 @@ class Ranges:
                     f"first, from {least:g} to {most:g}"
                 )
 
-    def drawn(self, winters: int) -> list[dict[str, float]]:
+    def draw(self, winters: int) -> list[dict[str, float]]:
         """Return the values for all draws of each winter, winter after winter.
 
         They are a Latin hypercube over all runs (McKay et al. 1979), so that few runs cover the

@@ -8,7 +8,7 @@ from typing import Optional
 
 from snowshed._core import InputError
 from snowshed.analysis.calibration.measurements import Measurement
-from snowshed.analysis.calibration.parameter_ranges import CORNERS, GRID
+from snowshed.analysis.calibration.parameter_grid import CORNERS, GRID
 from snowshed.scene.components import Snow
 from snowshed.scene.scene import Scene
 from snowshed.study.definition import Study
