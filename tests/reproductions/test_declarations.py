@@ -19,7 +19,9 @@ MODULES = [
     if not one.name.endswith("__main__")
 ]
 NAMES = [name for name, _, _ in PUBLICATIONS]
-NO_OPTIONS = {"frischholz2023": {"table": None, "condition": "separate"}}
+NO_OPTIONS = {
+    "frischholz2023": {"table": None, "condition": "separate", "scheme": "thesis"},
+}
 #: Settings that take less time than those of the smallest size.
 SMALLER = {"hagenmuller2015": Samples(40, 1)}
 

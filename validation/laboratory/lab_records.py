@@ -160,7 +160,7 @@ class RecordedStacks:
     @property
     def events(self) -> int:
         """Number of recorded events."""
-        return min(values.shape[1] for values in self.runs.values())
+        return int(min(values.shape[1] for values in self.runs.values()))
 
     def mean(self, name: str, event: int) -> float:
         """Return the mean over seedings of a measure after an event, m; NaN: not recorded."""

@@ -173,7 +173,7 @@ def run_lab(settings: CaseSettings) -> LabRun:
     """
     resolved = lab_scene(settings).resolve()
     simulation = _core.Simulation(resolved.json)
-    data: dict[str, Any] = resolved.data
+    data = resolved.data
     tape = _Tape(simulation, data)
     run = LabRun(brought_mass=_brought_mass(data), particle_mass=_particle_mass(data))
     wall_s = 0.0

@@ -72,7 +72,7 @@ class _Run:
         self.first_step = _first_step(point)
         limit = min(max_event_duration(point), steps * self.first_step)
         scene = build(point, limit).resolve()
-        data: dict[str, Any] = scene.data
+        data = scene.data
         self.gravity = float(data["gravity"])
         self.count = int(data["events"]["count"])
         self.simulation = _core.Simulation(scene.json)

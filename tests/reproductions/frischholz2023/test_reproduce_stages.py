@@ -93,17 +93,20 @@ def test_a_table_takes_the_place_of_the_panels(tmp_path):
     assert len(found.rows.read()) == found.rows.count() == 72
 
 
-def prepare(folder, size="quick", condition="separate"):
-    REPRODUCTION.prepare(folder, size, {"condition": condition})
+def prepare(folder, size="quick", **options):
+    defaults = {"condition": "separate", "scheme": "thesis"}
+    REPRODUCTION.prepare(folder, size, {**defaults, **options})
 
 
-def test_a_folder_is_for_one_size_and_one_condition(tmp_path):
+def test_a_folder_is_for_one_size_one_condition_and_one_scheme(tmp_path):
     prepare(tmp_path / "out")
     prepare(tmp_path / "out")
     with pytest.raises(InputError, match="with --quick; take a new folder for --full"):
         prepare(tmp_path / "out", "full")
     with pytest.raises(InputError, match="with --condition separate; take a new folder for"):
         prepare(tmp_path / "out", condition="slip")
+    with pytest.raises(InputError, match="with --scheme thesis; take a new folder for"):
+        prepare(tmp_path / "out", scheme="objective")
     (tmp_path / "other").mkdir()
     (tmp_path / "other" / "file").touch()
     with pytest.raises(InputError, match="not empty, and holds no reproduction"):
@@ -115,7 +118,7 @@ def test_a_folder_is_for_one_size_and_one_condition(tmp_path):
 
 
 def test_a_folder_of_former_days_is_gone_on_with(tmp_path):
-    """Folders of early versions name neither the publication nor the condition."""
+    """Folders of early versions name neither the publication, nor the condition, nor the scheme."""
     (tmp_path / "reproduction.json").write_text('{"size": "quick"}')
     prepare(tmp_path)
     with pytest.raises(InputError, match="take a new folder for --condition slip"):
