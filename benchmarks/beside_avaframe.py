@@ -81,7 +81,7 @@ com5SnowSlide.com5SnowSlideMain(main, cfg)
 
 
 def make_project(folder: Path, particles: int, python: str) -> None:
-    """Write a project folder whose slab has about so many particles."""
+    """Write a project folder whose slab has about this number of particles."""
     side = math.sqrt(particles / 2) * CELL
     columns, rows = int((side + 240) / CELL), int((side + 40) / CELL)
     x = np.arange(columns) * CELL
@@ -126,7 +126,7 @@ def copied_project(project: Path, folder: Path) -> None:
 
 
 def compare(folder: Path, name: str, steps: int, python: str) -> None:
-    """Run a project with both in turn, and print a line."""
+    """Run a project with both programs in turn, and print a line."""
     ours, theirs, particles = [], [], 0
     for _ in range(REPETITIONS):
         seconds, particles = our_seconds(folder, steps)

@@ -93,7 +93,7 @@ class Column:
 
     @classmethod
     def of(cls, dimension: int, particles: int, radius: float) -> Column:
-        """Return the column with about so many particles."""
+        """Return the column with about this number of particles."""
         return cls(dimension, round((particles / 2) ** (1 / dimension)), radius)
 
     @property
@@ -137,7 +137,7 @@ def our_scene(column: Column, threads: int) -> Scene:
 
 
 def our_speed(column: Column, threads: int) -> tuple[float, float]:
-    """Return particle steps a second of ours, and the mean step, s."""
+    """Return our particle steps per second, and the mean time step, s."""
     simulation = Simulation(our_scene(column, threads))
     simulation.begin_event()
     simulation.step(10)
@@ -198,7 +198,7 @@ def their_seconds(program: Path, column: Column, steps: int, threads: int, folde
 
 
 def compare(program: Path, column: Column, threads: int) -> dict[str, float]:
-    """Let a column collapse with both in turn, and print a line."""
+    """Let a column collapse with both programs in turn, and print a line."""
     ours, theirs, step = [], [], 0.0
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)

@@ -3,9 +3,9 @@
 Usage: python -m benchmarks.matrix path/to/snowshed_bench
 
 Prints nanoseconds of processor time for each particle update, on one thread, and writes
-benchmarks/results/DATE-matrix-COMPILER.json. A cell is out of line if it takes more than twice the
-time that its neighbours predict. Neighbours differ from it in one choice only, such as the
-transfer, and are scaled by the price of this choice elsewhere.
+benchmarks/results/DATE-matrix-COMPILER.json. A cell is out of line if its time is
+more than twice, or less than half, the time that the other cells predict. In the prediction each
+choice, such as the transfer, multiplies the time by a factor of its own.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from snowshed.base.machine import cpu_name
 RESULTS = Path(__file__).parent / "results"
 VARIANTS = ("baseline", "avx2", "avx512")
 CHOICES = ("dimension", "precision", "transfer", "basis", "snow")
-#: Factor between the time of a cell and its predicted time from which it is a finding.
+#: Largest factor between the time of a cell and its predicted time that is not a finding.
 MAX_FACTOR = 2.0
 #: Largest time in double precision, over that in single precision.
 DOUBLE_OVER_FLOAT = 2.3
@@ -77,7 +77,7 @@ def findings(times: Times) -> Iterator[str]:
     for cell, time in times.items():
         expected = predicted(times, cell)
         if not 1 / MAX_FACTOR < time / expected < MAX_FACTOR:
-            yield f"{'/'.join(cell)}: {time:.1f} ns, where its neighbours predict {expected:.1f}"
+            yield f"{'/'.join(cell)}: {time:.1f} ns, where the other cells predict {expected:.1f}"
         if cell[1] == "double":
             ratio = time / times[(cell[0], "float", *cell[2:])]
             if ratio > DOUBLE_OVER_FLOAT:

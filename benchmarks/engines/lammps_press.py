@@ -1,7 +1,7 @@
 """Confined compression of a sample with LAMMPS: python lammps_press.py SAMPLE PRESS OUT.
 
 SAMPLE is what `VoxelSample.save` writes, PRESS what `Press.save` writes, OUT an NPZ file with
-time_s, top_n (force on the top plate), bonds, and wall_s of the steps.
+time_s, top_n (force on the top plate), bonds, wall_s of the steps, and the number of spheres.
 
 Grains are bodies of fix rigid/small with the mass and inertia of their voxels, bonds are those of
 bpm/rotational without resistance to bending and twist, which break in tension only; other contacts
@@ -25,7 +25,7 @@ GRAIN, BOTTOM, TOP = 1, 2, 3  # types of spheres
 
 
 def plate(sample: VoxelSample, z: float) -> np.ndarray:
-    """Return the centres of a grid of spheres that reaches two beyond the box."""
+    """Return the centres of a grid of spheres that extends two spheres beyond the box."""
     along = [
         (2 * np.arange(-2, round(edge / sample.radius / 2) + 2) + 1) * sample.radius
         for edge in sample.box[:2]

@@ -49,10 +49,10 @@ class GrainsComputation:
         Raises
         ------
         InputError
-            If none of a base is computed.
+            If no test of the base is computed yet.
         """
         for stage in self.stages:
-            stage.state()  # enters its study, also if another stage was asked for
+            stage.state()  # enters its study, even if another stage was requested
         runs = self.folder.runs
         tables = [self.comparisons[name].table(runs) for name in reversed(list(MAKERS))]
         if not any(BASE in set(table["variant"]) for table in tables):

@@ -37,14 +37,15 @@ BLOCK = (0.4, 0.2)  # m, length and height of the block of snow; it fills the sl
 OBSTACLE_DISTANCE = 0.3  # m above the foot of the slope
 STAKE_WIDTH, STAKE_HEIGHT = 0.02, 0.2  # m
 BOARD_HEIGHT, BOARD_GAP, NOTCH = 0.12, 0.04, (0.04, 0.06)  # m; the notch's width and depth
-#: Inferred, slopes 1 and 2: tilt and length from above, m, then level ground.
+#: Inferred, slopes 1 and 2: tilt and length (m) from the top down, then level ground.
 SLOPES: Mapping[int, Sequence[tuple[float, float]]] = {
     1: [(30.0, 40.0)],
     2: [(38.0, 30.0), (20.0, 30.0)],
 }
 RELEASED_SLAB = (12.0, 10.0, 1.5)  # m, length, width and height of the slab that is released
 LAYER_WIDTH = 20.0  # m
-#: The stress begins to grow as a power of the rate where snow slides at some 10 m/s by a wall.
+#: Shear rate above which the stress grows as a power of the rate: about that of snow that slides
+#: along a wall at 10 m/s.
 WOOD_LIMIT, SLOPE_LIMIT = 1000.0, 50.0  # 1/s
 STRESS_GROWTH = 1000.0  # s
 
@@ -82,7 +83,7 @@ QUICK, FULL = Resolution(0.02, 0.24, 2), Resolution(0.01, 0.4, 3)
 
 @dataclass(frozen=True)
 class GroundProfile:
-    """A piecewise plane ground, from above to the level ground at x > 0, z = 0.
+    """A ground of planes, from the top down to the level ground at x > 0, z = 0.
 
     Attributes
     ----------
@@ -94,7 +95,7 @@ class GroundProfile:
 
     @classmethod
     def of(cls, planes: Sequence[tuple[float, float]]) -> GroundProfile:
-        """Return the path of planes with tilts in degrees and lengths in m, from above.
+        """Return the path of planes with tilts in degrees and lengths in m, from the top down.
 
         Examples
         --------
@@ -121,7 +122,7 @@ class GroundProfile:
         return np.asarray(along)
 
     def frame(self, distance: float) -> tuple[Floats, Floats, Floats, float]:
-        """Return a point of the ground, the directions down it and off it, and its tilt."""
+        """Return a point of the ground, its downhill and normal directions, and its tilt."""
         for (x, z), (next_x, next_z) in zip(self.corners[-2::-1], self.corners[:0:-1]):
             length = math.hypot(next_x - x, next_z - z)
             down = np.array([next_x - x, 0.0, next_z - z]) / length
@@ -184,7 +185,8 @@ class Case:
     end, interval
         End of the case, and interval of the stored states, s.
     obstacle
-        Position of its obstacle, m along the path, or of the missing obstacle.
+        Position along the path of its obstacle, or of the obstacles of other cases if it has none,
+        m.
     """
 
     name: str

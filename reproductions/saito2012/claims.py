@@ -28,7 +28,8 @@ from reproductions.saito2012.cases import (
 )
 from reproductions.saito2012.measures import REST_SPEED, Course
 
-#: An obstacle holds snow back above the first share of all snow, and hardly below the second.
+#: An obstacle that holds more than the first share of all snow holds snow back; one that holds less
+#: than the second holds hardly any.
 MIN_HELD_SHARE, MAX_UNHELD_SHARE = 0.10, 0.03
 
 
@@ -67,7 +68,7 @@ def between(value: float, low: float, high: float, text: str) -> Finding:
 
 
 def reaches_the_foot(data: Courses) -> Finding:
-    """Test whether the avalanche without obstacle lies on the foot of the slope at 4 s."""
+    """Test whether the avalanche without obstacle lies at the foot of the slope at 4 s."""
     course = data.wooden(NO_OBSTACLE)
     fronts = ", ".join(f"{course.front(course.at(t)):.2f}" for t in (1, 2, 3, 4))
     share = course.passed(course.at(4))
@@ -76,7 +77,7 @@ def reaches_the_foot(data: Courses) -> Finding:
 
 
 def held_share(obstacle: str, data: Courses) -> tuple[float, str]:
-    """Return the share of the snow that only the obstacle holds above it, with a text."""
+    """Return the share of the snow that lies above the obstacle because of it, with a text."""
     course, without = data.wooden(obstacle), data.wooden(NO_OBSTACLE)
     held, free = course.held(course.at(4)), without.held(without.at(4))
     return held - free, f"{100 * held:.1f} % lie above it at 4 s, {100 * free:.1f} % without it"

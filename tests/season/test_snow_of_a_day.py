@@ -232,11 +232,11 @@ def test_measured_snow_does_not_vanish_without_a_temperature(tmp_path):
     record = read_record(ghcn(tmp_path / "x.csv", rows))
     assert total(record) == pytest.approx(total(read_record(ghcn(tmp_path / "y.csv", whole))))
     assert len(record.winters().counted) == 3
-    assert told(record, "without a temperature are 25 days", "mean of the same days of the year")
+    assert told(record, "no temperature on 25 days", "mean of the same days of the year")
     assert on(record, date(2002, 1, 16)).temperature == pytest.approx(-6.0, abs=0.3)
     single = [row for row in rows if row[0] >= date(2001, 7, 1) and row[0] < date(2002, 7, 1)]
     record = read_record(ghcn(tmp_path / "z.csv", single))
-    assert told(record, "without a temperature are 25 days", "interpolated")
+    assert told(record, "no temperature on 25 days", "interpolated")
     assert on(record, next(d for d, _ in single if snows(d) and d.year == 2002)).snowfall == 0.12
 
 

@@ -64,8 +64,8 @@ def critical_state_slope(friction_angle: float, dimension: int) -> float:
     """Return the M for which the critical state is Coulomb's with an angle in degrees.
 
     In the plane, q = sqrt(3) (s1 - s3) / 2 and p = (s1 + s3) / 2, so Coulomb's
-    (s1 - s3) = (s1 + s3) sin phi is q = sqrt(3) sin(phi) p. In space the usual match in triaxial
-    compression, M = 6 sin phi / (3 - sin phi).
+    (s1 - s3) = (s1 + s3) sin phi is q = sqrt(3) sin(phi) p. In space
+    M is 6 sin phi / (3 - sin phi), the usual match in triaxial compression.
 
     Examples
     --------
@@ -91,7 +91,7 @@ def front(positions: Floats) -> float:
     """
     x, y, _ = positions.T
     sectors = SECTORS if np.any(y) else 2
-    # Sectors are shifted by half their width: plane deposits then lie in two middles.
+    # Sectors are shifted by half their width, so that plane deposits lie in the middles of two.
     turn = (np.arctan2(y, x) / (2 * np.pi) + 0.5 / sectors) % 1.0
     sector = np.minimum((turn * sectors).astype(int), sectors - 1)
     farthest = np.zeros(sectors)

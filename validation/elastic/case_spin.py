@@ -166,7 +166,7 @@ def measure(settings: CaseSettings) -> Outcome:
 
 
 def matrix(full: bool) -> list[CaseSettings]:
-    """Return transfers in 2D and 3D, and if full resolutions, precisions and other variations."""
+    """Return transfers in 2D and 3D; if full, also resolutions, precisions and other variations."""
     sizes = (0.2, 0.1, 0.05) if full else (0.1,)
     listed: list[CaseSettings] = [
         {**DISC, "dx": dx, **transfer} for transfer in TRANSFERS for dx in sizes

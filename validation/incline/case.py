@@ -124,7 +124,7 @@ def _stop(sliding: Sliding, deceleration: float, settings: CaseSettings) -> Iter
 
 
 def slab_matrix(full: bool) -> list[CaseSettings]:
-    """Return the friction at which the usual nodal rule fails, and if full other variations."""
+    """Return the friction at which the usual nodal rule fails; if full, also other variations."""
     slides = (0.0, 0.3, 0.6, 0.8)
     trap: CaseSettings = {**DEFAULTS, "length": 2.0, "speed": 0.0}
     short: CaseSettings = {**trap, "length": 0.25}
@@ -218,7 +218,7 @@ def measure_angle(settings: CaseSettings) -> Outcome:
 
 
 def angle_matrix(full: bool) -> list[CaseSettings]:
-    """Return frictions and resolutions, and if full methods and seedings."""
+    """Return frictions and resolutions; if full, also methods and seedings."""
     slab: CaseSettings = {**DEFAULTS, "length": 0.25, "friction": 0.6}
     if not full:
         return [{**slab, "dx": 0.02}]

@@ -57,7 +57,7 @@ VORTEX: CaseSettings = {"motion": "vortex", "amplitude": 1.0, "particles_per_vox
 
 
 def waves_matrix(full: bool) -> list[CaseSettings]:
-    """Return FLIP and APIC, and if full less stretch, fewer particles, and other schemes."""
+    """Return FLIP and APIC; if full, also less stretch, fewer particles, and other schemes."""
     if not full:
         return _series((16, 24), {**WAVES, **FLIP}, {**WAVES, **APIC})
     few: CaseSettings = {**WAVES, "amplitude": 0.02, "particles_per_voxel": 9}
@@ -78,7 +78,7 @@ def waves_matrix(full: bool) -> list[CaseSettings]:
 
 
 def vortex_matrix(full: bool) -> list[CaseSettings]:
-    """Return FLIP and APIC, and if full more rotation, fewer particles, and other schemes."""
+    """Return FLIP and APIC; if full, also more rotation, fewer particles, and other schemes."""
     if not full:
         return _series((16, 24, 32), {**VORTEX, **FLIP}, {**VORTEX, **APIC})
     listed = [
@@ -132,7 +132,7 @@ def _end(settings: CaseSettings) -> tuple[ForcedBody, Floats, Floats]:
 
 
 def steps_matrix(full: bool) -> list[CaseSettings]:
-    """Return Courant factors for pure FLIP, and if full other transfers and small motions."""
+    """Return Courant factors for pure FLIP; if full, also other transfers and small motions."""
     variants: list[CaseSettings] = [{"motion": "vortex", "amplitude": 1.0, **FLIP}]
     factors: Sequence[float] = (0.45, 0.225)
     if full:

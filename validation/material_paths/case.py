@@ -255,12 +255,12 @@ def isotropic_matrix(full: bool) -> list[CaseSettings]:
 
 
 def plane_and_space_matrix(full: bool) -> list[CaseSettings]:
-    """Return increments in 3D, and if full also in 2D."""
+    """Return increments in 3D; if full, also in 2D."""
     return _matrix(full, [{"dimension": 3}, {"dimension": 2}])
 
 
 def triaxial_matrix(full: bool) -> list[CaseSettings]:
-    """Return increments from a stress on the wet side, and if full from none and the dry side."""
+    """Return increments from a stress on the wet side; if full, also from none and the dry side."""
     return _matrix(full, [{"consolidation": 0.8}, {"consolidation": 0.0}])
 
 

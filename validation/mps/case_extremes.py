@@ -17,7 +17,7 @@ from validation.mps.bodies import mps_drive
 SNOW = MpsSettings(density=200.0, friction_angle=24.0)
 CASE_SETTINGS = frozenset({"tilt", "board"})
 STEPS = 60
-EDGE = 0.2  # m, of a block of snow that falls by a quarter of it onto a tilted plane
+EDGE = 0.2  # m; the block of snow falls by a quarter of its edge onto a tilted plane
 BOARD_DISTANCE, BOARD_HEIGHT = (
     0.25,
     0.3,
@@ -79,7 +79,7 @@ def _box(centre: np.ndarray, size: tuple[float, float], tilt: float) -> Shape:
 
 
 def matrix(full: bool) -> list[CaseSettings]:
-    """Return viscosities with yield stresses; spacings, tilts and boards; each with both walls."""
+    """Return viscosities with yield stresses, tilts, boards, spacings and radii, for both walls."""
     values = VALUES if full else VALUES[::3]
     listed: list[CaseSettings] = [{"viscosity": v, "cohesion": c} for v in values for c in values]
     listed += [{"tilt": tilt} for tilt in ((0.0, 20.0, 60.0, 85.0) if full else (0.0, 85.0))]
@@ -99,12 +99,13 @@ CASE = Case(
     source="all values are finite, no particle is behind a wall",
     description="""
     A block of snow falls a little and slides down a plane, with or without a board that stands on
-    it. Viscosity and yield stress go up to 1e4 Pa s and Pa, tilts to 85 degrees, boards are thinner
-    than a particle (their thickness is in distances between particles). After 60 steps every value
-    must be finite and no particle behind or in a wall; a run may stop with an error.
+    it. Viscosity and yield stress go up to 1e4 Pa s and Pa, and tilts to 85 degrees. Boards are
+    thinner or thicker than a particle (their thickness is in distances between particles). After 60
+    steps every value must be finite and no particle behind or in a wall; a run may stop with an
+    error.
     """,
     quantities=(
-        Quantity("unsound", "values that are no numbers", limit=0.0, relative=False),
+        Quantity("unsound", "values that are not finite", limit=0.0, relative=False),
         Quantity("through", "particles behind or in a wall", limit=0.0, relative=False),
         Quantity("stopped", "runs that stopped with an error", relative=False),
         Quantity("density", "largest density over that of a lattice"),

@@ -138,7 +138,7 @@ def measure(settings: CaseSettings) -> Outcome:
 
 
 def matrix(full: bool) -> list[CaseSettings]:
-    """Return frictions, and if full resolutions, methods and lengths."""
+    """Return frictions; if full, also resolutions, methods and lengths."""
     if not full:
         coarse: CaseSettings = {**SLAB, "dx": 0.02}
         return [{**coarse, "friction": 0.0}, coarse, {**SLAB, "transfer": "apic"}]

@@ -253,7 +253,7 @@ METHODS: tuple[CaseSettings, ...] = (
 
 
 def elastic_matrix(full: bool) -> list[CaseSettings]:
-    """Return resolutions, and if full seedings, bases and other variations."""
+    """Return resolutions; if full, also seedings, bases and other variations."""
     sizes = (0.04, 0.02, 0.01, 0.005, 0.0025) if full else (0.02, 0.01, 0.005)
     listed: list[CaseSettings] = [{**REGULAR, "dx": dx} for dx in sizes]
     if not full:
@@ -268,7 +268,7 @@ def elastic_matrix(full: bool) -> list[CaseSettings]:
 
 
 def yielding_matrix(full: bool) -> list[CaseSettings]:
-    """Return resolutions, and if full seedings and other variations."""
+    """Return resolutions; if full, also seedings and other variations."""
     sizes = (0.02, 0.01, 0.005, 0.0025) if full else (0.02, 0.01)
     listed: list[CaseSettings] = [{**REGULAR, "dx": dx} for dx in sizes]
     if full:

@@ -136,7 +136,7 @@ def _profile_error(drive: TimedEventDriver, shape: str, exact: float) -> float:
 
 
 def matrix(full: bool) -> list[CaseSettings]:
-    """Return both shapes over the size of particles, and if full cells and steps."""
+    """Return both shapes over the size of particles; if full, also cells and steps."""
     layers = LAYERS if full else LAYERS[:3]
     listed: list[CaseSettings] = [
         {**DEFAULTS, "shape": shape, "layer_thickness": layer}

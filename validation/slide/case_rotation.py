@@ -106,7 +106,7 @@ def _turned(maps: SlideMaps, values: Floats, degrees: float) -> Floats:
 
 
 def matrix(full: bool) -> list[CaseSettings]:
-    """Return ground and angles, and if full cells and sizes of particles."""
+    """Return ground and angles; if full, also cells and sizes of particles."""
     angles = (10.0, 30.0, 45.0, 77.0) if full else (30.0,)
     listed: list[CaseSettings] = [
         {**DEFAULTS, "shape": shape, "turned": angle}

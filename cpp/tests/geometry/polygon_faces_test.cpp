@@ -13,7 +13,7 @@ using namespace geometry_testing;
 TEST(Orientation, IsExact) {
   EXPECT_GT(orientation({0, 0}, {1, 0}, {0, 1}), 0);
   EXPECT_LT(orientation({0, 0}, {0, 1}, {1, 0}), 0);
-  // Points along a diagonal, of which one is moved by the last bit of a coordinate.
+  // Points along a diagonal; one is moved by the last bit of a coordinate.
   const double tiny = std::nextafter(0.5, 1) - 0.5;
   EXPECT_EQ(orientation({0.5, 0.5}, {12, 12}, {24, 24}), 0);
   EXPECT_GT(orientation({0.5, 0.5 + tiny}, {12, 12}, {24, 24}), 0);

@@ -25,7 +25,7 @@ Scene with_bodies(int dimension, const std::string& method, const std::string& b
                      R"(, "threads": 1}, "bodies": [)" + bodies + "], " + parts + "}");
 }
 
-/// A box of the plane or of space whose extent along y is that along x.
+/// A box in the plane (x, z), or in space with the same extent along y as along x.
 std::string box(int dimension, double x, double z, double length, double height,
                 const std::string& more = "") {
   const auto n = [](double value) { return std::to_string(value); };
@@ -182,7 +182,7 @@ TEST(SnowPlacementNotes, KnowTheSnowOfEarlierEvents) {
   }
 }
 
-/// Snow that nothing lets slide off the panel, so that each slab lies on the one before.
+/// A panel to which snow sticks, so that each slab lies on the one before.
 Scene sticky_panel(int events) {
   Scene scene = small_scene();
   scene.panel->condition = Condition::sticky;

@@ -33,8 +33,8 @@ MEANINGS = {
     "density": ("kg/m3", "Mass at a node over the volume of a cell"),
 }
 Basis = Literal["quadratic", "cubic"]
-#: Number of nodes that a particle reaches along an axis, and distance of the particle from the
-#: lowest of these nodes at least, in cells.
+#: Number of nodes that a particle reaches along an axis, and the smallest distance of the particle
+#: from the lowest of these nodes, in cells.
 SUPPORT = {"quadratic": 3, "cubic": 4}
 OFFSET = {"quadratic": 0.5, "cubic": 1.0}
 MAX_NODES = 400_000_000
@@ -84,7 +84,7 @@ def grid_dataset(grid: GridFields, event: int, time: float) -> xarray.Dataset:
     Returns
     -------
     xarray.Dataset
-        Dimensions x, (y,) z, the nodes, m, and component.
+        Dimensions x, (y,) z (coordinates of the nodes, m) and component.
 
     Raises
     ------

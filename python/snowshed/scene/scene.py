@@ -362,7 +362,7 @@ class Scene(Record):
                     record.assign(key, value, where)
 
     def _adopts(self, path: str) -> bool:
-        """Return whether a path names a choice of several other values; it must be set first."""
+        """Return whether the value at a path sets others, too; it must be set before them."""
         with locate(self, path) as (record, key, _):
             return record.adopts(key)
 
@@ -378,7 +378,7 @@ class Scene(Record):
         return ResolvedScene.parse(json.dumps(self.to_data()), self._base_dir)
 
     def _warn_of_slip(self) -> None:
-        """Note the new meaning of "slip", for one version; files have a version instead."""
+        """Warn of the new meaning of "slip" for one release, except in scenes of version 1."""
         parts = [self.panel, self.ground, *(self.obstacles or ())]
         if self.snowshed != 1 and any(part and part.condition == "slip" for part in parts):
             warnings.warn(SLIP_CHANGED, FutureWarning, stacklevel=3)

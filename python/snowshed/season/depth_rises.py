@@ -185,7 +185,7 @@ def _invalid_readings(
 
 
 def _longest(change: float, days: int) -> int:
-    """Return the largest number of days of a spike of a size."""
+    """Return the largest number of days that a spike of this size lasts."""
     if abs(change) > RECORD_DAY * days:
         return IMPOSSIBLE_DAYS
     return SPIKE_DAYS if change > 0.0 else DROPOUT_DAYS

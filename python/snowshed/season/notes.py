@@ -108,7 +108,7 @@ def _slab_notes(dx: float, days: Sequence[WinterDay], settings: SeasonSettings) 
         thinnest = min(day.slab_thickness for day in released)
         if thinnest < 2.0 * dx:
             yield (
-                f"the thinnest slab has {1000 * thinnest:.1f} mm, less than two cells of "
+                f"the thinnest slab is {1000 * thinnest:.1f} mm thick, less than two cells of "
                 f"{1000 * dx:g} mm: its stack is coarse"
             )
     else:

@@ -60,7 +60,7 @@ def _notes(
         (bridged, "they are interpolated from the days before and after"),
     )
     return [
-        f"without a temperature are {some_days(dates, np.flatnonzero(flags))}; {rule}"
+        f"no temperature on {some_days(dates, np.flatnonzero(flags))}; {rule}"
         for flags, rule in rules
         if flags.any()
     ]

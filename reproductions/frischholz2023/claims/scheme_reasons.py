@@ -11,8 +11,8 @@ REASONS = {
     "first slab stays with both schemes. Each later slab is laid on those that stayed; with "
     "`thesis` it stays, too, and with `objective` all slabs except one slide off in the end.",
     "β has the strongest impact on the height.": "β changes the height a third as much as with "
-    "`thesis`, and M the same.",
-    "ξ and E hardly matter for the length.": "The effects of ξ and E and the noise are smaller.",
+    "`thesis`, and M as much.",
+    "ξ and E hardly matter for the length.": "The effect of E is smaller, and so is the noise.",
     "Events matter more for the height than snow parameters.": "All snow parameters change the "
     "height less.",
     "Events matter more for the length than snow parameters.": "M changes the length by 0.13 m "

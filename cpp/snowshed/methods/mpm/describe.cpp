@@ -37,17 +37,17 @@ void describe(SettingsVisitor& v, Settings& n) {
       "0: at once, the law itself");
   v.choice(
       "contact", n.contact,
-      "Snow on which a node of an obstacle acts: all whose splines reach the node (kernel), or "
-      "only if one of its particles touches the obstacle itself (touch)");
+      "Snow on which a node of an obstacle acts: all snow whose splines reach the node (kernel), "
+      "or only snow beside a particle that touches the obstacle itself (touch)");
   v.number("contact_radius", n.contact_radius, "", positive.up_to(1.0),
-           "Radius of the particles that touch, over half the spacing of particles");
+           "Contact radius of a particle, relative to half the spacing of particles");
   v.choice(
       "fields", n.fields,
       "Velocity fields of the grid: one for all snow, which then sticks together on contact, or "
       "one for the snow of each event, which then touches, slides and separates");
   v.number("event_friction", n.event_friction, "", allowed::coefficient,
-           "Friction between the snow of different events, with fields of events, over that of the "
-           "snow itself at the critical state, M/sqrt(3)");
+           "With fields of events: friction between the snow of different events, relative to that "
+           "of the snow itself at the critical state, M/sqrt(3)");
   v.choice("basis", n.basis, "B-spline of the grid");
   v.number("courant_factor", n.courant_factor, "", positive.up_to(1.0),
            "Time step over the largest stable one");

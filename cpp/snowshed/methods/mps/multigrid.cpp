@@ -158,7 +158,7 @@ void Multigrid<D, C>::fill_next(const Level& below, Level& level) {
 }
 
 /// Factors the matrix of the coarsest level. A small increase of the diagonal keeps it positive
-/// definite in spite of rounding, and without a free surface.
+/// definite in spite of rounding, even if there is no free surface.
 template <int D, int C>
 void Multigrid<D, C>::factor_coarsest() {
   const Level& level = levels_.back();

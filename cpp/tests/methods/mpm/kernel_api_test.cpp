@@ -17,7 +17,7 @@
 namespace snowshed::mpm {
 namespace {
 
-/// Shares of friction of up to four obstacles, all of which are pushed.
+/// The share of friction that remains is 1 for each of up to four obstacles.
 template <class T>
 constexpr T all_pushing[] = {1, 1, 1, 1};
 

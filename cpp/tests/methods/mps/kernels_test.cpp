@@ -14,7 +14,7 @@
 namespace snowshed::mps {
 namespace {
 
-/// A random cloud, denser and sparser than a lattice, so that rows of many lengths occur.
+/// A random cloud, partly denser and partly sparser than a lattice, so that row lengths differ.
 template <int D>
 struct Cloud {
   static constexpr double radius = 2.1;
@@ -212,7 +212,7 @@ TYPED_TEST(KernelsOf, SumWaysAndApproaches) {
   EXPECT_GT(receding, 100);
 }
 
-/// The velocity of a linear field has the same shear rate midway of all pairs.
+/// A linear velocity field has the same shear rate at the midpoints of all pairs.
 TYPED_TEST(KernelsOf, FindTheShearRateOfALinearField) {
   constexpr int D = TypeParam::value;
   using Matrix = Eigen::Matrix<double, D, D>;

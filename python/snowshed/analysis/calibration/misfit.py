@@ -47,7 +47,7 @@ def rank_sets(stacks: SimulatedStacks, comparison: pd.DataFrame) -> pd.DataFrame
 
     measured = [q for q in RANKED if (comparison["quantity"] == q).any()]
     if not measured:
-        raise InputError("neither height_m nor length_m was measured, which rank the sets")
+        raise InputError("neither height_m nor length_m was measured; the sets are ranked by these")
     scores = pd.DataFrame({"chi_square": _chi_square(comparison)})
     for quantity, rows in comparison.groupby("quantity", sort=False):
         for name, values in _scores(rows, relative=quantity in RANKED).items():

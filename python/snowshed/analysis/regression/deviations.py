@@ -14,7 +14,7 @@ from snowshed._core import InputError
 ALL = "all"
 #: Frames of an event, and frames in a second; the latter is not published, but usual.
 FRAMES, FRAME_RATE = 100, 24.0
-#: Settings by dotted paths. The trimming changes the measuring of stacks alone.
+#: Settings by dotted paths. The trimming changes only how stacks are measured.
 DEVIATIONS: Mapping[str, Mapping[str, object]] = {
     "slip": {"panel.condition": "slip"},
     "damping": {"numerics.transfer": "flip", "numerics.flip_ratio": 0.99},

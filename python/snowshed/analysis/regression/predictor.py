@@ -122,7 +122,7 @@ def predict(
     tilt
         Tilt of the panel from the horizontal, degrees.
     events
-        Slide-offs, 1 or more; each is answered, from the first on.
+        Number of slide-offs, 1 or more; the stack after each of them is predicted.
     inputs
         Values of further inputs of the model by their paths, such as "snow.cohesion".
     model

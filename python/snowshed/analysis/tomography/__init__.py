@@ -1,1 +1,1 @@
-"""Images of snow: synthetic ones, their numbers, and their grains."""
+"""Images of snow: synthetic images, their measurements, and their grains."""

@@ -160,7 +160,8 @@ def write_ascii_grid(path: PathLike, raster: Raster, *, exact: bool = False) -> 
     """Write a raster as an ESRI ASCII grid, whole or not at all; NaN becomes -9999.
 
     Values have nine digits, enough to recover single precision; with `exact`, they have enough
-    digits for double precision. Single values need these, too, if a reader uses double precision.
+    digits for double precision. Values in single precision need them, too, if the reader uses
+    double precision.
 
     Examples
     --------

@@ -31,7 +31,7 @@ def load_lua(
     update
         A script that runs after it, in the same state; its values override earlier ones.
     echo
-        Called with every line that the scripts print, also if they fail after that.
+        Called with every line that the scripts print, even if they fail after that.
     limits
         Limits of the scripts. [default: `LuaLimits()`]
 

@@ -71,7 +71,7 @@ def run_sandboxed(
     limits
         Limits of the scripts. [default: `LuaLimits()`]
     echo
-        Called with every line that the scripts print, also if they fail after that.
+        Called with every line that the scripts print, even if they fail after that.
 
     Returns
     -------

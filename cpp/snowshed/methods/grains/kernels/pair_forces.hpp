@@ -16,7 +16,7 @@ SNOWSHED_INLINE QuadVec load_vec(const double* x, const double* y, const double*
                                  std::size_t at) {
   return {load_row(x + at), load_row(y + at), load_row(z + at)};
 }
-/// The separation of a point from its body's centre in space, from that in the body's frame.
+/// Turns the offset of a point from its body's centre out of the body's frame into space.
 SNOWSHED_INLINE QuadVec rotated(const double* r, const QuadVec& p) {
   return {r[0] * p.x + r[1] * p.y + r[2] * p.z, r[3] * p.x + r[4] * p.y + r[5] * p.z,
           r[6] * p.x + r[7] * p.y + r[8] * p.z};
@@ -43,7 +43,8 @@ SNOWSHED_INLINE void store_mask(std::uint8_t* flags, const QuadMask& mask) {
 /// Motion of the second of two bodies relative to the first.
 struct PairedBodies {
   const BodyFrame &a, &b;
-  double apart[3], parting[3];  // m, m/s, of the centres; of the second's periodic image
+  // Offset (m) and velocity (m/s) of the second centre, at its periodic image, from the first.
+  double apart[3], parting[3];
 
   SNOWSHED_INLINE PairedBodies(const View& s, const PairGroup& g)
       : a(s.bodies[g.first]), b(s.bodies[g.second]) {
